@@ -1,0 +1,55 @@
+# touchdown_add_library(<folder> SOURCES ... PUBLIC ... PRIVATE ...)
+#   One library per top-level folder: target touchdown_<folder>, alias touchdown::<folder>.
+# touchdown_add_test(<folder> SOURCES ... LINK ... [DATA ...])
+#   One GoogleTest executable per folder; every TEST becomes a CTest entry.
+
+# Headers are included as "touchdown/<folder>/<file>.h", in the tree through this link and after
+# installation through the include directory.
+file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/include")
+file(CREATE_LINK "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/include/touchdown" SYMBOLIC)
+
+function(touchdown_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                           -Woverloaded-virtual -Wold-style-cast)
+  if(TOUCHDOWN_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(TOUCHDOWN_SANITIZE)
+    target_compile_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE})
+  endif()
+endfunction()
+
+function(touchdown_add_library folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target touchdown_${folder})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(touchdown::${folder} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC
+    "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>"
+    "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+  # One memory layout for every consumer and plug-in, whatever -march they are compiled with.
+  target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  touchdown_compile_options(${target})
+  install(TARGETS ${target} EXPORT touchdownTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/"
+          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/touchdown/${folder}"
+          FILES_MATCHING PATTERN "*.h" PATTERN "test" EXCLUDE PATTERN "bench" EXCLUDE)
+endfunction()
+
+function(touchdown_add_test folder)
+  if(NOT TOUCHDOWN_BUILD_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  set(target ${folder}_test)
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${target} PRIVATE
+    TOUCHDOWN_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TOUCHDOWN_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  touchdown_compile_options(${target})
+  gtest_discover_tests(${target} PROPERTIES LABELS "unit;${folder}" DISCOVERY_TIMEOUT 60)
+endfunction()
