@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/measurements.h"
+
+namespace touchdown::planning {
+
+using CellIndex = Eigen::Vector3i;  ///< cell of the unbounded lattice: floor(p / resolution)
+
+/// Parameters of the rolling grid. Log-odds as in EGO-Planner's map.
+struct OccupancyMapOptions {
+  double resolution = 0.1;                    ///< cell side [m]
+  Eigen::Vector3i size_log2 = {8, 8, 6};      ///< window of 2^n cells a side: 25.6 x 25.6 x 6.4 m
+  double inflation_radius = 0.45;             ///< obstacles are grown by this [m]
+  double probability_hit = 0.65;
+  double probability_miss = 0.35;
+  double probability_min = 0.12;              ///< clamps
+  double probability_max = 0.90;
+  double probability_occupied = 0.70;         ///< a cell at least this likely blocks
+  double min_ray = 0.2;                       ///< nearer returns are ignored [m]
+  double ground_height = 0.15;                ///< returns below are ground, not obstacles [m]
+};
+
+/// A vertical cylinder that is left out of the map: the pad's own volume.
+struct ExcludedVolume {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< in W [m]
+  double radius = 0.0;                               ///< [m]; 0: none
+  double top = 0.0;                                  ///< returns above this height count again [m]
+};
+
+/// A cell that became blocked or free, before inflation.
+struct CellFlip {
+  CellIndex cell;
+  bool occupied;
+};
+
+/// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle; what
+/// leaves it is forgotten. Unknown is free for planning; IsKnown tells the difference. Allocates in
+/// the constructor only (the list of flips grows to its high-water mark).
+class OccupancyMap {
+ public:
+  /// Throws std::invalid_argument on a resolution, size, radius or probability out of range.
+  explicit OccupancyMap(const OccupancyMapOptions& options);
+
+  const OccupancyMapOptions& options() const { return options_; }
+  double resolution() const { return options_.resolution; }
+
+  /// Moves the window so that it is centred at p_W; cells that enter are unknown.
+  void Recentre(const Eigen::Vector3d& p_W);
+
+  /// Fuses one depth frame: every cell is updated once, hits win over misses.
+  void Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded);
+
+  /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored.
+  void SetOccupied(const Eigen::Vector3d& p_W);
+
+  /// Frees what stands inside the volume: cells that were seen before the pad was known to be there.
+  void Clear(const ExcludedVolume& excluded);
+
+  CellIndex CellOf(const Eigen::Vector3d& p_W) const {
+    return (p_W / options_.resolution).array().floor().matrix().cast<int>();
+  }
+  Eigen::Vector3d CentreOf(const CellIndex& cell) const {
+    return (cell.cast<double>().array() + 0.5).matrix() * options_.resolution;
+  }
+  bool InWindow(const CellIndex& cell) const {
+    return ((cell - origin_).array() >= 0).all() && ((cell - origin_ - size_).array() < 0).all();
+  }
+
+  /// Blocked after inflation. Out of the window: free (unknown).
+  bool IsBlocked(const CellIndex& cell) const {
+    return InWindow(cell) && inflation_[Address(cell)] > 0;
+  }
+  bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
+  /// Occupied itself, without inflation.
+  bool IsOccupied(const CellIndex& cell) const;
+  /// Observed at least once, free or occupied.
+  bool IsKnown(const CellIndex& cell) const;
+
+  /// Lowest cell of the window and its extent [cells].
+  const CellIndex& origin() const { return origin_; }
+  const CellIndex& size() const { return size_; }
+
+  /// Cells that changed in the last Integrate, SetOccupied, Clear or Recentre.
+  const std::vector<CellFlip>& flips() const { return flips_; }
+
+ private:
+  std::size_t Address(const CellIndex& cell) const {
+    const Eigen::Vector3i& n = options_.size_log2;
+    return (static_cast<std::size_t>(cell.z() & mask_.z()) << (n.x() + n.y())) |
+           (static_cast<std::size_t>(cell.y() & mask_.y()) << n.x()) |
+           static_cast<std::size_t>(cell.x() & mask_.x());
+  }
+  void MarkRay(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool hit,
+               const ExcludedVolume& excluded);
+  void Vote(const CellIndex& cell, bool hit);
+  void SetLogOdds(const CellIndex& cell, std::int8_t value);
+  void Inflate(const CellIndex& cell, int increment);
+
+  OccupancyMapOptions options_;
+  CellIndex origin_ = CellIndex::Zero();
+  CellIndex size_;
+  CellIndex mask_;
+  std::int8_t hit_, miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
+  std::vector<CellIndex> ball_;                    // cells that one obstacle cell blocks
+  std::vector<std::int8_t> log_odds_;
+  std::vector<std::uint16_t> inflation_;           // number of obstacle cells whose ball holds it
+  std::vector<std::uint32_t> stamp_;               // frame of the last vote, hit in the lowest bit
+  std::vector<CellIndex> touched_;
+  std::vector<CellFlip> flips_;
+  std::uint32_t frame_ = 0;
+};
+
+}  // namespace touchdown::planning

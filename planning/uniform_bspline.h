@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "touchdown/planning/flatness.h"
+
+namespace touchdown::planning {
+
+/// Control points of a spline, one per column.
+using ControlPoints = Eigen::Matrix3Xd;
+
+/// Position, velocity and acceleration at one instant, all in W.
+struct SplineState {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< [m/s]
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< [m/s^2]
+};
+
+/// Uniform cubic B-spline in R^3 (eq. 12-15 of the paper): N control points Q_0..Q_{N-1} and a knot
+/// interval h span M = N - 3 segments, T = M h. Time runs from t0 to t0 + T.
+class UniformBspline {
+ public:
+  /// A spline that stands at the origin for one second from t = 0.
+  UniformBspline();
+
+  /// Throws std::invalid_argument if there are fewer than 4 control points, if h is not positive and
+  /// finite, or if a number is not finite. Allocates.
+  UniformBspline(ControlPoints control_points, double interval, double t0);
+
+  const ControlPoints& control_points() const { return control_points_; }
+  double interval() const { return h_; }                                 ///< h [s]
+  double t0() const { return t0_; }                                      ///< start [s]
+  int segments() const { return static_cast<int>(control_points_.cols()) - 3; }
+  double duration() const { return segments() * h_; }                    ///< T [s]
+  double t_end() const { return t0_ + duration(); }                      ///< [s]
+
+  /// Position and its first three derivatives at time t, which is clamped to [t0, t0 + T]. The yaw
+  /// fields are left zero. Does not allocate.
+  FlatState Evaluate(double t) const;
+
+  /// State at knot k in 0..M: p = (Q_k + 4 Q_{k+1} + Q_{k+2})/6 and its derivatives.
+  SplineState AtKnot(int k) const;
+
+ private:
+  ControlPoints control_points_;
+  double h_ = 1.0;
+  double t0_ = 0.0;
+};
+
+/// Largest norms that velocity and acceleration can take anywhere on the curve, by the convex hull
+/// of the Bezier points of its derivatives (per segment: the two knot values and, for the velocity,
+/// the derivative control point between them). `start_speed` and `start_acceleration` are the norms
+/// at t0; the other two are over everything that is not fixed by the start state.
+struct DerivativeBounds {
+  double speed = 0.0;         ///< [m/s]
+  double acceleration = 0.0;  ///< [m/s^2]
+};
+DerivativeBounds BoundDerivatives(const UniformBspline& curve);
+
+}  // namespace touchdown::planning
