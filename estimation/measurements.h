@@ -11,28 +11,29 @@ namespace touchdown::estimation {
 
 /// Pinhole camera without distortion. C: camera frame, x right, y down, z along the optical axis.
 struct CameraIntrinsics {
-  int width = 80;      ///< [pixel]
-  int height = 60;     ///< [pixel]
-  double focal = 40.0; ///< focal length, both axes [pixel]
-  double cx = 40.0;    ///< principal point [pixel], pixel (u, v) has its centre at (u+0.5, v+0.5)
+  int width = 80;       ///< [pixel]
+  int height = 60;      ///< [pixel]
+  double focal = 40.0;  ///< focal length, both axes [pixel]
+  double cx = 40.0;     ///< principal point [pixel], pixel (u, v) has its centre at (u+0.5, v+0.5)
   double cy = 30.0;
 };
 
 /// One depth image with the pose it was taken from.
 struct DepthFrame {
-  double t = 0.0;                                            ///< time stamp [s]
+  double t = 0.0;  ///< time stamp [s]
   CameraIntrinsics intrinsics;
-  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();            ///< camera in W [m]
-  Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();        ///< C to W
-  double max_range = 6.0;       ///< returns beyond this distance along the ray are not reported [m]
-  std::vector<float> depth;     ///< height x width, row-major, along the optical axis [m]; inf: no return
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();      ///< camera in W [m]
+  Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();  ///< C to W
+  double max_range = 6.0;  ///< returns beyond this distance along the ray are not reported [m]
+  std::vector<float>
+      depth;  ///< height x width, row-major, along the optical axis [m]; inf: no return
 };
 
 /// Position of the pad by GPS (horizontal, in W). The paper's eq. 11 without its heading.
 struct PadGpsFix {
-  double t = 0.0;                                   ///< time stamp [s]
-  Eigen::Vector2d p_WP = Eigen::Vector2d::Zero();   ///< [m]
-  double sigma = 0.01;                              ///< standard deviation, each axis [m]
+  double t = 0.0;                                  ///< time stamp [s]
+  Eigen::Vector2d p_WP = Eigen::Vector2d::Zero();  ///< [m]
+  double sigma = 0.01;                             ///< standard deviation, each axis [m]
 };
 
 /// Pose of the pad seen by the downward camera through its tags, relative to the vehicle.
@@ -47,8 +48,8 @@ struct PadSighting {
 
 /// Sum of the forces on the landing feet, as foot switches with a load cell give it.
 struct FootForce {
-  double t = 0.0;        ///< time stamp [s]
-  double force = 0.0;    ///< [N]
+  double t = 0.0;      ///< time stamp [s]
+  double force = 0.0;  ///< [N]
 };
 
 }  // namespace touchdown::estimation

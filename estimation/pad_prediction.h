@@ -8,13 +8,13 @@ namespace touchdown::estimation {
 /// The pad at one instant. v, a, j are the exact time derivatives of p: an arrival time can be
 /// optimised through them.
 struct PadState {
-  Eigen::Vector3d p_WP = Eigen::Vector3d::Zero();  ///< centre of the deck's upper face in W [m]
-  Eigen::Vector3d v_WP = Eigen::Vector3d::Zero();  ///< [m/s]
-  Eigen::Vector3d a_WP = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  Eigen::Vector3d j_WP = Eigen::Vector3d::Zero();  ///< [m/s^3]
-  double yaw = 0.0;                                ///< heading of the pad's x axis in W [rad]
-  double yaw_rate = 0.0;                           ///< [rad/s]
-  Eigen::Matrix2d cov_p = Eigen::Matrix2d::Zero(); ///< covariance of the horizontal position [m^2]
+  Eigen::Vector3d p_WP = Eigen::Vector3d::Zero();   ///< centre of the deck's upper face in W [m]
+  Eigen::Vector3d v_WP = Eigen::Vector3d::Zero();   ///< [m/s]
+  Eigen::Vector3d a_WP = Eigen::Vector3d::Zero();   ///< [m/s^2]
+  Eigen::Vector3d j_WP = Eigen::Vector3d::Zero();   ///< [m/s^3]
+  double yaw = 0.0;                                 ///< heading of the pad's x axis in W [rad]
+  double yaw_rate = 0.0;                            ///< [rad/s]
+  Eigen::Matrix2d cov_p = Eigen::Matrix2d::Zero();  ///< covariance of the horizontal position [m^2]
 };
 
 /// Where the pad will be. Implemented by the pad filter's models and by the oracle of the tests

@@ -22,21 +22,21 @@ struct VehicleModel {
   double mass_kg = 1.18;
   Eigen::Vector3d inertia = {0.010, 0.010, 0.018};  ///< principal moments about B's axes [kg m^2]
   std::array<Rotor, 4> rotors;
-  double rotor_thrust_min = 0.0;   ///< per rotor [N]
-  double rotor_thrust_max = 7.0;   ///< per rotor [N]
-  double rotor_lag_s = 0.035;      ///< first-order thrust lag [s]
+  double rotor_thrust_min = 0.0;     ///< per rotor [N]
+  double rotor_thrust_max = 7.0;     ///< per rotor [N]
+  double rotor_lag_s = 0.035;        ///< first-order thrust lag [s]
   double torque_per_thrust = 0.016;  ///< reaction torque per newton [m] (tau/k of eq. 1-2)
 
   Eigen::Vector3d rotor_drag = Eigen::Vector3d::Zero();  ///< linear, along B's axes [N s/m]
-  double body_drag_area = 0.0;     ///< Cd A of the quadratic body drag [m^2]
+  double body_drag_area = 0.0;                           ///< Cd A of the quadratic body drag [m^2]
 
-  double hull_radius = 0.30;       ///< cylinder about z_B that holds body, arms and rotor discs [m]
-  double hull_top = 0.08;          ///< its upper face above B's origin [m]
-  double foot_depth = 0.12;        ///< lowest point of the feet below B's origin [m], > 0
-  double foot_radius = 0.16;       ///< horizontal distance of a foot from B's z axis [m]
+  double hull_radius = 0.30;  ///< cylinder about z_B that holds body, arms and rotor discs [m]
+  double hull_top = 0.08;     ///< its upper face above B's origin [m]
+  double foot_depth = 0.12;   ///< lowest point of the feet below B's origin [m], > 0
+  double foot_radius = 0.16;  ///< horizontal distance of a foot from B's z axis [m]
 
-  double MaxThrust() const { return 4.0 * rotor_thrust_max; }      ///< [N]
-  double HoverThrust() const { return mass_kg * kGravity; }        ///< [N]
+  double MaxThrust() const { return 4.0 * rotor_thrust_max; }  ///< [N]
+  double HoverThrust() const { return mass_kg * kGravity; }    ///< [N]
 };
 
 }  // namespace touchdown::estimation

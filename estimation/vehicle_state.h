@@ -8,11 +8,11 @@ namespace touchdown::estimation {
 
 /// Rigid-body state of the quadrotor. W: world (ENU), B: body (x forward, y left, z along thrust).
 struct VehicleState {
-  double t = 0.0;                                                ///< time stamp [s]
-  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();                ///< centre of mass in W [m]
-  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();                ///< its velocity in W [m/s]
-  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();      ///< attitude, B to W
-  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();              ///< angular rate, in B [rad/s]
+  double t = 0.0;                                            ///< time stamp [s]
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();            ///< centre of mass in W [m]
+  Eigen::Vector3d v_WB = Eigen::Vector3d::Zero();            ///< its velocity in W [m/s]
+  Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();  ///< attitude, B to W
+  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();          ///< angular rate, in B [rad/s]
 };
 
 /// Heading of the body x axis in the world's horizontal plane [rad], in (-pi, pi].

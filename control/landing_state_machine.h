@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The mission of one landing as a pure function: Step(state, inputs, parameters) -> state, outputs.
+//
+//   from            to              reason            when
+//   hovering        tracking        pad_converged     pad converged and heading aligned
+//   hovering        tracking        align_timeout     pad converged, aligning took too long
+//   tracking        landing         above_pad         descent vertical, near the pad and slow over
+//   it tracking        hold            pad_lost          pad estimate missing for longer than
+//   pad_timeout tracking        hold            plan_failed       no plan for longer than
+//   plan_timeout landing         disarmed        contact           foot force for contact_time,
+//   feet at the deck landing         go_around       pad_lost          pad estimate missing for
+//   longer than pad_timeout landing         go_around       tags_lost         gate closed for
+//   longer than gate_timeout landing         go_around       error_too_large   horizontal error
+//   beyond abort_distance landing         go_around       plan_failed       no plan for longer than
+//   plan_timeout go_around       tracking        climb_complete    at the follow height, pad
+//   converged go_around       hold            pad_lost          at the follow height (or time-out),
+//   no pad go_around       tracking        climb_timeout     climbing took too long, pad converged
+//   hold            tracking        recovered         pad converged and a plan, for hold_time
+//   any armed       hold            invalid_input     an input is not finite for invalid_timeout
+//   any armed       emergency_stop  emergency         emergency flag
+//   emergency_stop  hold            emergency_cleared flag down for emergency_time
+//   (disarmed is final: there is no way out, and no way in but contact.)
+#pragma once
+
+#include <limits>
+#include <string_view>
+
+namespace touchdown::control {
+
+enum class MissionMode {
+  kHovering,
+  kTracking,
+  kLanding,
+  kDisarmed,
+  kHold,
+  kGoAround,
+  kEmergencyStop
+};
+std::string_view ToString(MissionMode mode);
+
+/// Why a mode was left; kNone while it lasts.
+enum class TransitionReason {
+  kNone,
+  kPadConverged,
+  kAlignTimeout,
+  kAbovePad,
+  kContact,
+  kPadLost,
+  kTagsLost,
+  kErrorTooLarge,
+  kPlanFailed,
+  kClimbComplete,
+  kClimbTimeout,
+  kRecovered,
+  kInvalidInput,
+  kEmergency,
+  kEmergencyCleared,
+};
+std::string_view ToString(TransitionReason reason);
+
+/// Why the descent pauses; kNone while it goes on.
+enum class DescentHold { kNone, kGate, kCorridor };
+std::string_view ToString(DescentHold hold);
+
+/// What the vehicle shall do.
+enum class Guidance {
+  kHoldPosition,  ///< brake and stay
+  kFollowPad,     ///< arrive and stay above the pad at foot_height, moving with foot_height_rate
+  kIdle,          ///< rotors off
+};
+std::string_view ToString(Guidance guidance);
+
+enum class DescentStyle {
+  kNone,      ///< follow above the pad, never land
+  kVertical,  ///< the paper's: approach above the pad, then descend over it
+};
+
+struct MissionInputs {
+  double t = 0.0;                    ///< now [s], not decreasing
+  bool pad_available = false;        ///< a pad estimate exists
+  bool pad_converged = false;        ///< and is good enough to plan with
+  double horizontal_distance = 0.0;  ///< vehicle to pad centre, estimated [m]
+  double height = 0.0;               ///< feet above the deck, estimated [m]
+  double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
+  double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
+  double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
+  double foot_force = 0.0;                                   ///< sum over the feet [N]
+  bool has_plan = false;                                     ///< a certified plan exists
+  double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
+  bool yaw_aligned = true;       ///< body heading along the direction of travel
+  bool emergency = false;        ///< obstacle too close, operator's stop, …
+  DescentStyle descent = DescentStyle::kVertical;
+};
+
+struct MissionParameters {
+  double follow_height = 1.5;  ///< feet above the deck while tracking [m]
+  double align_timeout = 2.0;  ///< [s]
+
+  double landing_distance = 0.5;  ///< tracking -> landing, the paper's figure [m]
+  double landing_speed = 0.4;     ///< and the relative horizontal speed [m/s]
+
+  double fast_rate = 0.5;            ///< descent above gate_height [m/s]
+  double slow_rate = 0.3;            ///< descent below it, to contact [m/s]
+  double climb_rate = 0.8;           ///< go-around [m/s]
+  double height_acceleration = 1.0;  ///< of the commanded height [m/s^2]
+
+  double gate_height = 1.0;     ///< no descent below it with the gate closed [m]
+  double gate_sigma = 0.08;     ///< the gate is open at pad_sigma up to this [m] ...
+  double gate_tag_age = 0.3;    ///< ... and tag_age up to this [s]
+  double gate_timeout = 3.0;    ///< closed for longer at the gate or below it: go around [s]
+  double commit_height = 0.35;  ///< below it the descent goes on by prediction [m]
+
+  double corridor_radius = 0.12;       ///< horizontal error allowed at the deck [m] ...
+  double corridor_slope = 0.35;        ///< ... and more by so much per metre of height [-]
+  double abort_distance = 1.0;         ///< horizontal error that ends a landing [m]
+  double commit_abort_distance = 0.5;  ///< the same below commit_height [m]
+
+  double press_depth = 0.3;      ///< the command goes this far below the deck until contact [m]
+  double contact_force = 2.0;    ///< [N]
+  double contact_time = 0.1;     ///< [s]
+  double contact_height = 0.15;  ///< |height| must be below it for contact to count [m]
+  double contact_gap = 0.05;     ///< samples farther apart do not count as lasting contact [s]
+
+  double pad_timeout = 1.0;       ///< [s]
+  double plan_timeout = 1.0;      ///< [s]
+  double hold_time = 0.5;         ///< [s]
+  double climb_timeout = 5.0;     ///< [s]
+  double climb_tolerance = 0.25;  ///< of the follow height for climb_complete [m]
+  double invalid_timeout = 0.2;   ///< [s]
+  double emergency_time = 1.0;    ///< [s]
+};
+
+/// Throws std::invalid_argument naming the first parameter out of its range.
+void Validate(const MissionParameters& parameters);
+
+/// What the mission remembers. Start from MissionState{} and pass on what Step returns.
+struct MissionState {
+  MissionMode mode = MissionMode::kHovering;
+  bool started = false;           ///< a valid time was seen
+  double t = 0.0;                 ///< of the last step [s]
+  double mode_since = 0.0;        ///< [s]
+  double foot_height = 0.0;       ///< commanded, feet above the deck [m]
+  double foot_height_rate = 0.0;  ///< its time derivative [m/s]
+  bool committed = false;         ///< below commit_height with the gate passed
+  /// Times since when a condition has held without a break [s]; infinite while it does not.
+  double converged_since = std::numeric_limits<double>::infinity();
+  double pad_missing_since = std::numeric_limits<double>::infinity();
+  double gate_closed_since = std::numeric_limits<double>::infinity();
+  double contact_since = std::numeric_limits<double>::infinity();
+  double recovered_since = std::numeric_limits<double>::infinity();
+  double invalid_since = std::numeric_limits<double>::infinity();
+  double calm_since = std::numeric_limits<double>::infinity();  ///< emergency flag down
+};
+
+struct MissionOutputs {
+  MissionMode mode = MissionMode::kHovering;
+  TransitionReason reason = TransitionReason::kNone;  ///< of the transition in this step
+  DescentHold descent_hold = DescentHold::kNone;
+  Guidance guidance = Guidance::kHoldPosition;
+  bool motors_armed = true;
+  bool plan_requested = false;  ///< planning to the pad makes sense now
+  bool committed = false;
+  /// Feet above the deck [m], continuous in time, and its rate [m/s]: the offset and the approach
+  /// velocity of the plan's endpoint.
+  double foot_height = 0.0;
+  double foot_height_rate = 0.0;
+};
+
+struct MissionStep {
+  MissionState state;
+  MissionOutputs outputs;
+};
+
+/// One step. Pure: no hidden state, no exception, no allocation. Inputs that are not finite count
+/// as missing and, if they last, lead to hold; they never disarm.
+/// @pre Validate(parameters) passes.
+MissionStep Step(const MissionState& state, const MissionInputs& inputs,
+                 const MissionParameters& parameters) noexcept;
+
+}  // namespace touchdown::control
