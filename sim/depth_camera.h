@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/measurements.h"
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/sim/obstacle_field.h"
+#include "touchdown/sim/pad_geometry.h"
+#include "touchdown/sim/random_stream.h"
+
+namespace touchdown::sim {
+
+/// Forward depth camera at the vehicle's nose. C: x right, y down, z along the optical axis.
+struct DepthCameraConfig {
+  int width = 80;                           ///< [pixel], in [1, 4096]
+  int height = 60;                          ///< [pixel], in [1, 4096]
+  double fov_x_deg = 90.0;                  ///< horizontal field of view [deg], in (0, 170]
+  double max_range = 6.0;                   ///< along the ray [m], in (0, 100]
+  Eigen::Vector3d p_BC = {0.10, 0.0, 0.0};  ///< camera in B [m]
+  double pitch_deg = 0.0;                   ///< optical axis below B's x axis [deg], in [-90, 90]
+  double range_noise = 0.0;  ///< standard deviation of a range over the range, in [0, 0.5]
+};
+
+/// Depth images by analytic ray casting of ground, obstacles and pad vehicle at its true pose. The
+/// vehicle does not see itself. One DepthCamera belongs to one thread.
+class DepthCamera {
+ public:
+  /// `seed` feeds the stream "depth camera". Throws std::invalid_argument naming the key, its value
+  /// and the allowed range.
+  DepthCamera(const DepthCameraConfig& config, const ObstacleField& obstacles,
+              const PadGeometry& pad, std::uint64_t seed);
+
+  /// Takes an image. `frame->depth` is resized to height x width if it has another size; else
+  /// nothing is allocated.
+  void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+               estimation::DepthFrame* frame);
+
+  const DepthCameraConfig& config() const { return config_; }
+  const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }
+
+ private:
+  /// Obstacle near enough to be seen, with the sphere that holds it.
+  struct Candidate {
+    Obstacle obstacle;
+    Eigen::Vector3d center;
+    double radius = 0.0;
+  };
+
+  DepthCameraConfig config_;
+  estimation::CameraIntrinsics intrinsics_;
+  Eigen::Matrix3d R_BC_;
+  PadGeometry pad_;
+  std::vector<Candidate> scene_;         ///< all obstacles
+  std::vector<Candidate> near_;          ///< of the frame at hand; capacity reserved
+  std::vector<Eigen::Vector3d> rays_C_;  ///< per pixel, z = 1: a ray's parameter is its depth
+  RandomStream noise_;
+};
+
+}  // namespace touchdown::sim

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string_view>
+
+namespace touchdown::sim {
+
+/// A random generator of its own for each purpose ("world", "start", "pad", "gps", ...), seeded
+/// from the trial's seed and the purpose's name: drawing more or less from one never shifts
+/// another. The same (seed, name) gives the same draws. Not to be shared between threads.
+class RandomStream {
+ public:
+  RandomStream(std::uint64_t seed, std::string_view name);
+
+  /// Uniform in [low, high). Throws std::invalid_argument unless low <= high, both finite.
+  double Uniform(double low, double high);
+
+  /// Normal with mean 0 and standard deviation `sigma` >= 0. A draw is used even when sigma is 0,
+  /// so that a sensor made exact keeps its later draws where they were.
+  double Normal(double sigma);
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace touchdown::sim

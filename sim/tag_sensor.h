@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/measurements.h"
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/sim/obstacle_field.h"
+#include "touchdown/sim/random_stream.h"
+#include "touchdown/sim/sample_clock.h"
+
+namespace touchdown::sim {
+
+/// One square marker, flat on the deck, its sides along the pad's axes.
+struct PadTag {
+  Eigen::Vector2d center_P = Eigen::Vector2d::Zero();  ///< [m]
+  double side = 0.15;                                  ///< [m]
+};
+
+/// The pad's five markers: the small one in the centre first, then four large ones around it.
+std::array<PadTag, 5> PadTags();
+
+/// Downward camera that sees the tags, and how it errs. C: x right (x_B), y down (-y_B), z down.
+struct TagSensorConfig {
+  int width = 640;          ///< [pixel]
+  int height = 480;         ///< [pixel]
+  double fov_y_deg = 90.0;  ///< vertical field of view, as MuJoCo's fovy [deg], in (0, 170]
+  Eigen::Vector3d p_BC = {0.0, 0.0, -0.05};  ///< camera in B [m]
+  double rate_hz = 20.0;                     ///< [Hz], in (0, 1000]
+  double max_view_angle_deg = 65.0;  ///< between the line of sight and the deck's normal [deg]
+  double noise_scale = 1.0;          ///< factor on all standard deviations, in [0, 100]
+};
+
+/// Measurement model of the tag camera: which tags are wholly in view, and how far off the pose
+/// solved from them is. It stands in for rendering images and detecting tags in them.
+class TagSensor {
+ public:
+  /// `seed` feeds the stream "tag camera". Throws std::invalid_argument naming key, value, range.
+  TagSensor(const TagSensorConfig& config, const ObstacleField& obstacles, std::uint64_t seed);
+
+  /// A sighting if an image is due at time t [s] and a tag is in view, else nothing. Call once per
+  /// simulation step. Does not allocate.
+  std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
+                                              const estimation::PadState& pad);
+
+  /// Which of PadTags() a camera at this pose detects: all four corners in the image, large enough
+  /// in it, at an admissible angle, nothing in between.
+  std::array<bool, 5> Visible(const estimation::VehicleState& vehicle,
+                              const estimation::PadState& pad) const;
+
+  const TagSensorConfig& config() const { return config_; }
+  const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }
+
+ private:
+  TagSensorConfig config_;
+  estimation::CameraIntrinsics intrinsics_;
+  ObstacleField obstacles_;
+  SampleClock clock_;
+  RandomStream noise_;
+};
+
+}  // namespace touchdown::sim

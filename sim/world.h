@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/measurements.h"
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/estimation/vehicle_model.h"
+#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/sim/obstacle_field.h"
+#include "touchdown/sim/pad_geometry.h"
+#include "touchdown/sim/pad_motion.h"
+
+namespace touchdown::sim {
+
+/// Everything a World is built from, as plain data.
+struct WorldConfig {
+  ObstacleField obstacles;
+  PadGeometry pad;
+  PadMotionConfig pad_motion;
+  std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
+  estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
+  double timestep = 0.002;         ///< [s], in [1e-4, 0.005]
+};
+
+/// What touches what.
+enum class ContactKind {
+  kFootDeck,    ///< a foot on the deck: how a landing looks
+  kHullDeck,    ///< any other part of the vehicle on the deck
+  kPadVehicle,  ///< any part of the vehicle on the pad vehicle's body below the deck
+  kObstacle,    ///< any part of the vehicle on an obstacle
+  kGround,      ///< any part of the vehicle on the ground
+};
+
+/// Name as used in results: "foot-deck", "hull-deck", "pad-vehicle", "obstacle", "ground".
+const char* ToString(ContactKind kind);
+
+/// One contact point of the step just taken.
+struct Contact {
+  ContactKind kind = ContactKind::kGround;
+  int obstacle = -1;                                  ///< index in the field for kObstacle, else -1
+  double normal_force = 0.0;                          ///< [N]
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();      ///< contact point [m]
+  Eigen::Vector3d v_rel_W = Eigen::Vector3d::Zero();  ///< vehicle's point minus the other's [m/s]
+};
+
+/// The simulated world: quadrotor, pad vehicle, obstacles, ground, contact, drag. One World belongs
+/// to one thread; any number of them can run side by side. Deterministic: the same configuration
+/// and commands give the same bits.
+class World {
+ public:
+  /// Rotors start at hover thrust, the pad on its path at its speed. Throws std::invalid_argument
+  /// naming the thing, its value and the allowed range; also when the vehicle starts in contact
+  /// with an obstacle or the ground.
+  explicit World(const WorldConfig& config);
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  ~World();
+
+  /// Advances one time step. Does not allocate.
+  /// @param rotor_thrust_commands per rotor [N]; clipped to the rotors' limits, reached with their
+  /// lag.
+  /// @param wind_W velocity of the air [m/s].
+  /// Throws std::invalid_argument if a command or the wind is not finite, std::runtime_error if the
+  /// physics failed (the sentence says how); such a World throws at every later step too.
+  void Step(const std::array<double, 4>& rotor_thrust_commands,
+            const Eigen::Vector3d& wind_W = Eigen::Vector3d::Zero());
+
+  double time() const;      ///< steps taken times the time step [s]
+  double timestep() const;  ///< [s]
+  const estimation::VehicleModel& model() const;
+  const PadMotion& pad_motion() const;
+  const WorldConfig& config() const;
+
+  /// True state of the vehicle now.
+  estimation::VehicleState vehicle() const;
+
+  /// True state of the pad now, read from its joints: p, v, yaw and yaw rate; a is that of the step
+  /// just taken, j is not known and zero. The yaw is not wrapped.
+  estimation::PadState pad() const;
+
+  /// Thrust of each rotor now, after its lag [N].
+  std::array<double, 4> rotor_thrusts() const;
+
+  /// Aerodynamic force applied in the step just taken, in W [N].
+  Eigen::Vector3d drag_force() const;
+
+  /// Contacts of the step just taken; positions, velocities and forces are those at its beginning,
+  /// so that the step in which a contact first appears holds the velocity before the impact.
+  const std::vector<Contact>& contacts() const;
+
+  /// Sum of the normal forces on the feet in the step just taken, whatever they stand on.
+  estimation::FootForce foot_force() const;
+
+  /// Velocity of the vehicle's centre relative to the deck point below it, in W [m/s], now.
+  Eigen::Vector3d velocity_over_deck() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace touchdown::sim
