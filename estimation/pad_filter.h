@@ -60,8 +60,11 @@ struct PadFilterOptions {
   double hand_over_timeout = 0.5;   ///< ... until none was accepted for so long [s]
 
   double converged_position_sigma = 0.5;   ///< horizontal 1 sigma for converged() [m]
-  double converged_velocity_sigma = 0.30;  ///< 1 sigma of the velocity for converged() [m/s]
+  double converged_velocity_sigma = 0.40;  ///< 1 sigma of the velocity for converged() [m/s]
 };
+
+/// Throws std::invalid_argument naming the first option out of its range.
+void Validate(const PadFilterOptions& options);
 
 /// Counts since the construction, and times of the last accepted measurements.
 struct PadDiagnostics {
@@ -138,6 +141,7 @@ class PadFilter {
   /// A past fix that the paper's heading from motion is measured from.
   struct HeadingAnchor {
     bool set = false;
+    double t = 0.0;
     Eigen::Vector2d p_WP = Eigen::Vector2d::Zero();
     double variance = 0.0;
   };
