@@ -1,25 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The mission of one landing as a pure function: Step(state, inputs, parameters) -> state, outputs.
 //
-//   from            to              reason            when
-//   hovering        tracking        pad_converged     pad converged and heading aligned
-//   hovering        tracking        align_timeout     pad converged, aligning took too long
-//   tracking        landing         above_pad         descent vertical, near the pad and slow over
-//   it tracking        hold            pad_lost          pad estimate missing for longer than
-//   pad_timeout tracking        hold            plan_failed       no plan for longer than
-//   plan_timeout landing         disarmed        contact           foot force for contact_time,
-//   feet at the deck landing         go_around       pad_lost          pad estimate missing for
-//   longer than pad_timeout landing         go_around       tags_lost         gate closed for
-//   longer than gate_timeout landing         go_around       error_too_large   horizontal error
-//   beyond abort_distance landing         go_around       plan_failed       no plan for longer than
-//   plan_timeout go_around       tracking        climb_complete    at the follow height, pad
-//   converged go_around       hold            pad_lost          at the follow height (or time-out),
-//   no pad go_around       tracking        climb_timeout     climbing took too long, pad converged
-//   hold            tracking        recovered         pad converged and a plan, for hold_time
-//   any armed       hold            invalid_input     an input is not finite for invalid_timeout
-//   any armed       emergency_stop  emergency         emergency flag
-//   emergency_stop  hold            emergency_cleared flag down for emergency_time
-//   (disarmed is final: there is no way out, and no way in but contact.)
+// clang-format off
+//   from           to              reason             when
+//   hovering       tracking        pad_converged      pad converged and heading aligned
+//   hovering       tracking        align_timeout      pad converged, aligning took too long
+//   tracking       landing         above_pad          descent vertical, near the pad, slow over it
+//   tracking       hold            pad_lost           no converged pad for over pad_timeout
+//   tracking       hold            plan_failed        no plan for over plan_timeout
+//   landing        disarmed        contact            foot force for contact_time, feet at the deck
+//   landing        go_around       pad_lost           no converged pad for over pad_timeout
+//   landing        go_around       tags_lost          gate closed for over gate_timeout
+//   landing        go_around       error_too_large    horizontal error beyond abort_distance
+//   landing        go_around       plan_failed        no plan for over plan_timeout
+//   landing        go_around       no_contact         committed for over commit_timeout
+//   go_around      tracking        climb_complete     at the follow height, pad converged
+//   go_around      tracking        climb_timeout      climbing took too long, pad converged
+//   go_around      hold            pad_lost           climb over or too long, no converged pad
+//   hold           tracking        recovered          pad converged and a plan, for hold_time
+//   (flying)       hold            invalid_input      not a number for over invalid_timeout
+//   (armed)        emergency_stop  emergency          emergency flag
+//   emergency_stop hold            emergency_cleared  flag down for over emergency_time
+//
+// (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
+// is no way out of it, and none into it but contact. A committed landing ends only by contact, an
+// error beyond commit_abort_distance, no_contact, invalid_input or emergency.
+// clang-format on
 #pragma once
 
 #include <limits>
@@ -49,6 +55,7 @@ enum class TransitionReason {
   kTagsLost,
   kErrorTooLarge,
   kPlanFailed,
+  kNoContact,
   kClimbComplete,
   kClimbTimeout,
   kRecovered,
@@ -66,6 +73,7 @@ std::string_view ToString(DescentHold hold);
 enum class Guidance {
   kHoldPosition,  ///< brake and stay
   kFollowPad,     ///< arrive and stay above the pad at foot_height, moving with foot_height_rate
+  kClimb,         ///< brake, then rise with foot_height_rate where it is, without a plan
   kIdle,          ///< rotors off
 };
 std::string_view ToString(Guidance guidance);
@@ -109,6 +117,7 @@ struct MissionParameters {
   double gate_tag_age = 0.3;    ///< ... and tag_age up to this [s]
   double gate_timeout = 3.0;    ///< closed for longer at the gate or below it: go around [s]
   double commit_height = 0.35;  ///< below it the descent goes on by prediction [m]
+  double commit_timeout = 4.0;  ///< committed for longer without contact: go around [s]
 
   double corridor_radius = 0.12;       ///< horizontal error allowed at the deck [m] ...
   double corridor_slope = 0.35;        ///< ... and more by so much per metre of height [-]
@@ -142,6 +151,7 @@ struct MissionState {
   double foot_height = 0.0;       ///< commanded, feet above the deck [m]
   double foot_height_rate = 0.0;  ///< its time derivative [m/s]
   bool committed = false;         ///< below commit_height with the gate passed
+  double committed_since = 0.0;   ///< [s]
   /// Times since when a condition has held without a break [s]; infinite while it does not.
   double converged_since = std::numeric_limits<double>::infinity();
   double pad_missing_since = std::numeric_limits<double>::infinity();

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The landing mission (the paper's section 2.2, figure 2) with hold, go-around and emergency stop.
+// Each step: update how long the conditions have lasted, decide at most one transition (contact
+// first, then emergency, invalid input, and the mode's own), then move the commanded foot height
+// by one step of a rate- and acceleration-limited profile. The height never jumps, whatever the
+// transition, because only its target changes.
+
+#include "touchdown/control/landing_state_machine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/control/rate_profile.h"
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// The inputs read once: what is usable, and which conditions hold now.
+struct Conditions {
+  bool numbers_valid;
+  bool pad_good;   // the pad can be planned to
+  bool gate_open;  // the pad is known well enough to descend below the gate height
+  bool in_corridor;
+  bool touching;
+};
+
+Conditions Assess(const MissionInputs& in, const MissionParameters& p) {
+  Conditions now{};
+  // pad_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
+  now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
+                      std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
+                      !std::isnan(in.pad_sigma) && !std::isnan(in.tag_age) &&
+                      !std::isnan(in.plan_failed_for);
+  now.pad_good = now.numbers_valid && in.pad_available && in.pad_converged;
+  now.gate_open = now.numbers_valid && in.pad_available && in.pad_sigma <= p.gate_sigma &&
+                  in.tag_age <= p.gate_tag_age;
+  now.in_corridor =
+      now.numbers_valid &&
+      in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
+  now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
+                 std::abs(in.height) <= p.contact_height;
+  return now;
+}
+
+// Keeps the time since when a condition has held.
+void Track(bool holds, double t, double& since) {
+  if (!holds) {
+    since = kNever;
+  } else if (since == kNever) {
+    since = t;
+  }
+}
+
+bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
+
+void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
+                  double dt, MissionState& state) {
+  const double t = state.t;
+  Track(now.pad_good, t, state.converged_since);
+  // Without numbers the invalid-input timer decides, not the pad's.
+  Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
+  Track(now.pad_good && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);
+  Track(!now.numbers_valid, t, state.invalid_since);
+  Track(!in.emergency, t, state.calm_since);
+  const bool gate_matters = state.mode == MissionMode::kLanding && !state.committed &&
+                            state.foot_height <= p.gate_height + 0.05;
+  Track(gate_matters && !now.gate_open, t, state.gate_closed_since);
+  // Contact must be seen without a gap: two touches far apart are not one that lasts.
+  if (dt > p.contact_gap) state.contact_since = kNever;
+  Track(state.mode == MissionMode::kLanding && now.touching, t, state.contact_since);
+}
+
+struct Transition {
+  MissionMode mode;
+  TransitionReason reason;
+};
+
+Transition FromLanding(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
+  const double abort = s.committed ? p.commit_abort_distance : p.abort_distance;
+  if (in.horizontal_distance > abort) {
+    return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
+  }
+  if (s.committed) {  // blind last part: no tags needed, but it must end
+    if (LastedLonger(s.committed_since, s.t, p.commit_timeout)) {
+      return {MissionMode::kGoAround, TransitionReason::kNoContact};
+    }
+    return {s.mode, TransitionReason::kNone};
+  }
+  if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
+    return {MissionMode::kGoAround, TransitionReason::kPadLost};
+  }
+  if (LastedLonger(s.gate_closed_since, s.t, p.gate_timeout)) {
+    return {MissionMode::kGoAround, TransitionReason::kTagsLost};
+  }
+  if (in.plan_failed_for > p.plan_timeout) {
+    return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
+  }
+  return {s.mode, TransitionReason::kNone};
+}
+
+Transition FromTracking(const MissionState& s, const MissionInputs& in, const Conditions& now,
+                        const MissionParameters& p) {
+  if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
+    return {MissionMode::kHold, TransitionReason::kPadLost};
+  }
+  if (in.plan_failed_for > p.plan_timeout) {
+    return {MissionMode::kHold, TransitionReason::kPlanFailed};
+  }
+  if (now.pad_good && in.descent == DescentStyle::kVertical &&
+      in.horizontal_distance < p.landing_distance && in.horizontal_speed < p.landing_speed) {
+    return {MissionMode::kLanding, TransitionReason::kAbovePad};
+  }
+  return {s.mode, TransitionReason::kNone};
+}
+
+Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Conditions& now,
+                        const MissionParameters& p) {
+  const double enough = p.follow_height - p.climb_tolerance;
+  // The height above a lost pad means nothing: the command alone tells when the climb is done.
+  const bool high = s.foot_height >= enough && (in.height >= enough || !now.pad_good);
+  const bool timeout = LastedLonger(s.mode_since, s.t, p.climb_timeout);
+  if (!high && !timeout) return {s.mode, TransitionReason::kNone};
+  if (!now.pad_good) return {MissionMode::kHold, TransitionReason::kPadLost};
+  return {MissionMode::kTracking,
+          high ? TransitionReason::kClimbComplete : TransitionReason::kClimbTimeout};
+}
+
+Transition Decide(const MissionState& s, const MissionInputs& in, const Conditions& now,
+                  const MissionParameters& p) {
+  const Transition stay = {s.mode, TransitionReason::kNone};
+  if (s.mode == MissionMode::kDisarmed) return stay;
+  if (now.touching && s.t - s.contact_since >= p.contact_time) {
+    return {MissionMode::kDisarmed, TransitionReason::kContact};
+  }
+  if (s.mode == MissionMode::kEmergencyStop) {
+    if (LastedLonger(s.calm_since, s.t, p.emergency_time)) {
+      return {MissionMode::kHold, TransitionReason::kEmergencyCleared};
+    }
+    return stay;
+  }
+  if (in.emergency) return {MissionMode::kEmergencyStop, TransitionReason::kEmergency};
+  if (s.mode == MissionMode::kHovering) {
+    if (now.pad_good && in.yaw_aligned) {
+      return {MissionMode::kTracking, TransitionReason::kPadConverged};
+    }
+    if (now.pad_good && LastedLonger(s.converged_since, s.t, p.align_timeout)) {
+      return {MissionMode::kTracking, TransitionReason::kAlignTimeout};
+    }
+    return stay;
+  }
+  if (s.mode == MissionMode::kHold) {
+    if (s.t - s.recovered_since >= p.hold_time) {
+      return {MissionMode::kTracking, TransitionReason::kRecovered};
+    }
+    return stay;
+  }
+  if (!now.numbers_valid) {
+    if (LastedLonger(s.invalid_since, s.t, p.invalid_timeout)) {
+      return {MissionMode::kHold, TransitionReason::kInvalidInput};
+    }
+    return stay;
+  }
+  switch (s.mode) {
+    case MissionMode::kTracking:
+      return FromTracking(s, in, now, p);
+    case MissionMode::kLanding:
+      return FromLanding(s, in, p);
+    case MissionMode::kGoAround:
+      return FromGoAround(s, in, now, p);
+    default:
+      return stay;
+  }
+}
+
+// Moves the commanded foot height by dt; returns why a descent pauses.
+DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
+                       double dt, MissionState& s) {
+  double target = p.follow_height;
+  double rate_max = p.climb_rate;
+  DescentHold hold = DescentHold::kNone;
+  if (s.mode == MissionMode::kDisarmed) {
+    s.foot_height_rate = 0.0;
+    return hold;
+  }
+  if (s.mode == MissionMode::kLanding) {
+    // Where the present rate can be brought to rest: holding means no farther than this.
+    const double rest = s.foot_height + 0.5 * s.foot_height_rate * std::abs(s.foot_height_rate) /
+                                            p.height_acceleration;
+    // Arrives at the gate height with the slow rate.
+    rate_max =
+        std::sqrt(p.slow_rate * p.slow_rate +
+                  2.0 * p.height_acceleration * std::max(0.0, s.foot_height - p.gate_height));
+    rate_max = std::min(std::max(p.fast_rate, p.slow_rate), rate_max);
+    target = -p.press_depth;
+    if (!s.committed && !now.gate_open) {
+      target = s.foot_height > p.gate_height ? p.gate_height : rest;
+      if (s.foot_height <= p.gate_height + 0.05) hold = DescentHold::kGate;
+    }
+    if (!s.committed && !now.in_corridor) {
+      target = rest;
+      hold = DescentHold::kCorridor;
+    }
+  }
+  const RateStep step =
+      StepTowards(target - s.foot_height, s.foot_height_rate, rate_max, p.height_acceleration, dt);
+  s.foot_height += step.advance;
+  s.foot_height_rate = step.rate;
+  // Both the command and the vehicle must be low: a vehicle that lags behind is not committed.
+  if (s.mode == MissionMode::kLanding && !s.committed && now.gate_open && now.in_corridor &&
+      s.foot_height < p.commit_height && in.height < p.commit_height) {
+    s.committed = true;
+    s.committed_since = s.t;
+  }
+  return hold;
+}
+
+Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Conditions& now) {
+  switch (s.mode) {
+    case MissionMode::kDisarmed:
+      return Guidance::kIdle;
+    case MissionMode::kTracking:
+    case MissionMode::kLanding:
+      return Guidance::kFollowPad;
+    case MissionMode::kGoAround:
+      return now.pad_good && in.plan_failed_for <= 0.0 ? Guidance::kFollowPad : Guidance::kClimb;
+    default:
+      return Guidance::kHoldPosition;
+  }
+}
+
+MissionOutputs OutputsOf(const MissionState& s, TransitionReason reason, DescentHold hold,
+                         Guidance guidance) {
+  MissionOutputs out;
+  out.mode = s.mode;
+  out.reason = reason;
+  out.descent_hold = hold;
+  out.guidance = guidance;
+  out.motors_armed = s.mode != MissionMode::kDisarmed;
+  out.plan_requested = s.mode == MissionMode::kTracking || s.mode == MissionMode::kLanding ||
+                       s.mode == MissionMode::kGoAround || s.mode == MissionMode::kHold;
+  out.committed = s.committed;
+  out.foot_height = s.foot_height;
+  out.foot_height_rate = s.foot_height_rate;
+  return out;
+}
+
+}  // namespace
+
+MissionStep Step(const MissionState& state, const MissionInputs& inputs,
+                 const MissionParameters& parameters) noexcept {
+  MissionState s = state;
+  if (!std::isfinite(inputs.t)) {  // without a time nothing can be decided
+    const bool armed = s.mode != MissionMode::kDisarmed;
+    return {s, OutputsOf(s, TransitionReason::kNone, DescentHold::kNone,
+                         armed ? Guidance::kHoldPosition : Guidance::kIdle)};
+  }
+  if (!s.started) {
+    s.started = true;
+    s.t = s.mode_since = inputs.t;
+    s.foot_height = parameters.follow_height;
+  }
+  const double dt = std::max(0.0, inputs.t - s.t);
+  s.t += dt;
+
+  const Conditions now = Assess(inputs, parameters);
+  UpdateTimers(inputs, parameters, now, dt, s);
+  const Transition transition = Decide(s, inputs, now, parameters);
+  if (transition.mode != s.mode) {
+    s.mode = transition.mode;
+    s.mode_since = s.t;
+    s.committed = false;
+    s.gate_closed_since = s.contact_since = kNever;
+    // An old success must not end a hold that has only begun.
+    s.recovered_since = kNever;
+  }
+  const DescentHold hold = MoveHeight(inputs, parameters, now, dt, s);
+  return {s, OutputsOf(s, transition.reason, hold, GuidanceOf(s, inputs, now))};
+}
+
+}  // namespace touchdown::control

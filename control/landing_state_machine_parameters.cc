@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names of the mission's modes and reasons, and the ranges of its parameters.
+
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "touchdown/control/landing_state_machine.h"
+
+namespace touchdown::control {
+
+std::string_view ToString(MissionMode mode) {
+  static constexpr std::array<std::string_view, 7> kNames = {
+      "hovering", "tracking", "landing", "disarmed", "hold", "go_around", "emergency_stop"};
+  return kNames.at(static_cast<std::size_t>(mode));
+}
+
+std::string_view ToString(TransitionReason reason) {
+  static constexpr std::array<std::string_view, 16> kNames = {
+      "none",        "pad_converged", "align_timeout",  "above_pad",
+      "contact",     "pad_lost",      "tags_lost",      "error_too_large",
+      "plan_failed", "no_contact",    "climb_complete", "climb_timeout",
+      "recovered",   "invalid_input", "emergency",      "emergency_cleared"};
+  return kNames.at(static_cast<std::size_t>(reason));
+}
+
+std::string_view ToString(DescentHold hold) {
+  static constexpr std::array<std::string_view, 3> kNames = {"none", "gate", "corridor"};
+  return kNames.at(static_cast<std::size_t>(hold));
+}
+
+std::string_view ToString(Guidance guidance) {
+  static constexpr std::array<std::string_view, 4> kNames = {"hold_position", "follow_pad", "climb",
+                                                             "idle"};
+  return kNames.at(static_cast<std::size_t>(guidance));
+}
+
+void Validate(const MissionParameters& p) {
+  const auto require = [](bool good, const char* name, double value, const char* range) {
+    if (good) return;
+    std::ostringstream message;
+    message << "MissionParameters." << name << " = " << value << ", allowed: " << range;
+    throw std::invalid_argument(message.str());
+  };
+  struct Named {
+    const char* name;
+    double value;
+  };
+  const std::array<Named, 26> positive = {{
+      {"follow_height", p.follow_height},
+      {"landing_distance", p.landing_distance},
+      {"landing_speed", p.landing_speed},
+      {"fast_rate", p.fast_rate},
+      {"slow_rate", p.slow_rate},
+      {"climb_rate", p.climb_rate},
+      {"height_acceleration", p.height_acceleration},
+      {"gate_height", p.gate_height},
+      {"gate_sigma", p.gate_sigma},
+      {"gate_tag_age", p.gate_tag_age},
+      {"gate_timeout", p.gate_timeout},
+      {"commit_height", p.commit_height},
+      {"commit_timeout", p.commit_timeout},
+      {"corridor_radius", p.corridor_radius},
+      {"abort_distance", p.abort_distance},
+      {"commit_abort_distance", p.commit_abort_distance},
+      {"press_depth", p.press_depth},
+      {"contact_force", p.contact_force},
+      {"contact_time", p.contact_time},
+      {"contact_height", p.contact_height},
+      {"contact_gap", p.contact_gap},
+      {"pad_timeout", p.pad_timeout},
+      {"plan_timeout", p.plan_timeout},
+      {"climb_timeout", p.climb_timeout},
+      {"climb_tolerance", p.climb_tolerance},
+      {"emergency_time", p.emergency_time},
+  }};
+  for (const Named& item : positive) {
+    require(item.value > 0.0 && std::isfinite(item.value), item.name, item.value, "> 0");
+  }
+  const std::array<Named, 4> not_negative = {{
+      {"align_timeout", p.align_timeout},
+      {"corridor_slope", p.corridor_slope},
+      {"hold_time", p.hold_time},
+      {"invalid_timeout", p.invalid_timeout},
+  }};
+  for (const Named& item : not_negative) {
+    require(item.value >= 0.0 && std::isfinite(item.value), item.name, item.value, ">= 0");
+  }
+  require(p.commit_height < p.gate_height, "commit_height", p.commit_height, "below gate_height");
+  require(p.gate_height < p.follow_height, "gate_height", p.gate_height, "below follow_height");
+  require(p.landing_distance < p.abort_distance, "landing_distance", p.landing_distance,
+          "below abort_distance");
+}
+
+}  // namespace touchdown::control
