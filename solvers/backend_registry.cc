@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The list of backends. A new one is one line here.
+
+#include "touchdown/solvers/backend_registry.h"
+
+#include <stdexcept>
+
+#include "touchdown/solvers/ceres_solver.h"
+
+namespace touchdown::solvers {
+
+BackendRegistry StandardBackends() {
+  return {
+      {"ceres", "Ceres Levenberg-Marquardt, sparse normal equations; soft limits", MakeCeresSolver},
+  };
+}
+
+std::unique_ptr<SolverBackend> MakeBackend(const BackendRegistry& registry,
+                                           const std::string& name) {
+  std::string known;
+  for (const BackendEntry& entry : registry) {
+    if (entry.name == name) return entry.make();
+    known += (known.empty() ? "" : ", ") + entry.name;
+  }
+  throw std::invalid_argument("solver backend " + name + " is unknown; known: " + known);
+}
+
+}  // namespace touchdown::solvers

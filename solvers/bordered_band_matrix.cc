@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Storage of an arrowhead of a block-banded symmetric matrix: the Hessian of every windowed problem.
+
+#include "touchdown/solvers/bordered_band_matrix.h"
+
+#include <algorithm>
+
+namespace touchdown::solvers {
+
+void BorderedBandMatrix::Resize(int blocks, int block_size, int half_bandwidth, bool bordered) {
+  blocks_ = blocks;
+  d_ = block_size;
+  half_ = half_bandwidth;
+  bordered_ = bordered;
+  const auto band = static_cast<std::size_t>(blocks) * static_cast<std::size_t>(half_ + 1) *
+                    static_cast<std::size_t>(d_ * d_);
+  band_.assign(band, 0.0);
+  border_.assign(static_cast<std::size_t>(blocks * d_), 0.0);
+  corner_ = 0.0;
+}
+
+void BorderedBandMatrix::SetZero() {
+  std::fill(band_.begin(), band_.end(), 0.0);
+  std::fill(border_.begin(), border_.end(), 0.0);
+  corner_ = 0.0;
+}
+
+double BorderedBandMatrix::At(int row, int column) const {
+  if (row > column) std::swap(row, column);
+  const int n = blocks_ * d_;
+  if (bordered_ && column == n) return row == n ? corner_ : border_[row];
+  const int i = row / d_;
+  const int k = column / d_ - i;
+  if (k > half_) return 0.0;
+  return block(i, k)[(row % d_) * d_ + column % d_];
+}
+
+}  // namespace touchdown::solvers

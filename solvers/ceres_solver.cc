@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Levenberg-Marquardt by Ceres Solver. One residual block per window and term, on the reduced blocks
+// that the window reaches. All numbers of one point come from one pass over the Problem, made in
+// Ceres's evaluation callback; the residual blocks only copy their slice, so that the problem is
+// never evaluated twice and no term knows of Ceres.
+// The trust region starts so wide that the first step is Gauss-Newton's: the landing problem is
+// nearly quadratic once its pairs are fixed.
+
+#include "touchdown/solvers/ceres_solver.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace touchdown::solvers {
+
+namespace {
+
+constexpr int kMaxWindow = 6;
+
+/// Evaluates the whole view whenever Ceres moves to a new point.
+class PointEvaluation : public ceres::EvaluationCallback {
+ public:
+  PointEvaluation(const double* y, Evaluator* evaluator) : y_(y), evaluator_(evaluator) {}
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool /*new_evaluation_point*/) override {
+    ok_ = evaluator_->Evaluate(y_, {.gradient = evaluate_jacobians, .hessian = false});
+  }
+  bool ok() const { return ok_; }
+  const ViewEvaluation& last() const { return evaluator_->last(); }
+
+ private:
+  const double* y_;
+  Evaluator* evaluator_;
+  bool ok_ = false;
+};
+
+/// The residuals of one window of one term, copied out of the evaluation.
+class WindowResidual : public ceres::CostFunction {
+ public:
+  WindowResidual(const View& view, int term, int window, int first_block,
+                 const PointEvaluation& point)
+      : view_(view), term_(term), window_(window), first_block_(first_block), point_(point) {
+    const TermShape& shape = view.problem().term(term).shape();
+    reduced_count_ = view.WindowBlocks(first_block, shape.window, reduced_);
+    for (int b = 0; b < reduced_count_; ++b) {
+      mutable_parameter_block_sizes()->push_back(view.block_size());
+    }
+    if (view.free_interval()) mutable_parameter_block_sizes()->push_back(1);
+    set_num_residuals(shape.outputs);
+  }
+
+  int reduced_count() const { return reduced_count_; }
+  int reduced(int b) const { return reduced_[b]; }
+
+  bool Evaluate(double const* const* /*parameters*/, double* residuals,
+                double** jacobians) const override {
+    if (!point_.ok()) return false;
+    const TermShape& shape = view_.problem().term(term_).shape();
+    const TermBlock& block = point_.last().full.terms[term_];
+    const int d = view_.block_size();
+    const int v = shape.window * d;
+    for (int c = 0; c < shape.outputs; ++c) {
+      const int i = window_ * shape.outputs + c;
+      residuals[c] = block.r[i];
+      if (!jacobians) continue;
+      const double* du = &block.du[i * v];
+      for (int b = 0; b < reduced_count_; ++b) {
+        if (!jacobians[b]) continue;
+        double* row = jacobians[b] + c * d;
+        view_.WindowJacobian(du, first_block_, shape.window, reduced_[b], row);
+        for (int j = 0; j < d; ++j) row[j] *= block.dr[i];
+      }
+      if (view_.free_interval() && jacobians[reduced_count_]) {
+        jacobians[reduced_count_][c] =
+            block.dr[i] * view_.IntervalDerivative(du, block.du_dh[i], first_block_, shape.window,
+                                                   point_.last());
+      }
+    }
+    return true;
+  }
+
+ private:
+  const View& view_;
+  int term_;
+  int window_;
+  int first_block_;
+  const PointEvaluation& point_;
+  int reduced_[kMaxWindow] = {};
+  int reduced_count_ = 0;
+};
+
+/// Hands every iteration to the evaluator's budget and to the trace.
+class IterationWatch : public ceres::IterationCallback {
+ public:
+  IterationWatch(Evaluator* evaluator, SolverResult* result)
+      : evaluator_(evaluator), result_(result) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    result_->trace.push_back({summary.iteration, summary.cost, summary.step_norm,
+                              summary.gradient_max_norm, evaluator_->elapsed_s()});
+    if (summary.iteration > 0) evaluator_->CountIteration();
+    return evaluator_->CheckStop() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  Evaluator* evaluator_;
+  SolverResult* result_;
+};
+
+class CeresSolver : public SolverBackend {
+ public:
+  CeresSolver()
+      : SolverBackend(
+            "ceres",
+            SolverOptions({
+                {"function_tolerance", 1e-6, 1e-16, 1.0, false, "relative decrease that ends a solve"},
+                {"gradient_tolerance", 1e-10, 1e-16, 1.0, false, "largest gradient that ends a solve"},
+                {"parameter_tolerance", 1e-8, 1e-16, 1.0, false, "relative step that ends a solve"},
+                {"initial_trust_region_radius", 1e8, 1e-3, 1e16, false, "1e8: nearly Gauss-Newton"},
+            })) {}
+
+  Capabilities capabilities() const override { return {}; }
+
+ private:
+  void DoPrepare(const View& view) override {
+    y_.resize(static_cast<std::size_t>(view.num_variables()));
+  }
+
+  void DoSolve(const View& view, const Eigen::VectorXd& warm, const Stop& stop,
+               Evaluator* evaluator, SolverResult* result) override {
+    std::copy(warm.data(), warm.data() + warm.size(), y_.begin());
+    // The first evaluation also tells which windows are active now.
+    if (!evaluator->Evaluate(y_.data(), {.gradient = true, .hessian = false})) {
+      result->status = SolveStatus::kEvaluationFailed;
+      return;
+    }
+    PointEvaluation point(y_.data(), evaluator);
+    ceres::Problem::Options problem_options;
+    problem_options.evaluation_callback = &point;
+    ceres::Problem problem(problem_options);
+    AddResiduals(view, evaluator->last(), point, &problem);
+
+    ceres::Solver::Options solver = Options(stop);
+    IterationWatch watch(evaluator, result);
+    solver.callbacks.push_back(&watch);
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    result->native_status = summary.termination_type;
+    result->message = summary.message;
+    result->status = Status(summary.termination_type, *evaluator);
+  }
+
+  void AddResiduals(const View& view, const ViewEvaluation& now, const PointEvaluation& point,
+                    ceres::Problem* problem) {
+    const int d = view.block_size();
+    for (int i = 0; i < view.problem().num_terms(); ++i) {
+      const TermBlock& block = now.full.terms[i];
+      for (int k = 0; k < block.windows; ++k) {
+        auto residual = std::make_unique<WindowResidual>(view, i, k, block.first_block[k], point);
+        std::vector<double*> parameters;
+        for (int b = 0; b < residual->reduced_count(); ++b) {
+          parameters.push_back(&y_[residual->reduced(b) * d]);
+        }
+        if (view.free_interval()) parameters.push_back(&y_.back());
+        // A window of eliminated blocks only is a constant: nothing to optimise.
+        if (!parameters.empty()) problem->AddResidualBlock(residual.release(), nullptr, parameters);
+      }
+    }
+    if (view.free_interval() && problem->HasParameterBlock(&y_.back())) {
+      problem->SetParameterLowerBound(&y_.back(), 0, view.problem().shape().interval_min);
+      problem->SetParameterUpperBound(&y_.back(), 0, view.problem().shape().interval_max);
+    }
+  }
+
+  ceres::Solver::Options Options(const Stop& stop) const {
+    ceres::Solver::Options o;
+    o.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+    o.num_threads = 1;
+    o.jacobi_scaling = false;
+    o.initial_trust_region_radius = options().Get("initial_trust_region_radius");
+    o.function_tolerance = options().Get("function_tolerance");
+    o.gradient_tolerance = options().Get("gradient_tolerance");
+    o.parameter_tolerance = options().Get("parameter_tolerance");
+    o.max_num_iterations = stop.max_iterations;
+    o.logging_type = ceres::SILENT;
+    return o;
+  }
+
+  static SolveStatus Status(ceres::TerminationType type, const Evaluator& evaluator) {
+    switch (type) {
+      case ceres::CONVERGENCE: return SolveStatus::kConverged;
+      case ceres::NO_CONVERGENCE: return SolveStatus::kIterationLimit;
+      case ceres::USER_SUCCESS: return evaluator.stop_status();
+      default:
+        return evaluator.evaluation_failed() ? SolveStatus::kEvaluationFailed
+                                             : SolveStatus::kNumericalFailure;
+    }
+  }
+
+  std::vector<double> y_;
+};
+
+}  // namespace
+
+std::unique_ptr<SolverBackend> MakeCeresSolver() { return std::make_unique<CeresSolver>(); }
+
+}  // namespace touchdown::solvers

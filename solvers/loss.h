@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scalar losses rho(u): what a term's inner map is measured by. Each knows its first two derivatives,
+// the residual r(u) with r^2 = 2 rho that least-squares backends want, and the interval that it
+// stands for where the term is made a hard constraint. All are plain values; none allocates.
+#pragma once
+
+#include <limits>
+
+namespace touchdown::solvers {
+
+/// rho and its derivatives at one u.
+struct LossValue {
+  double rho = 0.0;
+  double drho = 0.0;
+  double d2rho = 0.0;
+};
+
+/// r with r^2 = 2 rho, and dr/du.
+struct LossResidual {
+  double r = 0.0;
+  double dr = 0.0;
+};
+
+/// Interval of u that a loss is zero on: the hard constraint it softens.
+struct LossBounds {
+  double lo = -std::numeric_limits<double>::infinity();
+  double hi = std::numeric_limits<double>::infinity();
+};
+
+/// rho(u) = w u^2 / 2. The residual keeps the sign: r = sqrt(w) u.
+class SquareLoss {
+ public:
+  static constexpr bool kConvex = true;
+  /// Throws std::invalid_argument unless weight >= 0.
+  explicit SquareLoss(double weight);
+
+  LossValue Value(double u) const { return {0.5 * w_ * u * u, w_ * u, w_}; }
+  LossResidual Residual(double u) const { return {root_w_ * u, root_w_}; }
+  LossBounds bounds() const { return {0.0, 0.0}; }
+
+ private:
+  double w_;
+  double root_w_;
+};
+
+/// The C2 cubic-quadratic hinge of EGO-Planner (Zhou et al. 2020, eq. 5) on c = max(0, u):
+/// rho = w c^3 for c <= s and w (3 s c^2 - 3 s^2 c + s^3) beyond; zero for u <= 0. Nondecreasing and
+/// convex, so that a convex inner map stays convex.
+class HingeLoss {
+ public:
+  static constexpr bool kConvex = true;
+  /// `width` is s, in the unit of u. Throws std::invalid_argument unless weight >= 0, width > 0.
+  HingeLoss(double weight, double width);
+
+  LossValue Value(double u) const;
+  /// r = sqrt(2 rho); its derivative is 0 where the hinge is inactive.
+  LossResidual Residual(double u) const;
+  LossBounds bounds() const { return {-std::numeric_limits<double>::infinity(), 0.0}; }
+
+ private:
+  double w_;
+  double s_;
+};
+
+}  // namespace touchdown::solvers

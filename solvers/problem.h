@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "touchdown/solvers/bordered_band_matrix.h"
+#include "touchdown/solvers/term.h"
+
+namespace touchdown::solvers {
+
+/// Whether a term is part of the objective or a set of constraint rows.
+enum class Role { kCost, kConstraint };
+
+/// Size of a problem's variables: N blocks of d scalars and, if free, the knot interval h.
+struct ProblemShape {
+  int blocks = 0;             ///< N >= 1
+  int block_size = 3;         ///< d >= 1
+  bool free_interval = false; ///< h is a variable
+  double interval_min = 1e-3; ///< bounds of a free interval [s]
+  double interval_max = 1e3;
+};
+
+/// Result storage of one evaluation; one per thread. Sized by Problem::Resize.
+struct Evaluation {
+  bool ok = false;                     ///< false: a term returned NaN or threw
+  double value = 0.0;                  ///< sum of the cost terms
+  double max_violation = 0.0;          ///< worst violation of a constraint row
+  std::vector<double> gradient;        ///< blocks x d, then h if free
+  BorderedBandMatrix hessian;          ///< of the objective, plus multipliers times constraints
+  std::vector<double> cost_by_term;    ///< [term]; 0 for constraints
+  std::vector<TermBlock> terms;        ///< [term]
+};
+
+/// An optimisation problem over blocks with windowed terms. Its structure is fixed at construction
+/// and by AddTerm; parameters live in the terms and may change between solves without allocation.
+/// While a solve runs the problem must not change; then any number of threads may evaluate it, each
+/// with its own Evaluation.
+class Problem {
+ public:
+  /// Throws std::invalid_argument if a size or an interval bound is out of range.
+  explicit Problem(const ProblemShape& shape);
+
+  /// Adds a term. Throws std::invalid_argument if its block size differs or its window is longer
+  /// than the problem.
+  void AddTerm(std::shared_ptr<const Term> term, Role role);
+
+  const ProblemShape& shape() const { return shape_; }
+  int num_terms() const { return static_cast<int>(terms_.size()); }
+  const Term& term(int i) const { return *terms_[i].term; }
+  Role role(int i) const { return terms_[i].role; }
+  bool has_constraints() const;
+  /// Every cost is convex at a fixed interval and the interval is fixed.
+  bool convex() const;
+  /// Block diagonals above the main one that can be nonzero.
+  int half_bandwidth() const { return half_bandwidth_; }
+
+  /// Fixed interval, or the first guess of a free one [s].
+  double interval() const { return interval_; }
+  void set_interval(double h) { interval_ = h; }
+  /// Absolute time of knot 0 [s].
+  double t0() const { return t0_; }
+  void set_t0(double t0) { t0_ = t0; }
+
+  /// Allocates everything that Evaluate needs.
+  void Resize(Evaluation* evaluation) const;
+
+  /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. `multipliers` holds
+  /// one row array [window][output] per term, null where the term is a cost; the whole argument may
+  /// be null. Does not allocate. Returns evaluation->ok.
+  bool Evaluate(const double* x, double h, Want want, const double* const* multipliers,
+                Evaluation* evaluation) const noexcept;
+
+ private:
+  struct Entry {
+    std::shared_ptr<const Term> term;
+    Role role;
+  };
+  void AddGradient(const Entry& entry, const TermBlock& block, Evaluation* evaluation) const;
+  void AddHessian(const Entry& entry, const TermBlock& block, Evaluation* evaluation) const;
+
+  ProblemShape shape_;
+  std::vector<Entry> terms_;
+  int half_bandwidth_ = 0;
+  double interval_ = 1.0;
+  double t0_ = 0.0;
+};
+
+}  // namespace touchdown::solvers

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "touchdown/solvers/evaluator.h"
+#include "touchdown/solvers/solver_options.h"
+#include "touchdown/solvers/solver_result.h"
+#include "touchdown/solvers/stop.h"
+#include "touchdown/solvers/view.h"
+
+namespace touchdown::solvers {
+
+/// What a backend can take. `compiled` false: it was left out at configure time.
+struct Capabilities {
+  bool compiled = true;
+  bool hard_rows = false;      ///< inequality constraint rows
+  bool equality_rows = false;  ///< equality constraint rows
+  bool free_interval = true;   ///< a free knot interval
+};
+
+/// A solver behind one interface. Everything that does not differ between backends happens once,
+/// here: checks, timing, counting, best-point tracking. A backend writes DoPrepare and DoSolve.
+/// An instance serves one thread at a time.
+class SolverBackend {
+ public:
+  virtual ~SolverBackend() = default;
+
+  const std::string& name() const { return name_; }
+  virtual Capabilities capabilities() const = 0;
+  SolverOptions& options() { return options_; }
+  const SolverOptions& options() const { return options_; }
+
+  /// Empty if this backend can solve `view`, else one sentence saying why not.
+  std::string Refusal(const View& view) const;
+
+  /// Allocates for problems with the structure of `view`. Throws std::invalid_argument with the
+  /// refusal if the backend cannot solve it.
+  void Prepare(const View& view);
+
+  /// Solves from `warm` (view.num_variables() numbers). The view must have the prepared structure;
+  /// its parameters may have changed. Numerical outcomes are in result->status. Throws
+  /// std::invalid_argument on a wrong size, a number that is not finite, or without Prepare.
+  void Solve(const View& view, const Eigen::VectorXd& warm, const Stop& stop, SolverResult* result);
+
+ protected:
+  SolverBackend(std::string name, SolverOptions options)
+      : name_(std::move(name)), options_(std::move(options)) {}
+
+ private:
+  virtual void DoPrepare(const View& view) = 0;
+  /// Runs the solver from `warm`, evaluating only through `evaluator`. Sets status, native_status,
+  /// message and trace; the base fills in the rest from the evaluator.
+  virtual void DoSolve(const View& view, const Eigen::VectorXd& warm, const Stop& stop,
+                       Evaluator* evaluator, SolverResult* result) = 0;
+
+  std::string name_;
+  SolverOptions options_;
+  ViewEvaluation storage_;
+  int prepared_variables_ = -1;
+};
+
+}  // namespace touchdown::solvers

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <span>
+
+namespace touchdown::solvers {
+
+/// What a stop callback is shown at each evaluation.
+struct StopQuery {
+  std::span<const double> y;             ///< variables of the view
+  std::span<const double> cost_by_term;  ///< in the order of the problem's terms
+  int evaluations = 0;
+};
+
+/// When a solve must end, whatever its own stop test says. Budgets in iterations or evaluations are
+/// deterministic; a wall-clock limit is not.
+struct Stop {
+  double wall_limit_s = std::numeric_limits<double>::infinity();
+  int max_iterations = 100;
+  int max_evaluations = std::numeric_limits<int>::max();
+  std::function<bool(const StopQuery&)> callback;  ///< true: stop now
+};
+
+}  // namespace touchdown::solvers

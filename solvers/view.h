@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/solvers/affine_lift.h"
+#include "touchdown/solvers/problem.h"
+
+namespace touchdown::solvers {
+
+/// Evaluation of a view: the reduced quantities, and the problem's own beneath them.
+struct ViewEvaluation {
+  Evaluation full;
+  std::vector<double> x;         ///< lifted blocks
+  std::vector<double> dl, d2l;   ///< derivatives of the offset with respect to h
+  double h = 1.0;                ///< interval of this evaluation
+  std::vector<double> gradient;  ///< reduced blocks x d, then h if free
+  BorderedBandMatrix hessian;
+};
+
+/// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is free.
+/// With the identity lift this is the Full view; with the elimination of planning/boundary_lift the
+/// Reduced one. The problem and the lift's offset must outlive the view and hold still while a
+/// solve runs.
+class View {
+ public:
+  /// Throws std::invalid_argument if the lift does not fit the problem.
+  View(const Problem& problem, AffineLift lift);
+
+  const Problem& problem() const { return *problem_; }
+  int blocks() const { return lift_.reduced_blocks; }
+  int block_size() const { return problem_->shape().block_size; }
+  bool free_interval() const { return problem_->shape().free_interval; }
+  int num_variables() const { return blocks() * block_size() + (free_interval() ? 1 : 0); }
+
+  /// Allocates what Evaluate needs.
+  void Resize(ViewEvaluation* evaluation) const;
+
+  /// Evaluates at y; see Problem::Evaluate. Does not allocate.
+  bool Evaluate(const double* y, Want want, const double* const* multipliers,
+                ViewEvaluation* evaluation) const noexcept;
+
+  /// The problem's blocks at y, and the interval there.
+  void Lift(const double* y, std::vector<double>* x, double* h) const;
+  /// The reduced variables of a point: the inverse of Lift where x lies in its range, else the
+  /// nearest by each block's first occurrence.
+  Eigen::VectorXd Restrict(const double* x, double h) const;
+
+  /// The distinct reduced blocks that a window reaches, in order; at most `window` of them.
+  /// Returns their number.
+  int WindowBlocks(int first_block, int window, int* reduced) const;
+  /// Derivative of one output of a window with respect to reduced block `reduced` (d numbers).
+  void WindowJacobian(const double* du, int first_block, int window, int reduced,
+                      double* out) const;
+  /// Its derivative with respect to h, the moving offset included.
+  double IntervalDerivative(const double* du, double du_dh, int first_block, int window,
+                            const ViewEvaluation& evaluation) const;
+
+ private:
+  void ReduceGradient(ViewEvaluation* evaluation) const;
+  void ReduceHessian(ViewEvaluation* evaluation) const;
+
+  const Problem* problem_;
+  AffineLift lift_;
+};
+
+}  // namespace touchdown::solvers
