@@ -52,6 +52,13 @@ class PadMotion {
     Eigen::Vector2d p0 = Eigen::Vector2d::Zero();  ///< where it begins
     double yaw0 = 0.0;                             ///< heading there
   };
+  struct PathPoint {
+    Eigen::Vector2d p = Eigen::Vector2d::Zero();
+    double yaw = 0.0;
+    double curvature = 0.0;        ///< [1/m]
+    double curvature_slope = 0.0;  ///< by arc length [1/m^2]
+  };
+  static PathPoint PointOn(const Segment& segment, double s) noexcept;
   void Append(double length, double k0, double k1);
 
   PadMotionConfig config_;

@@ -22,7 +22,11 @@ class RandomStream {
   double Normal(double sigma);
 
  private:
+  double UnitDraw();  // uniform in [0, 1)
+
   std::mt19937_64 engine_;
+  double spare_ = 0.0;  // second of a pair of normal draws
+  bool has_spare_ = false;
 };
 
 }  // namespace touchdown::sim

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one sentence a wrong argument is answered with: the thing, its value, the allowed range.
+
+#include "touchdown/sim/argument_check.h"
+
+#include <array>
+#include <charconv>
+#include <stdexcept>
+
+namespace touchdown::sim {
+
+std::string NumberText(double value) {
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end.ptr};
+}
+
+void ThrowOutOfRange(std::string_view name, double value, std::string_view allowed) {
+  throw std::invalid_argument(std::string(name) + " is " + NumberText(value) + "; allowed is " +
+                              std::string(allowed));
+}
+
+void CheckWithin(std::string_view name, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  ThrowOutOfRange(name, value, "[" + NumberText(low) + ", " + NumberText(high) + "]");
+}
+
+void CheckAbove(std::string_view name, double value, double low, double high) {
+  if (value > low && value <= high) return;
+  ThrowOutOfRange(name, value, "(" + NumberText(low) + ", " + NumberText(high) + "]");
+}
+
+}  // namespace touchdown::sim

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ownership and errors of MuJoCo 2.2.2's C structures.
+//
+// mju_error ends the process ("Press Enter to exit") unless a handler is installed, and the handler
+// must not return. Ours throws: Debian's libmujoco carries unwind tables for its C functions (the
+// x86-64 and AArch64 ABIs ask for them), they have no clean-up code of their own to skip, and its
+// C++ parts are unwound properly, which a longjmp would not do. The compiler inside mj_loadXML
+// catches its own errors per thread and does not touch the handler. mjData is not usable after an
+// error.
+//
+// mj_loadXML keeps the model parsed last in a global, hence the lock. mjVFS is megabytes large,
+// hence the heap; the text in it is freed by mj_deleteVFS, so it is allocated by mju_malloc.
+
+#include "touchdown/sim/mujoco_model.h"
+
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+
+namespace touchdown::sim {
+namespace {
+
+constexpr char kSceneName[] = "scene.xml";
+
+[[noreturn]] void ThrowMujocoError(const char* message) {
+  throw std::runtime_error(std::string("MuJoCo: ") + message);
+}
+
+void IgnoreMujocoWarning(const char* /*message*/) {}
+
+struct VfsDeleter {
+  void operator()(mjVFS* vfs) const noexcept {
+    mj_deleteVFS(vfs);
+    delete vfs;
+  }
+};
+
+void AddText(const char* name, const std::string& text, mjVFS* vfs) {
+  const int size = static_cast<int>(text.size());
+  if (mj_makeEmptyFileVFS(vfs, name, size) != 0) {
+    throw std::runtime_error(std::string("MuJoCo: no room in memory for the text of ") + name);
+  }
+  std::memcpy(vfs->filedata[mj_findFileVFS(vfs, name)], text.data(), text.size());
+}
+
+}  // namespace
+
+void MujocoModelDeleter::operator()(mjModel_* model) const noexcept { mj_deleteModel(model); }
+void MujocoDataDeleter::operator()(mjData_* data) const noexcept { mj_deleteData(data); }
+
+void InstallMujocoErrorHandler() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_error = ThrowMujocoError;
+    mju_user_warning = IgnoreMujocoWarning;
+  });
+}
+
+MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
+  InstallMujocoErrorHandler();
+  std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
+  mj_defaultVFS(vfs.get());
+  AddText(kSceneName, mjcf, vfs.get());
+  if (!vehicle_mjcf.empty()) AddText(kVehicleIncludeName, vehicle_mjcf, vfs.get());
+
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  std::array<char, 1024> message{};
+  MujocoModel model(
+      mj_loadXML(kSceneName, vfs.get(), message.data(), static_cast<int>(message.size())));
+  if (!model) {
+    for (char& c : message) {
+      if (c == '\n') c = ' ';
+    }
+    throw std::invalid_argument(std::string("MJCF: ") + message.data());
+  }
+  return model;
+}
+
+MujocoData MakeMujocoData(const mjModel_& model) {
+  InstallMujocoErrorHandler();
+  MujocoData data(mj_makeData(&model));
+  if (!data) throw std::runtime_error("MuJoCo: no memory for the simulation's state");
+  return data;
+}
+
+}  // namespace touchdown::sim

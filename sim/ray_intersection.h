@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace touchdown::sim {
+
+/// Smallest s >= 0 at which origin + s * direction crosses the surface of a box centred at the
+/// origin with its sides along the axes; +infinity if it never does. From inside: where the ray
+/// leaves. `direction` has any length > 0. Does not allocate.
+double RayBox(const Eigen::Vector3d& half_extents, const Eigen::Vector3d& origin,
+              const Eigen::Vector3d& direction);
+
+/// The same for a cylinder about the z axis, centred at the origin.
+double RayCylinder(double radius, double half_height, const Eigen::Vector3d& origin,
+                   const Eigen::Vector3d& direction);
+
+}  // namespace touchdown::sim

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// FCL 0.7: the obstacles in a dynamic AABB tree, the vehicle as one cylinder. First the colliding
+// pairs with their depth (libccd's MPR); only if there is none, the distance (libccd's GJK).
+//
+// Traps of Debian's build, all met: it is compiled with assertions, so a state it dislikes ends the
+// process: poses are checked here. GST_INDEP together with signed distance or nearest points aborts
+// on some shapes: GST_LIBCCD throughout. Signed distance by libccd costs 10 to 20 times the
+// unsigned one and its EPA can fail on face contacts: not asked for.
+
+#include "touchdown/sim/true_clearance.h"
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/collision_object.h>
+#include <fcl/narrowphase/distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "touchdown/sim/argument_check.h"
+
+namespace touchdown::sim {
+namespace {
+
+using Object = fcl::CollisionObjectd;
+
+struct MakeObject {
+  std::unique_ptr<Object> operator()(const Box& box) const {
+    const Eigen::Vector3d sides = 2.0 * box.half_extents;
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(box.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    return std::make_unique<Object>(std::make_shared<fcl::Boxd>(sides), turn, box.center);
+  }
+  std::unique_ptr<Object> operator()(const Cylinder& cylinder) const {
+    return std::make_unique<Object>(
+        std::make_shared<fcl::Cylinderd>(cylinder.radius, cylinder.height),
+        Eigen::Matrix3d::Identity(), cylinder.center);
+  }
+};
+
+int IndexOf(const Object& object) { return *static_cast<const int*>(object.getUserData()); }
+
+// One of the pair is the vehicle, which carries no index.
+const Object& ObstacleOf(const Object& a, const Object& b) {
+  return a.getUserData() != nullptr ? a : b;
+}
+
+struct Search {
+  Clearance best{std::numeric_limits<double>::infinity(), -1};
+  bool collided = false;
+};
+
+// Called for each pair whose bounds overlap; false goes on with the others.
+bool VisitOverlap(Object* a, Object* b, void* data) {
+  auto* search = static_cast<Search*>(data);
+  fcl::CollisionRequestd request(1, true);
+  request.gjk_solver_type = fcl::GST_LIBCCD;
+  fcl::CollisionResultd result;
+  if (fcl::collide(a, b, request, result) == 0) return false;
+  const double depth = std::abs(result.getContact(0).penetration_depth);
+  if (!search->collided || -depth < search->best.distance) {
+    search->best = {-depth, IndexOf(ObstacleOf(*a, *b))};
+  }
+  search->collided = true;
+  return false;
+}
+
+// Called for each pair whose bounds are nearer than `bound`, which it lowers; true ends the search.
+bool VisitPair(Object* a, Object* b, void* data, double& bound) {
+  auto* search = static_cast<Search*>(data);
+  fcl::DistanceRequestd request;
+  request.gjk_solver_type = fcl::GST_LIBCCD;
+  fcl::DistanceResultd result;
+  // A pair in touch gives -1: nothing collides here, so it is the touch itself.
+  const double distance = std::max(0.0, fcl::distance(a, b, request, result));
+  if (distance < search->best.distance) {
+    search->best = {distance, IndexOf(ObstacleOf(*a, *b))};
+  }
+  bound = search->best.distance;
+  return bound <= 0.0;
+}
+
+}  // namespace
+
+class TrueClearance::Impl {
+ public:
+  Impl(const ObstacleField& obstacles, const estimation::VehicleModel& model)
+      : center_B_(0.0, 0.0, 0.5 * (model.hull_top - model.foot_depth)),
+        hull_(std::make_shared<fcl::Cylinderd>(model.hull_radius,
+                                               model.hull_top + model.foot_depth)) {
+    indices_.reserve(obstacles.size());
+    for (const Obstacle& obstacle : obstacles.obstacles()) {
+      indices_.push_back(static_cast<int>(indices_.size()));
+      objects_.push_back(std::visit(MakeObject(), obstacle));
+      objects_.back()->setUserData(&indices_.back());
+      objects_.back()->computeAABB();
+      tree_.registerObject(objects_.back().get());
+    }
+    tree_.setup();
+  }
+
+  Clearance Nearest(const estimation::VehicleState& vehicle) const {
+    Search search;
+    if (objects_.empty()) return search.best;
+    const Eigen::Matrix3d R_WB = vehicle.q_WB.toRotationMatrix();
+    Object hull(hull_, R_WB, vehicle.p_WB + R_WB * center_B_);
+    hull.computeAABB();
+    tree_.collide(&hull, &search, VisitOverlap);
+    if (!search.collided) tree_.distance(&hull, &search, VisitPair);
+    return search.best;
+  }
+
+ private:
+  Eigen::Vector3d center_B_;
+  std::shared_ptr<fcl::Cylinderd> hull_;
+  std::vector<int> indices_;  // what the objects' user data points to
+  std::vector<std::unique_ptr<Object>> objects_;
+  fcl::DynamicAABBTreeCollisionManagerd tree_;
+};
+
+TrueClearance::TrueClearance(const ObstacleField& obstacles,
+                             const estimation::VehicleModel& model) {
+  CheckAbove("hull_radius [m]", model.hull_radius, 0.0, 10.0);
+  CheckAbove("hull height (hull_top + foot_depth) [m]", model.hull_top + model.foot_depth, 0.0,
+             10.0);
+  impl_ = std::make_unique<Impl>(obstacles, model);
+}
+TrueClearance::TrueClearance(TrueClearance&&) noexcept = default;
+TrueClearance& TrueClearance::operator=(TrueClearance&&) noexcept = default;
+TrueClearance::~TrueClearance() = default;
+
+double TrueClearance::Distance(const estimation::VehicleState& vehicle) const {
+  return Nearest(vehicle).distance;
+}
+
+Clearance TrueClearance::Nearest(const estimation::VehicleState& vehicle) const {
+  if (!vehicle.p_WB.allFinite()) {
+    throw std::invalid_argument("vehicle position: not finite; allowed are finite numbers");
+  }
+  CheckWithin("norm of q_WB", vehicle.q_WB.norm(), 1.0 - 1e-6, 1.0 + 1e-6);
+  return impl_->Nearest(vehicle);
+}
+
+}  // namespace touchdown::sim

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The scene as MJCF text. Choices, each measured in MuJoCo 2.2.2: Euler with 2 ms, Newton, elliptic
+// cone and impratio 10 (a landed vehicle creeps 0.05 mm in 13 s); the pad on slide and hinge joints
+// with velocity drives (a mocap body shows contact a surface at rest); static obstacles directly in
+// worldbody (each in a body of its own is 4x slower); the pad's stateless actuators before the
+// rotors' stateful ones, as the compiler demands; small nconmax and njmax, which bound the memory
+// of mjData. Everything but the vehicle has contype 1 and conaffinity 0: it touches only the
+// vehicle. No angle is written in degrees or radians, so that the vehicle file's <compiler> cannot
+// matter.
+
+#include "touchdown/sim/world_mjcf.h"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <variant>
+
+#include "touchdown/sim/argument_check.h"
+#include "touchdown/sim/mujoco_model.h"
+
+namespace touchdown::sim {
+namespace {
+
+std::string Text(const Eigen::Vector3d& v) {
+  return NumberText(v.x()) + ' ' + NumberText(v.y()) + ' ' + NumberText(v.z());
+}
+
+std::string YawQuaternion(double yaw) {
+  return NumberText(std::cos(0.5 * yaw)) + " 0 0 " + NumberText(std::sin(0.5 * yaw));
+}
+
+constexpr char kEnvironment[] =
+    "contype='1' conaffinity='0' solref='0.02 1' solimp='0.9 0.95 0.001 0.5 2' margin='0' ";
+
+std::string ObstacleGeom(const Box& box) {
+  return "type='box' size='" + Text(box.half_extents) + "' pos='" + Text(box.center) + "' quat='" +
+         YawQuaternion(box.yaw) + "'";
+}
+
+std::string ObstacleGeom(const Cylinder& cylinder) {
+  return "type='cylinder' size='" + NumberText(cylinder.radius) + ' ' +
+         NumberText(0.5 * cylinder.height) + "' pos='" + Text(cylinder.center) + "' quat='1 0 0 0'";
+}
+
+void WritePad(const WorldConfig& config, std::ostream& xml) {
+  const double height = config.pad_motion.p_start.z();
+  // The body's frame is the pad's: origin at the centre of the deck's upper face.
+  estimation::PadState at_origin;
+  at_origin.p_WP.z() = height;
+  const Eigen::Vector3d origin = at_origin.p_WP;
+  const Box deck = DeckBox(config.pad, at_origin);
+  const Box body = PadBodyBox(config.pad, at_origin);
+  const double length = config.pad.body_half_length;
+  const double width = config.pad.body_half_width;
+  const double yaw_inertia = PadDrive::kMass * (length * length + width * width) / 3.0;
+  xml << "<body name='pad' pos='" << Text(origin) << "'>\n"
+      << "<joint name='pad_x' type='slide' axis='1 0 0' limited='false'/>\n"
+      << "<joint name='pad_y' type='slide' axis='0 1 0' limited='false'/>\n"
+      << "<joint name='pad_yaw' type='hinge' axis='0 0 1' limited='false'/>\n"
+      << "<inertial pos='" << Text(body.center - origin) << "' mass='"
+      << NumberText(PadDrive::kMass) << "' diaginertia='"
+      << Text(Eigen::Vector3d::Constant(yaw_inertia))
+      << "'/>\n"
+      // Priority: the deck's own friction holds, whatever the vehicle's feet say.
+      << "<geom name='deck' type='box' size='" << Text(deck.half_extents) << "' pos='"
+      << Text(deck.center - origin) << "' " << kEnvironment << "condim='4' priority='1' friction='"
+      << NumberText(config.pad.friction) << " 0.005 0.0001'/>\n"
+      << "<geom name='pad_body' type='box' size='" << Text(body.half_extents) << "' pos='"
+      << Text(body.center - origin) << "' " << kEnvironment << "condim='3'/>\n"
+      << "</body>\n";
+}
+
+void WriteDrive(const char* joint, double gain, std::ostream& xml) {
+  xml << "<velocity name='" << joint << "' joint='" << joint << "' kv='" << NumberText(gain)
+      << "' ctrllimited='false' forcelimited='false'/>\n";
+}
+
+}  // namespace
+
+std::string WorldMjcf(const WorldConfig& config) {
+  std::ostringstream xml;
+  xml << "<mujoco model='touchdown world'>\n"
+      << "<worldbody>\n"
+      << "<geom name='ground' type='plane' size='0 0 1' pos='0 0 0' condim='3' " << kEnvironment
+      << "/>\n";
+  for (std::size_t i = 0; i < config.obstacles.size(); ++i) {
+    xml << "<geom name='obstacle" << i << "' condim='3' " << kEnvironment
+        << std::visit([](const auto& shape) { return ObstacleGeom(shape); },
+                      config.obstacles.obstacles()[i])
+        << "/>\n";
+  }
+  WritePad(config, xml);
+  xml << "</worldbody>\n<actuator>\n";
+  WriteDrive("pad_x", PadDrive::kVelocityGain, xml);
+  WriteDrive("pad_y", PadDrive::kVelocityGain, xml);
+  WriteDrive("pad_yaw", PadDrive::kYawGain, xml);
+  xml << "</actuator>\n"
+      << "<include file='" << kVehicleIncludeName
+      << "'/>\n"
+      // After the include: these hold against whatever the vehicle file says.
+      << "<option timestep='" << NumberText(config.timestep) << "' gravity='0 0 -"
+      << NumberText(estimation::kGravity) << "' integrator='Euler' solver='Newton' "
+      << "cone='elliptic' impratio='10' density='0' viscosity='0' wind='0 0 0'/>\n"
+      << "<size nconmax='100' njmax='500'/>\n"
+      << "</mujoco>\n";
+  return xml.str();
+}
+
+}  // namespace touchdown::sim

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "touchdown/sim/world.h"
+
+namespace touchdown::sim {
+
+/// The pad vehicle's velocity drives: force = gain * (control - velocity).
+struct PadDrive {
+  static constexpr double kMass = 40.0;            ///< of the pad vehicle [kg]
+  static constexpr double kVelocityGain = 4000.0;  ///< both slides [N s/m]
+  static constexpr double kYawGain = 800.0;        ///< hinge [N m s/rad]
+  static constexpr double kPositionGain = 1.5;     ///< control = v_ref + this * (p_ref - p) [1/s]
+};
+
+/// MJCF text of the world: ground, obstacles, pad vehicle; the vehicle is included under
+/// kVehicleIncludeName. Geoms are named "ground", "obstacle<index>", "deck" and "pad_body"; joints
+/// and actuators of the pad "pad_x", "pad_y" and "pad_yaw". The configuration is taken as valid.
+std::string WorldMjcf(const WorldConfig& config);
+
+}  // namespace touchdown::sim
