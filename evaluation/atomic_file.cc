@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// rename(2) replaces a file in one step within a file system, so the working file lies in the same
+// directory, under a name that no other process takes.
+#include "touchdown/evaluation/atomic_file.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <unistd.h>
+
+namespace touchdown::evaluation {
+
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+  const std::filesystem::path directory = std::filesystem::path(path_).parent_path();
+  if (!directory.empty()) std::filesystem::create_directories(directory);
+  working_path_ = path_ + ".partial-" + std::to_string(getpid());
+  std::filesystem::remove(working_path_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  std::filesystem::remove(working_path_, ignored);
+}
+
+void AtomicFile::Commit() {
+  std::filesystem::rename(working_path_, path_);
+  committed_ = true;
+}
+
+}  // namespace touchdown::evaluation

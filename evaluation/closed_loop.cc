@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One trial. In each step of 2 ms: sensors that are due, mission, replanning if due, tracking, then
+// physics, then the judge and the figures on the true state. The judge is given the state from
+// before the step together with the contacts found in it: the velocity before the impact.
+#include "touchdown/evaluation/closed_loop.h"
+
+#include <chrono>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/equilibrium.h"
+#include "touchdown/evaluation/metrics.h"
+#include "touchdown/evaluation/perception.h"
+#include "touchdown/evaluation/pilot.h"
+#include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/sim/true_clearance.h"
+#include "touchdown/solvers/thread_clock.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kMissionRate = 100.0;  // [Hz]
+constexpr double kSampleRate = 50.0;    // of metrics and record [Hz]
+
+class Trial {
+ public:
+  Trial(const Scenario& scenario, std::uint64_t seed, const solvers::BackendRegistry& backends,
+        TrialRecord* record)
+      : scenario_(scenario),
+        world_(WorldOf(scenario, DrawTrial(scenario, seed))),
+        perception_(scenario, world_, seed),
+        pilot_(scenario, world_.model(), world_.pad_motion(), backends, world_.vehicle()),
+        clearance_(world_.config().obstacles, world_.model()),
+        judge_(LandingRule{}, scenario.timeout),
+        mission_clock_(kMissionRate),
+        replan_clock_(scenario.planning.rate),
+        sample_clock_(kSampleRate),
+        record_(record) {
+    result_.seed = seed;
+    if (record_ != nullptr) record_->map_resolution = perception_.map().resolution();
+  }
+
+  TrialResult Run() {
+    while (!judge_.outcome()) Step();
+    Finish();
+    return result_;
+  }
+
+ private:
+  // Runs a stage and adds its thread CPU time to `stage`.
+  template <typename Stage>
+  static void Timed(double* stage, Stage&& run) {
+    const double begin = solvers::ThreadCpuSeconds();
+    run();
+    *stage += solvers::ThreadCpuSeconds() - begin;
+  }
+
+  void Step() {
+    perception_.Sense(world_);
+    const estimation::VehicleState vehicle = world_.vehicle();
+    const estimation::PadState pad = world_.pad();
+    Timed(&result_.timing.control_cpu_s, [&] {
+      if (mission_clock_.Due(vehicle.t)) StepMission(vehicle);
+    });
+    if (replan_clock_.Due(vehicle.t)) Replan(vehicle);
+    control::MixerOutput mix;
+    Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(vehicle); });
+    std::array<double, 4> command;
+    for (int i = 0; i < 4; ++i) command[i] = mix.thrusts[i];
+    Timed(&result_.timing.physics_cpu_s, [&] { world_.Step(command); });
+    Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, mix.saturated); });
+  }
+
+  void StepMission(const estimation::VehicleState& vehicle) {
+    pilot_.StepMission(vehicle, perception_.pad_filter(), world_.foot_force().force,
+                       1.0 / kMissionRate);
+    const control::MissionOutputs& mission = pilot_.mission();
+    if (mission.reason != control::TransitionReason::kNone) {
+      Note(vehicle.t, "mode",
+           fmt::format("{} ({})", control::ToString(mission.mode),
+                       control::ToString(mission.reason)));
+    }
+  }
+
+  void Replan(const estimation::VehicleState& vehicle) {
+    const planning::ReplanResult* plan = nullptr;
+    Timed(&result_.timing.planning_cpu_s,
+          [&] { plan = pilot_.Replan(vehicle, perception_.pad_filter(), perception_.map()); });
+    if (plan == nullptr) return;
+    ++result_.replans;
+    ++result_.replans_by_status[planning::ToString(plan->status)];
+    if (plan->reason != planning::ReplanReason::kNone) {
+      ++result_.replans_by_reason[planning::ToString(plan->reason)];
+    }
+    const planning::StageTimes::Span& total = plan->times.total;
+    result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
+    result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
+    if (total.wall > pilot_.last_replan().latency_s) ++result_.timing.deadline_misses;
+    if (record_ != nullptr) record_->plans.push_back(PlanRow(*plan));
+  }
+
+  RecordPlan PlanRow(const planning::ReplanResult& plan) {
+    const PilotReplan& asked = pilot_.last_replan();
+    RecordPlan row;
+    row.t_now = asked.input.t_now;
+    row.t_start = asked.input.t_start;
+    row.endpoint = asked.input.endpoint;
+    row.vehicle = asked.input.vehicle;
+    row.pad = asked.pad;
+    row.status = plan.status;
+    row.reason = plan.reason;
+    row.from_odometry = plan.from_odometry;
+    row.curve = plan.curve;
+    row.certificate = plan.certificate;
+    row.guide_paths = plan.guide_paths;
+    row.pairs = plan.pairs;
+    row.solves = plan.solves;
+    row.rebinds = plan.rebinds;
+    row.iterations = plan.solver.iterations;
+    row.cost = plan.solver.cost;
+    row.map_changes = perception_.TakeMapChanges();
+    return row;
+  }
+
+  void Judge(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+             bool saturated) {
+    JudgeSample sample;
+    sample.t = vehicle.t;
+    sample.vehicle = vehicle;
+    sample.pad = pad;
+    for (const sim::Contact& contact : world_.contacts()) TakeContact(contact, &sample);
+    sample.armed = pilot_.mission().motors_armed;
+    sample.pad_known = perception_.pad_filter().Converged(vehicle.t);
+    sample.plan_valid = pilot_.plan_valid(vehicle.t);
+
+    const bool in_flight = !judge_.touchdown();
+    if (sample_clock_.Due(vehicle.t)) {
+      through_air_.Add(vehicle.t, vehicle.v_WB);  // the air stands still
+      if (in_flight) {
+        metrics_.Sample(vehicle.t, vehicle, pad, TrueClearanceAt(vehicle));
+      }
+      if (record_ != nullptr) RecordState(vehicle, pad);
+    }
+    if (in_flight) {
+      metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep());
+      if (perception_.pad_measured() && perception_.pad_filter().Converged(vehicle.t)) {
+        metrics_.Estimate(perception_.pad_filter().Estimate(vehicle.t), pad);
+      }
+    }
+    if (in_flight && sample.foot_on_pad) {
+      sample.equilibrium_axis = EquilibriumAxis(world_.model(), through_air_.Mean());
+    }
+    judge_.Observe(sample);
+    if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
+  }
+
+  void TakeContact(const sim::Contact& contact, JudgeSample* sample) {
+    switch (contact.kind) {
+      case sim::ContactKind::kFootDeck:
+        sample->foot_on_pad = true;
+        return;
+      case sim::ContactKind::kGround:
+      case sim::ContactKind::kPadVehicle:
+        sample->beside_pad = true;
+        break;
+      case sim::ContactKind::kObstacle:
+      case sim::ContactKind::kHullDeck:
+        sample->collides = true;
+        break;
+    }
+    touched_ = sim::ToString(contact.kind);
+    if (contact.obstacle >= 0) touched_ += fmt::format(" {}", contact.obstacle);
+  }
+
+  std::optional<double> TrueClearanceAt(const estimation::VehicleState& vehicle) const {
+    if (world_.config().obstacles.empty()) return std::nullopt;
+    return clearance_.Distance(vehicle);
+  }
+
+  void RecordState(const estimation::VehicleState& vehicle, const estimation::PadState& pad) {
+    RecordSample row;
+    row.t = vehicle.t;
+    row.vehicle = vehicle;
+    row.vehicle_estimate = vehicle;  // own_state: true
+    row.pad = pad;
+    row.pad_known = perception_.pad_filter().initialized();
+    if (row.pad_known) row.pad_estimate = perception_.pad_filter().Estimate(vehicle.t);
+    row.reference = pilot_.Reference(vehicle.t);
+    row.rotor_thrusts = world_.rotor_thrusts();
+    row.mode = control::ToString(pilot_.mission().mode).data();
+    record_->samples.push_back(row);
+  }
+
+  void Note(double t, const char* kind, const std::string& text) {
+    if (record_ != nullptr) record_->events.push_back({t, kind, text});
+  }
+
+  void Finish() {
+    result_.outcome = *judge_.outcome();
+    result_.touchdown = judge_.touchdown();
+    result_.simulated_s = world_.time();
+    if (!result_.landed()) {
+      result_.detail = Explain(result_.outcome);
+      if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
+      result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
+    }
+    metrics_.Fill(&result_);
+    result_.timing.simulated_s = world_.time();
+    result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
+    result_.timing.mapping_cpu_s = perception_.mapping_cpu_s();
+    Note(world_.time(), "outcome", ToString(result_.outcome));
+  }
+
+  const Scenario& scenario_;
+  sim::World world_;
+  Perception perception_;
+  Pilot pilot_;
+  sim::TrueClearance clearance_;
+  LandingJudge judge_;
+  Metrics metrics_;
+  SlidingMean through_air_;
+  sim::SampleClock mission_clock_;
+  sim::SampleClock replan_clock_;
+  sim::SampleClock sample_clock_;
+  TrialRecord* record_;
+  TrialResult result_;
+  std::string touched_;
+};
+
+}  // namespace
+
+TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed,
+                     const solvers::BackendRegistry& backends, TrialRecord* record) {
+  const auto wall = std::chrono::steady_clock::now();
+  const double cpu = solvers::ThreadCpuSeconds();
+  TrialResult result = Trial(scenario, seed, backends, record).Run();
+  result.timing.wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  result.timing.cpu_s = solvers::ThreadCpuSeconds() - cpu;
+  return result;
+}
+
+}  // namespace touchdown::evaluation

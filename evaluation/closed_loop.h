@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/trial_record.h"
+#include "touchdown/evaluation/trial_result.h"
+#include "touchdown/solvers/backend_registry.h"
+
+namespace touchdown::evaluation {
+
+/// Flies one trial from hover to its outcome: physics and tracking at 500 Hz, mission at 100 Hz,
+/// sensors and replanning at the scenario's rates. A pure function of scenario and seed but for the
+/// result's timing, unless planning.latency is `measured`. Any number may run in threads at a time.
+/// @param record filled if not null.
+/// @throws std::invalid_argument if the scenario cannot be set up, std::runtime_error if the
+/// physics fails.
+TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed,
+                     const solvers::BackendRegistry& backends, TrialRecord* record = nullptr);
+
+}  // namespace touchdown::evaluation

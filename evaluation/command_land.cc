@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown land: one closed-loop landing, its summary, and on request its record and picture.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/statistics.h"
+#include "touchdown/evaluation/trial_json.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
+
+struct LandArguments {
+  ScenarioArguments scenario;
+  std::string record;
+  std::string plot;
+  bool json = false;
+};
+
+std::string Summary(const Scenario& scenario, const TrialResult& r) {
+  std::string text;
+  if (r.landed()) {
+    const Touchdown& t = *r.touchdown;
+    text = fmt::format("landed on {} after {:.2f} s (seed {})\n", scenario.name, t.t, r.seed);
+    text += fmt::format("  touchdown error        {:.3f} m\n", t.error_m);
+    text += fmt::format("  relative velocity      [{:.3f}, {:.3f}, {:.3f}] m/s\n",
+                        t.relative_velocity.x(), t.relative_velocity.y(), t.relative_velocity.z());
+    text +=
+        fmt::format("  tilt over equilibrium  {:.1f} deg\n", t.tilt_over_equilibrium * kDegPerRad);
+    text += fmt::format("  mean |error|, last 5 s {:.3f} m in x, {:.3f} m in y\n",
+                        r.mean_abs_error_x_m.value_or(0.0), r.mean_abs_error_y_m.value_or(0.0));
+  } else {
+    text = fmt::format("{}: not landed on {} within {:.2f} s (seed {}). {}\n", ToString(r.outcome),
+                       scenario.name, r.simulated_s, r.seed, r.detail);
+  }
+  if (r.min_clearance_m) {
+    text += fmt::format("  least true clearance   {:.3f} m\n", *r.min_clearance_m);
+  }
+  text += fmt::format("  replans                {}", r.replans);
+  for (const auto& [status, count] : r.replans_by_status) {
+    text += fmt::format(", {} {}", count, status);
+  }
+  for (const auto& [reason, count] : r.replans_by_reason) {
+    text += fmt::format(" ({} {})", count, reason);
+  }
+  if (const auto median = Quantile(r.timing.replan_wall_ms, 0.5)) {
+    text += fmt::format("\n  replanning             median {:.1f} ms, p95 {:.1f} ms", *median,
+                        *Quantile(r.timing.replan_wall_ms, 0.95));
+  }
+  text += fmt::format(
+      "\n  speed                  {:.1f} x real time (planning {:.0f} %, physics "
+      "{:.0f} %, sensing and map {:.0f} % of the CPU time)\n",
+      r.timing.simulated_s / r.timing.wall_s, 100.0 * r.timing.planning_cpu_s / r.timing.cpu_s,
+      100.0 * r.timing.physics_cpu_s / r.timing.cpu_s,
+      100.0 * (r.timing.sensing_cpu_s + r.timing.mapping_cpu_s) / r.timing.cpu_s);
+  return text;
+}
+
+int Land(const LandArguments& arguments, const Registries& registries) {
+  const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
+                                         arguments.scenario.Overrides(), BackendNames(registries));
+  TrialRecord record;
+  const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
+  const TrialResult result =
+      RunTrial(scenario, scenario.seed, registries.backends, recorded ? &record : nullptr);
+  if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
+  if (!arguments.plot.empty()) {
+    if (arguments.record.empty()) {
+      // The picture is drawn from a record; without --record that one is not kept.
+      const AtomicFile unkept(arguments.plot + ".record");
+      WriteRecord(unkept.working_path(), scenario, result, record);
+      DrawLanding(unkept.working_path(), arguments.plot);
+    } else {
+      DrawLanding(arguments.record, arguments.plot);
+    }
+  }
+  if (arguments.json) {
+    std::cout << LandJson(scenario, result).dump(2) << "\n";
+  } else {
+    std::cout << Summary(scenario, result);
+  }
+  return result.landed() ? kDone : kFellShort;
+}
+
+}  // namespace
+
+void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
+  CLI::App* command = app.add_subcommand("land", "Fly one closed-loop landing");
+  const auto arguments = std::make_shared<LandArguments>();
+  arguments->scenario.AddTo(*command, false);
+  command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=")->type_name("S");
+  command->add_option("--record", arguments->record, "Write the record, an SQLite file")
+      ->type_name("F.db");
+  command->add_option("--plot", arguments->plot, "Draw plan and side view")->type_name("F.png");
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->callback([arguments, &registries, run] {
+    *run = [arguments, &registries] { return Land(*arguments, registries); };
+  });
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown sweep: many landings of one scenario on threads, their table and its study file.
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/sweep.h"
+#include "touchdown/evaluation/sweep_report.h"
+#include "touchdown/evaluation/trial_table.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+struct SweepArguments {
+  ScenarioArguments scenario;
+  std::vector<std::string> vary;
+  int trials = 20;
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  std::uint64_t seed = 1;
+  std::string db;
+  bool json = false;
+};
+
+// Reports about every two seconds: the rate so far and the time left at that rate.
+class Progress {
+ public:
+  explicit Progress(int trials) : trials_(trials) {}
+
+  void operator()(int done) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(2) && done < trials_) return;
+    last_ = now;
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    const double rate = done / elapsed;
+    spdlog::info("{} of {} trials, {:.2f} trials/s, {:.0f} s left", done, trials_, rate,
+                 (trials_ - done) / rate);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  int trials_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
+int Sweep(const SweepArguments& arguments, const Registries& registries) {
+  if (!arguments.db.empty() && std::filesystem::exists(arguments.db)) {
+    throw BadInput(
+        fmt::format("--db {}: the file exists; a study is never overwritten.", arguments.db));
+  }
+  SweepOptions options;
+  options.scenario_path = FindScenario(arguments.scenario.scenario);
+  options.overrides = arguments.scenario.Overrides();
+  for (const std::string& text : arguments.vary)
+    options.variations.push_back(Variation::Parse(text));
+  options.trials = arguments.trials;
+  options.seed = arguments.seed;
+  const std::vector<SweepTrial> trials = PlanSweep(options, BackendNames(registries));
+  for (const SweepTrial& trial : trials) {
+    if (trial.scenario.planning.latency.measured && arguments.jobs > 1) {
+      throw BadInput(
+          "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
+    }
+  }
+  const std::vector<SweepRow> rows =
+      RunSweep(trials, arguments.jobs, registries.backends, Progress(options.trials));
+  if (!arguments.db.empty()) WriteTrialTable(arguments.db, options, rows);
+  if (arguments.json) {
+    std::cout << SweepJson(options, rows).dump(2) << "\n";
+  } else {
+    std::cout << SweepText(options, rows);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
+  CLI::App* command = app.add_subcommand("sweep", "Fly many landings of one scenario");
+  const auto arguments = std::make_shared<SweepArguments>();
+  arguments->scenario.AddTo(*command, true);
+  command->add_option("--trials", arguments->trials, "Number of trials")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command
+      ->add_option("--vary", arguments->vary,
+                   "Change a key from trial to trial: a range to draw from, or values in turn")
+      ->type_name("KEY=LO..HI|a,b,c")
+      ->allow_extra_args(false);
+  command->add_option("--jobs", arguments->jobs, "Threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
+      ->capture_default_str();
+  command->add_option("--db", arguments->db, "Write the trial table, an SQLite file")
+      ->type_name("F.db");
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->callback([arguments, &registries, run] {
+    *run = [arguments, &registries] { return Sweep(*arguments, registries); };
+  });
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The success rule of the evaluation as an incremental observer of the true state: first contact
+// of a foot with the pad is judged on relative velocity and attitude, then one second of rest,
+// upright and disarmed, makes a landing. Everything else is exactly one failure class.
+#include "touchdown/evaluation/landing_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::evaluation {
+namespace {
+
+double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+bool Finite(const JudgeSample& s) {
+  return s.vehicle.p_WB.allFinite() && s.vehicle.v_WB.allFinite() &&
+         s.vehicle.q_WB.coeffs().allFinite() && s.pad.p_WP.allFinite();
+}
+
+}  // namespace
+
+const char* ToString(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kLanded:
+      return "landed";
+    case Outcome::kCollision:
+      return "collision";
+    case Outcome::kOffPad:
+      return "off_pad";
+    case Outcome::kHardTouchdown:
+      return "hard_touchdown";
+    case Outcome::kTiltedTouchdown:
+      return "tilted_touchdown";
+    case Outcome::kBouncedOff:
+      return "bounced_off";
+    case Outcome::kTipOver:
+      return "tip_over";
+    case Outcome::kDisarmedInAir:
+      return "disarmed_in_air";
+    case Outcome::kLostPad:
+      return "lost_pad";
+    case Outcome::kInfeasible:
+      return "infeasible";
+    case Outcome::kTimeout:
+      return "timeout";
+    case Outcome::kUnstable:
+      return "unstable";
+    case Outcome::kError:
+      return "error";
+  }
+  return "error";
+}
+
+const char* Explain(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kLanded:
+      return "The vehicle rests upright and disarmed on the pad.";
+    case Outcome::kCollision:
+      return "The vehicle touched something before it had landed.";
+    case Outcome::kOffPad:
+      return "The feet came down beside the pad.";
+    case Outcome::kHardTouchdown:
+      return "The vehicle was too fast relative to the deck at contact.";
+    case Outcome::kTiltedTouchdown:
+      return "The vehicle was tilted too far at contact.";
+    case Outcome::kBouncedOff:
+      return "The vehicle left the pad again after contact.";
+    case Outcome::kTipOver:
+      return "The vehicle fell over after contact.";
+    case Outcome::kDisarmedInAir:
+      return "The rotors were stopped in the air.";
+    case Outcome::kLostPad:
+      return "Time ran out while the pad's position was not known.";
+    case Outcome::kInfeasible:
+      return "Time ran out while no certified plan to the pad was found.";
+    case Outcome::kTimeout:
+      return "Time ran out before the vehicle had landed.";
+    case Outcome::kUnstable:
+      return "The simulation left finite numbers.";
+    case Outcome::kError:
+      return "The program failed in this trial.";
+  }
+  return "The program failed in this trial.";
+}
+
+Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB) {
+  const Eigen::Vector3d p_PB = p_WB - pad.p_WP;
+  return pad.v_WP + pad.yaw_rate * Eigen::Vector3d(-p_PB.y(), p_PB.x(), 0.0);
+}
+
+LandingJudge::LandingJudge(const LandingRule& rule, double timeout)
+    : rule_(rule), timeout_(timeout) {}
+
+std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
+  if (outcome_) return outcome_;
+  const double dt = std::max(0.0, sample.t - t_previous_);
+  t_previous_ = sample.t;
+  const double forget = std::min(1.0, dt / rule_.loss_window);
+  without_pad_ += forget * ((sample.pad_known ? 0.0 : 1.0) - without_pad_);
+  without_plan_ += forget * ((sample.plan_valid ? 0.0 : 1.0) - without_plan_);
+
+  if (!Finite(sample)) {
+    outcome_ = Outcome::kUnstable;
+  } else {
+    outcome_ = touchdown_ ? OnThePad(sample) : InTheAir(sample);
+  }
+  if (!outcome_ && sample.t >= timeout_) outcome_ = TimeoutClass();
+  return outcome_;
+}
+
+std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
+  if (sample.collides) return Outcome::kCollision;
+  if (sample.beside_pad) {
+    const double distance = (sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm();
+    return distance <= rule_.off_pad_distance ? Outcome::kOffPad : Outcome::kCollision;
+  }
+  if (!sample.foot_on_pad) {
+    if (!sample.armed) return Outcome::kDisarmedInAir;
+    return std::nullopt;
+  }
+  Touchdown touchdown;
+  const Eigen::Vector3d axis = sample.vehicle.q_WB * Eigen::Vector3d::UnitZ();
+  touchdown.t = sample.t;
+  touchdown.error_m = (sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm();
+  touchdown.relative_velocity =
+      sample.vehicle.v_WB - DeckPointVelocity(sample.pad, sample.vehicle.p_WB);
+  touchdown.tilt = estimation::Tilt(sample.vehicle.q_WB);
+  touchdown.tilt_over_equilibrium = AngleBetween(axis, sample.equilibrium_axis);
+  touchdown_ = touchdown;
+  last_contact_t_ = sample.t;
+  if (touchdown.relative_velocity.head<2>().norm() > rule_.horizontal_speed ||
+      std::abs(touchdown.relative_velocity.z()) > rule_.vertical_speed) {
+    return Outcome::kHardTouchdown;
+  }
+  if (touchdown.tilt_over_equilibrium > rule_.tilt_over_equilibrium ||
+      touchdown.tilt > rule_.tilt) {
+    return Outcome::kTiltedTouchdown;
+  }
+  return std::nullopt;
+}
+
+std::optional<Outcome> LandingJudge::OnThePad(const JudgeSample& sample) {
+  const double tilt = estimation::Tilt(sample.vehicle.q_WB);
+  if (tilt > rule_.tip_over_tilt) return Outcome::kTipOver;
+  if (sample.collides) return sample.foot_on_pad ? Outcome::kTipOver : Outcome::kCollision;
+  if (sample.beside_pad) return Outcome::kBouncedOff;
+  if (sample.foot_on_pad) last_contact_t_ = sample.t;
+  const double gap = sample.t - last_contact_t_;
+  if (gap > rule_.bounce_gap) return Outcome::kBouncedOff;
+
+  if (sample.armed || tilt > rule_.upright_tilt || gap > rule_.contact_gap) {
+    rest_since_.reset();
+    return std::nullopt;
+  }
+  if (!rest_since_) rest_since_ = sample.t;
+  // Half a physics step of slack: the sum of binary time steps may fall short by an ulp.
+  if (sample.t - *rest_since_ >= rule_.rest - 1e-3) return Outcome::kLanded;
+  return std::nullopt;
+}
+
+Outcome LandingJudge::TimeoutClass() const {
+  if (touchdown_) return Outcome::kTimeout;
+  if (without_pad_ > rule_.loss_share) return Outcome::kLostPad;
+  if (without_plan_ > rule_.loss_share) return Outcome::kInfeasible;
+  return Outcome::kTimeout;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/program.h"
+
+int main(int argc, char** argv) {
+  return touchdown::evaluation::RunProgram(
+      argc, argv, {touchdown::solvers::StandardBackends(), touchdown::planning::StandardTerms()});
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Running sums of a trial's figures. The mean absolute error over the last 5 s before contact, per
+// world axis, is the paper's Table 1.
+#include "touchdown/evaluation/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/estimation/pad_motion_model.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kErrorWindow = 5.0;  // the paper's [s]
+
+}  // namespace
+
+void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt) {
+  for (const double thrust : rotor_thrusts) effort_ += thrust * thrust * dt;
+  ++steps_;
+  if (saturated) ++saturated_;
+}
+
+void Metrics::Sample(double t, const estimation::VehicleState& vehicle,
+                     const estimation::PadState& pad, const std::optional<double>& clearance) {
+  recent_.push_back({t, (vehicle.p_WB - pad.p_WP).head<2>().cwiseAbs()});
+  while (recent_.front().t < t - kErrorWindow) recent_.pop_front();
+  if (clearance) clearance_ = clearance_ ? std::min(*clearance_, *clearance) : *clearance;
+  max_speed_ = std::max(max_speed_, vehicle.v_WB.norm());
+  if (v_previous_ && t > t_previous_) {
+    const double acceleration = (vehicle.v_WB - *v_previous_).norm() / (t - t_previous_);
+    max_acceleration_ = std::max(max_acceleration_, acceleration);
+  }
+  v_previous_ = vehicle.v_WB;
+  t_previous_ = t;
+}
+
+void Metrics::Estimate(const estimation::PadState& estimate, const estimation::PadState& truth) {
+  sum_position_ += (estimate.p_WP - truth.p_WP).head<2>().squaredNorm();
+  sum_velocity_ += (estimate.v_WP - truth.v_WP).head<2>().squaredNorm();
+  sum_nees_ += estimation::PositionNees(estimate, truth.p_WP.head<2>());
+  ++estimates_;
+}
+
+void Metrics::Fill(TrialResult* result) const {
+  result->effort_n2s = effort_;
+  if (steps_ > 0) {
+    result->saturation_share = static_cast<double>(saturated_) / static_cast<double>(steps_);
+  }
+  result->min_clearance_m = clearance_;
+  result->max_speed_mps = max_speed_;
+  result->max_acceleration_mps2 = max_acceleration_;
+  if (estimates_ > 0) {
+    result->estimator =
+        EstimatorQuality{std::sqrt(sum_position_ / estimates_),
+                         std::sqrt(sum_velocity_ / estimates_), sum_nees_ / estimates_, estimates_};
+  }
+  if (!result->touchdown || recent_.empty()) return;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const ErrorSample& sample : recent_) sum += sample.abs_error;
+  result->mean_abs_error_x_m = sum.x() / static_cast<double>(recent_.size());
+  result->mean_abs_error_y_m = sum.y() / static_cast<double>(recent_.size());
+}
+
+}  // namespace touchdown::evaluation

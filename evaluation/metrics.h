@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <deque>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/evaluation/trial_result.h"
+
+namespace touchdown::evaluation {
+
+/// Accumulates a trial's figures from true states, in flight until first contact. Feed it in time
+/// order and stop at first contact.
+class Metrics {
+ public:
+  /// Every control step. @param rotor_thrusts [N]. @param dt length of the step [s].
+  void Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt);
+
+  /// Every 20 ms. `clearance`: true distance to the nearest obstacle [m], empty without obstacles.
+  void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+              const std::optional<double>& clearance);
+
+  /// The filter's estimate against the truth.
+  void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth);
+
+  /// Writes the figures into `result`; those at contact only if `touchdown` is set there.
+  void Fill(TrialResult* result) const;
+
+ private:
+  struct ErrorSample {
+    double t;
+    Eigen::Vector2d abs_error;  ///< vehicle minus pad, world axes [m]
+  };
+  std::deque<ErrorSample> recent_;  ///< of the last 5 s
+  double effort_ = 0.0;
+  long steps_ = 0;
+  long saturated_ = 0;
+  std::optional<double> clearance_;
+  std::optional<Eigen::Vector3d> v_previous_;
+  double t_previous_ = 0.0;
+  double max_speed_ = 0.0;
+  double max_acceleration_ = 0.0;
+  double sum_position_ = 0.0;
+  double sum_velocity_ = 0.0;
+  double sum_nees_ = 0.0;
+  int estimates_ = 0;
+};
+
+}  // namespace touchdown::evaluation

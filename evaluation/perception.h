@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "touchdown/estimation/pad_filter.h"
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/sim/depth_camera.h"
+#include "touchdown/sim/gps.h"
+#include "touchdown/sim/sample_clock.h"
+#include "touchdown/sim/tag_sensor.h"
+#include "touchdown/sim/world.h"
+
+namespace touchdown::evaluation {
+
+/// The vehicle's senses in a simulated world: GPS of the pad, tag camera, depth camera, and what is
+/// made of them, the pad filter and the obstacle map.
+class Perception {
+ public:
+  /// `world` only gives the configuration. Every sensor has its own stream of `seed`.
+  Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed);
+
+  /// Takes the measurements that are due at the world's time. Call once per physics step.
+  void Sense(const sim::World& world);
+
+  const estimation::PadFilter& pad_filter() const { return pad_filter_; }
+  const planning::OccupancyMap& map() const { return map_; }
+
+  /// A GPS fix or a sighting was taken in the last call of Sense.
+  bool pad_measured() const { return pad_measured_; }
+
+  /// Cells that changed since the last call, in order.
+  std::vector<planning::CellFlip> TakeMapChanges();
+
+  double sensing_cpu_s() const {
+    return sensing_cpu_s_;
+  }  ///< simulating sensors and the pad filter
+  double mapping_cpu_s() const { return mapping_cpu_s_; }  ///< fusing depth into the map
+
+ private:
+  planning::ExcludedVolume PadVolume(double t) const;
+  void KeepFlips();
+
+  sim::PadGps gps_;
+  sim::TagSensor tags_;
+  sim::DepthCamera depth_;
+  sim::SampleClock depth_clock_;
+  estimation::PadFilter pad_filter_;
+  planning::OccupancyMap map_;
+  estimation::DepthFrame frame_;
+  std::vector<planning::CellFlip> changes_;
+  double deck_half_diagonal_;
+  double deck_height_;
+  bool pad_measured_ = false;
+  double sensing_cpu_s_ = 0.0;
+  double mapping_cpu_s_ = 0.0;
+};
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The on-board loop around the libraries: the state machine says what to do, the replanner how to
+// fly there from the committed trajectory, the heading follows the way ahead so that the depth
+// camera sees where the vehicle is going, and the tracking law turns the reference into rotor
+// thrusts.
+#include "touchdown/evaluation/pilot.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "touchdown/estimation/pad_predictor.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
+constexpr double kLookAhead = 0.8;        // the heading is where the vehicle will be then [s]
+constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says nothing [m]
+constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
+constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
+
+control::DescentStyle StyleOf(DescentKind kind) {
+  return kind == DescentKind::kNone ? control::DescentStyle::kNone
+                                    : control::DescentStyle::kVertical;
+}
+
+planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
+                                          const estimation::VehicleModel& model) {
+  planning::ReplannerOptions options;
+  options.backend = scenario.solver.backend;
+  options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
+                                                                  : planning::ArrivalMode::kFixed;
+  options.limits = {scenario.limits.speed, scenario.limits.acceleration};
+  options.floor_height = std::max(options.floor_height, model.foot_depth + 0.3);
+  return options;
+}
+
+// The paper extrapolates along the heading: a turn that the filter knows of is left out.
+estimation::BeliefPrediction PredictionOf(const Scenario& scenario,
+                                          const estimation::PadFilter& filter) {
+  if (scenario.pad.prediction != PadPredictionKind::kPaper) return estimation::Predict(filter);
+  estimation::PadBelief belief = filter.belief();
+  if (belief.motion == estimation::PadMotion::kTurn) {
+    belief.motion = estimation::PadMotion::kHeading;
+    belief.mean[4] = 0.0;
+    belief.cov.row(4).setZero();
+    belief.cov.col(4).setZero();
+  }
+  return {belief, filter.options().pad_height, filter.options().noise};
+}
+
+control::ControllerOptions TrackingOptions(const Scenario& scenario) {
+  control::ControllerOptions options;
+  // The tracking law may tilt a little more than plans do, or it could not correct on their edge.
+  options.tilt_max = std::min(1.3, (scenario.limits.tilt_deg + 10.0) * kRadPerDeg);
+  return options;
+}
+
+}  // namespace
+
+Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
+             const sim::PadMotion& truth, const solvers::BackendRegistry& backends,
+             const estimation::VehicleState& start)
+    : scenario_(scenario),
+      model_(model),
+      oracle_(truth),
+      replanner_(PlannerOptions(scenario, model), backends),
+      controller_(control::MakeController(
+          scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
+          TrackingOptions(scenario))),
+      mixer_(model) {
+  replanner_.CommitHover(start.p_WB, start.t);
+  yaw_.yaw = estimation::Yaw(start.q_WB);
+  yaw_t_ = start.t;
+  heading_wanted_ = yaw_.yaw;
+}
+
+void Pilot::StepMission(const estimation::VehicleState& vehicle,
+                        const estimation::PadFilter& filter, double foot_force, double dt) {
+  const double t = vehicle.t;
+  control::MissionInputs inputs;
+  inputs.t = t;
+  inputs.pad_available = filter.initialized();
+  inputs.pad_converged = filter.Converged(t);
+  if (inputs.pad_available) {
+    const estimation::PadState pad = filter.Estimate(t);
+    inputs.horizontal_distance = (vehicle.p_WB - pad.p_WP).head<2>().norm();
+    inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
+    inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
+  }
+  inputs.pad_sigma = filter.PositionSigma(t);
+  inputs.tag_age = filter.TagAge(t);
+  inputs.foot_force = foot_force;
+  inputs.has_plan = has_plan_;
+  inputs.plan_failed_for = 0.0;
+  if (requested_t_) {
+    const double since = planned_t_ ? std::max(*planned_t_, *requested_t_) : *requested_t_;
+    inputs.plan_failed_for = t - since;
+  }
+  heading_wanted_ = DesiredHeading(vehicle, filter);
+  inputs.yaw_aligned = control::YawAligned(yaw_.yaw, heading_wanted_, kAlignTolerance);
+  inputs.descent = StyleOf(scenario_.descent);
+
+  const control::MissionStep step = control::Step(mission_state_, inputs, parameters_);
+  mission_state_ = step.state;
+  mission_ = step.outputs;
+  if (mission_.plan_requested && !requested_t_) requested_t_ = t;
+  if (!mission_.plan_requested) requested_t_.reset();
+
+  yaw_ = control::StepYaw(yaw_, heading_wanted_, dt);
+  yaw_t_ = t + dt;
+}
+
+const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehicle,
+                                            const estimation::PadFilter& filter,
+                                            const planning::OccupancyMap& map) {
+  if (!mission_.plan_requested || !filter.initialized()) {
+    has_plan_ = false;
+    return nullptr;
+  }
+  const estimation::BeliefPrediction prediction = PredictionOf(scenario_, filter);
+  const bool oracle = scenario_.pad.prediction == PadPredictionKind::kOracle;
+  const estimation::PadPrediction& pad =
+      oracle ? static_cast<const estimation::PadPrediction&>(oracle_) : prediction;
+
+  replan_.latency_s = Latency();
+  replan_.input.t_now = vehicle.t;
+  replan_.input.t_start = vehicle.t + replan_.latency_s;
+  replan_.input.vehicle = vehicle;
+  replan_.input.pad = &pad;
+  replan_.input.endpoint = Endpoint(vehicle.t);
+  replan_.pad = pad.At(vehicle.t);
+
+  const auto begin = std::chrono::steady_clock::now();
+  const planning::ReplanResult& result = replanner_.Replan(replan_.input, map);
+  measured_latency_ =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  replan_.input.pad = nullptr;  // the prediction ends with this call
+
+  has_plan_ = result.status == planning::ReplanStatus::kPlanned ||
+              result.status == planning::ReplanStatus::kKept;
+  if (result.status == planning::ReplanStatus::kPlanned) planned_t_ = vehicle.t;
+  return &result;
+}
+
+control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) const {
+  if (!mission_.motors_armed) return {};
+  return mixer_.Mix(controller_->Update(vehicle, Reference(vehicle.t)).wrench);
+}
+
+planning::FlatState Pilot::Reference(double t) const {
+  planning::FlatState reference = replanner_.Reference(t);
+  // The heading was stepped to the end of the mission's period: go back from there.
+  reference.yaw = estimation::WrapAngle(yaw_.yaw - yaw_.rate * (yaw_t_ - t));
+  reference.yaw_rate = yaw_.rate;
+  return reference;
+}
+
+bool Pilot::plan_valid(double t) const {
+  return !requested_t_ || (planned_t_ && t - *planned_t_ <= parameters_.plan_timeout);
+}
+
+double Pilot::DesiredHeading(const estimation::VehicleState& vehicle,
+                             const estimation::PadFilter& filter) const {
+  const Eigen::Vector3d ahead =
+      replanner_.Reference(vehicle.t + kLookAhead).p_WB - replanner_.Reference(vehicle.t).p_WB;
+  if (ahead.head<2>().norm() > kLookDistance) return std::atan2(ahead.y(), ahead.x());
+  if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
+    return heading_wanted_;
+  }
+  const Eigen::Vector3d p_BP = filter.Estimate(vehicle.t).p_WP - vehicle.p_WB;
+  return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_wanted_;
+}
+
+planning::EndpointTarget Pilot::Endpoint(double t) const {
+  planning::EndpointTarget target;
+  target.t_reference = t;
+  target.height = mission_.foot_height + model_.foot_depth;
+  target.sink_rate = std::max(0.0, -mission_.foot_height_rate);
+  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const double lowest = landing ? -parameters_.press_depth : mission_.foot_height;
+  target.height_floor = std::min(lowest, mission_.foot_height) + model_.foot_depth;
+  return target;
+}
+
+double Pilot::Latency() const {
+  if (!scenario_.planning.latency.measured) return 1e-3 * scenario_.planning.latency.ms;
+  return std::clamp(kMeasuredMargin * measured_latency_, 1e-3, 1.0 / scenario_.planning.rate);
+}
+
+}  // namespace touchdown::evaluation

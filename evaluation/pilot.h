@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "touchdown/control/controller.h"
+#include "touchdown/control/landing_state_machine.h"
+#include "touchdown/control/mixer.h"
+#include "touchdown/control/yaw_planner.h"
+#include "touchdown/estimation/pad_filter.h"
+#include "touchdown/estimation/vehicle_model.h"
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/planning/replanner.h"
+#include "touchdown/sim/pad_motion.h"
+#include "touchdown/solvers/backend_registry.h"
+
+namespace touchdown::evaluation {
+
+/// A replanning step, as the pilot asked for it.
+struct PilotReplan {
+  planning::ReplanInput input;
+  estimation::PadState pad;  ///< the prediction at t_now
+  double latency_s = 0.0;    ///< with which the plan is flown
+};
+
+/// The vehicle's own software: mission, replanning, heading, tracking. Knows only estimates; the
+/// oracle prediction is the one exception, on request of the scenario.
+class Pilot {
+ public:
+  /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
+  Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
+        const sim::PadMotion& truth, const solvers::BackendRegistry& backends,
+        const estimation::VehicleState& start);
+
+  /// Mission and heading. Call at a fixed rate.
+  void StepMission(const estimation::VehicleState& vehicle, const estimation::PadFilter& filter,
+                   double foot_force, double dt);
+
+  /// One replanning step if the mission wants one; the result is replanner's until the next.
+  const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
+                                       const estimation::PadFilter& filter,
+                                       const planning::OccupancyMap& map);
+
+  /// Rotor thrusts for this control step [N].
+  control::MixerOutput Control(const estimation::VehicleState& vehicle) const;
+
+  /// Committed reference with heading at time t.
+  planning::FlatState Reference(double t) const;
+
+  const control::MissionOutputs& mission() const { return mission_; }
+  const PilotReplan& last_replan() const { return replan_; }
+  bool plan_valid(double t) const;
+
+ private:
+  double DesiredHeading(const estimation::VehicleState& vehicle,
+                        const estimation::PadFilter& filter) const;
+  planning::EndpointTarget Endpoint(double t) const;
+  double Latency() const;
+
+  Scenario scenario_;
+  estimation::VehicleModel model_;
+  sim::OraclePadPrediction oracle_;
+  planning::Replanner replanner_;
+  std::unique_ptr<control::Controller> controller_;
+  control::Mixer mixer_;
+  control::MissionParameters parameters_;
+  control::MissionState mission_state_;
+  control::MissionOutputs mission_;
+  control::YawState yaw_;
+  double yaw_t_ = 0.0;  ///< time of yaw_
+  double heading_wanted_ = 0.0;
+  PilotReplan replan_;
+  bool has_plan_ = false;
+  std::optional<double> planned_t_;    ///< when the last new plan was made
+  std::optional<double> requested_t_;  ///< since when plans are asked for without a break
+  double measured_latency_ = 0.0;      ///< of the last replanning step [s]
+};
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parses the command line with CLI11 and maps every way to fail to the program's exit statuses:
+// what the user wrote is 2, what the program could not do is 1, each with one sentence on stderr.
+#include "touchdown/evaluation/program.h"
+
+#include <exception>
+#include <memory>
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/commands.h"
+
+namespace touchdown::evaluation {
+
+void ScenarioArguments::AddTo(CLI::App& command, bool scenario_required) {
+  CLI::Option* positional = command.add_option(
+      "SCENARIO", scenario, "Name of a shipped scenario (`touchdown list scenarios`) or a file");
+  if (scenario_required) {
+    positional->required();
+  } else {
+    positional->capture_default_str();
+  }
+  command.add_option("--set", set, "Change a key of the scenario; may be given again")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--planner", planner, "Short for --set planner=")->type_name("NAME");
+  command.add_option("--backend", backend, "Short for --set solver.backend=")->type_name("NAME");
+}
+
+std::vector<std::string> ScenarioArguments::Overrides() const {
+  std::vector<std::string> overrides = set;
+  if (!planner.empty()) overrides.push_back("planner=" + planner);
+  if (!backend.empty()) overrides.push_back("solver.backend=" + backend);
+  if (!seed.empty()) overrides.push_back("seed=" + seed);
+  return overrides;
+}
+
+std::vector<std::string> BackendNames(const Registries& registries) {
+  std::vector<std::string> names;
+  for (const solvers::BackendEntry& entry : registries.backends) names.push_back(entry.name);
+  return names;
+}
+
+int RunProgram(int argc, const char* const* argv, const Registries& registries) {
+  auto log = std::make_shared<spdlog::logger>("touchdown",
+                                              std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  log->set_pattern("touchdown: %v");
+  spdlog::set_default_logger(log);
+
+  CLI::App app{"Plans, flies and evaluates quadrotor landings on a moving vehicle."};
+  app.name("touchdown");
+  app.set_version_flag("--version", TOUCHDOWN_VERSION);
+  app.require_subcommand(1);
+  CommandRun run;
+  AddLandCommand(app, registries, &run);
+  AddSweepCommand(app, registries, &run);
+  AddListCommand(app, registries, &run);
+  try {
+    app.parse(argc, argv);
+    return run();
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    spdlog::error("{} (try --help)", error.what());
+    return kBadInput;
+  } catch (const BadInput& error) {
+    spdlog::error("{}", error.what());
+    return kBadInput;
+  } catch (const std::invalid_argument& error) {
+    spdlog::error("{}", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kFellShort;
+  }
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "touchdown/planning/term_registry.h"
+#include "touchdown/solvers/backend_registry.h"
+
+namespace touchdown::evaluation {
+
+/// What the program offers: an out-of-tree project adds its own entries and has every sub-command.
+struct Registries {
+  solvers::BackendRegistry backends;
+  planning::TermRegistry terms;
+};
+
+/// The program `touchdown`. Results go to stdout, logs to stderr. Returns the exit status: 0 done
+/// (for `land`: landed), 1 ran but fell short, 2 bad usage or bad input.
+int RunProgram(int argc, const char* const* argv, const Registries& registries);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A record's tables, written in one transaction. Column names carry units where they are not SI and
+// frames where there is a choice; docs/record.md explains each.
+#include "touchdown/evaluation/record.h"
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/sqlite_db.h"
+#include "touchdown/evaluation/trial_json.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr char kSchema[] = R"sql(
+CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE vehicle(t REAL, source TEXT, px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
+  qw REAL, qx REAL, qy REAL, qz REAL, wx REAL, wy REAL, wz REAL);
+CREATE TABLE pad(t REAL, source TEXT, px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
+  yaw REAL, yaw_rate REAL, cov_xx REAL, cov_xy REAL, cov_yy REAL);
+CREATE TABLE reference(t REAL, px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
+  ax REAL, ay REAL, az REAL, yaw REAL, yaw_rate REAL);
+CREATE TABLE rotor(t REAL, thrust0 REAL, thrust1 REAL, thrust2 REAL, thrust3 REAL);
+CREATE TABLE mode(t REAL, mode TEXT);
+CREATE TABLE event(t REAL, kind TEXT, text TEXT);
+CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT, reason TEXT,
+  from_odometry INTEGER, t0 REAL, h REAL, points INTEGER, pairs INTEGER, solves INTEGER,
+  rebinds INTEGER, iterations INTEGER, cost REAL, passed INTEGER, endpoint_position_residual REAL,
+  endpoint_velocity_residual REAL, speed_bound REAL, acceleration_bound REAL, limits_kept INTEGER,
+  recovering INTEGER, clear INTEGER, clearance REAL);
+CREATE TABLE control_point(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL);
+CREATE TABLE guide_path(plan INTEGER, path INTEGER, i INTEGER, x REAL, y REAL, z REAL);
+CREATE TABLE map_change(plan INTEGER, ix INTEGER, iy INTEGER, iz INTEGER, occupied INTEGER);
+CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL,
+  px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
+  pad_px REAL, pad_py REAL, pad_pz REAL, pad_vx REAL, pad_vy REAL, pad_vz REAL,
+  pad_ax REAL, pad_ay REAL, pad_az REAL, pad_yaw REAL, pad_yaw_rate REAL,
+  endpoint_height REAL, endpoint_sink_rate REAL, endpoint_height_floor REAL);
+CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
+  size_x REAL, size_y REAL, size_z REAL, radius REAL);
+CREATE TABLE timing(stage TEXT PRIMARY KEY, cpu_s REAL);
+)sql";
+
+void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result,
+               const TrialRecord& record) {
+  SqliteStatement insert = db.Prepare("INSERT INTO meta VALUES(?, ?)");
+  insert.Run("format", "touchdown record");
+  insert.Run("version", std::to_string(kRecordVersion));
+  insert.Run("scenario", scenario.name);
+  insert.Run("scenario_yaml", DumpScenario(scenario));
+  insert.Run("seed", std::to_string(result.seed));
+  insert.Run("map_resolution", std::to_string(record.map_resolution));
+  nlohmann::ordered_json json = LandJson(scenario, result);
+  json.erase("wall_clock");  // wall-clock figures stand only in the table timing
+  insert.Run("result_json", json.dump());
+  for (const auto& [key, value] : BuildManifest()) insert.Run(key, value);
+}
+
+void WriteVehicle(SqliteStatement& insert, const estimation::VehicleState& s, double t,
+                  const char* source) {
+  insert.Run(t, source, s.p_WB.x(), s.p_WB.y(), s.p_WB.z(), s.v_WB.x(), s.v_WB.y(), s.v_WB.z(),
+             s.q_WB.w(), s.q_WB.x(), s.q_WB.y(), s.q_WB.z(), s.w_WB_B.x(), s.w_WB_B.y(),
+             s.w_WB_B.z());
+}
+
+void WritePad(SqliteStatement& insert, const estimation::PadState& s, double t,
+              const char* source) {
+  insert.Run(t, source, s.p_WP.x(), s.p_WP.y(), s.p_WP.z(), s.v_WP.x(), s.v_WP.y(), s.v_WP.z(),
+             s.yaw, s.yaw_rate, s.cov_p(0, 0), s.cov_p(0, 1), s.cov_p(1, 1));
+}
+
+void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
+  SqliteStatement vehicle =
+      db.Prepare("INSERT INTO vehicle VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement pad = db.Prepare("INSERT INTO pad VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement reference =
+      db.Prepare("INSERT INTO reference VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement rotor = db.Prepare("INSERT INTO rotor VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement mode = db.Prepare("INSERT INTO mode VALUES(?, ?)");
+  for (const RecordSample& s : samples) {
+    WriteVehicle(vehicle, s.vehicle, s.t, "true");
+    WriteVehicle(vehicle, s.vehicle_estimate, s.t, "estimate");
+    WritePad(pad, s.pad, s.t, "true");
+    if (s.pad_known) WritePad(pad, s.pad_estimate, s.t, "estimate");
+    const planning::FlatState& r = s.reference;
+    reference.Run(s.t, r.p_WB.x(), r.p_WB.y(), r.p_WB.z(), r.v_WB.x(), r.v_WB.y(), r.v_WB.z(),
+                  r.a_WB.x(), r.a_WB.y(), r.a_WB.z(), r.yaw, r.yaw_rate);
+    rotor.Run(s.t, s.rotor_thrusts[0], s.rotor_thrusts[1], s.rotor_thrusts[2], s.rotor_thrusts[3]);
+    mode.Run(s.t, s.mode);
+  }
+}
+
+void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
+  SqliteStatement plan = db.Prepare(
+      "INSERT INTO plan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?)");
+  SqliteStatement point = db.Prepare("INSERT INTO control_point VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement guide = db.Prepare("INSERT INTO guide_path VALUES(?, ?, ?, ?, ?, ?)");
+  SqliteStatement change = db.Prepare("INSERT INTO map_change VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement input = db.Prepare(
+      "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?)");
+  int id = 0;
+  for (const RecordPlan& p : plans) {
+    const planning::ControlPoints& q = p.curve.control_points();
+    const planning::Certificate& c = p.certificate;
+    plan.Run(id, p.t_now, p.t_start, planning::ToString(p.status), planning::ToString(p.reason),
+             p.from_odometry, p.curve.t0(), p.curve.interval(), static_cast<int>(q.cols()), p.pairs,
+             p.solves, p.rebinds, p.iterations, p.cost, c.passed(), c.endpoint_position_residual,
+             c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.limits_kept,
+             c.recovering, c.clear, c.clearance);
+    for (int i = 0; i < q.cols(); ++i) point.Run(id, i, q(0, i), q(1, i), q(2, i));
+    for (std::size_t k = 0; k < p.guide_paths.size(); ++k) {
+      for (std::size_t i = 0; i < p.guide_paths[k].size(); ++i) {
+        const Eigen::Vector3d& x = p.guide_paths[k][i];
+        guide.Run(id, static_cast<int>(k), static_cast<int>(i), x.x(), x.y(), x.z());
+      }
+    }
+    for (const planning::CellFlip& flip : p.map_changes) {
+      change.Run(id, flip.cell.x(), flip.cell.y(), flip.cell.z(), flip.occupied);
+    }
+    input.Run(id, p.t_now, p.t_start, p.vehicle.p_WB.x(), p.vehicle.p_WB.y(), p.vehicle.p_WB.z(),
+              p.vehicle.v_WB.x(), p.vehicle.v_WB.y(), p.vehicle.v_WB.z(), p.pad.p_WP.x(),
+              p.pad.p_WP.y(), p.pad.p_WP.z(), p.pad.v_WP.x(), p.pad.v_WP.y(), p.pad.v_WP.z(),
+              p.pad.a_WP.x(), p.pad.a_WP.y(), p.pad.a_WP.z(), p.pad.yaw, p.pad.yaw_rate,
+              p.endpoint.height, p.endpoint.sink_rate, p.endpoint.height_floor);
+    ++id;
+  }
+}
+
+void WriteObstacles(SqliteDb& db, const Scenario& scenario) {
+  SqliteStatement insert = db.Prepare("INSERT INTO obstacle VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  int id = 0;
+  for (const NamedObstacle& named : ObstaclesOf(scenario)) {
+    if (const auto* box = std::get_if<sim::Box>(&named.obstacle)) {
+      const Eigen::Vector3d size = 2.0 * box->half_extents;
+      insert.Run(id++, named.key, "box", box->center.x(), box->center.y(), box->center.z(),
+                 size.x(), size.y(), size.z(), std::optional<double>());
+    } else if (const auto* cylinder = std::get_if<sim::Cylinder>(&named.obstacle)) {
+      const double across = 2.0 * cylinder->radius;
+      insert.Run(id++, named.key, "cylinder", cylinder->center.x(), cylinder->center.y(),
+                 cylinder->center.z(), across, across, cylinder->height, cylinder->radius);
+    }
+  }
+}
+
+void WriteTiming(SqliteDb& db, const TrialTiming& timing) {
+  SqliteStatement insert = db.Prepare("INSERT INTO timing VALUES(?, ?)");
+  insert.Run("physics", timing.physics_cpu_s);
+  insert.Run("sensing", timing.sensing_cpu_s);
+  insert.Run("mapping", timing.mapping_cpu_s);
+  insert.Run("planning", timing.planning_cpu_s);
+  insert.Run("control", timing.control_cpu_s);
+  insert.Run("judging", timing.judging_cpu_s);
+  insert.Run("total", timing.cpu_s);
+}
+
+}  // namespace
+
+void WriteRecord(const std::string& path, const Scenario& scenario, const TrialResult& result,
+                 const TrialRecord& record) {
+  AtomicFile file(path);
+  {
+    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
+    // The file is thrown away if anything fails, so that no journal is needed.
+    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
+    SqliteTransaction transaction(db);
+    db.Execute(kSchema);
+    WriteMeta(db, scenario, result, record);
+    WriteSamples(db, record.samples);
+    {
+      SqliteStatement insert = db.Prepare("INSERT INTO event VALUES(?, ?, ?)");
+      for (const RecordEvent& e : record.events) insert.Run(e.t, e.kind, e.text);
+    }
+    WritePlans(db, record.plans);
+    WriteObstacles(db, scenario);
+    WriteTiming(db, result.timing);
+    transaction.Commit();
+  }
+  file.Commit();
+}
+
+}  // namespace touchdown::evaluation

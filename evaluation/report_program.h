@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace touchdown::evaluation {
+
+/// Draws the landing picture of a record through the Python package touchdown_report.
+/// @throws std::runtime_error with one sentence: Python or the package missing, or why it failed.
+void DrawLanding(const std::string& record_path, const std::string& picture_path);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reading and writing scenario files. The YAML tree is walked once and every leaf is looked up in
+// the schema by its dotted name; what the schema does not know is refused with its file and line.
+#include "touchdown/evaluation/scenario.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/scenario_check.h"
+#include "touchdown/evaluation/scenario_schema.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr char kObstacles[] = "obstacles";
+
+Where WhereIs(const YAML::Node& node, const std::string& file) {
+  return {file, node.Mark().line >= 0 ? node.Mark().line + 1 : 0};
+}
+
+class Reader {
+ public:
+  Reader(ScenarioSource* source, std::string file) : source_(source), file_(std::move(file)) {}
+
+  void Read(const YAML::Node& node, const std::string& prefix) {
+    if (!node.IsMap()) {
+      throw BadInput(fmt::format("{}: {} must be a map of keys.", WhereIs(node, file_).ToString(),
+                                 prefix.empty() ? "a scenario" : prefix));
+    }
+    std::set<std::string> seen;
+    for (const auto& entry : node) {
+      const Where where = WhereIs(entry.first, file_);
+      const std::string name =
+          prefix.empty() ? entry.first.Scalar() : prefix + "." + entry.first.Scalar();
+      if (!seen.insert(name).second) {
+        throw BadInput(
+            fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+      }
+      ReadEntry(name, entry.second, where);
+    }
+  }
+
+  void ReadEntry(const std::string& name, const YAML::Node& value, const Where& where) {
+    if (const SchemaKey<Scenario>* key = FindScenarioKey(name)) {
+      key->set(source_->scenario, value, where);
+      source_->where[name] = where;
+    } else if (name == "obstacles.boxes") {
+      ReadList(name, value, where, BoxKeys(), &source_->scenario.boxes);
+    } else if (name == "obstacles.cylinders") {
+      ReadList(name, value, where, CylinderKeys(), &source_->scenario.cylinders);
+    } else if (IsGroup(name)) {
+      Read(value, name);
+    } else {
+      throw BadInput(fmt::format("{}: unknown key {}; {}.", where.ToString(), name, Suggest(name)));
+    }
+  }
+
+ private:
+  static bool IsGroup(const std::string& name) {
+    if (name == kObstacles) return true;
+    return std::any_of(ScenarioKeys().begin(), ScenarioKeys().end(),
+                       [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
+  }
+
+  // The keys of the same group, or the groups: what may stand here instead.
+  static std::string Suggest(const std::string& name) {
+    const std::size_t dot = name.rfind('.');
+    const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
+    std::vector<std::string> words;
+    for (const auto& key : ScenarioKeys()) {
+      if (key.name.rfind(group, 0) != 0) continue;
+      const std::string word = key.name.substr(0, key.name.find('.', group.size()));
+      if (words.empty() || words.back() != word) words.push_back(word);
+    }
+    if (group.empty()) words.emplace_back(kObstacles);
+    if (group == std::string(kObstacles) + ".") words = {"obstacles.boxes", "obstacles.cylinders"};
+    if (words.empty()) return "`docs/scenario.md` lists the keys";
+    return "allowed here: " + Enumerate(words);
+  }
+
+  template <typename Element>
+  void ReadList(const std::string& name, const YAML::Node& list, const Where& where,
+                const std::vector<SchemaKey<Element>>& keys, std::vector<Element>* elements) {
+    if (!list.IsSequence()) RefuseValue(where, name, "a list", list);
+    elements->clear();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const YAML::Node& node = list[i];
+      const std::string label = fmt::format("{}[{}]", name, i);
+      const Where here = WhereIs(node, file_);
+      if (!node.IsMap()) RefuseValue(here, label, "a map of keys", node);
+      Element element;
+      std::set<std::string> seen;
+      for (const auto& entry : node) {
+        ReadElementKey(keys, entry.first.Scalar(), entry.second, WhereIs(entry.first, file_), label,
+                       &element);
+        seen.insert(entry.first.Scalar());
+      }
+      for (const auto& key : keys) {
+        if (seen.count(key.name) == 0) {
+          throw BadInput(fmt::format("{}: {} lacks the key {}.", here.ToString(), label, key.name));
+        }
+      }
+      elements->push_back(element);
+      source_->where[label] = here;
+    }
+  }
+
+  template <typename Element>
+  static void ReadElementKey(const std::vector<SchemaKey<Element>>& keys, const std::string& name,
+                             const YAML::Node& value, const Where& where, const std::string& label,
+                             Element* element) {
+    std::vector<std::string> words;
+    for (const auto& key : keys) {
+      if (key.name == name) return key.set(*element, value, where);
+      words.push_back(key.name);
+    }
+    throw BadInput(fmt::format("{}: unknown key {}.{}; allowed here: {}.", where.ToString(), label,
+                               name, Enumerate(words)));
+  }
+
+  ScenarioSource* source_;
+  std::string file_;
+};
+
+YAML::Node ParseYaml(const std::string& text, const std::string& file) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw BadInput(fmt::format("{}:{}: {}.", file, error.mark.line + 1, error.msg));
+  }
+}
+
+void ApplyOverride(const std::string& text, ScenarioSource* source) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw BadInput(fmt::format("--set {}: write KEY=VALUE.", text));
+  }
+  const std::string name = text.substr(0, equals);
+  const std::string file = "--set " + text;
+  const YAML::Node value = ParseYaml(text.substr(equals + 1), file);
+  Where where;
+  where.file = file;
+  Reader reader(source, file);
+  reader.ReadEntry(name, value, where);
+}
+
+}  // namespace
+
+Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
+                      const std::vector<std::string>& backends) {
+  ScenarioSource source;
+  source.scenario.name = std::filesystem::path(path).stem().string();
+  source.file = path;
+  YAML::Node root;
+  try {
+    root = YAML::LoadFile(path);
+  } catch (const YAML::BadFile&) {
+    throw BadInput(fmt::format("{}: the scenario file cannot be read.", path));
+  } catch (const YAML::Exception& error) {
+    throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
+  }
+  if (!root.IsNull()) Reader(&source, path).Read(root, "");
+  for (const std::string& text : overrides) ApplyOverride(text, &source);
+  CheckScenario(source, backends);
+  return source.scenario;
+}
+
+std::string DumpScenario(const Scenario& scenario) {
+  std::string text;
+  std::string open_group;
+  for (const auto& key : ScenarioKeys()) {
+    const std::size_t dot = key.name.find('.');
+    const std::string group = dot == std::string::npos ? "" : key.name.substr(0, dot);
+    if (group != open_group && !group.empty()) text += group + ":\n";
+    open_group = group;
+    const std::string name = group.empty() ? key.name : "  " + key.name.substr(dot + 1);
+    text += name + ": " + key.get(scenario) + "\n";
+  }
+  if (scenario.boxes.empty() && scenario.cylinders.empty()) return text;
+  text += std::string(kObstacles) + ":\n";
+  const auto list = [&text](const std::string& name, const auto& elements, const auto& keys) {
+    if (elements.empty()) return;
+    text += "  " + name + ":\n";
+    for (const auto& element : elements) {
+      std::string line;
+      for (const auto& key : keys) {
+        line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
+      }
+      text += "    - {" + line + "}\n";
+    }
+  };
+  list("boxes", scenario.boxes, BoxKeys());
+  list("cylinders", scenario.cylinders, CylinderKeys());
+  return text;
+}
+
+}  // namespace touchdown::evaluation

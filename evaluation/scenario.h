@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace touchdown::evaluation {
+
+enum class PadMotionKind { kStraightTurn, kCircle, kLine, kStatic };
+enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
+enum class PadEstimatorKind { kPaper, kTurnRate };
+enum class ControllerKind { kGeometric, kPaper };
+enum class DescentKind { kNone, kVertical };
+enum class PlannerKind { kLanding };
+enum class SensingKind { kFast };
+enum class OwnStateKind { kTrue };
+enum class ArrivalKind { kFixed, kFree };
+enum class LimitsKind { kSoft };
+
+/// A box on the ground, its edges along the world's axes.
+struct BoxObstacle {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its base in W [m]
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();    ///< edges along x, y, z [m]
+};
+
+/// An upright cylinder on the ground.
+struct CylinderObstacle {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its base in W [m]
+  double radius = 0.3;                               ///< [m]
+  double height = 4.0;                               ///< [m]
+};
+
+/// Time from the question to the plan that is flown.
+struct PlanningLatency {
+  bool measured = false;  ///< the wall clock's own figure: one job only, does not repeat bit by bit
+  double ms = 20.0;       ///< otherwise this
+};
+
+/// Everything that decides a trial, together with the seed. Plain data in SI units; keys, ranges
+/// and documentation stand once, in scenario_schema. The defaults here are the schema's defaults.
+struct Scenario {
+  std::string name;  ///< stem of the file it came from; not a key
+
+  struct Pad {
+    PadMotionKind motion = PadMotionKind::kStraightTurn;
+    double speed = 0.8;                                 ///< [m/s]
+    Eigen::Vector2d start = Eigen::Vector2d(7.0, 6.5);  ///< pad centre at t = 0, phase 0, in W [m]
+    double heading_deg = 0.0;                           ///< of the first leg [deg]
+    double turn_start = 5.0;                            ///< driven before the turn begins [m]
+    double turn_deg = 90.0;                             ///< left positive [deg]
+    double turn_rate = 0.25;                            ///< circle: left positive [rad/s]
+    double phase = 0.0;                                 ///< path travelled before t = 0 [m]
+    double phase_spread = 0.0;                          ///< drawn per trial: uniform in +- this [m]
+    double deck_size = 1.5;                             ///< edge of the square deck [m]
+    double deck_height = 0.5;                           ///< upper face above the ground [m]
+    PadPredictionKind prediction = PadPredictionKind::kTurnRate;
+  } pad;
+
+  struct Start {
+    Eigen::Vector3d position = Eigen::Vector3d(0.0, 0.0, 2.5);  ///< of the vehicle in W [m]
+    Eigen::Vector3d position_spread =
+        Eigen::Vector3d::Zero();  ///< uniform in +- this, per axis [m]
+    double yaw_deg = 0.0;         ///< [deg]
+    bool yaw_random = false;      ///< drawn from the whole circle
+  } start;
+
+  struct Gps {
+    double sigma = 0.01;  ///< [m]
+    double rate = 10.0;   ///< [Hz]
+  } gps;
+  double tag_rate = 20.0;    ///< [Hz]
+  double depth_rate = 10.0;  ///< [Hz]
+  SensingKind sensing = SensingKind::kFast;
+  OwnStateKind own_state = OwnStateKind::kTrue;
+  PadEstimatorKind pad_estimator = PadEstimatorKind::kTurnRate;
+
+  ControllerKind controller = ControllerKind::kGeometric;
+  DescentKind descent = DescentKind::kVertical;
+  PlannerKind planner = PlannerKind::kLanding;
+  struct Planning {
+    double rate = 10.0;  ///< [Hz]
+    PlanningLatency latency;
+    double clearance = 0.45;  ///< obstacles are grown by this in the map [m]
+  } planning;
+
+  struct Solver {
+    std::string backend = "ceres";
+    ArrivalKind arrival = ArrivalKind::kFixed;
+    LimitsKind limits = LimitsKind::kSoft;
+  } solver;
+
+  struct Limits {
+    double speed = 3.0;         ///< [m/s]
+    double acceleration = 6.0;  ///< [m/s^2]
+    double tilt_deg = 35.0;     ///< [deg]
+  } limits;
+
+  std::string vehicle = "default";  ///< or the path of an MJCF file
+  double timeout = 60.0;            ///< [s]
+  std::uint64_t seed = 1;
+
+  std::vector<BoxObstacle> boxes;
+  std::vector<CylinderObstacle> cylinders;
+};
+
+/// Where a scenario file is looked up by name, first hit first: in the installation that the
+/// program belongs to, then in the source tree it was built from.
+std::vector<std::string> ScenarioDirectories();
+
+/// Path of the scenario file called `name_or_path`: an existing path, or the name of a shipped one
+/// with or without .yaml. @throws BadInput naming what is there.
+std::string FindScenario(const std::string& name_or_path);
+
+/// Names of the shipped scenarios, sorted.
+std::vector<std::string> ListScenarios();
+
+/// Reads `path` through the schema, then applies `overrides` ("pad.speed=1.2") in order, then
+/// checks the whole. `backends` are the names solver.backend may have. @throws BadInput.
+Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
+                      const std::vector<std::string>& backends);
+
+/// The effective scenario as YAML that LoadScenario reads back to the same values.
+std::string DumpScenario(const Scenario& scenario);
+
+}  // namespace touchdown::evaluation

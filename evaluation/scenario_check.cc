@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks across keys. The start is a box of positions (its spread): every obstacle must stay
+// outside it by the vehicle's hull. The pad's path is sampled every 0.1 s until the time-out, for
+// both ends of the drawn phase: every obstacle must stay outside the deck's circumscribed circle.
+#include "touchdown/evaluation/scenario_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/sim/obstacle_field.h"
+#include "touchdown/sim/vehicle_file.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kPathStep = 0.1;  // [s]
+
+// Horizontal distance between a point's box of half size `spread` and an obstacle's outline, if
+// they overlap in height [z_lo, z_hi]; infinite otherwise.
+double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centre,
+                     const Eigen::Vector2d& spread, double z_lo, double z_hi) {
+  const sim::Bounds bounds = sim::BoundsOf(obstacle);
+  if (bounds.max.z() <= z_lo || bounds.min.z() >= z_hi) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Eigen::Vector2d middle = 0.5 * (bounds.min + bounds.max).head<2>();
+  const Eigen::Vector2d half = 0.5 * (bounds.max - bounds.min).head<2>();
+  const Eigen::Vector2d offset = (middle - centre).cwiseAbs() - spread;
+  if (std::holds_alternative<sim::Cylinder>(obstacle)) {
+    return offset.cwiseMax(0.0).norm() - half.x();
+  }
+  return (offset - half).cwiseMax(0.0).norm();
+}
+
+void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
+                const estimation::VehicleModel& model) {
+  const Scenario& s = source.scenario;
+  const Eigen::Vector3d& p = s.start.position;
+  const Eigen::Vector3d& spread = s.start.position_spread;
+  const double lowest = p.z() - spread.z() - model.foot_depth;
+  if (lowest < 0.1) {
+    throw BadInput(
+        fmt::format("{}: start.position puts the feet at {:.2f} m; they must start at least 0.1 m "
+                    "above ground.",
+                    source.WhereOf("start.position").ToString(), lowest));
+  }
+  for (const NamedObstacle& named : obstacles) {
+    const double gap = HorizontalGap(named.obstacle, p.head<2>(), spread.head<2>(), lowest,
+                                     p.z() + spread.z() + model.hull_top);
+    if (gap < model.hull_radius) {
+      throw BadInput(
+          fmt::format("{}: {} stands on the start: it must stay more than {:.2f} m (the hull) from "
+                      "start.position "
+                      "with its spread, and is at {:.2f} m.",
+                      source.WhereOf(named.key).ToString(), named.key, model.hull_radius, gap));
+    }
+  }
+}
+
+void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles) {
+  const Scenario& s = source.scenario;
+  const double half_diagonal = s.pad.deck_size * std::sqrt(0.5);
+  for (const double shift : {-s.pad.phase_spread, s.pad.phase_spread}) {
+    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift));
+    for (double t = 0.0; t <= s.timeout; t += kPathStep) {
+      const Eigen::Vector2d p_WP = motion.At(t).p_WP.head<2>();
+      for (const NamedObstacle& named : obstacles) {
+        const double gap = HorizontalGap(named.obstacle, p_WP, Eigen::Vector2d::Zero(), 0.0,
+                                         s.pad.deck_height + 1.0);
+        if (gap < half_diagonal) {
+          throw BadInput(fmt::format(
+              "{}: {} stands on the pad's way: at {:.1f} s its centre passes at {:.2f} m, and the "
+              "deck needs {:.2f} m.",
+              source.WhereOf(named.key).ToString(), named.key, t, gap, half_diagonal));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Where ScenarioSource::WhereOf(const std::string& key) const {
+  const auto found = where.find(key);
+  if (found != where.end()) return found->second;
+  Where whole;
+  whole.file = file;
+  return whole;
+}
+
+void CheckScenario(const ScenarioSource& source, const std::vector<std::string>& backends) {
+  const Scenario& s = source.scenario;
+  if (std::find(backends.begin(), backends.end(), s.solver.backend) == backends.end()) {
+    throw BadInput(fmt::format("{}: solver.backend must be {}, not '{}'.",
+                               source.WhereOf("solver.backend").ToString(), Enumerate(backends),
+                               s.solver.backend));
+  }
+  // A pad at the vehicle's own speed cannot be caught, and leaves a plan's interior empty.
+  if (s.pad.motion != PadMotionKind::kStatic && s.pad.speed > 0.9 * s.limits.speed) {
+    throw BadInput(fmt::format("{}: pad.speed must be in [0, {}] m/s (0.9 limits.speed), not '{}'.",
+                               source.WhereOf("pad.speed").ToString(), 0.9 * s.limits.speed,
+                               s.pad.speed));
+  }
+  try {
+    const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(s));
+    const ObstacleList obstacles = ObstaclesOf(s);
+    CheckStart(source, obstacles, model);
+    CheckPadPath(source, obstacles);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: {}", source.WhereOf("vehicle").ToString(), error.what()));
+  }
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/scenario_value.h"
+
+namespace touchdown::evaluation {
+
+/// A scenario with the place each of its values came from.
+struct ScenarioSource {
+  Scenario scenario;
+  std::string file;
+  std::map<std::string, Where> where;  ///< by key, "obstacles.boxes[2]" for list elements
+
+  /// Where `key` was set; the file as a whole if it has its default.
+  Where WhereOf(const std::string& key) const;
+};
+
+/// What no single key shows: obstacles on the start or on the pad's way, a pad faster than the
+/// vehicle, an unknown backend, an unreadable vehicle file. @throws BadInput
+void CheckScenario(const ScenarioSource& source, const std::vector<std::string>& backends);
+
+}  // namespace touchdown::evaluation

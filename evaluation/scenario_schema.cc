@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one table of scenario keys. Files, --set, dumps and the documentation all go through it; the
+// defaults are those of a default-constructed Scenario and stand nowhere else.
+#include "touchdown/evaluation/scenario_schema.h"
+
+#include <fmt/format.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+// Each maker takes an accessor `at`: Owner& -> member&, so that nested members need no pointers.
+template <typename Owner, typename At>
+SchemaKey<Owner> Number(std::string name, ValueRange range, std::string doc, At at) {
+  return {
+      name,
+      "number",
+      range.unit,
+      range.ToString(),
+      std::move(doc),
+      [=](Owner& o, const YAML::Node& n, const Where& w) { at(o) = ReadNumber(n, w, name, range); },
+      [=](const Owner& o) { return WriteNumber(at(o)); }};
+}
+
+template <int kSize, typename Owner, typename At>
+SchemaKey<Owner> Vector(std::string name, ValueRange range, std::string doc, At at) {
+  return {name,
+          fmt::format("list of {} numbers", kSize),
+          range.unit,
+          range.ToString(),
+          std::move(doc),
+          [=](Owner& o, const YAML::Node& n, const Where& w) {
+            at(o) = ReadVector(n, w, name, kSize, range);
+          },
+          [=](const Owner& o) { return WriteVector(at(o)); }};
+}
+
+template <typename At>
+SchemaKey<Scenario> Bool(std::string name, std::string doc, At at) {
+  return {name,
+          "true or false",
+          "",
+          "true or false",
+          std::move(doc),
+          [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadBool(n, w, name); },
+          [=](const Scenario& s) { return std::string(at(s) ? "true" : "false"); }};
+}
+
+// The words stand in the order of the enumerators.
+template <typename At>
+SchemaKey<Scenario> Choice(std::string name, std::vector<std::string> words, std::string doc,
+                           At at) {
+  return {name,
+          "choice",
+          "",
+          Enumerate(words),
+          std::move(doc),
+          [=](Scenario& s, const YAML::Node& n, const Where& w) {
+            using Enum = std::remove_reference_t<decltype(at(s))>;
+            at(s) = static_cast<Enum>(ReadChoice(n, w, name, words));
+          },
+          [=](const Scenario& s) { return words.at(static_cast<std::size_t>(at(s))); }};
+}
+
+template <typename At>
+SchemaKey<Scenario> Text(std::string name, std::string range, std::string doc, At at) {
+  return {name, "text", "", std::move(range), std::move(doc),
+          [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadText(n, w, name); },
+          // Double-quoted YAML is JSON's notation for what paths hold.
+          [=](const Scenario& s) { return fmt::format("\"{}\"", at(s)); }};
+}
+
+ValueRange In(double lo, double hi, std::string unit) { return {lo, hi, false, std::move(unit)}; }
+ValueRange Above(double lo, double hi, std::string unit) { return {lo, hi, true, std::move(unit)}; }
+
+#define AT(member) \
+  [](auto& s) -> auto& { return s.member; }
+
+void AddPadKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(Choice("pad.motion", {"straight_turn", "circle", "line", "static"},
+                        "path of the pad vehicle", AT(pad.motion)));
+  keys.push_back(
+      Number<Scenario>("pad.speed", In(0, 3, "m/s"), "speed along the path", AT(pad.speed)));
+  keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
+                                     "pad centre at the start of the path, in W", AT(pad.start)));
+  keys.push_back(Number<Scenario>("pad.heading_deg", In(-360, 360, "deg"),
+                                  "heading at the start of the path", AT(pad.heading_deg)));
+  keys.push_back(Number<Scenario>("pad.turn_start", In(0, 200, "m"),
+                                  "straight_turn: driven before the turn begins",
+                                  AT(pad.turn_start)));
+  keys.push_back(Number<Scenario>("pad.turn_deg", In(-180, 180, "deg"),
+                                  "straight_turn: angle of the turn, left positive",
+                                  AT(pad.turn_deg)));
+  keys.push_back(Number<Scenario>("pad.turn_rate", In(-2, 2, "rad/s"),
+                                  "circle: turn rate, left positive; straight_turn: its magnitude",
+                                  AT(pad.turn_rate)));
+  keys.push_back(Number<Scenario>("pad.phase", In(-100, 100, "m"),
+                                  "path already travelled at t = 0", AT(pad.phase)));
+  keys.push_back(Number<Scenario>("pad.phase_spread", In(0, 100, "m"),
+                                  "drawn per seed: uniform in +- this, added to pad.phase",
+                                  AT(pad.phase_spread)));
+  keys.push_back(Number<Scenario>("pad.deck_size", In(0.6, 5, "m"), "edge of the square deck",
+                                  AT(pad.deck_size)));
+  keys.push_back(Number<Scenario>("pad.deck_height", In(0.1, 3, "m"),
+                                  "upper face of the deck above the ground", AT(pad.deck_height)));
+  keys.push_back(
+      Choice("pad.prediction", {"paper", "turn_rate", "oracle"},
+             "extrapolation of the pad: straight, along an arc (straight if estimator.pad "
+             "is paper), or the true future",
+             AT(pad.prediction)));
+}
+
+void AddVehicleKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(
+      Text("vehicle", "default or the path of an MJCF file", "the quadrotor", AT(vehicle)));
+  keys.push_back(Vector<3, Scenario>("start.position", In(-100, 100, "m"),
+                                     "the vehicle hovers here at t = 0, in W", AT(start.position)));
+  keys.push_back(Vector<3, Scenario>("start.position_spread", In(0, 20, "m"),
+                                     "drawn per seed: uniform in +- this, per axis",
+                                     AT(start.position_spread)));
+  keys.push_back(Number<Scenario>("start.yaw_deg", In(-360, 360, "deg"), "heading at t = 0",
+                                  AT(start.yaw_deg)));
+  keys.push_back(Bool("start.yaw_random", "draw the heading per seed from the whole circle instead",
+                      AT(start.yaw_random)));
+}
+
+void AddSensorKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(Number<Scenario>("gps.sigma", In(0, 5, "m"),
+                                  "standard deviation of the pad's GPS, each axis", AT(gps.sigma)));
+  keys.push_back(
+      Number<Scenario>("gps.rate", Above(0, 100, "Hz"), "rate of the pad's GPS", AT(gps.rate)));
+  keys.push_back(Number<Scenario>("tags.rate", Above(0, 100, "Hz"), "rate of the downward camera",
+                                  AT(tag_rate)));
+  keys.push_back(Number<Scenario>("depth.rate", Above(0, 100, "Hz"), "rate of the depth camera",
+                                  AT(depth_rate)));
+  keys.push_back(Choice("sensing", {"fast"}, "camera models: analytic", AT(sensing)));
+  keys.push_back(
+      Choice("own_state", {"true"}, "what the vehicle knows of its own state", AT(own_state)));
+  keys.push_back(Choice("estimator.pad", {"paper", "turn_rate"}, "pad filter", AT(pad_estimator)));
+}
+
+void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(Choice("controller", {"geometric", "paper"}, "tracking law", AT(controller)));
+  keys.push_back(Choice("descent", {"none", "vertical"},
+                        "none follows above the pad, vertical approaches and then sinks over it",
+                        AT(descent)));
+  keys.push_back(Choice("planner", {"landing"}, "planner", AT(planner)));
+  keys.push_back(Number<Scenario>("planning.rate", Above(0, 100, "Hz"), "rate of replanning",
+                                  AT(planning.rate)));
+  const ValueRange latency = In(0, 1000, "ms");
+  keys.push_back({"planning.latency", "number or word", "ms", latency.ToString() + " or measured",
+                  "time from the question to the plan that is flown; measured: the wall clock's",
+                  [latency](Scenario& s, const YAML::Node& n, const Where& w) {
+                    s.planning.latency.measured = n.IsScalar() && n.Scalar() == "measured";
+                    if (s.planning.latency.measured) return;
+                    if (n.IsScalar() && !n.Scalar().empty() && std::isalpha(n.Scalar()[0]) != 0) {
+                      RefuseValue(w, "planning.latency",
+                                  "a number in " + latency.ToString() + " or measured", n);
+                    }
+                    s.planning.latency.ms = ReadNumber(n, w, "planning.latency", latency);
+                  },
+                  [](const Scenario& s) {
+                    return s.planning.latency.measured ? "measured"
+                                                       : WriteNumber(s.planning.latency.ms);
+                  }});
+  keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 2, "m"),
+                                  "obstacles are grown by this in the map",
+                                  AT(planning.clearance)));
+  keys.push_back(Text("solver.backend", "a name of `touchdown list backends`", "optimiser",
+                      AT(solver.backend)));
+  keys.push_back(Choice("solver.arrival", {"fixed", "free"},
+                        "arrival time chosen before the solve or optimised in it",
+                        AT(solver.arrival)));
+  keys.push_back(Choice("solver.limits", {"soft"}, "limits as penalties", AT(solver.limits)));
+  keys.push_back(Number<Scenario>("limits.speed", In(0.5, 20, "m/s"), "norm of the velocity",
+                                  AT(limits.speed)));
+  keys.push_back(Number<Scenario>("limits.acceleration", In(0.5, 20, "m/s^2"),
+                                  "norm of the acceleration", AT(limits.acceleration)));
+  keys.push_back(Number<Scenario>("limits.tilt_deg", In(5, 60, "deg"),
+                                  "tilt that plan and controller may ask for",
+                                  AT(limits.tilt_deg)));
+}
+
+void AddTrialKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(
+      Number<Scenario>("timeout", In(1, 600, "s"), "a trial ends here at the latest", AT(timeout)));
+  keys.push_back(
+      {"seed", "whole number", "", "[0, 2^53]", "seed of every random stream",
+       [](Scenario& s, const YAML::Node& n, const Where& w) { s.seed = ReadSeed(n, w, "seed"); },
+       [](const Scenario& s) { return std::to_string(s.seed); }});
+}
+
+}  // namespace
+
+const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
+  static const std::vector<SchemaKey<Scenario>> keys = [] {
+    std::vector<SchemaKey<Scenario>> list;
+    AddPadKeys(list);
+    AddVehicleKeys(list);
+    AddSensorKeys(list);
+    AddPlanningKeys(list);
+    AddTrialKeys(list);
+    return list;
+  }();
+  return keys;
+}
+
+const std::vector<SchemaKey<BoxObstacle>>& BoxKeys() {
+  static const std::vector<SchemaKey<BoxObstacle>> keys = {
+      Vector<2, BoxObstacle>("centre", In(-200, 200, "m"), "centre of the base in W", AT(centre)),
+      Vector<3, BoxObstacle>("size", Above(0, 100, "m"), "edges along x, y and z", AT(size)),
+  };
+  return keys;
+}
+
+const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys() {
+  static const std::vector<SchemaKey<CylinderObstacle>> keys = {
+      Vector<2, CylinderObstacle>("centre", In(-200, 200, "m"), "centre of the base in W",
+                                  AT(centre)),
+      Number<CylinderObstacle>("radius", Above(0, 50, "m"), "radius", AT(radius)),
+      Number<CylinderObstacle>("height", Above(0, 100, "m"), "height above the ground", AT(height)),
+  };
+  return keys;
+}
+
+#undef AT
+
+const SchemaKey<Scenario>* FindScenarioKey(const std::string& name) {
+  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
+    if (key.name == name) return &key;
+  }
+  return nullptr;
+}
+
+std::string ScenarioKeysMarkdown() {
+  const Scenario defaults;
+  std::string text =
+      "| key | type | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
+  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
+    text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", key.name, key.type, key.unit,
+                        key.range, key.get(defaults), key.doc);
+  }
+  const auto rows = [&text](const std::string& list, const auto& keys) {
+    for (const auto& key : keys) {
+      text += fmt::format("| `{}[].{}` | {} | {} | {} | required | {} |\n", list, key.name,
+                          key.type, key.unit, key.range, key.doc);
+    }
+  };
+  rows("obstacles.boxes", BoxKeys());
+  rows("obstacles.cylinders", CylinderKeys());
+  return text;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/scenario_value.h"
+
+namespace touchdown::evaluation {
+
+/// One key of a scenario file or of an obstacle in it: everything known about it, once.
+template <typename Owner>
+struct SchemaKey {
+  std::string name;   ///< dotted, "pad.speed"
+  std::string type;   ///< "number", "choice", "list of 3 numbers", …
+  std::string unit;   ///< empty: none
+  std::string range;  ///< allowed values in words
+  std::string doc;    ///< one line
+  /// Reads the value into its member. @throws BadInput
+  std::function<void(Owner&, const YAML::Node&, const Where&)> set;
+  /// The member as YAML flow text that `set` reads back.
+  std::function<std::string(const Owner&)> get;
+};
+
+/// Every scalar and vector key, in the order of documentation and of a dump.
+const std::vector<SchemaKey<Scenario>>& ScenarioKeys();
+/// Keys of one element of obstacles.boxes and obstacles.cylinders; all of them are required.
+const std::vector<SchemaKey<BoxObstacle>>& BoxKeys();
+const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys();
+
+/// The key called `name`, or nullptr.
+const SchemaKey<Scenario>* FindScenarioKey(const std::string& name);
+
+/// The schema as a Markdown table: docs/scenario.md is this text, a test compares.
+std::string ScenarioKeysMarkdown();
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Units become SI here (degrees to radians) and draws are made: each purpose has its own stream,
+// and every stream is drawn from whether or not its figure is used, so that one option never shifts
+// another's draws.
+#include "touchdown/evaluation/scenario_world.h"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "touchdown/sim/random_stream.h"
+#include "touchdown/sim/vehicle_file.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadPerDeg = kPi / 180.0;
+
+sim::PadMotionConfig::Kind KindOf(PadMotionKind kind) {
+  switch (kind) {
+    case PadMotionKind::kStraightTurn:
+      return sim::PadMotionConfig::Kind::kStraightTurn;
+    case PadMotionKind::kCircle:
+      return sim::PadMotionConfig::Kind::kCircle;
+    case PadMotionKind::kLine:
+      return sim::PadMotionConfig::Kind::kLine;
+    case PadMotionKind::kStatic:
+      return sim::PadMotionConfig::Kind::kStatic;
+  }
+  return sim::PadMotionConfig::Kind::kStatic;
+}
+
+}  // namespace
+
+ObstacleList ObstaclesOf(const Scenario& scenario) {
+  ObstacleList list;
+  for (std::size_t i = 0; i < scenario.boxes.size(); ++i) {
+    const BoxObstacle& spec = scenario.boxes[i];
+    sim::Box box;
+    box.center << spec.centre, 0.5 * spec.size.z();
+    box.half_extents = 0.5 * spec.size;
+    list.push_back({fmt::format("obstacles.boxes[{}]", i), box});
+  }
+  for (std::size_t i = 0; i < scenario.cylinders.size(); ++i) {
+    const CylinderObstacle& spec = scenario.cylinders[i];
+    sim::Cylinder cylinder;
+    cylinder.center << spec.centre, 0.5 * spec.height;
+    cylinder.radius = spec.radius;
+    cylinder.height = spec.height;
+    list.push_back({fmt::format("obstacles.cylinders[{}]", i), cylinder});
+  }
+  return list;
+}
+
+sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase) {
+  const Scenario::Pad& pad = scenario.pad;
+  sim::PadMotionConfig config;
+  config.kind = KindOf(pad.motion);
+  config.p_start << pad.start, pad.deck_height;
+  config.heading = pad.heading_deg * kRadPerDeg;
+  config.speed = pad.motion == PadMotionKind::kStatic ? 0.0 : pad.speed;
+  config.turn_rate = pad.turn_rate;
+  config.turn_start = pad.turn_start;
+  config.turn_angle = pad.turn_deg * kRadPerDeg;
+  config.phase = phase;
+  return config;
+}
+
+sim::PadGeometry PadGeometryOf(const Scenario& scenario) {
+  sim::PadGeometry geometry;
+  geometry.deck_half_size = 0.5 * scenario.pad.deck_size;
+  return geometry;
+}
+
+std::string VehicleMjcf(const Scenario& scenario) {
+  return scenario.vehicle == "default" ? sim::DefaultVehicleMjcf()
+                                       : sim::ReadVehicleFile(scenario.vehicle);
+}
+
+TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
+  TrialDraw draw;
+  sim::RandomStream start(seed, "start");
+  for (int axis = 0; axis < 3; ++axis) {
+    draw.p_WB[axis] = scenario.start.position[axis] +
+                      scenario.start.position_spread[axis] * start.Uniform(-1.0, 1.0);
+  }
+  const double yaw = start.Uniform(-kPi, kPi);
+  draw.yaw = scenario.start.yaw_random ? yaw : scenario.start.yaw_deg * kRadPerDeg;
+  sim::RandomStream pad(seed, "pad");
+  draw.phase = scenario.pad.phase + scenario.pad.phase_spread * pad.Uniform(-1.0, 1.0);
+  return draw;
+}
+
+sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw) {
+  sim::WorldConfig config;
+  std::vector<sim::Obstacle> obstacles;
+  for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
+  config.obstacles = sim::ObstacleField(std::move(obstacles));
+  config.pad = PadGeometryOf(scenario);
+  config.pad_motion = PadMotionOf(scenario, draw.phase);
+  config.vehicle_mjcf = VehicleMjcf(scenario);
+  config.start.p_WB = draw.p_WB;
+  config.start.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
+  return config;
+}
+
+}  // namespace touchdown::evaluation

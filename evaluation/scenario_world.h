@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scenario's plain numbers to the simulator's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/sim/obstacle.h"
+#include "touchdown/sim/pad_geometry.h"
+#include "touchdown/sim/pad_motion.h"
+#include "touchdown/sim/world.h"
+
+namespace touchdown::evaluation {
+
+/// An obstacle with the key it came from, "obstacles.boxes[2]".
+struct NamedObstacle {
+  std::string key;
+  sim::Obstacle obstacle;
+};
+using ObstacleList = std::vector<NamedObstacle>;
+
+/// Boxes first, then cylinders: the order of the obstacle field.
+ObstacleList ObstaclesOf(const Scenario& scenario);
+
+/// The pad's path with `phase` metres driven before t = 0.
+sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase);
+
+sim::PadGeometry PadGeometryOf(const Scenario& scenario);
+
+/// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
+std::string VehicleMjcf(const Scenario& scenario);
+
+/// What a trial draws before it begins.
+struct TrialDraw {
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start of the vehicle [m]
+  double yaw = 0.0;                                ///< [rad]
+  double phase = 0.0;                              ///< of the pad [m]
+};
+
+/// The draws of `seed`, from the streams "start" and "pad".
+TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed);
+
+/// The simulator's world at t = 0.
+sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw);
+
+}  // namespace touchdown::evaluation

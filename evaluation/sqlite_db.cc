@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A thin owner around SQLite's C interface: what a record and a trial table need and no more.
+// Every return code is looked at and becomes an SqliteError with the library's own words.
+#include "touchdown/evaluation/sqlite_db.h"
+
+#include <cmath>
+#include <utility>
+
+#include <sqlite3.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+void Check(sqlite3* db, int code) {
+  if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
+  const char* file = sqlite3_db_filename(db, "main");
+  throw SqliteError(std::string(file != nullptr ? file : "database") + ": " + sqlite3_errmsg(db));
+}
+
+}  // namespace
+
+SqliteStatement::SqliteStatement(sqlite3* db, std::string_view sql) : db_(db) {
+  Check(db_,
+        sqlite3_prepare_v2(db_, sql.data(), static_cast<int>(sql.size()), &statement_, nullptr));
+}
+
+SqliteStatement::~SqliteStatement() { sqlite3_finalize(statement_); }
+
+SqliteStatement::SqliteStatement(SqliteStatement&& other) noexcept
+    : db_(other.db_), statement_(std::exchange(other.statement_, nullptr)) {}
+
+void SqliteStatement::Bind(int index, double value) {
+  if (!std::isfinite(value)) return BindNull(index);
+  Check(db_, sqlite3_bind_double(statement_, index + 1, value));
+}
+
+void SqliteStatement::Bind(int index, std::int64_t value) {
+  Check(db_, sqlite3_bind_int64(statement_, index + 1, value));
+}
+
+void SqliteStatement::Bind(int index, std::string_view value) {
+  Check(db_, sqlite3_bind_text(statement_, index + 1, value.data(), static_cast<int>(value.size()),
+                               SQLITE_TRANSIENT));
+}
+
+void SqliteStatement::BindNull(int index) { Check(db_, sqlite3_bind_null(statement_, index + 1)); }
+
+bool SqliteStatement::Step() {
+  const int code = sqlite3_step(statement_);
+  Check(db_, code);
+  return code == SQLITE_ROW;
+}
+
+void SqliteStatement::Reset() { Check(db_, sqlite3_reset(statement_)); }
+
+bool SqliteStatement::IsNull(int column) const {
+  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+}
+
+double SqliteStatement::Real(int column) const { return sqlite3_column_double(statement_, column); }
+
+std::int64_t SqliteStatement::Integer(int column) const {
+  return sqlite3_column_int64(statement_, column);
+}
+
+std::string SqliteStatement::Text(int column) const {
+  const unsigned char* text = sqlite3_column_text(statement_, column);
+  const int bytes = sqlite3_column_bytes(statement_, column);
+  if (text == nullptr) return {};
+  return {text, text + bytes};
+}
+
+SqliteDb::SqliteDb(const std::string& path, Mode mode) {
+  int flags = SQLITE_OPEN_READWRITE;
+  if (mode == Mode::kReadOnly) flags = SQLITE_OPEN_READONLY;
+  if (mode == Mode::kCreate) flags |= SQLITE_OPEN_CREATE;
+  const int code = sqlite3_open_v2(path.c_str(), &db_, flags, nullptr);
+  if (code != SQLITE_OK) {
+    const std::string words = db_ != nullptr ? sqlite3_errmsg(db_) : sqlite3_errstr(code);
+    sqlite3_close(db_);
+    throw SqliteError(path + ": " + words);
+  }
+}
+
+SqliteDb::~SqliteDb() { sqlite3_close(db_); }
+
+void SqliteDb::Execute(const std::string& sql) {
+  Check(db_, sqlite3_exec(db_, sql.c_str(), nullptr, nullptr, nullptr));
+}
+
+SqliteTransaction::~SqliteTransaction() {
+  if (!open_) return;
+  try {
+    db_.Execute("ROLLBACK");
+  } catch (const SqliteError&) {
+    // The file stays as it was before the transaction: SQLite rolls back on close as well.
+  }
+}
+
+void SqliteTransaction::Commit() {
+  db_.Execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace touchdown::evaluation

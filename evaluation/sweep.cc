@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Monte Carlo on threads. Each trial is a pure function of its scenario and seed, and threads take
+// the next index from a counter, so that the rows are the same for any number of threads.
+#include "touchdown/evaluation/sweep.h"
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/sim/random_stream.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+double RangeEnd(const std::string& text, const std::string& variation) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    throw BadInput(fmt::format("--vary {}: '{}' must be a number.", variation, text));
+  }
+  return value;
+}
+
+std::size_t Combinations(const std::vector<Variation>& variations) {
+  std::size_t count = 1;
+  for (const Variation& v : variations) count *= std::max<std::size_t>(1, v.values.size());
+  return count;
+}
+
+SweepRow RunOne(const SweepTrial& trial, const solvers::BackendRegistry& backends) {
+  SweepRow row{trial, {}};
+  try {
+    row.result = RunTrial(trial.scenario, trial.seed, backends);
+  } catch (const std::exception& error) {
+    row.result.seed = trial.seed;
+    row.result.outcome = Outcome::kError;
+    row.result.detail = error.what();
+  }
+  return row;
+}
+
+}  // namespace
+
+Variation Variation::Parse(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw BadInput(fmt::format("--vary {}: write KEY=LO..HI or KEY=a,b,c.", text));
+  }
+  Variation variation;
+  variation.key = text.substr(0, equals);
+  const std::string rest = text.substr(equals + 1);
+  if (FindScenarioKey(variation.key) == nullptr || variation.key == "seed") {
+    throw BadInput(fmt::format("--vary {}: {} is no key that can be varied.", text, variation.key));
+  }
+  if (const std::size_t dots = rest.find(".."); dots != std::string::npos) {
+    variation.lo = RangeEnd(rest.substr(0, dots), text);
+    variation.hi = RangeEnd(rest.substr(dots + 2), text);
+    if (variation.lo > variation.hi) {
+      throw BadInput(fmt::format("--vary {}: LO must not be above HI.", text));
+    }
+    return variation;
+  }
+  for (std::size_t begin = 0; begin <= rest.size();) {
+    const std::size_t comma = std::min(rest.find(',', begin), rest.size());
+    variation.values.push_back(rest.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return variation;
+}
+
+std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index) {
+  // SplitMix64 (Steele, Lea, Flood 2014) of the pair; 53 bits, so that every reader keeps it
+  // exactly.
+  std::uint64_t z = sweep_seed * 0x9E3779B97F4A7C15ULL + static_cast<std::uint64_t>(index);
+  z += 0x9E3779B97F4A7C15ULL;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+  return (z ^ (z >> 31)) >> 11;
+}
+
+std::vector<SweepTrial> PlanSweep(const SweepOptions& options,
+                                  const std::vector<std::string>& backends) {
+  std::vector<SweepTrial> trials;
+  for (int i = 0; i < options.trials; ++i) {
+    SweepTrial trial;
+    trial.index = i;
+    trial.seed = TrialSeed(options.seed, i);
+    std::vector<std::string> overrides = options.overrides;
+    std::size_t combination = static_cast<std::size_t>(i) % Combinations(options.variations);
+    for (const Variation& variation : options.variations) {
+      std::string value;
+      if (variation.values.empty()) {
+        sim::RandomStream stream(trial.seed, "vary " + variation.key);
+        value = WriteNumber(stream.Uniform(variation.lo, variation.hi));
+      } else {
+        value = variation.values[combination % variation.values.size()];
+        combination /= variation.values.size();
+      }
+      trial.varied.emplace_back(variation.key, value);
+      overrides.push_back(variation.key + "=" + value);
+    }
+    const bool same = options.variations.empty() && !trials.empty();
+    trial.scenario =
+        same ? trials.front().scenario : LoadScenario(options.scenario_path, overrides, backends);
+    trials.push_back(std::move(trial));
+  }
+  return trials;
+}
+
+std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
+                               const solvers::BackendRegistry& backends,
+                               const std::function<void(int done)>& progress) {
+  std::vector<SweepRow> rows(trials.size());
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  int done = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < trials.size(); i = next++) {
+      rows[i] = RunOne(trials[i], backends);
+      const std::lock_guard lock(mutex);
+      progress(++done);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int j = 1; j < jobs; ++j) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  return rows;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A sweep in words and in JSON. Every rate comes with its 95 % Clopper-Pearson interval; figures at
+// touchdown are over the landed trials, and the number of those stands beside them.
+#include "touchdown/evaluation/sweep_report.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/statistics.h"
+#include "touchdown/evaluation/trial_json.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Column {
+  const char* key;
+  const char* label;
+  const char* unit;
+  std::vector<double> values;
+};
+
+// The figures that are summed up over trials.
+std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
+  std::vector<Column> columns = {{"time_to_land_s", "time to land", "s", {}},
+                                 {"touchdown_error_m", "touchdown error", "m", {}},
+                                 {"relative_speed_mps", "relative speed at contact", "m/s", {}},
+                                 {"mean_abs_error_x_m", "mean |error| x, last 5 s", "m", {}},
+                                 {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m", {}},
+                                 {"min_clearance_m", "least true clearance", "m", {}},
+                                 {"estimator_nees_position", "pad NEES (2 expected)", "", {}}};
+  for (const SweepRow& row : rows) {
+    const TrialResult& r = row.result;
+    if (r.landed()) {
+      columns[0].values.push_back(r.touchdown->t);
+      columns[1].values.push_back(r.touchdown->error_m);
+      columns[2].values.push_back(r.touchdown->relative_velocity.norm());
+      if (r.mean_abs_error_x_m) columns[3].values.push_back(*r.mean_abs_error_x_m);
+      if (r.mean_abs_error_y_m) columns[4].values.push_back(*r.mean_abs_error_y_m);
+    }
+    if (r.min_clearance_m) columns[5].values.push_back(*r.min_clearance_m);
+    if (r.estimator) columns[6].values.push_back(r.estimator->nees_position_mean);
+  }
+  return columns;
+}
+
+int Landed(const std::vector<SweepRow>& rows) {
+  return static_cast<int>(
+      std::count_if(rows.begin(), rows.end(), [](const SweepRow& r) { return r.result.landed(); }));
+}
+
+std::vector<double> ReplanTimes(const std::vector<SweepRow>& rows) {
+  std::vector<double> times;
+  for (const SweepRow& row : rows) {
+    const std::vector<double>& of_trial = row.result.timing.replan_wall_ms;
+    times.insert(times.end(), of_trial.begin(), of_trial.end());
+  }
+  return times;
+}
+
+Json TrialJson(const SweepRow& row) {
+  Json json = LandJson(row.trial.scenario, row.result);
+  json.erase("wall_clock");
+  json["trial"] = row.trial.index;
+  json["varied"] = Json::object();
+  for (const auto& [key, value] : row.trial.varied) json["varied"][key] = value;
+  return json;
+}
+
+}  // namespace
+
+std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& rows) {
+  const int n = static_cast<int>(rows.size());
+  const int k = Landed(rows);
+  const Interval interval = ClopperPearson(k, n);
+  std::string text =
+      fmt::format("{}: {} of {} landed, 95 % Clopper-Pearson [{:.1f} %, {:.1f} %], sweep seed {}\n",
+                  rows.front().trial.scenario.name, k, n, 100.0 * interval.lo, 100.0 * interval.hi,
+                  options.seed);
+  text += fmt::format("  {:<28}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "", "median", "p95", "min", "max",
+                      "n");
+  for (const Column& column : Columns(rows)) {
+    if (column.values.empty()) continue;
+    const std::string label =
+        column.unit[0] == '\0' ? column.label : fmt::format("{} [{}]", column.label, column.unit);
+    text += fmt::format("  {:<28}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>6}\n", label,
+                        *Quantile(column.values, 0.5), *Quantile(column.values, 0.95),
+                        *Quantile(column.values, 0.0), *Quantile(column.values, 1.0),
+                        column.values.size());
+  }
+  std::map<std::string, std::vector<const SweepRow*>> failures;
+  for (const SweepRow& row : rows) {
+    if (!row.result.landed()) failures[ToString(row.result.outcome)].push_back(&row);
+  }
+  for (const auto& [outcome, failed] : failures) {
+    text += fmt::format("  {} x {}: {}\n", failed.size(), outcome,
+                        Explain(failed.front()->result.outcome));
+    for (const SweepRow* row : failed) {
+      text += fmt::format("    trial {} (--seed {}) at {:.2f} s. {}\n", row->trial.index,
+                          row->trial.seed, row->result.simulated_s, row->result.detail);
+    }
+  }
+  return text;
+}
+
+Json SweepJson(const SweepOptions& options, const std::vector<SweepRow>& rows) {
+  const int n = static_cast<int>(rows.size());
+  const int k = Landed(rows);
+  const Interval interval = ClopperPearson(k, n);
+  Json json;
+  json["scenario"] = rows.front().trial.scenario.name;
+  json["seed"] = options.seed;
+  json["trials"] = n;
+  json["landed"] = k;
+  json["landed_fraction"] = static_cast<double>(k) / n;
+  json["landed_interval_95"] = {interval.lo, interval.hi};
+  Json summary = Json::object();
+  for (const Column& column : Columns(rows)) {
+    summary[column.key] = QuantilesJson(column.values);
+    summary[column.key]["n"] = column.values.size();
+  }
+  json["summary"] = summary;
+  Json outcomes = Json::object();
+  for (const SweepRow& row : rows) {
+    Json& count = outcomes[ToString(row.result.outcome)];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  json["outcomes"] = outcomes;
+  json["results"] = Json::array();
+  double wall = 0.0;
+  double simulated = 0.0;
+  int misses = 0;
+  for (const SweepRow& row : rows) {
+    json["results"].push_back(TrialJson(row));
+    wall += row.result.timing.wall_s;
+    simulated += row.result.timing.simulated_s;
+    misses += row.result.timing.deadline_misses;
+  }
+  json["wall_clock"] = {{"replan_latency_ms", QuantilesJson(ReplanTimes(rows))},
+                        {"deadline_misses", misses},
+                        {"realtime_factor", wall > 0.0 ? Json(simulated / wall) : Json()}};
+  return json;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The machine-readable result of one trial. Fields that do not apply are null, never left out.
+#include "touchdown/evaluation/trial_json.h"
+
+#include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/statistics.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
+
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json TouchdownJson(const TrialResult& result) {
+  Json json = {{"error_m", nullptr},
+               {"relative_velocity_mps", nullptr},
+               {"tilt_deg", nullptr},
+               {"tilt_over_equilibrium_deg", nullptr}};
+  if (!result.landed() || !result.touchdown) return json;
+  const Touchdown& t = *result.touchdown;
+  json["error_m"] = t.error_m;
+  json["relative_velocity_mps"] = {t.relative_velocity.x(), t.relative_velocity.y(),
+                                   t.relative_velocity.z()};
+  json["tilt_deg"] = t.tilt * kDegPerRad;
+  json["tilt_over_equilibrium_deg"] = t.tilt_over_equilibrium * kDegPerRad;
+  return json;
+}
+
+Json EstimatorJson(const std::optional<EstimatorQuality>& quality) {
+  if (!quality) return nullptr;
+  return {{"rmse_position_m", quality->rmse_position_m},
+          {"rmse_velocity_mps", quality->rmse_velocity_mps},
+          {"nees_position_mean", quality->nees_position_mean},
+          {"nees_dof", 2},
+          {"samples", quality->samples}};
+}
+
+Json WallClockJson(const TrialTiming& timing) {
+  Json json;
+  json["replan_latency_ms"] = QuantilesJson(timing.replan_wall_ms);
+  json["replan_cpu_ms"] = QuantilesJson(timing.replan_cpu_ms);
+  json["deadline_misses"] = timing.deadline_misses;
+  json["realtime_factor"] = timing.wall_s > 0.0 ? Json(timing.simulated_s / timing.wall_s) : Json();
+  json["realtime_factor_cpu"] =
+      timing.cpu_s > 0.0 ? Json(timing.simulated_s / timing.cpu_s) : Json();
+  json["wall_s"] = timing.wall_s;
+  json["cpu_s"] = {{"total", timing.cpu_s},
+                   {"physics", timing.physics_cpu_s},
+                   {"sensing", timing.sensing_cpu_s},
+                   {"mapping", timing.mapping_cpu_s},
+                   {"planning", timing.planning_cpu_s},
+                   {"control", timing.control_cpu_s},
+                   {"judging", timing.judging_cpu_s}};
+  return json;
+}
+
+}  // namespace
+
+Json QuantilesJson(const std::vector<double>& values) {
+  return {{"median", OrNull(Quantile(values, 0.5))},
+          {"p95", OrNull(Quantile(values, 0.95))},
+          {"p99", OrNull(Quantile(values, 0.99))},
+          {"max", OrNull(Quantile(values, 1.0))}};
+}
+
+Json LandJson(const Scenario& scenario, const TrialResult& result) {
+  Json json;
+  json["landed"] = result.landed();
+  json["outcome"] = ToString(result.outcome);
+  json["detail"] = result.detail;
+  json["time_to_land_s"] = result.landed() ? Json(result.touchdown->t) : Json();
+  json["t_star_s"] = nullptr;
+  json["time_ratio"] = nullptr;
+  json["touchdown"] = TouchdownJson(result);
+  json["mean_abs_error_last_5s_m"] = {
+      {"x", OrNull(result.landed() ? result.mean_abs_error_x_m : std::nullopt)},
+      {"y", OrNull(result.landed() ? result.mean_abs_error_y_m : std::nullopt)}};
+  json["min_clearance_m"] = OrNull(result.min_clearance_m);
+  json["simulated_s"] = result.simulated_s;
+  json["effort_n2s"] = result.effort_n2s;
+  json["saturation_share"] = result.saturation_share;
+  json["max_speed_mps"] = result.max_speed_mps;
+  json["max_acceleration_mps2"] = result.max_acceleration_mps2;
+  json["replans"] = result.replans;
+  json["replans_by_status"] = result.replans_by_status;
+  json["replans_by_reason"] = result.replans_by_reason;
+  json["estimator"] = EstimatorJson(result.estimator);
+  json["planner"] = FindScenarioKey("planner")->get(scenario);
+  json["backend"] = scenario.solver.backend;
+  json["scenario"] = scenario.name;
+  json["seed"] = result.seed;
+  json["wall_clock"] = WallClockJson(result.timing);
+  return json;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/replanner.h"
+
+namespace touchdown::evaluation {
+
+/// One row of the recorded time series.
+struct RecordSample {
+  double t = 0.0;
+  estimation::VehicleState vehicle;  ///< true
+  estimation::VehicleState vehicle_estimate;
+  estimation::PadState pad;  ///< true
+  bool pad_known = false;
+  estimation::PadState pad_estimate;  ///< meaningful if pad_known
+  planning::FlatState reference;
+  std::array<double, 4> rotor_thrusts{};  ///< [N]
+  const char* mode = "";                  ///< of the mission
+};
+
+struct RecordEvent {
+  double t = 0.0;
+  std::string kind;  ///< "mode", "contact", "outcome"
+  std::string text;
+};
+
+/// One replanning step: what was asked and what came out.
+struct RecordPlan {
+  double t_now = 0.0;
+  double t_start = 0.0;
+  planning::EndpointTarget endpoint;
+  estimation::VehicleState vehicle;  ///< as the planner was told
+  estimation::PadState pad;          ///< its prediction at t_now
+  planning::ReplanStatus status = planning::ReplanStatus::kHolding;
+  planning::ReplanReason reason = planning::ReplanReason::kNone;
+  bool from_odometry = false;
+  planning::UniformBspline curve;
+  planning::Certificate certificate;
+  std::vector<std::vector<Eigen::Vector3d>> guide_paths;
+  int pairs = 0;
+  int solves = 0;
+  int rebinds = 0;
+  int iterations = 0;
+  double cost = 0.0;
+  std::vector<planning::CellFlip> map_changes;  ///< since the previous replanning step
+};
+
+/// Everything of one trial that is worth keeping, in memory until it is written at the end.
+struct TrialRecord {
+  double map_resolution = 0.1;
+  std::vector<RecordSample> samples;
+  std::vector<RecordEvent> events;
+  std::vector<RecordPlan> plans;
+};
+
+}  // namespace touchdown::evaluation

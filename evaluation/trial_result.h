@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/evaluation/landing_judge.h"
+
+namespace touchdown::evaluation {
+
+/// How well the pad filter did, against the truth, until first contact.
+struct EstimatorQuality {
+  double rmse_position_m = 0.0;     ///< horizontal
+  double rmse_velocity_mps = 0.0;   ///< horizontal
+  double nees_position_mean = 0.0;  ///< 2 degrees of freedom: 2 if the covariance is honest
+  int samples = 0;
+};
+
+/// Wall-clock figures of one trial. Nothing else depends on them.
+struct TrialTiming {
+  double wall_s = 0.0;         ///< the whole trial
+  double cpu_s = 0.0;          ///< thread CPU time of the whole trial
+  double simulated_s = 0.0;    ///< simulated time, for the real-time factor
+  double physics_cpu_s = 0.0;  ///< stages of the loop, thread CPU time
+  double sensing_cpu_s = 0.0;
+  double mapping_cpu_s = 0.0;
+  double planning_cpu_s = 0.0;
+  double control_cpu_s = 0.0;
+  double judging_cpu_s = 0.0;
+  std::vector<double> replan_wall_ms;  ///< every replan
+  std::vector<double> replan_cpu_ms;
+  int deadline_misses = 0;  ///< replans slower than the latency they were flown with
+};
+
+/// What one trial came to: a pure function of (scenario, seed), but for `timing`.
+struct TrialResult {
+  std::uint64_t seed = 0;
+  Outcome outcome = Outcome::kError;
+  std::string detail;                        ///< what went wrong in words; empty when landed
+  std::optional<Touchdown> touchdown;        ///< first contact of a foot with the pad
+  std::optional<double> mean_abs_error_x_m;  ///< last 5 s before first contact, world axes
+  std::optional<double> mean_abs_error_y_m;
+  std::optional<double> min_clearance_m;  ///< true; empty without obstacles
+  double simulated_s = 0.0;
+  double effort_n2s = 0.0;        ///< integral of the rotors' squared thrusts [N^2 s]
+  double saturation_share = 0.0;  ///< of control steps with a saturated mixer
+  double max_speed_mps = 0.0;
+  double max_acceleration_mps2 = 0.0;  ///< over 20 ms
+  int replans = 0;
+  std::map<std::string, int> replans_by_status;
+  std::map<std::string, int> replans_by_reason;  ///< of those that made no new plan
+  std::optional<EstimatorQuality> estimator;
+  TrialTiming timing;
+
+  bool landed() const { return outcome == Outcome::kLanded; }
+};
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One row per trial. What depends on the clock stands in its own table, so that two runs of a sweep
+// can be compared row by row.
+#include "touchdown/evaluation/trial_table.h"
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/sqlite_db.h"
+#include "touchdown/evaluation/statistics.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr char kSchema[] = R"sql(
+CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outcome TEXT,
+  detail TEXT, time_to_land_s REAL, touchdown_error_m REAL, relative_vx_mps REAL,
+  relative_vy_mps REAL, relative_vz_mps REAL, tilt_rad REAL, tilt_over_equilibrium_rad REAL,
+  mean_abs_error_x_m REAL, mean_abs_error_y_m REAL, min_clearance_m REAL, simulated_s REAL,
+  effort_n2s REAL, saturation_share REAL, max_speed_mps REAL, max_acceleration_mps2 REAL,
+  replans INTEGER, replans_planned INTEGER, estimator_rmse_position_m REAL,
+  estimator_rmse_velocity_mps REAL, estimator_nees_position REAL);
+CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT);
+CREATE TABLE timing(trial INTEGER PRIMARY KEY, wall_s REAL, cpu_s REAL, physics_cpu_s REAL,
+  sensing_cpu_s REAL, mapping_cpu_s REAL, planning_cpu_s REAL, control_cpu_s REAL,
+  judging_cpu_s REAL, replan_median_ms REAL, replan_p95_ms REAL, replan_max_ms REAL,
+  deadline_misses INTEGER);
+)sql";
+
+using OptionalReal = std::optional<double>;
+
+void WriteTrial(SqliteStatement& insert, const SweepRow& row) {
+  const TrialResult& r = row.result;
+  OptionalReal time, error, vx, vy, vz, tilt, over, mean_x, mean_y;
+  if (r.landed()) {
+    const Touchdown& t = *r.touchdown;
+    time = t.t;
+    error = t.error_m;
+    vx = t.relative_velocity.x();
+    vy = t.relative_velocity.y();
+    vz = t.relative_velocity.z();
+    tilt = t.tilt;
+    over = t.tilt_over_equilibrium;
+    mean_x = r.mean_abs_error_x_m;
+    mean_y = r.mean_abs_error_y_m;
+  }
+  OptionalReal rmse_position, rmse_velocity, nees;
+  if (r.estimator) {
+    rmse_position = r.estimator->rmse_position_m;
+    rmse_velocity = r.estimator->rmse_velocity_mps;
+    nees = r.estimator->nees_position_mean;
+  }
+  const auto planned = r.replans_by_status.find("planned");
+  insert.Run(row.trial.index, static_cast<std::int64_t>(r.seed), r.landed(), ToString(r.outcome),
+             r.detail, time, error, vx, vy, vz, tilt, over, mean_x, mean_y, r.min_clearance_m,
+             r.simulated_s, r.effort_n2s, r.saturation_share, r.max_speed_mps,
+             r.max_acceleration_mps2, r.replans,
+             planned == r.replans_by_status.end() ? 0 : planned->second, rmse_position,
+             rmse_velocity, nees);
+}
+
+void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
+  const TrialTiming& t = row.result.timing;
+  insert.Run(row.trial.index, t.wall_s, t.cpu_s, t.physics_cpu_s, t.sensing_cpu_s, t.mapping_cpu_s,
+             t.planning_cpu_s, t.control_cpu_s, t.judging_cpu_s, Quantile(t.replan_wall_ms, 0.5),
+             Quantile(t.replan_wall_ms, 0.95), Quantile(t.replan_wall_ms, 1.0), t.deadline_misses);
+}
+
+void WriteManifest(SqliteDb& db, const SweepOptions& options, const std::vector<SweepRow>& rows) {
+  SqliteStatement insert = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
+  insert.Run("format", "touchdown trials");
+  insert.Run("version", "1");
+  insert.Run("sweep_seed", std::to_string(options.seed));
+  insert.Run("trials", std::to_string(rows.size()));
+  if (!rows.empty()) {
+    insert.Run("scenario", rows.front().trial.scenario.name);
+    insert.Run("scenario_yaml", DumpScenario(rows.front().trial.scenario));
+  }
+  for (const auto& [key, value] : BuildManifest()) insert.Run(key, value);
+}
+
+}  // namespace
+
+void WriteTrialTable(const std::string& path, const SweepOptions& options,
+                     const std::vector<SweepRow>& rows) {
+  AtomicFile file(path);
+  {
+    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
+    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
+    SqliteTransaction transaction(db);
+    db.Execute(kSchema);
+    WriteManifest(db, options, rows);
+    SqliteStatement trial = db.Prepare(
+        "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+        "?, "
+        "?, ?, ?)");
+    SqliteStatement variation = db.Prepare("INSERT INTO variation VALUES(?, ?, ?)");
+    SqliteStatement timing =
+        db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const SweepRow& row : rows) {
+      WriteTrial(trial, row);
+      for (const auto& [key, value] : row.trial.varied) variation.Run(row.trial.index, key, value);
+      WriteTiming(timing, row);
+    }
+    transaction.Commit();
+  }
+  file.Commit();
+}
+
+}  // namespace touchdown::evaluation
