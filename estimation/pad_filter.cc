@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "touchdown/estimation/pad_predictor.h"
 
@@ -19,7 +20,7 @@ double ChiSquaredQuantile(int degrees, double probability) {
   const auto cdf = [degrees](double x) {
     if (degrees == 2) return 1.0 - std::exp(-0.5 * x);
     const double one = std::erf(std::sqrt(0.5 * x));
-    return degrees == 1 ? one : one - std::sqrt(2.0 * x / M_PI) * std::exp(-0.5 * x);
+    return degrees == 1 ? one : one - std::sqrt(2.0 * x / std::numbers::pi) * std::exp(-0.5 * x);
   };
   double low = 0.0;
   double high = 200.0;
@@ -159,12 +160,28 @@ PadUpdate PadFilter::Process(const Measurement& measurement, Snapshot& state) co
     return PadUpdate::kNotUsed;
   }
 
-  state.belief = PropagateBelief(state.belief, measurement.t, options_.noise);
-  const bool accepted =
-      measurement.is_tag ? UpdateTag(measurement, state) : UpdateGps(measurement, state);
+  const PadBelief previous = state.belief;
+  state.belief = PropagateBelief(previous, measurement.t, options_.noise);
+  const auto update = [this, &measurement](Snapshot& s) {
+    return measurement.is_tag ? UpdateTag(measurement, s) : UpdateGps(measurement, s);
+  };
+  int& in_row = measurement.is_tag ? state.tag_gated_in_row : state.gps_gated_in_row;
+  bool accepted = update(state);
+  if (!accepted && in_row == 1) {
+    // Widened before the step, so that the position has had time to spread.
+    Snapshot widened = state;
+    widened.belief = previous;
+    WidenForManeuver(widened.belief);
+    widened.belief = PropagateBelief(widened.belief, measurement.t, options_.noise);
+    accepted = update(widened);
+    if (accepted) {
+      state.belief = widened.belief;
+      state.anchor = widened.anchor;
+      ++diagnostics.maneuvers;
+    }
+  }
   if (!accepted) {
     ++(measurement.is_tag ? diagnostics.tag_gated : diagnostics.gps_gated);
-    int& in_row = measurement.is_tag ? state.tag_gated_in_row : state.gps_gated_in_row;
     ++in_row;
     // While tags guide, a GPS that disagrees with them is the one that is wrong.
     const bool may_restart =

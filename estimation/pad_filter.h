@@ -47,7 +47,12 @@ struct PadFilterOptions {
   double min_speed = 0.05;          ///< [m/s]
   double heading_lost_sigma = 0.7;  ///< back to kVelocity beyond this [rad]
 
-  double gate_probability = 0.999;   ///< a good measurement passes with this probability
+  double gate_probability = 0.999;  ///< a good measurement passes with this probability
+  /// At the second measurement in a row that one sensor has gated the pad is taken to manoeuvre:
+  /// the belief is widened by these standard deviations and the measurement is tried again.
+  double maneuver_speed = 0.3;       ///< [m/s]
+  double maneuver_heading = 0.2;     ///< [rad]
+  double maneuver_turn_rate = 0.3;   ///< [rad/s]
   int restart_after = 5;             ///< consecutive gated measurements of one sensor
   double gps_restart_silence = 1.0;  ///< GPS restarts the filter only without tags for so long [s]
   double max_delay = 0.5;            ///< late measurements are taken up to this age [s]
@@ -72,6 +77,7 @@ struct PadDiagnostics {
   int gps_gated = 0;
   int tag_accepted = 0;
   int tag_gated = 0;
+  int maneuvers = 0;  ///< beliefs widened
   int late_accepted = 0;
   int too_old = 0;
   int not_used = 0;
@@ -168,6 +174,7 @@ class PadFilter {
   void Restart(const Measurement& measurement, Snapshot& state) const;
   bool UpdateGps(const Measurement& measurement, Snapshot& state) const;
   bool UpdateTag(const Measurement& measurement, Snapshot& state) const;
+  void WidenForManeuver(PadBelief& belief) const;
   void ChangeMotion(PadBelief& belief) const;
 
   PadFilterOptions options_;

@@ -61,6 +61,7 @@ std::string_view ToString(PadUpdate update) {
 void Validate(const PadFilterOptions& options) {
   Require(std::isfinite(options.pad_height), "pad_height", options.pad_height, "finite");
   RequirePositive("noise.position", options.noise.position);
+  RequirePositive("noise.velocity", options.noise.velocity);
   RequirePositive("noise.acceleration", options.noise.acceleration);
   RequirePositive("noise.heading", options.noise.heading);
   RequirePositive("noise.turn", options.noise.turn);
@@ -71,6 +72,9 @@ void Validate(const PadFilterOptions& options) {
   RequirePositive("heading_lost_sigma", options.heading_lost_sigma);
   Require(options.gate_probability > 0.0 && options.gate_probability < 1.0, "gate_probability",
           options.gate_probability, "(0, 1)");
+  RequireNotNegative("maneuver_speed", options.maneuver_speed);
+  RequireNotNegative("maneuver_heading", options.maneuver_heading);
+  RequireNotNegative("maneuver_turn_rate", options.maneuver_turn_rate);
   Require(options.restart_after >= 1, "restart_after", options.restart_after, ">= 1");
   RequireNotNegative("gps_restart_silence", options.gps_restart_silence);
   RequireNotNegative("max_delay", options.max_delay);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Cholesky>
 
@@ -59,7 +60,7 @@ bool UpdatePositionAndHeading(PadBelief& belief, const Eigen::Vector2d& p_WP,
 // The same motion described from the other end of the vehicle.
 void TurnAround(PadBelief& belief) {
   belief.mean(2) = -belief.mean(2);
-  belief.mean(3) += M_PI;
+  belief.mean(3) += std::numbers::pi;
   belief.cov.row(2) *= -1.0;
   belief.cov.col(2) *= -1.0;
 }
@@ -128,7 +129,8 @@ bool PadFilter::UpdateGps(const Measurement& measurement, Snapshot& state) const
   }
   double heading = std::atan2(chord.y(), chord.x());
   // A pad that reverses moves against its heading.
-  if (std::abs(WrapAngle(heading - belief.mean(3))) > 0.5 * M_PI) heading += M_PI;
+  if (std::abs(WrapAngle(heading - belief.mean(3))) > 0.5 * std::numbers::pi)
+    heading += std::numbers::pi;
   const double heading_variance =
       spread / chord.squaredNorm() + options_.noise.heading * (measurement.t - anchor.t) / 3.0;
   const bool accepted = UpdatePositionAndHeading(belief, measurement.p_WP, measurement.cov_p,
@@ -147,13 +149,27 @@ bool PadFilter::UpdateTag(const Measurement& measurement, Snapshot& state) const
   }
   // Heading read off the motion cannot tell forward from backward; the tag can.
   PadBelief candidate = belief;
-  if (std::abs(WrapAngle(measurement.yaw - candidate.mean(3))) > 0.5 * M_PI) TurnAround(candidate);
+  if (std::abs(WrapAngle(measurement.yaw - candidate.mean(3))) > 0.5 * std::numbers::pi)
+    TurnAround(candidate);
   if (!UpdatePositionAndHeading(candidate, measurement.p_WP, measurement.cov_p, measurement.yaw,
                                 measurement.yaw_variance, gate_[3])) {
     return false;
   }
   belief = candidate;
   return true;
+}
+
+void PadFilter::WidenForManeuver(PadBelief& belief) const {
+  const double speed_variance = options_.maneuver_speed * options_.maneuver_speed;
+  belief.cov(2, 2) += speed_variance;
+  if (belief.motion == PadMotion::kVelocity) {
+    belief.cov(3, 3) += speed_variance;
+    return;
+  }
+  belief.cov(3, 3) += options_.maneuver_heading * options_.maneuver_heading;
+  if (belief.motion == PadMotion::kTurn) {
+    belief.cov(4, 4) += options_.maneuver_turn_rate * options_.maneuver_turn_rate;
+  }
 }
 
 void PadFilter::ChangeMotion(PadBelief& belief) const {

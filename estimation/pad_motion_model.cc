@@ -40,7 +40,7 @@ PadVector NoiseDensities(PadMotion motion, const PadNoise& noise) {
   PadVector density;
   switch (motion) {
     case PadMotion::kVelocity:
-      density << noise.position, noise.position, noise.acceleration, noise.acceleration, 0.0;
+      density << noise.position, noise.position, noise.velocity, noise.velocity, 0.0;
       break;
     case PadMotion::kHeading:
       density << noise.position, noise.position, noise.acceleration, noise.heading, 0.0;
