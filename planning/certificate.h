@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "touchdown/estimation/pad_prediction.h"
-#include "touchdown/planning/endpoint.h"
-#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/free_space.h"
+#include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {
-
-/// Limits on the norms of velocity and acceleration.
-struct Limits {
-  double speed = 3.0;         ///< [m/s]
-  double acceleration = 6.0;  ///< [m/s^2]
-};
 
 /// What was proven about a plan before it may be flown. No plan is flown with passed() false.
 struct Certificate {
@@ -25,20 +18,24 @@ struct Certificate {
   bool recovering = false;                  ///< the start was beyond a limit: certified against
                                             ///< the recovery profile instead
   bool clear = false;                       ///< every cell the curve passes is free after inflation
-  double clearance = 0.0;                   ///< the inflation radius that `clear` stands for [m]
+  bool escaping = false;                    ///< the start itself is blocked; the curve leaves the
+                                            ///< inflated cells and never comes nearer to an
+                                            ///< occupied one than it is at its start
+  double clearance = 0.0;                   ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;                 ///< absolute time of the first blocked cell if !clear [s]
 
   bool endpoint_met() const {
     return !endpoint_required ||
            (endpoint_position_residual <= 1e-9 && endpoint_velocity_residual <= 1e-9);
   }
-  bool passed() const { return endpoint_met() && limits_kept && clear; }
+  bool passed() const { return endpoint_met() && limits_kept && (clear || escaping); }
 };
 
 /// Certifies `curve` from `t_from` to its end: the endpoint against `wanted` (nullptr: none is
-/// required), the limits by the convex hull, the clearance by visiting every cell of `map` that the
-/// curve passes. Does not allocate.
+/// required), the limits by the convex hull, the clearance by visiting every cell of `space` that
+/// the curve passes. A start beyond a limit is certified against the recovery profile
+/// max(limit, |v0| - amax t / 2), and alike for the acceleration. Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
-                    const Limits& limits, const OccupancyMap& map);
+                    const Limits& limits, const FreeSpace& space);
 
 }  // namespace touchdown::planning

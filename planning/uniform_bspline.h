@@ -50,8 +50,7 @@ class UniformBspline {
 
 /// Largest norms that velocity and acceleration can take anywhere on the curve, by the convex hull
 /// of the Bezier points of its derivatives (per segment: the two knot values and, for the velocity,
-/// the derivative control point between them). `start_speed` and `start_acceleration` are the norms
-/// at t0; the other two are over everything that is not fixed by the start state.
+/// the derivative control point between them).
 struct DerivativeBounds {
   double speed = 0.0;         ///< [m/s]
   double acceleration = 0.0;  ///< [m/s^2]

@@ -62,7 +62,7 @@ void Problem::Resize(Evaluation* evaluation) const {
 
 bool Problem::Evaluate(const double* x, double h, Want want, const double* const* multipliers,
                        Evaluation* evaluation) const noexcept {
-  const TermInput input{x, h, t0_};
+  const TermInput input{x, h, t0_, shape_.free_interval};
   evaluation->ok = false;
   evaluation->value = 0.0;
   evaluation->max_violation = 0.0;

@@ -35,6 +35,7 @@ struct TermInput {
   const double* x = nullptr;  ///< blocks x block_size, block by block
   double h = 1.0;             ///< knot interval [s]
   double t0 = 0.0;            ///< absolute time of knot 0 [s]
+  bool free_interval = false; ///< h is a variable: its derivatives are wanted too
 };
 
 /// What is wanted of an evaluation; implied parts are added by the term (a Hessian needs gradients).

@@ -4,7 +4,7 @@
 //   struct MyMap {
 //     static constexpr int kBlockSize = 3, kWindow = 4, kOutputs = 1;
 //     static constexpr bool kUsesInterval = true;
-//     static constexpr bool kLinear = false;  // u affine in blocks and h together: no curvature
+//     static constexpr bool kLinearInBlocks = false;  // u affine in q: no curvature at fixed h
 //     int windows() const;                    // active now
 //     int first_block(int k) const;           // where window k starts
 //     template <class T>
@@ -75,7 +75,7 @@ class WindowTerm : public Term {
       EvaluateLoss(k, block);
       if (want.hessian) {
         const double* m = multipliers ? multipliers + k * kM : &block->drho[k * kM];
-        EvaluateCurvature(k, q, input.h, t, first, m, block);
+        EvaluateCurvature(k, q, input, t, first, m, block);
       }
     }
   }
@@ -121,20 +121,22 @@ class WindowTerm : public Term {
     }
   }
 
-  void EvaluateCurvature(int k, const double* q, double h, double t, int first,
+  void EvaluateCurvature(int k, const double* q, const TermInput& input, double t, int first,
                          const double* multipliers, TermBlock* block) const {
     constexpr int n = kV + 1;
     double* out = &block->curvature[k * n * n];
     for (int i = 0; i < n * n; ++i) out[i] = 0.0;
-    if constexpr (!Inner::kLinear) {
-      bool any = false;
-      for (int c = 0; c < kM; ++c) any = any || multipliers[c] != 0.0;
-      if (!any) return;  // an inactive hinge bends nothing
+    const bool bends_with_interval = Inner::kUsesInterval && input.free_interval;
+    bool any = false;
+    for (int c = 0; c < kM; ++c) any = any || multipliers[c] != 0.0;
+    // Affine maps and inactive hinges bend nothing.
+    if ((Inner::kLinearInBlocks && !bends_with_interval) || !any) return;
+    if constexpr (!Inner::kLinearInBlocks || Inner::kUsesInterval) {
       using Inside = Dual<double, n>;
       using Outside = Dual<Inside, n>;
       std::array<Outside, kV> q_dual;
       for (int i = 0; i < kV; ++i) q_dual[i] = Outside(Inside(q[i], i), i);
-      const Outside h_dual(Inside(h, kV), kV);
+      const Outside h_dual(Inside(input.h, kV), kV);
       Inside t_inside(t);
       t_inside.d[kV] = first;
       Outside t_dual;

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "touchdown/planning/endpoint.h"
+#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/solvers/affine_lift.h"
+
+namespace touchdown::planning {
+
+/// Control points of the spline with `segments` segments of length `duration` that meets both end
+/// states exactly and follows the quintic Hermite polynomial between them: the first guess, and the
+/// braking and climbing trajectories.
+ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
+                                   double duration);
+
+/// Exact elimination of both ends, with the boundary lift (design, section 2):
+///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,  Q_{N-3}..Q_{N-1} from (P, V, delta).
+/// The last reduced block is the deviation of delta = -h^2 A / 6 from the pad's own acceleration, so
+/// that the end acceleration is free; it is left out where the end acceleration is fixed.
+/// As LiftOffset it gives the offsets and their derivatives as the interval, and with it the
+/// arrival time t0 + M h, moves. Reads the pad prediction at every call.
+class BoundaryLift : public solvers::LiftOffset {
+ public:
+  /// Throws std::invalid_argument unless segments >= 4.
+  BoundaryLift(int segments, bool free_end_acceleration);
+
+  /// The pad prediction must outlive every later call of At.
+  void Set(const SplineState& start, double t0, const estimation::PadPrediction& pad,
+           const EndpointTarget& target);
+
+  /// Structure of the elimination; `offset` is this object, which the caller keeps alive.
+  solvers::AffineLift Structure() const;
+
+  void At(double h, double* l, double* dl, double* d2l) const noexcept override;
+
+ private:
+  int segments_;
+  bool free_end_acceleration_;
+  SplineState start_;
+  double t0_ = 0.0;
+  const estimation::PadPrediction* pad_ = nullptr;
+  EndpointTarget target_;
+};
+
+}  // namespace touchdown::planning

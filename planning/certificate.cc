@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The certificate of a plan: what is checked here is checked on the plan itself, after the solver and
+// whatever the solver said.
+
+#include "touchdown/planning/certificate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/planning/curve_check.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+// Rounding of sums of control points; limits are met by construction with equality at times.
+constexpr double kRounding = 1e-9;
+
+/// Every segment's hull stays below what is left of a start beyond the limits.
+bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
+  const ControlPoints& q = curve.control_points();
+  const double h = curve.interval();
+  const double v0 = curve.AtKnot(0).v.norm(), a0 = curve.AtKnot(0).a.norm();
+  for (int i = 0; i < curve.segments(); ++i) {
+    const double t = i * h;  // the profile falls: the start of a segment is its loosest instant
+    const double v_allowed = std::max(limits.speed, v0 - 0.5 * limits.acceleration * t);
+    // The acceleration may fade over the time that the recovery of the speed takes.
+    const double a_allowed = std::max(limits.acceleration, a0 * (1.0 - 2.0 * t));
+    const SplineState from = curve.AtKnot(i), to = curve.AtKnot(i + 1);
+    const double speed =
+        std::max({from.v.norm(), to.v.norm(), (q.col(i + 2) - q.col(i + 1)).norm() / h});
+    const double acceleration = std::max(from.a.norm(), to.a.norm());
+    if (speed > v_allowed + kRounding || acceleration > a_allowed + kRounding) return false;
+  }
+  return true;
+}
+
+/// Distance from a point to the nearest occupied cell, up to the inflation radius.
+double DistanceToOccupied(const OccupancyMap& map, const Eigen::Vector3d& p_W) {
+  const double reach = map.options().inflation_radius;
+  const double half = 0.5 * map.resolution();
+  const CellIndex lo = map.CellOf(p_W.array() - reach), hi = map.CellOf(p_W.array() + reach);
+  double nearest = reach;
+  CellIndex cell;
+  for (cell.z() = lo.z(); cell.z() <= hi.z(); ++cell.z()) {
+    for (cell.y() = lo.y(); cell.y() <= hi.y(); ++cell.y()) {
+      for (cell.x() = lo.x(); cell.x() <= hi.x(); ++cell.x()) {
+        if (!map.IsOccupied(cell)) continue;
+        const Eigen::Vector3d gap =
+            ((p_W - map.CentreOf(cell)).cwiseAbs().array() - half).max(0.0).matrix();
+        nearest = std::min(nearest, gap.norm());
+      }
+    }
+  }
+  return nearest;
+}
+
+// A start inside the inflated zone may leave it within this time [s] ...
+constexpr double kEscapeTime = 1.5;
+constexpr double kEscapeStep = 0.02;
+// ... without coming nearer to what it leaves, or lower, than this [m].
+constexpr double kEscapeSlack = 0.02;
+
+/// For a curve whose start is blocked: certifies that it only moves away until it is free, and is
+/// free from there on. Fills `clearance` with the least distance on the way.
+bool Escapes(const UniformBspline& curve, double t_from, const FreeSpace& space,
+             double* clearance) {
+  const Eigen::Vector3d start = curve.Evaluate(t_from).p_WB;
+  const double allowed = DistanceToOccupied(*space.map, start) - kEscapeSlack;
+  *clearance = allowed;
+  for (double t = t_from; t <= std::min(t_from + kEscapeTime, curve.t_end()); t += kEscapeStep) {
+    const Eigen::Vector3d p = curve.Evaluate(t).p_WB;
+    if (!space.Blocked(p) && !std::isfinite(FirstBlockedTime(curve, t, space))) return true;
+    const double distance = DistanceToOccupied(*space.map, p);
+    const bool sinks = p.z() < std::min(space.floor, start.z() - kEscapeSlack);
+    if (distance < allowed || (sinks && !space.OverPad(p))) return false;
+    *clearance = std::min(*clearance, distance);
+  }
+  return false;
+}
+
+}  // namespace
+
+Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
+                    const Limits& limits, const FreeSpace& space) {
+  Certificate c;
+  c.endpoint_required = wanted != nullptr;
+  if (wanted) {
+    const SplineState end = curve.AtKnot(curve.segments());
+    c.endpoint_position_residual = (end.p - wanted->p).norm();
+    c.endpoint_velocity_residual = (end.v - wanted->v).norm();
+  }
+  const DerivativeBounds bounds = BoundDerivatives(curve);
+  c.speed_bound = bounds.speed;
+  c.acceleration_bound = bounds.acceleration;
+  c.limits_kept = bounds.speed <= limits.speed + kRounding &&
+                  bounds.acceleration <= limits.acceleration + kRounding;
+  const SplineState start = curve.AtKnot(0);
+  c.recovering = !c.limits_kept && (start.v.norm() > limits.speed + kRounding ||
+                                    start.a.norm() > limits.acceleration + kRounding);
+  if (c.recovering) c.limits_kept = RecoveryProfileKept(curve, limits);
+
+  const double hit = FirstBlockedTime(curve, t_from, space);
+  c.clear = !std::isfinite(hit);
+  c.first_hit_t = c.clear ? 0.0 : hit;
+  c.clearance = space.map->options().inflation_radius;
+  if (!c.clear && space.Blocked(curve.Evaluate(t_from).p_WB)) {
+    c.escaping = Escapes(curve, t_from, space, &c.clearance);
+  }
+  return c;
+}
+
+}  // namespace touchdown::planning

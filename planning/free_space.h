@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "touchdown/planning/occupancy_map.h"
+
+namespace touchdown::planning {
+
+/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the strip
+/// above the moving pad in which the floor does not hold. Unknown space counts as free. A view of
+/// the map, cheap to make anew for every replanning step.
+struct FreeSpace {
+  const OccupancyMap* map = nullptr;
+  double floor = 0.0;                                     ///< [m]
+  double ceiling = std::numeric_limits<double>::infinity();  ///< [m]
+  Eigen::Vector2d pad_from = Eigen::Vector2d::Zero();     ///< strip's axis: pad at start and arrival
+  Eigen::Vector2d pad_to = Eigen::Vector2d::Zero();
+  double pad_radius = 0.0;                                ///< strip's half width [m]; 0: none
+
+  bool OverPad(const Eigen::Vector3d& p_W) const {
+    if (pad_radius <= 0.0) return false;
+    const Eigen::Vector2d axis = pad_to - pad_from;
+    const Eigen::Vector2d offset = p_W.head<2>() - pad_from;
+    const double length2 = axis.squaredNorm();
+    const double s = length2 > 0.0 ? std::clamp(offset.dot(axis) / length2, 0.0, 1.0) : 0.0;
+    return (offset - s * axis).squaredNorm() <= pad_radius * pad_radius;
+  }
+
+  bool Blocked(const CellIndex& cell) const {
+    if (map->IsBlocked(cell)) return true;
+    const Eigen::Vector3d centre = map->CentreOf(cell);
+    if (centre.z() > ceiling) return true;
+    return centre.z() < floor && !OverPad(centre);
+  }
+  bool Blocked(const Eigen::Vector3d& p_W) const { return Blocked(map->CellOf(p_W)); }
+};
+
+}  // namespace touchdown::planning

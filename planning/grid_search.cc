@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A* (P. Hart, N. Nilsson and B. Raphael 1968; eq. 16 of the paper) on the cells of the rolling map.
+// Arrays are indexed by the position in the window; a search number in `seen_` spares clearing them.
+
+#include "touchdown/planning/grid_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace touchdown::planning {
+
+namespace {
+
+struct Step {
+  CellIndex offset;
+  float length;  // in cells
+};
+
+const std::array<Step, 26>& Steps() {
+  static const std::array<Step, 26> steps = [] {
+    std::array<Step, 26> out;
+    int n = 0;
+    for (int z = -1; z <= 1; ++z) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+          if (x == 0 && y == 0 && z == 0) continue;
+          out[n++] = {CellIndex(x, y, z), std::sqrt(static_cast<float>(x * x + y * y + z * z))};
+        }
+      }
+    }
+    return out;
+  }();
+  return steps;
+}
+
+/// Length of the shortest 26-neighbour path between two cells of an empty lattice.
+float Octile(const CellIndex& a, const CellIndex& b) {
+  std::array<int, 3> d = {std::abs(a.x() - b.x()), std::abs(a.y() - b.y()),
+                          std::abs(a.z() - b.z())};
+  std::sort(d.begin(), d.end());
+  const auto lo = static_cast<float>(d[0]), mid = static_cast<float>(d[1]),
+             hi = static_cast<float>(d[2]);
+  return std::sqrt(3.0f) * lo + std::sqrt(2.0f) * (mid - lo) + (hi - mid);
+}
+
+}  // namespace
+
+const char* ToString(SearchStatus status) {
+  switch (status) {
+    case SearchStatus::kFound: return "found";
+    case SearchStatus::kEndsOutside: return "ends_outside";
+    case SearchStatus::kEndsBlocked: return "ends_blocked";
+    case SearchStatus::kNoPath: return "no_path";
+    case SearchStatus::kExpansionLimit: return "expansion_limit";
+  }
+  return "unknown";
+}
+
+bool NearestFreePoint(const FreeSpace& space, const Eigen::Vector3d& p_W, double radius,
+                      Eigen::Vector3d* free_W) {
+  const CellIndex centre = space.map->CellOf(p_W);
+  const int n = static_cast<int>(std::ceil(radius / space.map->resolution()));
+  double best = radius * radius;
+  bool found = false;
+  CellIndex offset;
+  for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
+    for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
+      for (offset.x() = -n; offset.x() <= n; ++offset.x()) {
+        const CellIndex cell = centre + offset;
+        const Eigen::Vector3d p = space.map->CentreOf(cell);
+        const double distance2 = (p - p_W).squaredNorm();
+        if (distance2 >= best || !space.map->InWindow(cell) || space.Blocked(cell)) continue;
+        best = distance2;
+        *free_W = p;
+        found = true;
+      }
+    }
+  }
+  return found;
+}
+
+bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) const {
+  if (!space.Blocked(*cell)) return true;
+  Eigen::Vector3d free_W;
+  if (!NearestFreePoint(space, space.map->CentreOf(*cell), kEndSearchRadius, &free_W)) return false;
+  *cell = space.map->CellOf(free_W);
+  return true;
+}
+
+void GridSearch::Reset(const FreeSpace& space) {
+  const CellIndex& n = space.map->size();
+  const auto cells = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) *
+                     static_cast<std::size_t>(n.z());
+  if (seen_.size() != cells) {
+    g_.assign(cells, 0.0f);
+    parent_.assign(cells, 0);
+    seen_.assign(cells, 0);
+    search_ = 0;
+  }
+  search_ += 2;
+  heap_.clear();
+  expansions_ = 0;
+}
+
+SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
+                                const Eigen::Vector3d& to, int max_expansions,
+                                std::vector<Eigen::Vector3d>* path) {
+  path->clear();
+  const OccupancyMap& map = *space.map;
+  CellIndex start = map.CellOf(from), goal = map.CellOf(to);
+  if (!map.InWindow(start) || !map.InWindow(goal)) return SearchStatus::kEndsOutside;
+  if (!NearestFree(space, &start) || !NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
+  Reset(space);
+
+  const CellIndex origin = map.origin(), size = map.size();
+  const auto address = [&](const CellIndex& cell) {
+    const CellIndex i = cell - origin;
+    return static_cast<std::uint32_t>((i.z() * size.y() + i.y()) * size.x() + i.x());
+  };
+  const auto cell_at = [&](std::uint32_t a) {
+    const int i = static_cast<int>(a);
+    return CellIndex(origin + CellIndex(i % size.x(), i / size.x() % size.y(),
+                                        i / (size.x() * size.y())));
+  };
+  const auto later = [](const Node& a, const Node& b) {
+    return a.f != b.f ? a.f > b.f : a.order > b.order;
+  };
+  std::uint32_t order = 0;
+  const std::uint32_t goal_address = address(goal);
+  const std::uint32_t start_address = address(start);
+  g_[start_address] = 0.0f;
+  parent_[start_address] = 26;
+  seen_[start_address] = search_;
+  heap_.push_back({Octile(start, goal), order++, start_address});
+
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end(), later);
+    const std::uint32_t here = heap_.back().address;
+    heap_.pop_back();
+    if (seen_[here] == search_ + 1) continue;  // an older, longer entry of the same cell
+    seen_[here] = search_ + 1;
+    if (here == goal_address) {
+      for (CellIndex cell = goal;;) {
+        path->push_back(map.CentreOf(cell));
+        const std::uint8_t by = parent_[address(cell)];
+        if (by == 26) break;
+        cell -= Steps()[by].offset;
+      }
+      std::reverse(path->begin(), path->end());
+      return SearchStatus::kFound;
+    }
+    if (++expansions_ > max_expansions) return SearchStatus::kExpansionLimit;
+    const CellIndex cell = cell_at(here);
+    for (std::uint8_t s = 0; s < 26; ++s) {
+      const CellIndex next = cell + Steps()[s].offset;
+      if (!map.InWindow(next)) continue;
+      const std::uint32_t there = address(next);
+      const bool seen = (seen_[there] & ~1u) == search_;
+      const float g = g_[here] + Steps()[s].length;
+      if (seen && ((seen_[there] & 1u) != 0u || g >= g_[there])) continue;
+      if (space.Blocked(next)) continue;
+      g_[there] = g;
+      parent_[there] = s;
+      seen_[there] = search_;
+      heap_.push_back({g + Octile(next, goal), order++, there});
+      std::push_heap(heap_.begin(), heap_.end(), later);
+    }
+  }
+  return SearchStatus::kNoPath;
+}
+
+}  // namespace touchdown::planning

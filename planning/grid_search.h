@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/planning/free_space.h"
+
+namespace touchdown::planning {
+
+enum class SearchStatus {
+  kFound,
+  kEndsOutside,     ///< an end lies outside the map's window
+  kEndsBlocked,     ///< no free cell near a blocked end
+  kNoPath,          ///< everything reachable was expanded
+  kExpansionLimit,  ///< the budget of expansions was used up
+};
+const char* ToString(SearchStatus status);
+
+/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the octile distance
+/// in three dimensions). A blocked end is first moved to the nearest free cell within
+/// `kEndSearchRadius`. Deterministic: ties are broken by the order of insertion. Its arrays have the
+/// size of the map's window and are kept between searches.
+class GridSearch {
+ public:
+  static constexpr double kEndSearchRadius = 1.5;  ///< [m]
+
+  /// Finds a path of cell centres from `from` to `to`, the (moved) ends included. Expands at most
+  /// `max_expansions` cells. Allocates only to grow to a high-water mark.
+  SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& to, int max_expansions,
+                      std::vector<Eigen::Vector3d>* path);
+
+  int expansions() const { return expansions_; }
+
+ private:
+  struct Node {
+    float f;
+    std::uint32_t order;
+    std::uint32_t address;
+  };
+
+  bool NearestFree(const FreeSpace& space, CellIndex* cell) const;
+  void Reset(const FreeSpace& space);
+
+  std::vector<float> g_;
+  std::vector<std::uint8_t> parent_;  // direction we came by
+  std::vector<std::uint32_t> seen_;   // search number; lowest bit: closed
+  std::vector<Node> heap_;
+  std::uint32_t search_ = 0;
+  int expansions_ = 0;
+};
+
+/// Nearest free cell centre to p_W within `radius`, by distance and then lattice order. False if
+/// there is none. Does not allocate.
+bool NearestFreePoint(const FreeSpace& space, const Eigen::Vector3d& p_W, double radius,
+                      Eigen::Vector3d* free_W);
+
+}  // namespace touchdown::planning

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A rolling window of log-odds cells, addressed modulo its power-of-two size so that moving it copies
+// nothing. Log-odds are kept in steps of 1/16 in one byte. Inflation is incremental: every cell holds
+// the number of occupied cells whose ball covers it, so that one flip costs one ball and a query one
+// load. Fusion as in A. Hornung et al., "OctoMap", Autonomous Robots 2013, section 3: rays clear,
+// end points hit, one update per cell and frame in which hits win.
+
+#include "touchdown/planning/occupancy_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "touchdown/planning/voxel_traversal.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kStepsPerLogOdds = 16.0;
+// The certificate's chords leave the curve by up to this much; the inflation makes up for it [m].
+constexpr double kSagitta = 0.002;
+// Never observed. Outside the clamps, so that no update can reach it.
+constexpr std::int8_t kUnknown = -128;
+
+std::int8_t Quantise(double probability) {
+  return static_cast<std::int8_t>(
+      std::lround(kStepsPerLogOdds * std::log(probability / (1.0 - probability))));
+}
+
+void Require(bool ok, const std::string& sentence) {
+  if (!ok) throw std::invalid_argument("OccupancyMap: " + sentence);
+}
+
+}  // namespace
+
+OccupancyMap::OccupancyMap(const OccupancyMapOptions& options) : options_(options) {
+  const auto number = [](double x) { return std::to_string(x); };
+  Require(options.resolution > 0.0 && options.resolution <= 1.0,
+          "resolution is " + number(options.resolution) + " m, it must be in (0, 1]");
+  Require((options.size_log2.array() >= 4).all() && (options.size_log2.array() <= 10).all(),
+          "size_log2 must be in [4, 10] on every axis");
+  Require(options.inflation_radius >= 0.0 && options.inflation_radius <= 10 * options.resolution,
+          "inflation_radius is " + number(options.inflation_radius) + " m, it must be in [0, " +
+              number(10 * options.resolution) + "]");
+  Require(options.probability_min > 0.0 && options.probability_min < options.probability_miss &&
+              options.probability_miss < 0.5 && options.probability_hit > 0.5 &&
+              options.probability_hit < options.probability_max && options.probability_max < 1.0,
+          "probabilities must satisfy 0 < min < miss < 0.5 < hit < max < 1");
+  hit_ = Quantise(options.probability_hit);
+  miss_ = Quantise(options.probability_miss);
+  min_ = Quantise(options.probability_min);
+  max_ = Quantise(options.probability_max);
+  occupied_ = Quantise(options.probability_occupied);
+  Require(occupied_ > 0 && occupied_ <= max_,
+          "probability_occupied is " + number(options.probability_occupied) +
+              ", it must be in (0.5, probability_max]");
+
+  for (int c = 0; c < 3; ++c) size_[c] = 1 << options.size_log2[c];
+  mask_ = size_ - CellIndex::Ones();
+  const auto cells = static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
+                     static_cast<std::size_t>(size_.z());
+  log_odds_.assign(cells, kUnknown);
+  inflation_.assign(cells, 0);
+  stamp_.assign(cells, 0);
+
+  // A cell is blocked if any of its points is nearer than the radius to any point of an occupied cell.
+  const double reach = (options.inflation_radius + kSagitta) / options.resolution;
+  const int n = static_cast<int>(std::ceil(reach)) + 1;
+  for (int z = -n; z <= n; ++z) {
+    for (int y = -n; y <= n; ++y) {
+      for (int x = -n; x <= n; ++x) {
+        const auto gap = [](int i) { return std::max(0, std::abs(i) - 1); };
+        const double distance = std::sqrt(gap(x) * gap(x) + gap(y) * gap(y) + gap(z) * gap(z));
+        const bool itself = x == 0 && y == 0 && z == 0;
+        if (itself || (options.inflation_radius > 0.0 && distance < reach)) {
+          ball_.emplace_back(x, y, z);
+        }
+      }
+    }
+  }
+  touched_.reserve(1 << 17);
+  flips_.reserve(1 << 14);
+  Recentre(Eigen::Vector3d::Zero());
+}
+
+bool OccupancyMap::IsOccupied(const CellIndex& cell) const {
+  return InWindow(cell) && log_odds_[Address(cell)] >= occupied_;
+}
+
+bool OccupancyMap::IsKnown(const CellIndex& cell) const {
+  return InWindow(cell) && log_odds_[Address(cell)] != kUnknown;
+}
+
+void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
+  flips_.clear();
+  const CellIndex target = CellOf(p_W) - size_ / 2;
+  const CellIndex shift = target - origin_;
+  if (shift.isZero()) return;
+  // Forget what leaves, slab by slab, while its ball can still be taken back.
+  for (int axis = 0; axis < 3; ++axis) {
+    const int count = std::min(std::abs(shift[axis]), size_[axis]);
+    CellIndex lo = origin_, hi = origin_ + size_;
+    if (shift[axis] > 0) hi[axis] = lo[axis] + count;
+    if (shift[axis] < 0) lo[axis] = hi[axis] - count;
+    if (count == 0) continue;
+    for (int z = lo.z(); z < hi.z(); ++z) {
+      for (int y = lo.y(); y < hi.y(); ++y) {
+        for (int x = lo.x(); x < hi.x(); ++x) {
+          const CellIndex cell(x, y, z);
+          if (log_odds_[Address(cell)] != kUnknown) SetLogOdds(cell, kUnknown);
+        }
+      }
+    }
+  }
+  // Cells that enter take over addresses of cells that left: their inflation is of obstacles still in
+  // the window only if it is counted anew.
+  const CellIndex old_origin = origin_;
+  origin_ = target;
+  CellIndex cell;
+  for (cell.z() = origin_.z(); cell.z() < origin_.z() + size_.z(); ++cell.z()) {
+    for (cell.y() = origin_.y(); cell.y() < origin_.y() + size_.y(); ++cell.y()) {
+      for (cell.x() = origin_.x(); cell.x() < origin_.x() + size_.x(); ++cell.x()) {
+        const bool stayed =
+            ((cell - old_origin).array() >= 0).all() && ((cell - old_origin - size_).array() < 0).all();
+        if (!stayed) inflation_[Address(cell)] = 0;
+      }
+    }
+  }
+  for (cell.z() = origin_.z(); cell.z() < origin_.z() + size_.z(); ++cell.z()) {
+    for (cell.y() = origin_.y(); cell.y() < origin_.y() + size_.y(); ++cell.y()) {
+      for (cell.x() = origin_.x(); cell.x() < origin_.x() + size_.x(); ++cell.x()) {
+        if (log_odds_[Address(cell)] < occupied_) continue;
+        for (const CellIndex& offset : ball_) {
+          const CellIndex near = cell + offset;
+          const bool entered = InWindow(near) && !(((near - old_origin).array() >= 0).all() &&
+                                                   ((near - old_origin - size_).array() < 0).all());
+          if (entered) ++inflation_[Address(near)];
+        }
+      }
+    }
+  }
+}
+
+void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded) {
+  flips_.clear();
+  touched_.clear();
+  frame_ += 2;  // the lowest bit of a stamp says "hit"
+  const estimation::CameraIntrinsics& k = frame.intrinsics;
+  for (int v = 0; v < k.height; ++v) {
+    for (int u = 0; u < k.width; ++u) {
+      const double depth = frame.depth[static_cast<std::size_t>(v * k.width + u)];
+      Eigen::Vector3d ray_C((u + 0.5 - k.cx) / k.focal, (v + 0.5 - k.cy) / k.focal, 1.0);
+      const double per_depth = ray_C.norm();
+      const bool returned = std::isfinite(depth);
+      const double range = returned ? depth * per_depth : frame.max_range;
+      if (range < options_.min_ray) continue;
+      const Eigen::Vector3d end = frame.p_WC + frame.R_WC * (ray_C * (range / per_depth));
+      MarkRay(frame.p_WC, end, returned, excluded);
+    }
+  }
+  for (const CellIndex& cell : touched_) {
+    const std::size_t address = Address(cell);
+    const bool hit = (stamp_[address] & 1u) != 0u;
+    const int old = log_odds_[address] == kUnknown ? 0 : log_odds_[address];
+    const int updated = std::clamp<int>(old + (hit ? hit_ : miss_), min_, max_);
+    SetLogOdds(cell, static_cast<std::int8_t>(updated));
+  }
+}
+
+void OccupancyMap::MarkRay(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool hit,
+                           const ExcludedVolume& excluded) {
+  const bool pad = excluded.radius > 0.0 && to.z() < excluded.top &&
+                   (to.head<2>() - excluded.centre).norm() < excluded.radius;
+  const bool counts = hit && to.z() > options_.ground_height && !pad;
+  const CellIndex last = CellOf(to);
+  TraverseCells(from, to, options_.resolution, [&](const CellIndex& cell) {
+    if (!InWindow(cell)) return false;
+    const bool end = cell == last;
+    // The end cell of a return that does not count is neither free nor occupied.
+    if (!end) Vote(cell, false);
+    if (end && counts) Vote(cell, true);
+    if (end && !hit) Vote(cell, false);
+    return true;
+  });
+}
+
+void OccupancyMap::Vote(const CellIndex& cell, bool hit) {
+  std::uint32_t& stamp = stamp_[Address(cell)];
+  if ((stamp & ~1u) != frame_) {
+    stamp = frame_;
+    touched_.push_back(cell);
+  }
+  if (hit) stamp |= 1u;
+}
+
+void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
+  flips_.clear();
+  const CellIndex cell = CellOf(p_W);
+  if (InWindow(cell)) SetLogOdds(cell, max_);
+}
+
+void OccupancyMap::Clear(const ExcludedVolume& excluded) {
+  flips_.clear();
+  if (!(excluded.radius > 0.0)) return;
+  const double r = excluded.radius;
+  const CellIndex lo = CellOf({excluded.centre.x() - r, excluded.centre.y() - r, 0.0});
+  const CellIndex hi = CellOf({excluded.centre.x() + r, excluded.centre.y() + r, excluded.top});
+  CellIndex cell;
+  for (cell.z() = lo.z(); cell.z() <= hi.z(); ++cell.z()) {
+    for (cell.y() = lo.y(); cell.y() <= hi.y(); ++cell.y()) {
+      for (cell.x() = lo.x(); cell.x() <= hi.x(); ++cell.x()) {
+        const bool inside = (CentreOf(cell).head<2>() - excluded.centre).norm() < r;
+        if (inside && IsOccupied(cell)) SetLogOdds(cell, min_);
+      }
+    }
+  }
+}
+
+void OccupancyMap::SetLogOdds(const CellIndex& cell, std::int8_t value) {
+  std::int8_t& stored = log_odds_[Address(cell)];
+  const bool was = stored >= occupied_;
+  const bool is = value >= occupied_;
+  stored = value;
+  if (was == is) return;
+  Inflate(cell, is ? 1 : -1);
+  flips_.push_back({cell, is});
+}
+
+void OccupancyMap::Inflate(const CellIndex& cell, int increment) {
+  for (const CellIndex& offset : ball_) {
+    const CellIndex near = cell + offset;
+    if (InWindow(near)) {
+      std::uint16_t& count = inflation_[Address(near)];
+      count = static_cast<std::uint16_t>(count + increment);
+    }
+  }
+}
+
+}  // namespace touchdown::planning

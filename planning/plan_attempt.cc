@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One attempt at a plan: solve without obstacles, then check / bind / solve until the whole curve is
+// clear. Pairs start empty at every attempt, so that none outlives the obstacle it was made for; the
+// side of an obstacle is kept by taking the committed curve, while it is clear, as the guide path,
+// and only else a new A* path.
+
+#include "touchdown/planning/plan_attempt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/planning/stage_timer.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kSegmentDuration = 0.20;  // [s], aimed at
+constexpr int kFewestSegments = 12;
+constexpr int kMostSegments = 64;
+constexpr double kPressure = 1.6;          // weight of the pairs grows by this every round
+constexpr double kGuideStep = 0.05;        // sampling of the committed curve as a guide [s]
+constexpr double kFreeStartRadius = 1.0;   // how far a blocked start looks for free space [m]
+
+int SegmentsFor(double duration) {
+  const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
+  // Steps of four keep the number of prepared problems small.
+  return std::clamp((wanted + 3) / 4 * 4, kFewestSegments, kMostSegments);
+}
+
+void SampleGuide(const UniformBspline& curve, double t_from, GuidePath* guide) {
+  guide->clear();
+  for (double t = std::max(t_from, curve.t0()); t < curve.t_end(); t += kGuideStep) {
+    guide->push_back(curve.Evaluate(t).p_WB);
+  }
+  guide->push_back(curve.Evaluate(curve.t_end()).p_WB);
+}
+
+}  // namespace
+
+PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
+    : options_(options), backends_(backends) {
+  // Refusals surface here, not in the middle of a flight.
+  PreparedFor(options.min_duration, options.arrival);
+}
+
+PlanAttempt::Prepared& PlanAttempt::PreparedFor(double duration, ArrivalMode arrival) {
+  const int segments = SegmentsFor(duration);
+  Prepared& prepared = prepared_[{segments, arrival}];
+  if (!prepared.problem) {
+    LandingProblemOptions problem = options_.problem;
+    problem.arrival = arrival;
+    problem.limits = options_.limits;
+    problem.min_duration = options_.min_duration;
+    problem.max_duration = options_.max_duration;
+    prepared.problem = std::make_unique<LandingProblem>(segments, problem);
+    prepared.backend = solvers::MakeBackend(backends_, options_.backend);
+    prepared.backend->Prepare(prepared.problem->view());
+  }
+  return prepared;
+}
+
+ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
+  Prepared& prepared = PreparedFor(request.duration, request.arrival);
+  LandingProblem& problem = *prepared.problem;
+  problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
+  problem.SetDuration(request.duration);
+  pairs_.clear();
+  Eigen::VectorXd y = problem.Guess();
+  solvers::Stop stop;
+  stop.max_iterations = options_.max_iterations;
+  double pressure = 1.0;
+
+  for (int round = 0;; ++round) {
+    problem.SetPairs(pairs_);
+    problem.SetPairWeightScale(pressure);
+    {
+      StageTimer timer(&result->times.solve);
+      prepared.backend->Solve(problem.view(), y, stop, &result->solver);
+    }
+    ++result->solves;
+    if (round > 0) ++result->rebinds;
+    if (!result->solver.usable()) return ReplanReason::kSolverFailed;
+    y = result->solver.x;
+    result->curve = problem.Curve(y);
+    {
+      StageTimer timer(&result->times.check);
+      FindBlockedRuns(result->curve, request.t0, *request.space, &runs_);
+    }
+    if (runs_.empty() || round == options_.max_rebinds) break;
+    const ReplanReason reason =
+        Bind(request, result->curve, static_cast<std::size_t>(problem.max_pairs()), result);
+    if (reason != ReplanReason::kNone) return reason;
+    if (round > 0) pressure *= kPressure;
+  }
+  result->pairs = static_cast<int>(pairs_.size());
+
+  StageTimer timer(&result->times.certificate);
+  const SplineState wanted =
+      EndStateAt(*request.pad, request.target, result->curve.t_end()).state;
+  result->certificate =
+      Certify(result->curve, request.t0, &wanted, options_.limits, *request.space);
+  if (result->certificate.passed()) return ReplanReason::kNone;
+  if (!result->certificate.clear && !result->certificate.escaping) {
+    return runs_.front().at_start ? ReplanReason::kStartBlocked : ReplanReason::kCollisionRemains;
+  }
+  return ReplanReason::kLimitsExceeded;
+}
+
+ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
+                               std::size_t max_pairs, ReplanResult* result) {
+  for (const BlockedRun& run : runs_) {
+    if (run.at_end) return ReplanReason::kGoalBlocked;
+    GuidePath guide;
+    const ReplanReason reason = FindGuide(request, curve, run, &guide, result);
+    if (reason != ReplanReason::kNone) return reason;
+    StageTimer timer(&result->times.pairs);
+    BindPairs(curve, run, guide, *request.space, max_pairs, &pairs_);
+  }
+  return ReplanReason::kNone;
+}
+
+ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
+                                    const BlockedRun& run, GuidePath* guide,
+                                    ReplanResult* result) {
+  StageTimer timer(&result->times.search);
+  if (run.at_start) {
+    // Out of the inflated zone by the shortest way.
+    Eigen::Vector3d free_W;
+    if (!NearestFreePoint(*request.space, request.start.p, kFreeStartRadius, &free_W)) {
+      return ReplanReason::kStartBlocked;
+    }
+    *guide = {free_W};
+    return ReplanReason::kNone;
+  }
+  if (request.previous && request.previous->t_end() > run.t_out &&
+      !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space))) {
+    SampleGuide(*request.previous, request.t0, guide);
+    return ReplanReason::kNone;
+  }
+  const SearchStatus status =
+      search_.Search(*request.space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
+                     options_.max_expansions, guide);
+  if (status != SearchStatus::kFound) return ReplanReason::kSearchFailed;
+  result->guide_paths.push_back(*guide);
+  return ReplanReason::kNone;
+}
+
+}  // namespace touchdown::planning

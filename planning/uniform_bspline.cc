@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Evaluation of a uniform cubic B-spline by its basis matrix, and bounds of its derivatives by the
+// convex hull of their Bezier points. Eq. 12-15 of the paper; C. de Boor, "A Practical Guide to
+// Splines".
+
+#include "touchdown/planning/uniform_bspline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace touchdown::planning {
+
+UniformBspline::UniformBspline() : control_points_(ControlPoints::Zero(3, 4)) {}
+
+UniformBspline::UniformBspline(ControlPoints control_points, double interval, double t0)
+    : control_points_(std::move(control_points)), h_(interval), t0_(t0) {
+  if (control_points_.cols() < 4) {
+    throw std::invalid_argument("UniformBspline: " + std::to_string(control_points_.cols()) +
+                                " control points, it needs at least 4");
+  }
+  if (!(h_ > 0.0) || !std::isfinite(h_)) {
+    throw std::invalid_argument("UniformBspline: interval is " + std::to_string(h_) +
+                                " s, it must be positive and finite");
+  }
+  if (!std::isfinite(t0_) || !control_points_.allFinite()) {
+    throw std::invalid_argument("UniformBspline: start time or a control point is not finite");
+  }
+}
+
+FlatState UniformBspline::Evaluate(double t) const {
+  const double s = std::clamp((t - t0_) / h_, 0.0, static_cast<double>(segments()));
+  const int i = std::min(static_cast<int>(s), segments() - 1);
+  const double u = s - i;
+  const auto q0 = control_points_.col(i);
+  const auto q1 = control_points_.col(i + 1);
+  const auto q2 = control_points_.col(i + 2);
+  const auto q3 = control_points_.col(i + 3);
+  const double w = 1.0 - u;
+
+  FlatState out;
+  out.p_WB = (w * w * w * q0 + (4.0 - 6.0 * u * u + 3.0 * u * u * u) * q1 +
+              (1.0 + 3.0 * u + 3.0 * u * u - 3.0 * u * u * u) * q2 + u * u * u * q3) /
+             6.0;
+  out.v_WB = (-w * w * q0 + (3.0 * u * u - 4.0 * u) * q1 + (1.0 + 2.0 * u - 3.0 * u * u) * q2 +
+              u * u * q3) /
+             (2.0 * h_);
+  out.a_WB = (w * q0 + (3.0 * u - 2.0) * q1 + (1.0 - 3.0 * u) * q2 + u * q3) / (h_ * h_);
+  out.j_WB = (-q0 + 3.0 * q1 - 3.0 * q2 + q3) / (h_ * h_ * h_);
+  return out;
+}
+
+SplineState UniformBspline::AtKnot(int k) const {
+  const auto q0 = control_points_.col(k);
+  const auto q1 = control_points_.col(k + 1);
+  const auto q2 = control_points_.col(k + 2);
+  return {(q0 + 4.0 * q1 + q2) / 6.0, (q2 - q0) / (2.0 * h_), (q0 - 2.0 * q1 + q2) / (h_ * h_)};
+}
+
+DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
+  const ControlPoints& q = curve.control_points();
+  const double h = curve.interval();
+  const int n = static_cast<int>(q.cols());
+  DerivativeBounds bounds;
+  // Bezier points of the velocity on segment i: v at knot i, V_{i+1}, v at knot i + 1. The first and
+  // the last derivative control point, V_0 and V_{N-2}, are no Bezier points.
+  for (int k = 0; k <= curve.segments(); ++k) {
+    const SplineState knot = curve.AtKnot(k);
+    bounds.speed = std::max(bounds.speed, knot.v.norm());
+    bounds.acceleration = std::max(bounds.acceleration, knot.a.norm());
+  }
+  for (int i = 1; i + 2 < n; ++i) {
+    bounds.speed = std::max(bounds.speed, (q.col(i + 1) - q.col(i)).norm() / h);
+  }
+  return bounds;
+}
+
+}  // namespace touchdown::planning
