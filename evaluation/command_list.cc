@@ -23,7 +23,8 @@ Json ListBackends(const Registries& registries) {
 }
 
 Json ListPlanners() {
-  return Json::array({{{"name", FindScenarioKey("planner")->get(Scenario{})},
+  const Scenario defaults;
+  return Json::array({{{"name", FindScenarioKey("planner")->get(defaults)},
                        {"description", "moving-endpoint B-spline landing planner"}}});
 }
 

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of one landing: plan view, side view, approach in the pad's frame, time history.
+
+    /usr/bin/python3 -m touchdown_report.landing RECORD OUT.png
+"""
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.collections import LineCollection  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
+
+from touchdown_report import bspline  # noqa: E402
+from touchdown_report.record import Record, RecordError  # noqa: E402
+
+# Okabe and Ito's palette: distinct for colour-blind readers as well.
+MODE_COLOURS = {
+    "hovering": "#999999",
+    "tracking": "#0072B2",
+    "landing": "#D55E00",
+    "disarmed": "#009E73",
+    "hold": "#E69F00",
+    "go_around": "#CC79A7",
+    "emergency_stop": "#000000",
+}
+PAD_COLOUR = "#2B2B2B"
+PLAN_COLOUR = "#56B4E9"
+BUILDING_FACE = "#DDD8CF"
+BUILDING_EDGE = "#8C857A"
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.edgecolor": "#BBBBBB",
+    "axes.labelcolor": "#333333",
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#EEEEEE",
+    "axes.axisbelow": True,
+    "xtick.color": "#555555",
+    "ytick.color": "#555555",
+}
+
+
+def title_lines(record):
+    """Headline with the outcome, and a line with the figures."""
+    result = record.result
+    what = result["outcome"].replace("_", " ")
+    headline = f"{result['scenario']}: {what}"
+    figures = []
+    if result["landed"]:
+        headline += f" after {result['time_to_land_s']:.1f} s"
+        touchdown = result["touchdown"]
+        speed = np.linalg.norm(touchdown["relative_velocity_mps"])
+        figures += [
+            f"touchdown error {touchdown['error_m']:.3f} m",
+            f"relative speed {speed:.2f} m/s",
+        ]
+    if result["min_clearance_m"] is not None:
+        figures.append(f"least clearance {result['min_clearance_m']:.2f} m")
+    figures += [f"{result['replans']} replans", f"seed {result['seed']}"]
+    return headline, "  ·  ".join(figures)
+
+
+def coloured_path(axes, x, y, modes, **kwargs):
+    """The curve (x, y), each piece in the colour of its mode."""
+    points = np.stack([x, y], axis=1)
+    pieces = np.stack([points[:-1], points[1:]], axis=1)
+    colours = [MODE_COLOURS.get(mode, "#000000") for mode in modes[:-1]]
+    axes.add_collection(LineCollection(pieces, colors=colours, capstyle="round", **kwargs))
+
+
+def deck_outline(pad_row, half):
+    """Corners of the square deck in the world, closed, shape (5, 2)."""
+    _, px, py, _, yaw = pad_row
+    corners = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1], [1, 1]]) * half
+    c, s = np.cos(yaw), np.sin(yaw)
+    return corners @ np.array([[c, s], [-s, c]]) + [px, py]
+
+
+def draw_obstacles(axes, obstacles, side):
+    """Outlines from above, or from the south with the nearer ones in front."""
+    order = sorted(obstacles, key=lambda o: -o["centre"][1]) if side else obstacles
+    for obstacle in order:
+        (cx, cy, cz), (sx, sy, sz) = obstacle["centre"], obstacle["size"]
+        look = {"facecolor": BUILDING_FACE, "edgecolor": BUILDING_EDGE, "lw": 0.8, "zorder": 1}
+        if side:
+            axes.add_patch(
+                Rectangle((cx - sx / 2, cz - sz / 2), sx, sz, **{**look, "alpha": 0.45})
+            )
+        elif obstacle["kind"] == "cylinder":
+            axes.add_patch(Circle((cx, cy), sx / 2, **look))
+        else:
+            axes.add_patch(Rectangle((cx - sx / 2, cy - sy / 2), sx, sy, **look))
+            axes.annotate(
+                f"{sz:.0f} m", (cx, cy), ha="center", va="center", fontsize=7, color=BUILDING_EDGE
+            )
+
+
+def draw_world(axes, record, contact, half, side):
+    """Plan view (side=False: x, y) or side view (side=True: x, z)."""
+    down = 3 if side else 2
+    vehicle, pad = record.vehicle[: contact + 1], record.pad[: contact + 1]
+    draw_obstacles(axes, record.obstacles, side)
+    for points in record.plans.values():
+        curve = bspline.sample(points)
+        axes.plot(curve[:, 0], curve[:, down - 1], color=PLAN_COLOUR, lw=0.5, alpha=0.35, zorder=2)
+    axes.plot(pad[:, 1], pad[:, down], color=PAD_COLOUR, lw=1.6, ls=(0, (4, 2)), zorder=3)
+    coloured_path(
+        axes, vehicle[:, 1], vehicle[:, down], record.modes[: contact + 1], lw=2.4, zorder=4
+    )
+    axes.plot(*vehicle[0, [1, down]], "o", ms=7, mfc="white", mec="#333333", mew=1.5, zorder=5)
+    axes.plot(*pad[0, [1, down]], "s", ms=6, mfc="white", mec=PAD_COLOUR, mew=1.5, zorder=5)
+    for index, fill in ((0, "none"), (contact, "#FFFFFF")):
+        row = record.pad[index]
+        if side:
+            axes.plot([row[1] - half, row[1] + half], [row[3], row[3]], color=PAD_COLOUR, lw=2.5)
+        else:
+            axes.add_patch(
+                Polygon(deck_outline(row, half), fc=fill, ec=PAD_COLOUR, lw=1.2, zorder=3)
+            )
+    if record.result["landed"]:
+        axes.plot(*vehicle[-1, [1, down]], "*", ms=15, mfc="#009E73", mec="white", zorder=6)
+    else:
+        axes.plot(*vehicle[-1, [1, down]], "X", ms=11, mfc="#CC0000", mec="white", zorder=6)
+
+
+def frame_plan_view(plan, side, record, contact):
+    """Limits that hold both paths and what stands near them."""
+    everything = np.vstack([record.vehicle[: contact + 1, 1:3], record.pad[: contact + 1, 1:3]])
+    lo, hi = everything.min(axis=0) - 2.5, everything.max(axis=0) + 2.5
+    plan.set_xlim(lo[0], hi[0])
+    plan.set_ylim(lo[1], hi[1])
+    plan.set_aspect("equal", adjustable="box")
+    top = record.vehicle[: contact + 1, 3].max() + 1.2
+    side.set_xlim(lo[0], hi[0])
+    side.set_ylim(0.0, top)
+    side.set_aspect("equal", adjustable="box")
+    plan.set_ylabel("y [m]")
+    side.set_ylabel("z [m]")
+    side.set_xlabel("x [m]")
+    plan.set_title("Plan view")
+    side.set_title("Side view from the south")
+
+
+def pad_frame(record, contact):
+    """Vehicle relative to the pad along the pad's axes, shape (n, 3)."""
+    offset = record.vehicle[: contact + 1, 1:4] - record.pad[: contact + 1, 1:4]
+    yaw = record.pad[: contact + 1, 4]
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.stack(
+        [c * offset[:, 0] + s * offset[:, 1], -s * offset[:, 0] + c * offset[:, 1], offset[:, 2]],
+        axis=1,
+    )
+
+
+def draw_pad_frame(axes, record, contact, half):
+    """The last metres as the deck sees them."""
+    relative = pad_frame(record, contact)
+    axes.add_patch(Rectangle((-half, -half), 2 * half, 2 * half, fc="#F4F1EC", ec=PAD_COLOUR, lw=1.4))
+    axes.add_patch(Rectangle((-0.075, -0.075), 0.15, 0.15, fc="none", ec=PAD_COLOUR, lw=0.8))
+    for cx in (-0.36, 0.36):
+        for cy in (-0.36, 0.36):
+            axes.add_patch(
+                Rectangle((cx - 0.2, cy - 0.2), 0.4, 0.4, fc="none", ec="#BBBBBB", lw=0.8)
+            )
+    coloured_path(axes, relative[:, 0], relative[:, 1], record.modes[: contact + 1], lw=2.0)
+    mark = ("*", 14, "#009E73") if record.result["landed"] else ("X", 10, "#CC0000")
+    axes.plot(*relative[-1, :2], mark[0], ms=mark[1], mfc=mark[2], mec="white", zorder=5)
+    axes.set_xlim(-2 * half, 2 * half)
+    axes.set_ylim(-2 * half, 2 * half)
+    axes.set_aspect("equal", adjustable="box")
+    axes.set_xlabel("ahead of the pad's centre [m]")
+    axes.set_ylabel("to its left [m]")
+    axes.set_title("In the pad's frame")
+
+
+def draw_history(axes, record, contact):
+    """Horizontal distance to the pad and height above it over time, modes as bands."""
+    t = record.vehicle[: contact + 1, 0]
+    relative = pad_frame(record, contact)
+    modes = record.modes[: contact + 1]
+    begin = 0
+    for i in range(1, len(modes) + 1):
+        if i == len(modes) or modes[i] != modes[begin]:
+            axes.axvspan(
+                t[begin], t[min(i, len(t) - 1)], color=MODE_COLOURS.get(modes[begin]), alpha=0.13, lw=0
+            )
+            begin = i
+    axes.plot(t, np.hypot(relative[:, 0], relative[:, 1]), color="#333333", lw=1.6)
+    axes.plot(t, relative[:, 2], color="#333333", lw=1.3, ls=(0, (5, 2)))
+    axes.set_xlim(t[0], max(t[-1], t[0] + 0.1))
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("[m]")
+    axes.set_title("Distance to the pad")
+    axes.legend(
+        [Line2D([], [], color="#333333"), Line2D([], [], color="#333333", ls=(0, (5, 2)))],
+        ["horizontal", "height"],
+        frameon=False,
+        loc="upper right",
+    )
+
+
+def legend_entries(record, contact):
+    """Handles for the states that occurred and for everything else drawn."""
+    seen = list(dict.fromkeys(record.modes[: contact + 1]))
+    handles = [
+        Line2D([], [], color=MODE_COLOURS.get(m, "k"), lw=2.4, label=m.replace("_", " "))
+        for m in seen
+    ]
+    handles += [
+        Line2D([], [], color=PAD_COLOUR, lw=1.6, ls=(0, (4, 2)), label="pad vehicle"),
+        Line2D([], [], color=PLAN_COLOUR, lw=1.0, label="plans as they were made"),
+        Line2D([], [], marker="o", ls="", mfc="white", mec="#333333", mew=1.5, label="start"),
+    ]
+    if record.result["landed"]:
+        handles.append(
+            Line2D([], [], marker="*", ls="", ms=12, mfc="#009E73", mec="white", label="touchdown")
+        )
+    return handles
+
+
+def draw(record, out_path):
+    """Draws the picture of `record` to `out_path` (format by its extension)."""
+    contact = record.contact_index()
+    half = 0.5 * float(record.scenario_value("pad", "deck_size") or 1.5)
+    with plt.rc_context(STYLE):
+        figure = plt.figure(figsize=(13.0, 8.6), dpi=140)
+        grid = figure.add_gridspec(
+            2, 2, width_ratios=[1.75, 1.0], height_ratios=[2.4, 1.0],
+            left=0.055, right=0.985, bottom=0.105, top=0.885, hspace=0.22, wspace=0.14,
+        )  # fmt: skip
+        plan, side = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
+        close, history = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
+        draw_world(plan, record, contact, half, side=False)
+        draw_world(side, record, contact, half, side=True)
+        frame_plan_view(plan, side, record, contact)
+        draw_pad_frame(close, record, contact, half)
+        draw_history(history, record, contact)
+        headline, figures = title_lines(record)
+        figure.text(0.055, 0.955, headline, fontsize=15, fontweight="bold", color="#222222")
+        figure.text(0.055, 0.925, figures, fontsize=10, color="#555555")
+        handles = legend_entries(record, contact)
+        figure.legend(
+            handles=handles, loc="lower center", ncol=len(handles), frameon=False,
+            bbox_to_anchor=(0.5, 0.008),
+        )  # fmt: skip
+        figure.savefig(out_path)
+        plt.close(figure)
+
+
+def main(arguments):
+    """Command line; returns the exit status."""
+    if len(arguments) != 2:
+        print("usage: python3 -m touchdown_report.landing RECORD OUT.png", file=sys.stderr)
+        return 2
+    try:
+        draw(Record(arguments[0]), arguments[1])
+    except (RecordError, OSError, ValueError) as error:
+        print(f"touchdown_report: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

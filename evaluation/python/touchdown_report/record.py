@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reading a recorded landing (docs/record.md)."""
+import json
+import os
+import sqlite3
+
+import numpy as np
+
+SUPPORTED_VERSION = "1"
+
+
+class RecordError(Exception):
+    """The file is no record that this package can read; the message is one sentence."""
+
+
+class Record:
+    """One landing: `meta`, `result` (the land --json document) and the tables as arrays."""
+
+    def __init__(self, path):
+        if not os.path.isfile(path):
+            raise RecordError(f"{path}: there is no such record.")
+        self._path = path
+        try:
+            with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+                self._read(db)
+        except sqlite3.Error as error:
+            raise RecordError(f"{path}: not a record ({error}).") from error
+
+    def _read(self, db):
+        self.meta = dict(db.execute("SELECT key, value FROM meta"))
+        if self.meta.get("version") != SUPPORTED_VERSION:
+            raise RecordError(
+                f"{self._path}: record version {self.meta.get('version')}, "
+                f"this package reads version {SUPPORTED_VERSION}."
+            )
+        self.result = json.loads(self.meta["result_json"])
+        self.vehicle = self._array(
+            db, "SELECT t, px, py, pz, vx, vy, vz FROM vehicle WHERE source = 'true' ORDER BY t"
+        )
+        self.pad = self._array(
+            db, "SELECT t, px, py, pz, yaw FROM pad WHERE source = 'true' ORDER BY t"
+        )
+        self.modes = [row[0] for row in db.execute("SELECT mode FROM mode ORDER BY t")]
+        self.events = db.execute("SELECT t, kind, text FROM event ORDER BY t").fetchall()
+        self.obstacles = [
+            dict(zip(("kind", "centre", "size"), (kind, np.array(c), np.array(s))))
+            for kind, c, s in (
+                (row[0], row[1:4], row[4:7])
+                for row in db.execute(
+                    "SELECT kind, cx, cy, cz, size_x, size_y, size_z FROM obstacle ORDER BY id"
+                )
+            )
+        ]
+        self.plans = self._plans(db)
+
+    @staticmethod
+    def _array(db, query):
+        rows = db.execute(query).fetchall()
+        if not rows:
+            raise RecordError("The record holds no states.")
+        return np.array(rows, dtype=float)
+
+    @staticmethod
+    def _plans(db):
+        """Control points of every new plan, by id."""
+        plans = {}
+        query = (
+            "SELECT c.plan, c.x, c.y, c.z FROM control_point c JOIN plan p ON p.id = c.plan "
+            "WHERE p.status = 'planned' ORDER BY c.plan, c.i"
+        )
+        for plan, x, y, z in db.execute(query):
+            plans.setdefault(plan, []).append((x, y, z))
+        return {plan: np.array(points) for plan, points in plans.items()}
+
+    def contact_index(self):
+        """Index of the last sample up to first contact; the last sample if there was none."""
+        for t, kind, _ in self.events:
+            if kind == "contact":
+                return int(np.searchsorted(self.vehicle[:, 0], t, side="right") - 1)
+        return len(self.vehicle) - 1
+
+    def scenario_value(self, group, key):
+        """One scalar of the effective scenario, as text; '' if it is not there."""
+        inside = False
+        for line in self.meta["scenario_yaml"].splitlines():
+            if not line.startswith(" "):
+                inside = line == group + ":"
+            elif inside and line.strip().startswith(key + ": "):
+                return line.split(": ", 1)[1]
+        return ""
