@@ -11,7 +11,8 @@ file(CREATE_LINK "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/include/touchdow
 function(touchdown_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                                           -Woverloaded-virtual -Wold-style-cast)
+                                           -Woverloaded-virtual -Wold-style-cast
+                                           -Wno-missing-field-initializers)
   if(TOUCHDOWN_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

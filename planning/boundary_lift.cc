@@ -160,7 +160,10 @@ void BoundaryLift::At(double h, double* l, double* dl, double* d2l) const noexce
   ends.a0.value = start_.a;
   ends.p = {end.state.p, end.derivative.p, end.second_derivative.p};
   ends.v = {end.state.v, end.derivative.v, end.second_derivative.v};
-  ends.a = {end.state.a, end.derivative.a, end.second_derivative.a};
+  // A free end acceleration is measured from zero: its reduced block holds delta itself.
+  if (!free_end_acceleration_) {
+    ends.a = {end.state.a, end.derivative.a, end.second_derivative.a};
+  }
   const double m = segments_;
   for (int i = 0; i < segments_ + 3; ++i) {
     const Moving q = ControlPoint(i, segments_, T, ends);
