@@ -39,6 +39,7 @@ struct VfsDeleter {
 };
 
 void AddText(const char* name, const std::string& text, mjVFS* vfs) {
+  if (text.empty()) throw std::invalid_argument(std::string("MJCF: ") + name + " is empty");
   const int size = static_cast<int>(text.size());
   if (mj_makeEmptyFileVFS(vfs, name, size) != 0) {
     throw std::runtime_error(std::string("MuJoCo: no room in memory for the text of ") + name);

@@ -20,7 +20,7 @@
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/drag.h"
 #include "touchdown/sim/mujoco_model.h"
-#include "touchdown/sim/true_clearance.h"
+#include "touchdown/sim/start_check.h"
 #include "touchdown/sim/vehicle_file.h"
 #include "touchdown/sim/world_mjcf.h"
 
@@ -45,35 +45,6 @@ Eigen::Map<const Eigen::Vector3d> Vec3(const mjtNum* data) {
 template <typename Vector>
 void Put(const Vector& v, mjtNum* data) {
   std::copy_n(v.data(), v.size(), data);
-}
-
-void CheckState(const estimation::VehicleState& start) {
-  const bool finite = start.p_WB.allFinite() && start.v_WB.allFinite() &&
-                      start.q_WB.coeffs().allFinite() && start.w_WB_B.allFinite();
-  if (!finite) throw std::invalid_argument("start state: not finite; allowed are finite numbers");
-  CheckWithin("start state: norm of q_WB", start.q_WB.norm(), 1.0 - 1e-6, 1.0 + 1e-6);
-}
-
-void CheckStart(const WorldConfig& config, const estimation::VehicleModel& model,
-                const PadMotion& motion) {
-  CheckState(config.start);
-  const Clearance obstacle = TrueClearance(config.obstacles, model).Nearest(config.start);
-  if (obstacle.distance <= 0.0) {
-    ThrowOutOfRange(
-        "start: distance of the vehicle to obstacle " + std::to_string(obstacle.obstacle) + " [m]",
-        obstacle.distance, "> 0");
-  }
-  const estimation::PadState pad = motion.At(0.0);
-  const ObstacleField pad_boxes({DeckBox(config.pad, pad), PadBodyBox(config.pad, pad)});
-  const double to_pad = TrueClearance(pad_boxes, model).Distance(config.start);
-  if (to_pad <= 0.0)
-    ThrowOutOfRange("start: distance of the vehicle to the pad [m]", to_pad, "> 0");
-  // Lowest point of the hull cylinder: its lower rim, or the upper one when upside down.
-  const double upright = config.start.q_WB.toRotationMatrix()(2, 2);
-  const double rim = model.hull_radius * std::sqrt(std::max(0.0, 1.0 - upright * upright));
-  const double depth = std::max(upright * model.foot_depth, -upright * model.hull_top) + rim;
-  const double height = config.start.p_WB.z() - depth;
-  if (height <= 0.0) ThrowOutOfRange("start: height above the ground [m]", height, "> 0");
 }
 
 ContactKind KindOf(GeomRole::Part vehicle, GeomRole::Part other) {
@@ -162,10 +133,9 @@ class World::Impl {
 
 World::Impl::Impl(const WorldConfig& config) : config_(config), motion_(config.pad_motion) {
   CheckWithin("timestep [s]", config.timestep, 1.0e-4, 0.005);
-  Validate(config.pad, config.pad_motion.p_start.z());
   if (config_.vehicle_mjcf.empty()) config_.vehicle_mjcf = DefaultVehicleMjcf();
   model_ = LoadVehicleModel(config_.vehicle_mjcf);
-  CheckStart(config_, model_, motion_);
+  CheckStart(config_, model_);
   mujoco_ = CompileMjcf(WorldMjcf(config_), config_.vehicle_mjcf);
   data_ = MakeMujocoData(*mujoco_);
   contacts_.reserve(static_cast<std::size_t>(mujoco_->nconmax));

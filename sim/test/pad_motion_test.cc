@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/sim/pad_motion.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/sim/test/scenes.h"
+
+namespace touchdown::sim {
+namespace {
+
+using estimation::PadState;
+using Kind = PadMotionConfig::Kind;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+PadMotionConfig Config(Kind kind) {
+  PadMotionConfig config;
+  config.kind = kind;
+  config.p_start = {1.0, -2.0, 0.35};
+  config.heading = 0.4;
+  return config;
+}
+
+std::vector<PadMotionConfig> Motions() {
+  PadMotionConfig right = Config(Kind::kStraightTurn);
+  right.turn_angle = -2.0;
+  right.turn_rate = 0.6;
+  right.turn_ramp_s = 1.5;
+  right.phase = 3.0;
+  PadMotionConfig sharp = Config(Kind::kStraightTurn);
+  sharp.turn_angle = std::numbers::pi;
+  sharp.turn_rate = 0.5;
+  sharp.turn_ramp_s = 6.0;  // nearly all of the turn is ramp
+  sharp.turn_start = 0.0;
+  PadMotionConfig clockwise = Config(Kind::kCircle);
+  clockwise.turn_rate = -0.3;
+  return {Config(Kind::kStatic),
+          Config(Kind::kLine),
+          Config(Kind::kCircle),
+          clockwise,
+          Config(Kind::kStraightTurn),
+          right,
+          sharp};
+}
+
+TEST(PadMotion, DerivativesAreThoseOfThePosition) {
+  const double h = 1e-4;
+  for (const PadMotionConfig& config : Motions()) {
+    const PadMotion motion(config);
+    for (double t = -5.0; t < 40.0; t += 0.0937) {
+      const PadState before = motion.At(t - h);
+      const PadState now = motion.At(t);
+      const PadState after = motion.At(t + h);
+      const auto difference = [&](auto member) {
+        return Eigen::Vector3d((after.*member - before.*member) / (2.0 * h));
+      };
+      EXPECT_LT((difference(&PadState::p_WP) - now.v_WP).norm(), 1e-7);
+      EXPECT_LT((difference(&PadState::v_WP) - now.a_WP).norm(), 1e-6);
+      EXPECT_LT((difference(&PadState::a_WP) - now.j_WP).norm(), 1e-3);
+      EXPECT_NEAR((after.yaw - before.yaw) / (2.0 * h), now.yaw_rate, 1e-6);
+    }
+  }
+}
+
+// The ramp's quadrature is no difference quotient's business: Simpson's rule on v with a fine grid.
+TEST(PadMotion, PositionIsTheIntegralOfTheVelocity) {
+  for (const PadMotionConfig& config : Motions()) {
+    const PadMotion motion(config);
+    const double t_end = 30.0;
+    const int n = 6000;
+    const double h = t_end / n;
+    Eigen::Vector3d sum = motion.At(0.0).v_WP + motion.At(t_end).v_WP;
+    for (int i = 1; i < n; ++i) sum += (i % 2 == 1 ? 4.0 : 2.0) * motion.At(i * h).v_WP;
+    const Eigen::Vector3d moved = motion.At(t_end).p_WP - motion.At(0.0).p_WP;
+    EXPECT_LT((h / 3.0 * sum - moved).norm(), 1e-9);
+  }
+}
+
+TEST(PadMotion, SpeedIsConstantAlongTheHeadingAndJerkIsContinuous) {
+  for (const PadMotionConfig& config : Motions()) {
+    const PadMotion motion(config);
+    PadState last = motion.At(-5.0);
+    for (double t = -5.0; t < 40.0; t += 1e-3) {
+      const PadState pad = motion.At(t);
+      const double speed = config.kind == Kind::kStatic ? 0.0 : config.speed;
+      ASSERT_NEAR(pad.v_WP.norm(), speed, 1e-12);
+      ASSERT_NEAR(pad.v_WP.x(), speed * std::cos(pad.yaw), 1e-12);
+      ASSERT_EQ(pad.p_WP.z(), config.p_start.z());
+      ASSERT_LT((pad.a_WP - last.a_WP).norm(), 2e-3);
+      ASSERT_LT((pad.j_WP - last.j_WP).norm(), 2e-2);
+      last = pad;
+    }
+  }
+}
+
+TEST(PadMotion, StraightTurnTurnsByItsAngle) {
+  PadMotionConfig config = Config(Kind::kStraightTurn);
+  const PadMotion motion(config);
+  EXPECT_DOUBLE_EQ(motion.At(config.turn_start / config.speed - 0.01).yaw, config.heading);
+  const double turn_time = config.turn_angle / config.turn_rate + config.turn_ramp_s;
+  const PadState after = motion.At(config.turn_start / config.speed + turn_time + 0.01);
+  EXPECT_NEAR(after.yaw, config.heading + config.turn_angle, 1e-12);
+  EXPECT_EQ(after.yaw_rate, 0.0);
+  const double middle = config.turn_start / config.speed + 0.5 * turn_time;
+  EXPECT_NEAR(motion.At(middle).yaw_rate, config.turn_rate, 1e-12);
+  EXPECT_NEAR(motion.At(middle).yaw, config.heading + 0.5 * config.turn_angle, 1e-12);
+}
+
+TEST(PadMotion, CircleClosesAfterOneTurn) {
+  const PadMotionConfig config = Config(Kind::kCircle);
+  const PadMotion motion(config);
+  const double period = 2.0 * std::numbers::pi / config.turn_rate;
+  EXPECT_LT((motion.At(period).p_WP - motion.At(0.0).p_WP).norm(), 1e-9);
+  const double diameter = (motion.At(0.5 * period).p_WP - motion.At(0.0).p_WP).norm();
+  EXPECT_NEAR(diameter, 2.0 * config.speed / config.turn_rate, 1e-9);
+}
+
+TEST(PadMotion, PhaseIsAHeadStart) {
+  for (PadMotionConfig config : Motions()) {
+    if (config.kind == Kind::kStatic) continue;
+    const PadMotion motion(config);
+    config.phase += 2.5;
+    const PadMotion ahead(config);
+    for (const double t : {-3.0, 0.0, 7.3, 21.0}) {
+      EXPECT_LT((ahead.At(t).p_WP - motion.At(t + 2.5 / config.speed).p_WP).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(PadMotion, OracleKnowsTheFuture) {
+  const PadMotion motion(Config(Kind::kStraightTurn));
+  const OraclePadPrediction oracle(motion);
+  const estimation::PadPrediction& prediction = oracle;
+  for (const double t : {-1.0, 0.0, 12.34, 100.0}) {
+    EXPECT_EQ(prediction.At(t).p_WP, motion.At(t).p_WP);
+    EXPECT_EQ(prediction.At(t).j_WP, motion.At(t).j_WP);
+    EXPECT_EQ(prediction.At(t).cov_p, Eigen::Matrix2d::Zero());
+  }
+}
+
+TEST(PadMotion, RefusesByNameValueAndRange) {
+  const auto message = [](auto change) {
+    PadMotionConfig config = Config(Kind::kStraightTurn);
+    change(&config);
+    return test::MessageOf<std::invalid_argument>([&] { PadMotion{config}; });
+  };
+  EXPECT_EQ(message([](PadMotionConfig*) {}), "");
+  EXPECT_THAT(message([](PadMotionConfig* c) { c->speed = 30.0; }),
+              AllOf(HasSubstr("pad.speed is 30"), HasSubstr("[0, 20]")));
+  EXPECT_THAT(message([](PadMotionConfig* c) { c->turn_angle = 0.01; }),
+              AllOf(HasSubstr("turn_angle is 0.01"), HasSubstr("[0.075,")));
+  EXPECT_THAT(message([](PadMotionConfig* c) { c->turn_rate = std::nan(""); }),
+              HasSubstr("pad.turn_rate is nan"));
+  EXPECT_THAT(message([](PadMotionConfig* c) { c->phase = INFINITY; }), HasSubstr("pad.phase"));
+}
+
+}  // namespace
+}  // namespace touchdown::sim
