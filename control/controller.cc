@@ -4,6 +4,7 @@
 #include "touchdown/control/controller.h"
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -36,8 +37,8 @@ void Validate(const ControllerOptions& options) {
   RequirePositive("ControllerOptions.attitude_damping", options.attitude_damping);
   RequirePositive("ControllerOptions.yaw_frequency", options.yaw_frequency);
   RequirePositive("ControllerOptions.yaw_damping", options.yaw_damping);
-  Require(options.tilt_max > 0.0 && options.tilt_max < M_PI_2, "ControllerOptions.tilt_max",
-          options.tilt_max, "(0, pi/2) rad");
+  Require(options.tilt_max > 0.0 && options.tilt_max < 0.5 * std::numbers::pi,
+          "ControllerOptions.tilt_max", options.tilt_max, "(0, pi/2) rad");
   Require(options.thrust_fraction_max > 0.0 && options.thrust_fraction_max <= 1.0,
           "ControllerOptions.thrust_fraction_max", options.thrust_fraction_max, "(0, 1]");
   Require(options.thrust_fraction_min > 0.0 && options.thrust_fraction_min < 1.0,
