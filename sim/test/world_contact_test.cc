@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <string>
+#include <numbers>
 #include <thread>
 #include <vector>
 
@@ -107,7 +107,7 @@ TEST(WorldContact, FrictionOfTheDeckIsTheConfiguredOne) {
 
 TEST(WorldContact, UpsideDownItIsTheHull) {
   WorldConfig config = AbovePad(Kind::kStatic, 0.1);
-  config.start.q_WB = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+  config.start.q_WB = Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
   World world(config);
   FallUntilContact(1.0, &world);
   EXPECT_TRUE(Touches(world, ContactKind::kHullDeck));
