@@ -16,6 +16,9 @@ namespace {
 // Rounding of sums of control points; limits are met by construction with equality at times.
 constexpr double kRounding = 1e-9;
 
+// A recovery may take this long to build up its deceleration: the start's acceleration is given [s].
+constexpr double kRecoveryLag = 0.3;
+
 /// Every segment's hull stays below what is left of a start beyond the limits.
 bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
   const ControlPoints& q = curve.control_points();
@@ -23,7 +26,8 @@ bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
   const double v0 = curve.AtKnot(0).v.norm(), a0 = curve.AtKnot(0).a.norm();
   for (int i = 0; i < curve.segments(); ++i) {
     const double t = i * h;  // the profile falls: the start of a segment is its loosest instant
-    const double v_allowed = std::max(limits.speed, v0 - 0.5 * limits.acceleration * t);
+    const double recovered = 0.5 * limits.acceleration * std::max(0.0, t - kRecoveryLag);
+    const double v_allowed = std::max(limits.speed, v0 - recovered);
     // The acceleration may fade over the time that the recovery of the speed takes.
     const double a_allowed = std::max(limits.acceleration, a0 * (1.0 - 2.0 * t));
     const SplineState from = curve.AtKnot(i), to = curve.AtKnot(i + 1);

@@ -34,7 +34,7 @@ struct Certificate {
 /// Certifies `curve` from `t_from` to its end: the endpoint against `wanted` (nullptr: none is
 /// required), the limits by the convex hull, the clearance by visiting every cell of `space` that
 /// the curve passes. A start beyond a limit is certified against the recovery profile
-/// max(limit, |v0| - amax t / 2), and alike for the acceleration. Does not allocate.
+/// max(limit, |v0| - amax (t - 0.3 s) / 2), and alike for the acceleration. Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
                     const Limits& limits, const FreeSpace& space);
 

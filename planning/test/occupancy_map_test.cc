@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rolling map: fusion of synthetic depth frames, inflation against brute force, rolling.
+
+#include "touchdown/planning/occupancy_map.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "touchdown/planning/test/planning_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+OccupancyMapOptions SmallMap() {
+  OccupancyMapOptions options;
+  options.size_log2 = {6, 6, 4};
+  options.inflation_radius = 0.3;
+  return options;
+}
+
+/// A wall across the x axis at distance `wall`, seen by a camera that looks along +x.
+estimation::DepthFrame WallFrame(const Eigen::Vector3d& p_WC, double wall) {
+  estimation::DepthFrame frame;
+  frame.p_WC = p_WC;
+  frame.R_WC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  frame.max_range = 4.0;
+  frame.depth.assign(80 * 60, std::numeric_limits<float>::infinity());
+  const estimation::CameraIntrinsics& k = frame.intrinsics;
+  for (int v = 0; v < k.height; ++v) {
+    for (int u = 0; u < k.width; ++u) {
+      const Eigen::Vector3d ray((u + 0.5 - k.cx) / k.focal, (v + 0.5 - k.cy) / k.focal, 1.0);
+      const double depth = wall - p_WC.x();
+      if (depth * ray.norm() < frame.max_range) {
+        frame.depth[static_cast<std::size_t>(v * k.width + u)] = static_cast<float>(depth);
+      }
+    }
+  }
+  return frame;
+}
+
+/// The inflation recomputed from the occupied cells alone.
+void ExpectInflationIsConsistent(const OccupancyMap& map) {
+  std::vector<CellIndex> occupied;
+  CellIndex c;
+  const CellIndex lo = map.origin(), hi = map.origin() + map.size();
+  for (c.z() = lo.z(); c.z() < hi.z(); ++c.z()) {
+    for (c.y() = lo.y(); c.y() < hi.y(); ++c.y()) {
+      for (c.x() = lo.x(); c.x() < hi.x(); ++c.x()) {
+        if (map.IsOccupied(c)) occupied.push_back(c);
+      }
+    }
+  }
+  const double reach = (map.options().inflation_radius + 0.002) / map.resolution();
+  int wrong = 0;
+  for (c.z() = lo.z(); c.z() < hi.z(); ++c.z()) {
+    for (c.y() = lo.y(); c.y() < hi.y(); ++c.y()) {
+      for (c.x() = lo.x(); c.x() < hi.x(); ++c.x()) {
+        bool blocked = false;
+        for (const CellIndex& o : occupied) {
+          const Eigen::Vector3d gap =
+              ((c - o).cwiseAbs().array() - 1).max(0).matrix().cast<double>();
+          blocked = blocked || c == o || gap.norm() < reach;
+        }
+        wrong += blocked != map.IsBlocked(c);
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(OccupancyMap, SeesAWallAndWhatIsFreeBeforeIt) {
+  OccupancyMap map(SmallMap());
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  const CellIndex wall = map.CellOf({2.01, 0.05, 0.85}), before = map.CellOf({1.5, 0.05, 0.85}),
+                  behind = map.CellOf({2.6, 0.05, 0.85});
+  EXPECT_FALSE(map.IsKnown(wall));
+  EXPECT_FALSE(map.IsBlocked(wall));  // unknown is free
+  map.Integrate(WallFrame(p_WC, 2.0), {});
+  map.Integrate(WallFrame(p_WC, 2.0), {});
+  EXPECT_TRUE(map.IsOccupied(wall));
+  EXPECT_TRUE(map.IsKnown(before));
+  EXPECT_FALSE(map.IsOccupied(before));
+  EXPECT_FALSE(map.IsKnown(behind));
+  EXPECT_TRUE(map.IsBlocked(map.CellOf({1.75, 0.05, 0.85})));  // inflated
+  EXPECT_FALSE(map.IsBlocked(before));
+  ExpectInflationIsConsistent(map);
+}
+
+TEST(OccupancyMap, ForgetsAnObstacleThatHasGone) {
+  OccupancyMap map(SmallMap());
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  for (int i = 0; i < 5; ++i) map.Integrate(WallFrame(p_WC, 2.0), {});
+  for (int i = 0; i < 6; ++i) map.Integrate(WallFrame(p_WC, 3.0), {});
+  EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.05, 0.85})));
+  EXPECT_TRUE(map.IsOccupied(map.CellOf({3.01, 0.05, 0.85})));
+  ExpectInflationIsConsistent(map);
+}
+
+TEST(OccupancyMap, LeavesOutGroundAndPad) {
+  OccupancyMap map(SmallMap());
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  const ExcludedVolume pad{{2.0, 0.0}, 0.5, 1.0};
+  for (int i = 0; i < 3; ++i) map.Integrate(WallFrame(p_WC, 2.0), pad);
+  EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.05, 0.85})));
+  EXPECT_TRUE(map.IsOccupied(map.CellOf({2.01, 0.05, 1.15})));   // above its top
+  EXPECT_TRUE(map.IsOccupied(map.CellOf({2.01, 0.75, 0.85})));   // beside it
+  EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.75, 0.05})));  // ground
+}
+
+TEST(OccupancyMap, ClearFreesThePadsVolume) {
+  OccupancyMap map(SmallMap());
+  map.SetOccupied({0.55, 0.05, 0.15});
+  map.SetOccupied({0.55, 0.05, 0.65});
+  map.Clear({{0.5, 0.0}, 0.4, 0.6});
+  EXPECT_FALSE(map.IsOccupied(map.CellOf({0.55, 0.05, 0.15})));
+  EXPECT_TRUE(map.IsOccupied(map.CellOf({0.55, 0.05, 0.65})));
+  ASSERT_EQ(map.flips().size(), 1u);
+  EXPECT_FALSE(map.flips().front().occupied);
+  ExpectInflationIsConsistent(map);
+}
+
+TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
+  OccupancyMap map(SmallMap());
+  Draw draw(11);
+  for (int step = 0; step < 8; ++step) {
+    for (int i = 0; i < 6; ++i) {
+      map.SetOccupied(map.CentreOf(map.origin()) +
+                      Eigen::Vector3d(draw.Uniform(0, 6.3), draw.Uniform(0, 6.3),
+                                      draw.Uniform(0, 1.5)));
+    }
+    std::set<std::array<int, 3>> kept;
+    CellIndex c;
+    const CellIndex lo = map.origin(), hi = map.origin() + map.size();
+    for (c.z() = lo.z(); c.z() < hi.z(); ++c.z()) {
+      for (c.y() = lo.y(); c.y() < hi.y(); ++c.y()) {
+        for (c.x() = lo.x(); c.x() < hi.x(); ++c.x()) {
+          if (map.IsOccupied(c)) kept.insert({c.x(), c.y(), c.z()});
+        }
+      }
+    }
+    const Eigen::Vector3d centre =
+        map.CentreOf(map.origin() + map.size() / 2) + draw.Vector(step % 4 == 3 ? 8.0 : 1.5);
+    map.Recentre(centre);
+    for (const auto& [x, y, z] : kept) {
+      const CellIndex cell(x, y, z);
+      EXPECT_EQ(map.IsOccupied(cell), map.InWindow(cell));
+    }
+    ExpectInflationIsConsistent(map);
+  }
+}
+
+TEST(OccupancyMap, RefusesBadOptions) {
+  OccupancyMapOptions options;
+  options.resolution = 0.0;
+  EXPECT_THROW(OccupancyMap{options}, std::invalid_argument);
+  options = {};
+  options.probability_hit = 0.4;
+  EXPECT_THROW(OccupancyMap{options}, std::invalid_argument);
+  options = {};
+  options.size_log2.x() = 2;
+  EXPECT_THROW(OccupancyMap{options}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::planning

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Identities of the uniform cubic B-spline: partition of unity, derivatives, reproduction of cubics,
+// hull bounds.
+
+#include "touchdown/planning/uniform_bspline.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/boundary_lift.h"
+#include "touchdown/planning/test/planning_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+UniformBspline RandomCurve(Draw* draw, int points) {
+  ControlPoints q(3, points);
+  for (int i = 0; i < points; ++i) q.col(i) = draw->Vector(5.0);
+  return {q, draw->Uniform(0.1, 0.6), draw->Uniform(-5.0, 5.0)};
+}
+
+TEST(UniformBspline, IsAffineInvariant) {
+  Draw draw(1);
+  for (int trial = 0; trial < 50; ++trial) {
+    const UniformBspline curve = RandomCurve(&draw, 9);
+    const Eigen::Vector3d shift = draw.Vector(10.0);
+    const UniformBspline moved((3.0 * curve.control_points()).colwise() + shift, curve.interval(),
+                               curve.t0());
+    const double t = draw.Uniform(curve.t0(), curve.t_end());
+    EXPECT_LT((moved.Evaluate(t).p_WB - 3.0 * curve.Evaluate(t).p_WB - shift).norm(), 1e-12);
+    EXPECT_LT((moved.Evaluate(t).j_WB - 3.0 * curve.Evaluate(t).j_WB).norm(), 1e-9);
+  }
+}
+
+TEST(UniformBspline, DerivativesMatchDifferences) {
+  Draw draw(2);
+  for (int trial = 0; trial < 50; ++trial) {
+    const UniformBspline curve = RandomCurve(&draw, 8);
+    const double dt = 1e-5;
+    const double t = draw.Uniform(curve.t0() + dt, curve.t_end() - dt);
+    const FlatState minus = curve.Evaluate(t - dt), at = curve.Evaluate(t),
+                    plus = curve.Evaluate(t + dt);
+    EXPECT_LT(((plus.p_WB - minus.p_WB) / (2 * dt) - at.v_WB).norm(), 1e-5 * at.v_WB.norm() + 1e-4);
+    EXPECT_LT(((plus.v_WB - minus.v_WB) / (2 * dt) - at.a_WB).norm(), 1e-1);
+  }
+}
+
+TEST(UniformBspline, KnotsAgreeWithEvaluationFromBothSides) {
+  Draw draw(3);
+  const UniformBspline curve = RandomCurve(&draw, 10);
+  for (int k = 0; k <= curve.segments(); ++k) {
+    const SplineState knot = curve.AtKnot(k);
+    const FlatState at = curve.Evaluate(curve.t0() + k * curve.interval());
+    EXPECT_LT((knot.p - at.p_WB).norm(), 1e-12);
+    EXPECT_LT((knot.v - at.v_WB).norm(), 1e-11);
+    EXPECT_LT((knot.a - at.a_WB).norm(), 1e-9);
+  }
+}
+
+TEST(UniformBspline, HermiteControlPointsReproduceCubics) {
+  Draw draw(4);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Eigen::Vector3d c0 = draw.Vector(1), c1 = draw.Vector(1), c2 = draw.Vector(1),
+                          c3 = draw.Vector(1);
+    const auto at = [&](double t) {
+      return SplineState{c0 + t * c1 + t * t * c2 + t * t * t * c3,
+                         c1 + 2 * t * c2 + 3 * t * t * c3, 2 * c2 + 6 * t * c3};
+    };
+    const double T = draw.Uniform(0.5, 4.0);
+    const UniformBspline curve(HermiteControlPoints(at(0.0), at(T), 11, T), T / 11, 0.0);
+    for (double t = 0.0; t <= T; t += 0.03) {
+      EXPECT_LT((curve.Evaluate(t).p_WB - at(t).p).norm(), 1e-10);
+    }
+  }
+}
+
+TEST(UniformBspline, DerivativeBoundsHoldAlongTheCurve) {
+  Draw draw(5);
+  for (int trial = 0; trial < 50; ++trial) {
+    const UniformBspline curve = RandomCurve(&draw, 12);
+    const DerivativeBounds bounds = BoundDerivatives(curve);
+    double fastest = 0.0, strongest = 0.0;
+    for (double t = curve.t0(); t <= curve.t_end(); t += 0.002) {
+      fastest = std::max(fastest, curve.Evaluate(t).v_WB.norm());
+      strongest = std::max(strongest, curve.Evaluate(t).a_WB.norm());
+    }
+    EXPECT_LE(fastest, bounds.speed + 1e-9);
+    EXPECT_LE(strongest, bounds.acceleration + 1e-9);
+    EXPECT_GE(strongest, 0.95 * bounds.acceleration);  // the acceleration's hull is attained
+  }
+}
+
+TEST(UniformBspline, RefusesWhatIsNoSpline) {
+  EXPECT_THROW(UniformBspline(ControlPoints::Zero(3, 3), 0.1, 0.0), std::invalid_argument);
+  EXPECT_THROW(UniformBspline(ControlPoints::Zero(3, 4), 0.0, 0.0), std::invalid_argument);
+  ControlPoints bad = ControlPoints::Zero(3, 4);
+  bad(1, 2) = std::nan("");
+  EXPECT_THROW(UniformBspline(bad, 0.1, 0.0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::planning
