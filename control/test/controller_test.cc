@@ -109,8 +109,8 @@ TEST_P(BothLaws, RecoversFromLargeTilt) {
   }
 }
 
-TEST_P(BothLaws, ToleratesSlowerRotorsAndDelayedState) {
-  // Margin: twice the lag the gains were chosen for, and 20 % less inertia than the truth.
+TEST_P(BothLaws, ToleratesSlowerRotorsAndWrongInertia) {
+  // Twice the lag the gains were chosen for, and a fifth less inertia than the controller thinks.
   estimation::VehicleModel slow = model_;
   slow.rotor_lag_s = 2.0 * model_.rotor_lag_s;
   slow.inertia *= 0.8;
