@@ -80,9 +80,12 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options) : options_(option
       }
     }
   }
+  for (const CellIndex& offset : ball_) {
+    ball_reach_ = std::max(ball_reach_, offset.cwiseAbs().maxCoeff());
+  }
   touched_.reserve(1 << 17);
   flips_.reserve(1 << 14);
-  Recentre(Eigen::Vector3d::Zero());
+  origin_ = -size_ / 2;
 }
 
 bool OccupancyMap::IsOccupied(const CellIndex& cell) const {
@@ -93,53 +96,76 @@ bool OccupancyMap::IsKnown(const CellIndex& cell) const {
   return InWindow(cell) && log_odds_[Address(cell)] != kUnknown;
 }
 
+namespace {
+
+/// Calls visit(cell) for every cell in [lo, hi).
+template <class Visit>
+void ForEachCell(const CellIndex& lo, const CellIndex& hi, Visit&& visit) {
+  CellIndex cell;
+  for (cell.z() = lo.z(); cell.z() < hi.z(); ++cell.z()) {
+    for (cell.y() = lo.y(); cell.y() < hi.y(); ++cell.y()) {
+      for (cell.x() = lo.x(); cell.x() < hi.x(); ++cell.x()) visit(cell);
+    }
+  }
+}
+
+/// The window's share of the slab of `thickness` cells at its upper (positive) or lower end.
+void Slab(const CellIndex& origin, const CellIndex& size, int axis, bool upper, int thickness,
+          CellIndex* lo, CellIndex* hi) {
+  *lo = origin;
+  *hi = origin + size;
+  if (upper) (*lo)[axis] = (*hi)[axis] - thickness;
+  if (!upper) (*hi)[axis] = (*lo)[axis] + thickness;
+}
+
+}  // namespace
+
 void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
   flips_.clear();
   const CellIndex target = CellOf(p_W) - size_ / 2;
-  const CellIndex shift = target - origin_;
-  if (shift.isZero()) return;
-  // Forget what leaves, slab by slab, while its ball can still be taken back.
-  for (int axis = 0; axis < 3; ++axis) {
-    const int count = std::min(std::abs(shift[axis]), size_[axis]);
-    CellIndex lo = origin_, hi = origin_ + size_;
-    if (shift[axis] > 0) hi[axis] = lo[axis] + count;
-    if (shift[axis] < 0) lo[axis] = hi[axis] - count;
-    if (count == 0) continue;
-    for (int z = lo.z(); z < hi.z(); ++z) {
-      for (int y = lo.y(); y < hi.y(); ++y) {
-        for (int x = lo.x(); x < hi.x(); ++x) {
-          const CellIndex cell(x, y, z);
-          if (log_odds_[Address(cell)] != kUnknown) SetLogOdds(cell, kUnknown);
-        }
-      }
-    }
-  }
-  // Cells that enter take over addresses of cells that left: their inflation is of obstacles still in
-  // the window only if it is counted anew.
+  // A shift costs whole slabs of cells, so the window waits until there is one to move.
+  const CellIndex slack = size_ / 16;
+  const CellIndex offset = (target - origin_).cwiseAbs();
+  if (((offset - slack).array() < 0).all()) return;
   const CellIndex old_origin = origin_;
-  origin_ = target;
-  CellIndex cell;
-  for (cell.z() = origin_.z(); cell.z() < origin_.z() + size_.z(); ++cell.z()) {
-    for (cell.y() = origin_.y(); cell.y() < origin_.y() + size_.y(); ++cell.y()) {
-      for (cell.x() = origin_.x(); cell.x() < origin_.x() + size_.x(); ++cell.x()) {
-        const bool stayed =
-            ((cell - old_origin).array() >= 0).all() && ((cell - old_origin - size_).array() < 0).all();
-        if (!stayed) inflation_[Address(cell)] = 0;
-      }
-    }
+  const CellIndex shift = target - old_origin;
+  const CellIndex moved = shift.cwiseAbs().cwiseMin(size_);
+  CellIndex lo, hi;
+
+  // Forget what leaves while its ball can still be taken back.
+  for (int axis = 0; axis < 3; ++axis) {
+    Slab(old_origin, size_, axis, shift[axis] < 0, moved[axis], &lo, &hi);
+    ForEachCell(lo, hi, [&](const CellIndex& cell) {
+      if (log_odds_[Address(cell)] != kUnknown) SetLogOdds(cell, kUnknown);
+    });
   }
-  for (cell.z() = origin_.z(); cell.z() < origin_.z() + size_.z(); ++cell.z()) {
-    for (cell.y() = origin_.y(); cell.y() < origin_.y() + size_.y(); ++cell.y()) {
-      for (cell.x() = origin_.x(); cell.x() < origin_.x() + size_.x(); ++cell.x()) {
-        if (log_odds_[Address(cell)] < occupied_) continue;
-        for (const CellIndex& offset : ball_) {
-          const CellIndex near = cell + offset;
-          const bool entered = InWindow(near) && !(((near - old_origin).array() >= 0).all() &&
-                                                   ((near - old_origin - size_).array() < 0).all());
-          if (entered) ++inflation_[Address(near)];
-        }
+  // What enters takes over addresses of what left; its inflation is counted anew from the obstacles
+  // that stay within a ball's reach of it.
+  origin_ = target;
+  const auto stayed = [&](const CellIndex& cell) {
+    return ((cell - old_origin).array() >= 0).all() &&
+           ((cell - old_origin - size_).array() < 0).all();
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    Slab(origin_, size_, axis, shift[axis] > 0, moved[axis], &lo, &hi);
+    ForEachCell(lo, hi, [&](const CellIndex& cell) { inflation_[Address(cell)] = 0; });
+  }
+  CellIndex band_lo[3], band_hi[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int reach = moved[axis] == 0 ? 0 : std::min(moved[axis] + ball_reach_, size_[axis]);
+    Slab(origin_, size_, axis, shift[axis] > 0, reach, &band_lo[axis], &band_hi[axis]);
+    ForEachCell(band_lo[axis], band_hi[axis], [&](const CellIndex& cell) {
+      if (log_odds_[Address(cell)] < occupied_) return;
+      for (int earlier = 0; earlier < axis; ++earlier) {
+        const bool counted = ((cell - band_lo[earlier]).array() >= 0).all() &&
+                             ((cell - band_hi[earlier]).array() < 0).all();
+        if (counted) return;
       }
-    }
+      for (const CellIndex& ball : ball_) {
+        const CellIndex near = cell + ball;
+        if (InWindow(near) && !stayed(near)) ++inflation_[Address(near)];
+      }
+    });
   }
 }
 

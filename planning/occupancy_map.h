@@ -50,7 +50,8 @@ class OccupancyMap {
   const OccupancyMapOptions& options() const { return options_; }
   double resolution() const { return options_.resolution; }
 
-  /// Moves the window so that it is centred at p_W; cells that enter are unknown.
+  /// Moves the window so that it is centred at p_W, once p_W is a sixteenth of the window's size off
+  /// its centre; cells that enter are unknown, cells that leave are forgotten.
   void Recentre(const Eigen::Vector3d& p_W);
 
   /// Fuses one depth frame: every cell is updated once, hits win over misses.
@@ -108,6 +109,7 @@ class OccupancyMap {
   CellIndex mask_;
   std::int8_t hit_, miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
   std::vector<CellIndex> ball_;                    // cells that one obstacle cell blocks
+  int ball_reach_ = 0;                             // its largest extent along an axis
   std::vector<std::int8_t> log_odds_;
   std::vector<std::uint16_t> inflation_;           // number of obstacle cells whose ball holds it
   std::vector<std::uint32_t> stamp_;               // frame of the last vote, hit in the lowest bit
