@@ -93,10 +93,10 @@ void Pilot::StepMission(const estimation::VehicleState& vehicle,
   inputs.tag_age = filter.TagAge(t);
   inputs.foot_force = foot_force;
   inputs.has_plan = has_plan_;
-  inputs.plan_failed_for = 0.0;
-  if (requested_t_) {
-    const double since = planned_t_ ? std::max(*planned_t_, *requested_t_) : *requested_t_;
-    inputs.plan_failed_for = t - since;
+  // Between replans the last one counts: no plan has failed since it succeeded.
+  if (requested_t_ && !last_planned_) {
+    inputs.plan_failed_for =
+        t - (planned_t_ ? std::max(*planned_t_, *requested_t_) : *requested_t_);
   }
   heading_wanted_ = DesiredHeading(vehicle, filter);
   inputs.yaw_aligned = control::YawAligned(yaw_.yaw, heading_wanted_, kAlignTolerance);
@@ -140,7 +140,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
 
   has_plan_ = result.status == planning::ReplanStatus::kPlanned ||
               result.status == planning::ReplanStatus::kKept;
-  if (result.status == planning::ReplanStatus::kPlanned) planned_t_ = vehicle.t;
+  last_planned_ = result.status == planning::ReplanStatus::kPlanned;
+  if (last_planned_) planned_t_ = vehicle.t;
   return &result;
 }
 

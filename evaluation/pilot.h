@@ -73,6 +73,7 @@ class Pilot {
   double heading_wanted_ = 0.0;
   PilotReplan replan_;
   bool has_plan_ = false;
+  bool last_planned_ = false;          ///< the last replanning step made a new plan
   std::optional<double> planned_t_;    ///< when the last new plan was made
   std::optional<double> requested_t_;  ///< since when plans are asked for without a break
   double measured_latency_ = 0.0;      ///< of the last replanning step [s]

@@ -152,6 +152,8 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
 
 }  // namespace
 
+Scenario::Scenario() = default;
+
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
                       const std::vector<std::string>& backends) {
   ScenarioSource source;

@@ -43,6 +43,8 @@ struct PlanningLatency {
 /// Everything that decides a trial, together with the seed. Plain data in SI units; keys, ranges
 /// and documentation stand once, in scenario_schema. The defaults here are the schema's defaults.
 struct Scenario {
+  Scenario();
+
   std::string name;  ///< stem of the file it came from; not a key
 
   struct Pad {

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fixtures: the built program (environment TOUCHDOWN_PROGRAM) and a record that it wrote."""
+import os
+import subprocess
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def program():
+    path = os.environ.get("TOUCHDOWN_PROGRAM")
+    if not path:
+        pytest.skip("TOUCHDOWN_PROGRAM is not set; CTest sets it")
+    return path
+
+
+@pytest.fixture(scope="session")
+def run(program):
+    """Runs the program; returns the finished process with its text."""
+
+    def call(*arguments, cwd=None):
+        return subprocess.run(
+            [program, *arguments], capture_output=True, text=True, cwd=cwd, check=False
+        )
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def record_path(run, tmp_path_factory):
+    path = tmp_path_factory.mktemp("record") / "landing.db"
+    done = run("land", "straight_turn", "--record", str(path), "--set", "timeout=6")
+    assert done.returncode == 1, done.stderr
+    return str(path)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+import sqlite3
+
+import numpy as np
+import pytest
+
+from touchdown_report import bspline, landing
+from touchdown_report.record import Record, RecordError
+
+
+def test_a_straight_spline_is_sampled_exactly():
+    q = np.stack([np.arange(7.0), 2.0 * np.arange(7.0), np.zeros(7)], axis=1)
+    points = bspline.sample(q, per_segment=4)
+    assert points.shape == (4 * 4 + 1, 3)
+    assert np.allclose(points[0], q[1]) and np.allclose(points[-1], q[-2])
+    assert np.allclose(points[:, 1], 2.0 * points[:, 0])
+
+
+def test_the_curve_is_continuous_over_the_knots():
+    q = np.random.default_rng(1).normal(size=(9, 3))
+    steps = np.linalg.norm(np.diff(bspline.sample(q, per_segment=200), axis=0), axis=1)
+    assert steps.max() < 3.0 * np.median(steps) + 0.05
+
+
+def test_too_few_points_are_refused():
+    with pytest.raises(ValueError):
+        bspline.sample(np.zeros((3, 3)))
+
+
+def test_a_record_is_read(record_path):
+    record = Record(record_path)
+    assert record.result["scenario"] == "straight_turn"
+    assert len(record.vehicle) == len(record.modes) == len(record.pad)
+    assert record.plans and all(len(q) >= 4 for q in record.plans.values())
+    assert len(record.obstacles) == 7
+    assert float(record.scenario_value("pad", "deck_size")) == 1.5
+    assert record.scenario_value("pad", "no_such_key") == ""
+
+
+def test_the_recorded_plans_start_where_the_table_says(record_path):
+    with sqlite3.connect(record_path) as db:
+        rows = db.execute("SELECT passed, endpoint_position_residual FROM plan WHERE status='planned'")
+        for passed, residual in rows:
+            assert passed == 1 and residual <= 1e-9
+
+
+def test_the_picture_is_drawn(record_path, tmp_path):
+    out = tmp_path / "landing.png"
+    assert landing.main([record_path, str(out)]) == 0
+    assert out.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_the_headline_says_how_it_ended(record_path):
+    headline, figures = landing.title_lines(Record(record_path))
+    assert "timeout" in headline and "seed 1" in figures
+
+
+def test_what_is_no_record_is_refused(tmp_path, capsys):
+    text = tmp_path / "text.db"
+    text.write_text("not a database, but longer than the header that SQLite looks at. " * 20)
+    for path in (tmp_path / "missing.db", text):
+        with pytest.raises(RecordError):
+            Record(str(path))
+        assert landing.main([str(path), str(tmp_path / "x.png")]) == 2
+    assert landing.main([]) == 2
+    assert "missing.db" in capsys.readouterr().err

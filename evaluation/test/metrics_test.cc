@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/metrics.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/equilibrium.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+TEST(Metrics, TheErrorIsAveragedOverTheLastFiveSecondsOnly) {
+  Metrics metrics;
+  estimation::VehicleState vehicle;
+  const estimation::PadState pad;
+  for (int i = 0; i <= 500; ++i) {
+    const double t = 0.02 * i;
+    // 100 m away in the first half of 10 s; then 0.2 m in x and, with both signs, 0.1 m in y.
+    vehicle.p_WB = t < 4.99 ? Eigen::Vector3d(100.0, 0.0, 0.0)
+                            : Eigen::Vector3d(-0.2, i % 2 == 0 ? 0.1 : -0.1, 0.0);
+    metrics.Sample(t, vehicle, pad, 3.0 - t);
+  }
+  TrialResult result;
+  result.touchdown = Touchdown{};
+  metrics.Fill(&result);
+  EXPECT_NEAR(*result.mean_abs_error_x_m, 0.2, 1e-12);
+  EXPECT_NEAR(*result.mean_abs_error_y_m, 0.1, 1e-12);
+  EXPECT_NEAR(*result.min_clearance_m, -7.0, 1e-12);
+}
+
+TEST(Metrics, FieldsAtContactStayEmptyWithoutContact) {
+  Metrics metrics;
+  metrics.Sample(0.0, {}, {}, std::nullopt);
+  TrialResult result;
+  metrics.Fill(&result);
+  EXPECT_FALSE(result.mean_abs_error_x_m.has_value());
+  EXPECT_FALSE(result.min_clearance_m.has_value());
+  EXPECT_FALSE(result.estimator.has_value());
+}
+
+TEST(Metrics, EffortAndSaturationAddUp) {
+  Metrics metrics;
+  for (int i = 0; i < 100; ++i) metrics.Step({1.0, 2.0, 3.0, 4.0}, i < 25, 0.002);
+  TrialResult result;
+  metrics.Fill(&result);
+  EXPECT_NEAR(result.effort_n2s, 30.0 * 0.2, 1e-12);
+  EXPECT_DOUBLE_EQ(result.saturation_share, 0.25);
+}
+
+TEST(Metrics, NeesOfAnHonestErrorIsItsChiSquare) {
+  Metrics metrics;
+  estimation::PadState estimate;
+  estimate.cov_p = Eigen::Matrix2d::Identity() * 0.04;
+  estimate.p_WP = {0.2, -0.2, 0.0};
+  metrics.Estimate(estimate, {});
+  TrialResult result;
+  metrics.Fill(&result);
+  EXPECT_NEAR(result.estimator->nees_position_mean, 2.0, 1e-12);
+  EXPECT_NEAR(result.estimator->rmse_position_m, std::sqrt(0.08), 1e-12);
+}
+
+TEST(EquilibriumAxis, IsUprightInStillAir) {
+  const estimation::VehicleModel model;
+  EXPECT_TRUE(EquilibriumAxis(model, Eigen::Vector3d::Zero()).isApprox(Eigen::Vector3d::UnitZ()));
+}
+
+TEST(EquilibriumAxis, BalancesQuadraticDrag) {
+  estimation::VehicleModel model;
+  model.rotor_drag.setZero();
+  model.body_drag_area = 0.05;
+  const double drag = 0.5 * 1.225 * model.body_drag_area * 100.0;
+  const Eigen::Vector3d axis = EquilibriumAxis(model, {10.0, 0.0, 0.0});
+  // Flying forward at 10 m/s the thrust leans forward by drag over weight.
+  EXPECT_NEAR(axis.x() / axis.z(), drag / model.HoverThrust(), 1e-9);
+}
+
+TEST(SlidingMean, ForgetsAfterOneSecond) {
+  SlidingMean mean;
+  EXPECT_TRUE(mean.Mean().isZero());
+  mean.Add(0.0, Eigen::Vector3d::Constant(100.0));
+  mean.Add(1.5, Eigen::Vector3d::Constant(1.0));
+  mean.Add(2.0, Eigen::Vector3d::Constant(3.0));
+  EXPECT_TRUE(mean.Mean().isApprox(Eigen::Vector3d::Constant(2.0)));
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

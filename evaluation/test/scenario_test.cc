@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/scenario.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/scenario_schema.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::vector<std::string> kBackends = {"ceres"};
+
+class ScenarioTest : public ::testing::Test {
+ protected:
+  ScenarioTest() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = ::testing::TempDir() + "touchdown_" + test->name() + ".yaml";
+  }
+  ~ScenarioTest() override { std::filesystem::remove(path_); }
+
+  Scenario Load(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    std::ofstream(path_) << text;
+    return LoadScenario(path_, overrides, kBackends);
+  }
+
+  /// The sentence that the text is refused with.
+  std::string Refusal(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    try {
+      Load(text, overrides);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  std::string path_;
+};
+
+TEST_F(ScenarioTest, AnEmptyFileIsTheDefaults) {
+  EXPECT_EQ(DumpScenario(Load("")), DumpScenario(Scenario{}));
+}
+
+TEST_F(ScenarioTest, NestedAndDottedKeysAreTheSame) {
+  const Scenario a = Load("pad: {speed: 1.25, start: [3, -4.5]}\nplanning: {latency: measured}\n");
+  const Scenario b = Load("pad.speed: 1.25\npad.start: [3, -4.5]\nplanning.latency: measured\n");
+  EXPECT_EQ(a.pad.speed, 1.25);
+  EXPECT_EQ(a.pad.start, Eigen::Vector2d(3.0, -4.5));
+  EXPECT_TRUE(a.planning.latency.measured);
+  EXPECT_EQ(DumpScenario(a), DumpScenario(b));
+}
+
+TEST_F(ScenarioTest, EveryKeyRoundTrips) {
+  const Scenario s = Load(
+      "pad: {motion: circle, speed: 0.123456789012345678, phase_spread: 1.5, prediction: oracle}\n"
+      "start: {position: [0.1, -0.2, 3.3], position_spread: [1, 1, 0.25], yaw_random: true}\n"
+      "gps: {sigma: 1e-3}\nestimator: {pad: paper}\ncontroller: paper\ndescent: none\n"
+      "solver: {arrival: free}\nseed: 9007199254740991\n"
+      "obstacles:\n  boxes:\n    - {centre: [-8, -3], size: [1, 2, 3]}\n"
+      "  cylinders:\n    - {centre: [-5, 0.5], radius: 0.3, height: 4}\n");
+  const std::string text = DumpScenario(s);
+  EXPECT_EQ(DumpScenario(Load(text)), text);
+  EXPECT_EQ(Load(text).pad.speed, s.pad.speed);
+  EXPECT_EQ(Load(text).seed, 9007199254740991U);
+  ASSERT_EQ(Load(text).cylinders.size(), 1U);
+}
+
+TEST_F(ScenarioTest, ShippedScenariosLoadAndRoundTrip) {
+  EXPECT_THAT(ListScenarios(), ::testing::IsSupersetOf({"circle", "open", "straight_turn"}));
+  for (const std::string& name : ListScenarios()) {
+    const Scenario scenario = LoadScenario(FindScenario(name), {}, kBackends);
+    EXPECT_EQ(scenario.name, name);
+    EXPECT_EQ(DumpScenario(Load(DumpScenario(scenario))), DumpScenario(scenario));
+  }
+}
+
+TEST_F(ScenarioTest, CaseOneIsThePapers) {
+  const Scenario s = LoadScenario(FindScenario("straight_turn"), {}, kBackends);
+  EXPECT_EQ(s.pad.speed, 0.8);
+  EXPECT_EQ(Eigen::Vector2d(s.pad.start - s.start.position.head<2>()), Eigen::Vector2d(7.0, 6.5));
+  EXPECT_DOUBLE_EQ(s.start.position.z() - s.pad.deck_height, 2.0);
+  EXPECT_FALSE(s.boxes.empty());
+}
+
+TEST_F(ScenarioTest, AnUnknownKeyNamesFileLineAndWhatIsAllowed) {
+  EXPECT_THAT(
+      Refusal("seed: 1\npad:\n  sped: 1\n"),
+      AllOf(HasSubstr(path_ + ":3"), HasSubstr("unknown key pad.sped"), HasSubstr("pad.speed")));
+  EXPECT_THAT(
+      Refusal("wind: {mean: 4}\n"),
+      AllOf(HasSubstr(path_ + ":1"), HasSubstr("unknown key wind"), HasSubstr("obstacles")));
+}
+
+TEST_F(ScenarioTest, AWrongTypeNamesTheRange) {
+  EXPECT_THAT(Refusal("\npad:\n  speed: fast\n"),
+              AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.speed must be a number in [0, 3] m/s"),
+                    HasSubstr("'fast'")));
+  EXPECT_THAT(Refusal("pad: {start: [1, 2, 3]}\n"), HasSubstr("a list of 2 numbers"));
+  EXPECT_THAT(Refusal("pad: {start: 3}\n"), HasSubstr("a list of 2 numbers"));
+  EXPECT_THAT(Refusal("start: {yaw_random: yes}\n"), HasSubstr("true or false, not 'yes'"));
+  EXPECT_THAT(Refusal("seed: -1\n"), HasSubstr("a whole number in [0, "));
+  EXPECT_THAT(Refusal("seed: 1.5\n"), HasSubstr("a whole number"));
+  EXPECT_THAT(Refusal("pad: {speed: .nan}\n"), HasSubstr("pad.speed"));
+  EXPECT_THAT(Refusal("pad: {speed: \"0.8\"}\n"), HasSubstr("pad.speed"));
+  EXPECT_THAT(Refusal("pad: {speed: }\n"), HasSubstr("not empty"));
+  EXPECT_THAT(Refusal("planning: {latency: soon}\n"), HasSubstr("or measured, not 'soon'"));
+  EXPECT_THAT(Refusal("pad: 7\n"), HasSubstr("must be a map of keys"));
+  EXPECT_THAT(Refusal("[1, 2]\n"), HasSubstr("must be a map of keys"));
+}
+
+TEST_F(ScenarioTest, AnOutOfRangeValueNamesTheRange) {
+  EXPECT_THAT(Refusal("gps:\n  sigma: -0.1\n"),
+              AllOf(HasSubstr(":2"), HasSubstr("gps.sigma must be a number in [0, 5] m"),
+                    HasSubstr("'-0.1'")));
+  EXPECT_THAT(Refusal("gps: {rate: 0}\n"), HasSubstr("(0, 100] Hz"));
+  EXPECT_THAT(Refusal("timeout: 1e9\n"), HasSubstr("timeout must be a number in [1, 600] s"));
+}
+
+TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
+  EXPECT_THAT(Refusal("descent: planned\n"), HasSubstr("descent must be none or vertical"));
+  EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),
+              HasSubstr("straight_turn, circle, line or static"));
+  EXPECT_THAT(Refusal("solver: {backend: newton}\n"),
+              AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be ceres, not 'newton'")));
+}
+
+TEST_F(ScenarioTest, AKeyTwiceIsRefused) {
+  EXPECT_THAT(Refusal("pad:\n  speed: 0.5\n  speed: 0.8\n"),
+              AllOf(HasSubstr(":3"), HasSubstr("second time")));
+}
+
+TEST_F(ScenarioTest, BrokenYamlNamesTheLine) {
+  EXPECT_THAT(Refusal("pad: {speed: 0.5\nseed: [\n"), HasSubstr(path_ + ":"));
+}
+
+TEST_F(ScenarioTest, ObstaclesAreCheckedKeyByKey) {
+  EXPECT_THAT(Refusal("obstacles:\n  boxes:\n    - {centre: [20, 20]}\n"),
+              AllOf(HasSubstr(":3"), HasSubstr("obstacles.boxes[0] lacks the key size")));
+  EXPECT_THAT(Refusal("obstacles:\n  boxes:\n    - {centre: [20, 20], size: [1, 1, 0]}\n"),
+              HasSubstr("a list of 3 numbers in (0, 100] m"));
+  EXPECT_THAT(Refusal("obstacles:\n  spheres: []\n"),
+              AllOf(HasSubstr("unknown key obstacles.spheres"), HasSubstr("obstacles.cylinders")));
+  EXPECT_THAT(Refusal("obstacles: {boxes: [{centre: [20, 20], size: [1, 1, 1], yaw: 1}]}\n"),
+              HasSubstr("unknown key obstacles.boxes[0].yaw"));
+}
+
+TEST_F(ScenarioTest, AnObstacleOnTheStartIsRefusedWithItsLine) {
+  EXPECT_THAT(Refusal("obstacles:\n  boxes:\n"
+                      "    - {centre: [20, 20], size: [1, 1, 4]}\n"
+                      "    - {centre: [0.7, 0], size: [1, 1, 4]}\n"),
+              AllOf(HasSubstr(path_ + ":4"), HasSubstr("obstacles.boxes[1] stands on the start")));
+  EXPECT_THAT(Refusal("obstacles: {cylinders: [{centre: [0, 0], radius: 0.2, height: 4}]}\n"),
+              HasSubstr("obstacles.cylinders[0] stands on the start"));
+  // Low enough to fly over, and only the spread reaches it.
+  EXPECT_EQ(Refusal("obstacles: {boxes: [{centre: [0, 0], size: [1, 1, 1]}]}\n"), "accepted");
+  EXPECT_THAT(Refusal("start: {position_spread: [1, 1, 0]}\n"
+                      "obstacles: {boxes: [{centre: [1.7, 0], size: [1, 1, 4]}]}\n"),
+              HasSubstr("stands on the start"));
+}
+
+TEST_F(ScenarioTest, AnObstacleOnThePadsWayIsRefused) {
+  EXPECT_THAT(Refusal("obstacles:\n  boxes:\n    - {centre: [10, 7.5], size: [1, 1, 4]}\n"),
+              AllOf(HasSubstr(":3"), HasSubstr("stands on the pad's way")));
+}
+
+TEST_F(ScenarioTest, APadThatCannotBeCaughtIsRefused) {
+  EXPECT_THAT(Refusal("pad: {speed: 2.8}\n"),
+              AllOf(HasSubstr(":1"), HasSubstr("0.9 limits.speed")));
+}
+
+TEST_F(ScenarioTest, AStartInTheGroundIsRefused) {
+  EXPECT_THAT(Refusal("start: {position: [0, 0, 0.1]}\n"), HasSubstr("start.position"));
+}
+
+TEST_F(ScenarioTest, AVehicleFileThatIsNotThereIsRefused) {
+  EXPECT_THAT(Refusal("vehicle: no/such/file.xml\n"), HasSubstr("no/such/file.xml"));
+}
+
+TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
+  EXPECT_EQ(Load("seed: 5\n", {"seed=6", "pad.speed=1.5"}).seed, 6U);
+  EXPECT_EQ(Load("", {"start.position=[1, 2, 3]"}).start.position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_THAT(Refusal("", {"pad.speed=9"}),
+              AllOf(HasSubstr("--set pad.speed=9"), HasSubstr("[0, 3] m/s")));
+  EXPECT_THAT(Refusal("", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
+  EXPECT_THAT(Refusal("", {"nonsense"}), HasSubstr("write KEY=VALUE"));
+}
+
+TEST_F(ScenarioTest, AMissingFileNamesTheShippedOnes) {
+  EXPECT_THROW(FindScenario("no_such_scenario"), BadInput);
+  try {
+    FindScenario("no_such_scenario");
+  } catch (const BadInput& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("no_such_scenario"), HasSubstr("straight_turn")));
+  }
+}
+
+TEST(ScenarioSchema, EveryKeyIsDocumentedOnce) {
+  std::set<std::string> names;
+  for (const auto& key : ScenarioKeys()) {
+    EXPECT_TRUE(names.insert(key.name).second) << key.name;
+    EXPECT_FALSE(key.doc.empty()) << key.name;
+    EXPECT_FALSE(key.range.empty()) << key.name;
+  }
+}
+
+TEST(ScenarioSchema, TheDocumentationIsTheTable) {
+  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/scenario.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  EXPECT_THAT(text.str(), HasSubstr(ScenarioKeysMarkdown()));
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

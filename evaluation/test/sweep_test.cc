@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/sweep.h"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/sweep_report.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+const std::vector<std::string> kBackends = {"ceres"};
+
+SweepOptions OpenSweep(int trials) {
+  SweepOptions options;
+  options.scenario_path = FindScenario("open");
+  options.overrides = {"start.position_spread=[1, 1, 0]", "timeout=3"};
+  options.trials = trials;
+  options.seed = 7;
+  return options;
+}
+
+TEST(Variation, ParsesRangesAndLists) {
+  const Variation range = Variation::Parse("pad.speed=0.5..1.5");
+  EXPECT_TRUE(range.values.empty());
+  EXPECT_EQ(range.lo, 0.5);
+  EXPECT_EQ(range.hi, 1.5);
+  const Variation list = Variation::Parse("controller=geometric,paper");
+  EXPECT_EQ(list.values, (std::vector<std::string>{"geometric", "paper"}));
+}
+
+TEST(Variation, RefusesNonsense) {
+  EXPECT_THROW(Variation::Parse("pad.speed"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed="), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.sped=1,2"), BadInput);
+  EXPECT_THROW(Variation::Parse("seed=1,2"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=2..1"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=a..1"), BadInput);
+}
+
+TEST(PlanSweep, SeedsAreDistinctAndRepeat) {
+  std::set<std::uint64_t> seeds;
+  for (int i = 0; i < 1000; ++i) seeds.insert(TrialSeed(1, i));
+  for (int i = 0; i < 1000; ++i) seeds.insert(TrialSeed(2, i));
+  EXPECT_EQ(seeds.size(), 2000U);
+  EXPECT_EQ(TrialSeed(1, 5), TrialSeed(1, 5));
+}
+
+TEST(PlanSweep, ListsAreTakenInAllCombinations) {
+  SweepOptions options = OpenSweep(6);
+  options.variations = {Variation::Parse("controller=geometric,paper"),
+                        Variation::Parse("pad.speed=0.2,0.4,0.6")};
+  std::set<std::string> seen;
+  for (const SweepTrial& trial : PlanSweep(options, kBackends)) {
+    seen.insert(trial.varied[0].second + trial.varied[1].second);
+  }
+  EXPECT_EQ(seen.size(), 6U);
+}
+
+TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
+  SweepOptions options = OpenSweep(20);
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  std::set<double> speeds;
+  for (const SweepTrial& trial : PlanSweep(options, kBackends)) {
+    EXPECT_GE(trial.scenario.pad.speed, 0.2);
+    EXPECT_LE(trial.scenario.pad.speed, 0.6);
+    speeds.insert(trial.scenario.pad.speed);
+  }
+  EXPECT_EQ(speeds.size(), 20U);
+  options.variations = {Variation::Parse("pad.speed=50..60")};
+  EXPECT_THROW(PlanSweep(options, kBackends), BadInput);
+}
+
+TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
+  SweepOptions options = OpenSweep(3);
+  std::vector<SweepTrial> trials = PlanSweep(options, kBackends);
+  trials[1].scenario.solver.backend = "none";
+  const std::vector<SweepRow> rows = RunSweep(trials, 2, solvers::StandardBackends(), [](int) {});
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[1].result.outcome, Outcome::kError);
+  EXPECT_FALSE(rows[1].result.detail.empty());
+  EXPECT_NE(rows[0].result.outcome, Outcome::kError);
+  const std::string text = SweepText(options, rows);
+  EXPECT_NE(text.find("1 x error"), std::string::npos);
+}
+
+TEST(RunSweep, OneAndTwoThreadsGiveTheSameRows) {
+  const SweepOptions options = OpenSweep(4);
+  const std::vector<SweepTrial> trials = PlanSweep(options, kBackends);
+  const auto rows = [&](int jobs) {
+    nlohmann::ordered_json json =
+        SweepJson(options, RunSweep(trials, jobs, solvers::StandardBackends(), [](int) {}));
+    json.erase("wall_clock");
+    return json.dump();
+  };
+  const std::string one = rows(1);
+  EXPECT_EQ(one, rows(2));
+  EXPECT_EQ(one, rows(1));
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
