@@ -3,14 +3,17 @@
 // what the user wrote is 2, what the program could not do is 1, each with one sentence on stderr.
 #include "touchdown/evaluation/program.h"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/scenario_value.h"
 
 namespace touchdown::evaluation {
 
@@ -43,6 +46,21 @@ std::vector<std::string> BackendNames(const Registries& registries) {
   return names;
 }
 
+namespace {
+
+// CLI11 answers an unknown first word with "a subcommand is required", without the word.
+void CheckCommand(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) == names.end()) {
+    throw BadInput(
+        fmt::format("unknown command {}; the commands are {}.", argv[1], Enumerate(names)));
+  }
+}
+
+}  // namespace
+
 int RunProgram(int argc, const char* const* argv, const Registries& registries) {
   auto log = std::make_shared<spdlog::logger>("touchdown",
                                               std::make_shared<spdlog::sinks::stderr_sink_mt>());
@@ -58,6 +76,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddSweepCommand(app, registries, &run);
   AddListCommand(app, registries, &run);
   try {
+    CheckCommand(app, argc, argv);
     app.parse(argc, argv);
     return run();
   } catch (const CLI::Success& help) {

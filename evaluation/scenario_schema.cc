@@ -3,6 +3,8 @@
 // defaults are those of a default-constructed Scenario and stand nowhere else.
 #include "touchdown/evaluation/scenario_schema.h"
 
+#include <cctype>
+
 #include <fmt/format.h>
 
 namespace touchdown::evaluation {

@@ -2,7 +2,7 @@
 // Typed reading of one YAML value, with the sentence that a mistake gets.
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 

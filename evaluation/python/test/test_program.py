@@ -27,7 +27,7 @@ def test_help_lists_what_is_built(run):
     "arguments, parts",
     [
         ((), ["subcommand"]),
-        (("fly",), ["fly"]),
+        (("fly",), ["fly", "land", "sweep", "list"]),
         (("land", "--no-such-option"), ["--no-such-option"]),
         (("land", "no_such_scenario"), ["no_such_scenario", "straight_turn"]),
         (("land", "no/such/file.yaml"), ["no/such/file.yaml"]),
