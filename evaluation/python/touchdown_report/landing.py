@@ -98,7 +98,7 @@ def draw_obstacles(axes, obstacles, side):
         else:
             axes.add_patch(Rectangle((cx - sx / 2, cy - sy / 2), sx, sy, **look))
             axes.annotate(
-                f"{sz:.0f} m", (cx, cy), ha="center", va="center", fontsize=7, color=BUILDING_EDGE
+                f"{sz:g} m", (cx, cy), ha="center", va="center", fontsize=7, color=BUILDING_EDGE
             )
 
 
@@ -109,8 +109,8 @@ def draw_world(axes, record, contact, half, side):
     draw_obstacles(axes, record.obstacles, side)
     for points in record.plans.values():
         curve = bspline.sample(points)
-        axes.plot(curve[:, 0], curve[:, down - 1], color=PLAN_COLOUR, lw=0.5, alpha=0.35, zorder=2)
-    axes.plot(pad[:, 1], pad[:, down], color=PAD_COLOUR, lw=1.6, ls=(0, (4, 2)), zorder=3)
+        axes.plot(curve[:, 0], curve[:, down - 1], color=PLAN_COLOUR, lw=0.6, alpha=0.45, zorder=2)
+    axes.plot(pad[:, 1], pad[:, down], color=PAD_COLOUR, lw=1.2, ls=(0, (4, 2)), zorder=5)
     coloured_path(
         axes, vehicle[:, 1], vehicle[:, down], record.modes[: contact + 1], lw=2.4, zorder=4
     )
@@ -131,16 +131,18 @@ def draw_world(axes, record, contact, half, side):
 
 
 def frame_plan_view(plan, side, record, contact):
-    """Limits that hold both paths and what stands near them."""
+    """Limits that hold both paths and what stands near them, at one scale in both views."""
     everything = np.vstack([record.vehicle[: contact + 1, 1:3], record.pad[: contact + 1, 1:3]])
-    lo, hi = everything.min(axis=0) - 2.5, everything.max(axis=0) + 2.5
-    plan.set_xlim(lo[0], hi[0])
-    plan.set_ylim(lo[1], hi[1])
-    plan.set_aspect("equal", adjustable="box")
-    top = record.vehicle[: contact + 1, 3].max() + 1.2
-    side.set_xlim(lo[0], hi[0])
-    side.set_ylim(0.0, top)
-    side.set_aspect("equal", adjustable="box")
+    lo, hi = everything.min(axis=0) - 2.0, everything.max(axis=0) + 2.0
+    figure_size = plan.figure.get_size_inches()
+    width, height = plan.get_position().size * figure_size
+    scale = max((hi[0] - lo[0]) / width, (hi[1] - lo[1]) / height)  # metres an inch
+    middle = 0.5 * (lo + hi)
+    x_limits = middle[0] + 0.5 * scale * width * np.array([-1.0, 1.0])
+    plan.set_xlim(x_limits)
+    plan.set_ylim(middle[1] + 0.5 * scale * height * np.array([-1.0, 1.0]))
+    side.set_xlim(x_limits)
+    side.set_ylim(0.0, scale * side.get_position().height * figure_size[1])
     plan.set_ylabel("y [m]")
     side.set_ylabel("z [m]")
     side.set_xlabel("x [m]")
@@ -233,8 +235,8 @@ def draw(record, out_path):
     with plt.rc_context(STYLE):
         figure = plt.figure(figsize=(13.0, 8.6), dpi=140)
         grid = figure.add_gridspec(
-            2, 2, width_ratios=[1.75, 1.0], height_ratios=[2.4, 1.0],
-            left=0.055, right=0.985, bottom=0.105, top=0.885, hspace=0.22, wspace=0.14,
+            2, 2, width_ratios=[1.75, 1.0], height_ratios=[2.5, 1.0],
+            left=0.055, right=0.985, bottom=0.105, top=0.885, hspace=0.2, wspace=0.13,
         )  # fmt: skip
         plan, side = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
         close, history = figure.add_subplot(grid[0, 1]), figure.add_subplot(grid[1, 1])
