@@ -71,6 +71,7 @@ void Perception::Sense(const sim::World& world) {
   map_.Recentre(vehicle.p_WB);
   KeepFlips();
   const planning::ExcludedVolume volume = PadVolume(t);
+  map_.MarkOwnVolume(vehicle.p_WB, world.model().hull_radius);
   map_.Clear(volume);
   KeepFlips();
   map_.Integrate(frame_, volume);

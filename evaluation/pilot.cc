@@ -32,6 +32,11 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
                                                                   : planning::ArrivalMode::kFixed;
   options.limits = {scenario.limits.speed, scenario.limits.acceleration};
+  options.hull_radius = model.hull_radius;
+  // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
+  options.reaction = 1.0 / scenario.planning.rate +
+                     (scenario.planning.latency.measured ? 1.0 / scenario.planning.rate
+                                                         : 1e-3 * scenario.planning.latency.ms);
   options.floor_height = std::max(options.floor_height, model.foot_depth + 0.3);
   return options;
 }

@@ -21,6 +21,8 @@ struct Certificate {
   bool escaping = false;                    ///< the start itself is blocked; the curve leaves the
                                             ///< inflated cells and never comes nearer to an
                                             ///< occupied one than it is at its start
+  bool stops_in_observed_space = true;      ///< braking from what is flown until the next plan
+                                            ///< ends before the curve meets unobserved cells
   double clearance = 0.0;                   ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;                 ///< absolute time of the first blocked cell if !clear [s]
 
@@ -28,14 +30,18 @@ struct Certificate {
     return !endpoint_required ||
            (endpoint_position_residual <= 1e-9 && endpoint_velocity_residual <= 1e-9);
   }
-  bool passed() const { return endpoint_met() && limits_kept && (clear || escaping); }
+  bool passed() const {
+    return endpoint_met() && limits_kept && (clear || escaping) && stops_in_observed_space;
+  }
 };
 
 /// Certifies `curve` from `t_from` to its end: the endpoint against `wanted` (nullptr: none is
 /// required), the limits by the convex hull, the clearance by visiting every cell of `space` that
 /// the curve passes. A start beyond a limit is certified against the recovery profile
-/// max(limit, |v0| - amax (t - 0.3 s) / 2), and alike for the acceleration. Does not allocate.
+/// max(limit, |v0| - amax (t - 0.3 s) / 2), and alike for the acceleration. Where an end is wanted,
+/// the vehicle must also be able to brake, `reaction` seconds after t_from, before the curve meets
+/// cells that were never observed (the strip over the pad excepted). Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
-                    const Limits& limits, const FreeSpace& space);
+                    const Limits& limits, double reaction, const FreeSpace& space);
 
 }  // namespace touchdown::planning

@@ -5,47 +5,43 @@
 #include "touchdown/planning/grid_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace touchdown::planning {
 
-namespace {
-
-struct Step {
-  CellIndex offset;
-  float length;  // in cells
-};
-
-const std::array<Step, 26>& Steps() {
-  static const std::array<Step, 26> steps = [] {
-    std::array<Step, 26> out;
-    int n = 0;
-    for (int z = -1; z <= 1; ++z) {
-      for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-          if (x == 0 && y == 0 && z == 0) continue;
-          out[n++] = {CellIndex(x, y, z), std::sqrt(static_cast<float>(x * x + y * y + z * z))};
-        }
+GridSearch::GridSearch(double vertical_cost) : vertical_cost_(static_cast<float>(vertical_cost)) {
+  if (!(vertical_cost >= 1.0)) {
+    throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
+                                ", it must be >= 1");
+  }
+  int n = 0;
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const auto flat2 = static_cast<float>(x * x + y * y);
+        const float up = vertical_cost_ * static_cast<float>(z);
+        steps_[n++] = {CellIndex(x, y, z), std::sqrt(flat2 + up * up)};
       }
     }
-    return out;
-  }();
-  return steps;
+  }
 }
 
-/// Length of the shortest 26-neighbour path between two cells of an empty lattice.
-float Octile(const CellIndex& a, const CellIndex& b) {
-  std::array<int, 3> d = {std::abs(a.x() - b.x()), std::abs(a.y() - b.y()),
-                          std::abs(a.z() - b.z())};
-  std::sort(d.begin(), d.end());
-  const auto lo = static_cast<float>(d[0]), mid = static_cast<float>(d[1]),
-             hi = static_cast<float>(d[2]);
-  return std::sqrt(3.0f) * lo + std::sqrt(2.0f) * (mid - lo) + (hi - mid);
+/// Length of the shortest path between two cells of an empty lattice: the longest diagonals first.
+float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const {
+  const CellIndex d = (a - b).cwiseAbs();
+  const float w = vertical_cost_;
+  const auto lo = static_cast<float>(std::min(d.x(), d.y()));
+  const auto hi = static_cast<float>(std::max(d.x(), d.y()));
+  const auto up = static_cast<float>(d.z());
+  const float cubic = std::min(up, lo);           // steps (1, 1, 1)
+  const float slanted = std::min(up - cubic, hi - lo);  // steps (1, 0, 1)
+  const float flat_diagonal = lo - cubic;         // steps (1, 1, 0)
+  return cubic * std::sqrt(2.0f + w * w) + slanted * std::sqrt(1.0f + w * w) +
+         flat_diagonal * std::sqrt(2.0f) + (hi - lo - slanted) + (up - cubic - slanted) * w;
 }
-
-}  // namespace
 
 const char* ToString(SearchStatus status) {
   switch (status) {
@@ -133,7 +129,7 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   g_[start_address] = 0.0f;
   parent_[start_address] = 26;
   seen_[start_address] = search_;
-  heap_.push_back({Octile(start, goal), order++, start_address});
+  heap_.push_back({LatticeDistance(start, goal), order++, start_address});
 
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -146,7 +142,7 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
         path->push_back(map.CentreOf(cell));
         const std::uint8_t by = parent_[address(cell)];
         if (by == 26) break;
-        cell -= Steps()[by].offset;
+        cell -= steps_[by].offset;
       }
       std::reverse(path->begin(), path->end());
       return SearchStatus::kFound;
@@ -154,17 +150,17 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     if (++expansions_ > max_expansions) return SearchStatus::kExpansionLimit;
     const CellIndex cell = cell_at(here);
     for (std::uint8_t s = 0; s < 26; ++s) {
-      const CellIndex next = cell + Steps()[s].offset;
+      const CellIndex next = cell + steps_[s].offset;
       if (!map.InWindow(next)) continue;
       const std::uint32_t there = address(next);
       const bool seen = (seen_[there] & ~1u) == search_;
-      const float g = g_[here] + Steps()[s].length;
+      const float g = g_[here] + steps_[s].length;
       if (seen && ((seen_[there] & 1u) != 0u || g >= g_[there])) continue;
       if (space.Blocked(next)) continue;
       g_[there] = g;
       parent_[there] = s;
       seen_[there] = search_;
-      heap_.push_back({g + Octile(next, goal), order++, there});
+      heap_.push_back({g + LatticeDistance(next, goal), order++, there});
       std::push_heap(heap_.begin(), heap_.end(), later);
     }
   }

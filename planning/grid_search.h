@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,13 +20,17 @@ enum class SearchStatus {
 };
 const char* ToString(SearchStatus status);
 
-/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the octile distance
-/// in three dimensions). A blocked end is first moved to the nearest free cell within
+/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance on
+/// the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is preferred
+/// to going over, where a forward camera sees little. A blocked end is first moved to the nearest free cell within
 /// `kEndSearchRadius`. Deterministic: ties are broken by the order of insertion. Its arrays have the
 /// size of the map's window and are kept between searches.
 class GridSearch {
  public:
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]
+
+  /// Throws std::invalid_argument unless vertical_cost >= 1.
+  explicit GridSearch(double vertical_cost = 1.0);
 
   /// Finds a path of cell centres from `from` to `to`, the (moved) ends included. Expands at most
   /// `max_expansions` cells. Allocates only to grow to a high-water mark.
@@ -45,6 +50,14 @@ class GridSearch {
   bool NearestFree(const FreeSpace& space, CellIndex* cell) const;
   void Reset(const FreeSpace& space);
 
+  struct Step {
+    CellIndex offset;
+    float length;
+  };
+  float LatticeDistance(const CellIndex& a, const CellIndex& b) const;
+
+  float vertical_cost_;
+  std::array<Step, 26> steps_;
   std::vector<float> g_;
   std::vector<std::uint8_t> parent_;  // direction we came by
   std::vector<std::uint32_t> seen_;   // search number; lowest bit: closed

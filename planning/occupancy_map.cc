@@ -227,21 +227,26 @@ void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
   if (InWindow(cell)) SetLogOdds(cell, max_);
 }
 
+void OccupancyMap::MarkOwnVolume(const Eigen::Vector3d& p_W, double radius) {
+  const CellIndex lo = CellOf(p_W.array() - radius);
+  const CellIndex hi = CellOf(p_W.array() + radius) + CellIndex::Ones();
+  ForEachCell(lo, hi, [&](const CellIndex& cell) {
+    if (!InWindow(cell) || (CentreOf(cell) - p_W).norm() > radius) return;
+    std::int8_t& stored = log_odds_[Address(cell)];
+    if (stored == kUnknown) stored = miss_;
+  });
+}
+
 void OccupancyMap::Clear(const ExcludedVolume& excluded) {
   flips_.clear();
   if (!(excluded.radius > 0.0)) return;
   const double r = excluded.radius;
   const CellIndex lo = CellOf({excluded.centre.x() - r, excluded.centre.y() - r, 0.0});
   const CellIndex hi = CellOf({excluded.centre.x() + r, excluded.centre.y() + r, excluded.top});
-  CellIndex cell;
-  for (cell.z() = lo.z(); cell.z() <= hi.z(); ++cell.z()) {
-    for (cell.y() = lo.y(); cell.y() <= hi.y(); ++cell.y()) {
-      for (cell.x() = lo.x(); cell.x() <= hi.x(); ++cell.x()) {
-        const bool inside = (CentreOf(cell).head<2>() - excluded.centre).norm() < r;
-        if (inside && IsOccupied(cell)) SetLogOdds(cell, min_);
-      }
-    }
-  }
+  ForEachCell(lo, hi + CellIndex::Ones(), [&](const CellIndex& cell) {
+    const bool inside = (CentreOf(cell).head<2>() - excluded.centre).norm() < r;
+    if (inside && IsOccupied(cell)) SetLogOdds(cell, min_);
+  });
 }
 
 void OccupancyMap::SetLogOdds(const CellIndex& cell, std::int8_t value) {

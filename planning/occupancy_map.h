@@ -60,6 +60,9 @@ class OccupancyMap {
   /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored.
   void SetOccupied(const Eigen::Vector3d& p_W);
 
+  /// Marks the unknown cells within `radius` of p_W as observed free: the vehicle is there itself.
+  void MarkOwnVolume(const Eigen::Vector3d& p_W, double radius);
+
   /// Frees what stands inside the volume: cells that were seen before the pad was known to be there.
   void Clear(const ExcludedVolume& excluded);
 

@@ -39,7 +39,7 @@ void SampleGuide(const UniformBspline& curve, double t_from, GuidePath* guide) {
 }  // namespace
 
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-    : options_(options), backends_(backends) {
+    : options_(options), backends_(backends), search_(options.vertical_cost) {
   // Refusals surface here, not in the middle of a flight.
   PreparedFor(options.min_duration, options.arrival);
 }
@@ -98,13 +98,14 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   StageTimer timer(&result->times.certificate);
   const SplineState wanted =
       EndStateAt(*request.pad, request.target, result->curve.t_end()).state;
-  result->certificate =
-      Certify(result->curve, request.t0, &wanted, options_.limits, *request.space);
+  result->certificate = Certify(result->curve, request.t0, &wanted, options_.limits,
+                                options_.reaction, *request.space);
   if (result->certificate.passed()) return ReplanReason::kNone;
   if (!result->certificate.clear && !result->certificate.escaping) {
     return runs_.front().at_start ? ReplanReason::kStartBlocked : ReplanReason::kCollisionRemains;
   }
-  return ReplanReason::kLimitsExceeded;
+  return result->certificate.limits_kept ? ReplanReason::kUnobserved
+                                         : ReplanReason::kLimitsExceeded;
 }
 
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,

@@ -29,6 +29,8 @@ struct ReplannerOptions {
   double max_duration = 30.0;      ///< a pad farther away in time is unreachable [s]
   double min_duration = 0.8;       ///< shortest plan: a vehicle above the pad keeps following [s]
   double odometry_threshold = 0.5; ///< tracking error beyond which plans start at the vehicle [m]
+  double reaction = 0.15;          ///< a plan is flown this long before the next can take over [s]
+  double vertical_cost = 2.0;      ///< of A*: a metre up or down costs as much as this many ahead
   int max_rebinds = 6;             ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;         ///< solver iterations per solve
   int max_expansions = 200000;     ///< A* expansions per search
@@ -63,6 +65,7 @@ enum class ReplanReason {
   kSearchFailed,      ///< A* found no way around an obstacle within its expansions
   kSolverFailed,      ///< the backend returned no usable point
   kCollisionRemains,  ///< still blocked after every re-binding round
+  kUnobserved,        ///< too fast to stop before space that was never observed
   kLimitsExceeded,    ///< still beyond a limit after every re-timing round
 };
 

@@ -65,6 +65,7 @@ void Validate(const ReplannerOptions& o) {
   Require(o.min_duration > 0.0, "min_duration", o.min_duration, "> 0 s");
   Require(o.max_duration > o.min_duration, "max_duration", o.max_duration, "above min_duration");
   Require(o.odometry_threshold > 0.0, "odometry_threshold", o.odometry_threshold, "> 0 m");
+  Require(o.reaction >= 0.0, "reaction", o.reaction, ">= 0 s");
   Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
   Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
   Require(o.max_expansions >= 1, "max_expansions", o.max_expansions, ">= 1");
@@ -178,6 +179,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.space = &space;
     reason = attempt_.Run(request, &result_);
     const bool slower_helps = reason == ReplanReason::kLimitsExceeded ||
+                              reason == ReplanReason::kUnobserved ||
                               reason == ReplanReason::kCollisionRemains ||
                               reason == ReplanReason::kGoalBlocked;
     if (!slower_helps) return reason;
@@ -193,7 +195,7 @@ bool Replanner::Impl::TryRest(const SplineState& start, double t0, double climb,
                               const FreeSpace& space) {
   result_.curve = MakeRestTrajectory(start, t0, climb, options_.limits);
   StageTimer timer(&result_.times.certificate);
-  result_.certificate = Certify(result_.curve, t0, nullptr, options_.limits, space);
+  result_.certificate = Certify(result_.curve, t0, nullptr, options_.limits, 0.0, space);
   return result_.certificate.passed();
 }
 
@@ -210,7 +212,7 @@ void Replanner::Impl::FallBack(const ReplanInput& input, const SplineState& star
     if (std::min(hit, end) > input.t_start + reserve || at_rest) {
       result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
       result_.curve = next_;
-      result_.certificate = Certify(next_, input.t_start, nullptr, options_.limits, space);
+      result_.certificate = Certify(next_, input.t_start, nullptr, options_.limits, 0.0, space);
       return;
     }
   }
@@ -273,6 +275,7 @@ const char* ToString(ReplanReason reason) {
     case ReplanReason::kSearchFailed: return "search_failed";
     case ReplanReason::kSolverFailed: return "solver_failed";
     case ReplanReason::kCollisionRemains: return "collision_remains";
+    case ReplanReason::kUnobserved: return "unobserved";
     case ReplanReason::kLimitsExceeded: return "limits_exceeded";
   }
   return "unknown";
@@ -288,6 +291,7 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kSearchFailed: return "No way around an obstacle was found within the budget of expansions.";
     case ReplanReason::kSolverFailed: return "The solver returned no usable point.";
     case ReplanReason::kCollisionRemains: return "The curve is still blocked after every re-binding round.";
+    case ReplanReason::kUnobserved: return "The plan is too fast to stop before space that was never observed.";
     case ReplanReason::kLimitsExceeded: return "The curve still exceeds a limit after every re-timing.";
   }
   return "unknown";

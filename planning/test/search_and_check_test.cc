@@ -106,6 +106,8 @@ TEST(CurveCheck, AgreesWithDenseSampling) {
   EXPECT_GT(blocked_curves, 20);
 }
 
+constexpr double kUp = 2.0;
+
 /// Length of the shortest path by Dijkstra on the same lattice, independent of A*'s heuristic.
 double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellIndex& to) {
   std::map<std::array<int, 3>, double> best;
@@ -123,7 +125,7 @@ double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellI
         for (int dx = -1; dx <= 1; ++dx) {
           const CellIndex next(at[0] + dx, at[1] + dy, at[2] + dz);
           if (!space.map->InWindow(next) || space.Blocked(next)) continue;
-          queue.push({length + std::sqrt(dx * dx + dy * dy + dz * dz),
+          queue.push({length + std::sqrt(dx * dx + dy * dy + kUp * kUp * dz * dz),
                       {next.x(), next.y(), next.z()}});
         }
       }
@@ -136,7 +138,7 @@ TEST(GridSearch, FindsShortestPathsThroughFreeCells) {
   Draw draw(23);
   OccupancyMapOptions options = SmallMap(0.2);
   options.size_log2 = {5, 5, 4};
-  GridSearch search;
+  GridSearch search(kUp);
   for (int trial = 0; trial < 8; ++trial) {
     OccupancyMap map(options);
     for (int i = 0; i < 6; ++i) {
@@ -153,7 +155,9 @@ TEST(GridSearch, FindsShortestPathsThroughFreeCells) {
     double length = 0.0;
     for (std::size_t i = 0; i < path.size(); ++i) {
       EXPECT_FALSE(space.Blocked(path[i]));
-      if (i > 0) length += (path[i] - path[i - 1]).norm() / map.resolution();
+      if (i == 0) continue;
+      const Eigen::Vector3d step = (path[i] - path[i - 1]) / map.resolution();
+      length += Eigen::Vector3d(step.x(), step.y(), kUp * step.z()).norm();
     }
     EXPECT_NEAR(length, shortest, 1e-3);
   }
@@ -217,38 +221,41 @@ TEST(CollisionPairs, PointOutOfTheObstacleTowardsTheGuide) {
 
 TEST(Certificate, ProvesOrNamesEachPart) {
   OccupancyMap map(SmallMap(0.2));
+  map.MarkOwnVolume(Eigen::Vector3d::Zero(), 5.0);
   const FreeSpace space = SpaceOf(map);
   const SplineState start{{-2, 0, 0}, {0, 0, 0}, {0, 0, 0}}, end{{2, 0, 0}, {0.5, 0, 0}, {0, 0, 0}};
   const UniformBspline curve(HermiteControlPoints(start, end, 12, 4.0), 4.0 / 12, 0.0);
-  EXPECT_TRUE(Certify(curve, 0.0, &end, {3.0, 6.0}, space).passed());
-  EXPECT_FALSE(Certify(curve, 0.0, &end, {1.0, 6.0}, space).limits_kept);
-  EXPECT_FALSE(Certify(curve, 0.0, &end, {3.0, 0.5}, space).limits_kept);
+  EXPECT_TRUE(Certify(curve, 0.0, &end, {3.0, 6.0}, 0.1, space).passed());
+  EXPECT_FALSE(Certify(curve, 0.0, &end, {1.0, 6.0}, 0.1, space).limits_kept);
+  EXPECT_FALSE(Certify(curve, 0.0, &end, {3.0, 0.5}, 0.1, space).limits_kept);
   SplineState elsewhere = end;
   elsewhere.p.x() += 1e-6;
-  EXPECT_FALSE(Certify(curve, 0.0, &elsewhere, {3.0, 6.0}, space).passed());
+  EXPECT_FALSE(Certify(curve, 0.0, &elsewhere, {3.0, 6.0}, 0.1, space).passed());
   map.SetOccupied({0.0, 0.0, 0.0});
-  const Certificate hit = Certify(curve, 0.0, &end, {3.0, 6.0}, space);
+  const Certificate hit = Certify(curve, 0.0, &end, {3.0, 6.0}, 0.1, space);
   EXPECT_FALSE(hit.clear);
   EXPECT_NEAR(curve.Evaluate(hit.first_hit_t).p_WB.x(), -0.35, 0.1);
-  EXPECT_TRUE(Certify(curve, 3.0, &end, {3.0, 6.0}, space).passed());  // already past it
+  EXPECT_TRUE(Certify(curve, 3.0, &end, {3.0, 6.0}, 0.1, space).passed());  // already past it
 }
 
 TEST(Certificate, AStartBeyondALimitIsHeldToItsRecovery) {
   OccupancyMap map(SmallMap(0.2));
+  map.MarkOwnVolume(Eigen::Vector3d::Zero(), 5.0);
   const FreeSpace space = SpaceOf(map);
   const SplineState fast{{-2, 0, 0}, {3.5, 0, 0}, {0, 0, 0}};
   const SplineState slow{{1.0, 0, 0}, {0.5, 0, 0}, {0, 0, 0}};
   const UniformBspline recovers(HermiteControlPoints(fast, slow, 12, 1.5), 1.5 / 12, 0.0);
-  const Certificate yes = Certify(recovers, 0.0, &slow, {3.0, 6.0}, space);
+  const Certificate yes = Certify(recovers, 0.0, &slow, {3.0, 6.0}, 0.1, space);
   EXPECT_TRUE(yes.recovering);
   EXPECT_TRUE(yes.limits_kept);
   const SplineState faster{{2.0, 0, 0}, {3.5, 0, 0}, {0, 0, 0}};
   const UniformBspline persists(HermiteControlPoints(fast, faster, 12, 1.2), 0.1, 0.0);
-  EXPECT_FALSE(Certify(persists, 0.0, &faster, {3.0, 6.0}, space).limits_kept);
+  EXPECT_FALSE(Certify(persists, 0.0, &faster, {3.0, 6.0}, 0.1, space).limits_kept);
 }
 
 TEST(Certificate, AStartInTheInflatedZoneMayOnlyLeave) {
   OccupancyMap map(SmallMap(0.4));
+  map.MarkOwnVolume(Eigen::Vector3d::Zero(), 5.0);
   map.SetOccupied({0.05, 0.05, 0.05});
   const FreeSpace space = SpaceOf(map);
   const SplineState inside{{0.35, 0.05, 0.05}, {0, 0, 0}, {0, 0, 0}};
@@ -256,11 +263,24 @@ TEST(Certificate, AStartInTheInflatedZoneMayOnlyLeave) {
   const SplineState through{{-1.5, 0.05, 0.05}, {0, 0, 0}, {0, 0, 0}};
   const UniformBspline leaves(HermiteControlPoints(inside, out, 12, 2.0), 2.0 / 12, 0.0);
   const UniformBspline crosses(HermiteControlPoints(inside, through, 12, 2.0), 2.0 / 12, 0.0);
-  const Certificate yes = Certify(leaves, 0.0, &out, {3.0, 6.0}, space);
+  const Certificate yes = Certify(leaves, 0.0, &out, {3.0, 6.0}, 0.1, space);
   EXPECT_TRUE(yes.escaping);
   EXPECT_TRUE(yes.passed());
   EXPECT_LT(yes.clearance, 0.4);
-  EXPECT_FALSE(Certify(crosses, 0.0, &through, {3.0, 6.0}, space).passed());
+  EXPECT_FALSE(Certify(crosses, 0.0, &through, {3.0, 6.0}, 0.1, space).passed());
+}
+
+TEST(Certificate, NeedsRoomToBrakeInObservedSpace) {
+  OccupancyMap map(SmallMap(0.2));
+  const FreeSpace space = SpaceOf(map);
+  const SplineState start{{-2, 0, 0}, {2, 0, 0}, {0, 0, 0}}, end{{2, 0, 0}, {2, 0, 0}, {0, 0, 0}};
+  const UniformBspline curve(HermiteControlPoints(start, end, 12, 2.0), 2.0 / 12, 0.0);
+  EXPECT_FALSE(Certify(curve, 0.0, &end, {3.0, 6.0}, 0.1, space).passed());
+  // 2 m/s take 4 / (2 * 0.6 * 6) = 0.56 m, from where the vehicle is after 0.1 s.
+  map.MarkOwnVolume({-2, 0, 0}, 0.6);
+  EXPECT_FALSE(Certify(curve, 0.0, &end, {3.0, 6.0}, 0.1, space).stops_in_observed_space);
+  map.MarkOwnVolume({-2, 0, 0}, 0.9);
+  EXPECT_TRUE(Certify(curve, 0.0, &end, {3.0, 6.0}, 0.1, space).passed());
 }
 
 }  // namespace
