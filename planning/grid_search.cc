@@ -54,35 +54,29 @@ const char* ToString(SearchStatus status) {
   return "unknown";
 }
 
-bool NearestFreePoint(const FreeSpace& space, const Eigen::Vector3d& p_W, double radius,
-                      Eigen::Vector3d* free_W) {
-  const CellIndex centre = space.map->CellOf(p_W);
-  const int n = static_cast<int>(std::ceil(radius / space.map->resolution()));
-  double best = radius * radius;
+bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
+  if (!space.Blocked(*cell)) return true;
+  const CellIndex centre = *cell;
+  const double reach = kEndSearchRadius / space.map->resolution();
+  const int n = static_cast<int>(std::ceil(reach));
+  double best = reach * reach;
   bool found = false;
   CellIndex offset;
   for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
     for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
       for (offset.x() = -n; offset.x() <= n; ++offset.x()) {
-        const CellIndex cell = centre + offset;
-        const Eigen::Vector3d p = space.map->CentreOf(cell);
-        const double distance2 = (p - p_W).squaredNorm();
-        if (distance2 >= best || !space.map->InWindow(cell) || space.Blocked(cell)) continue;
+        const double distance2 = offset.squaredNorm();
+        const CellIndex candidate = centre + offset;
+        if (distance2 >= best || !space.map->InWindow(candidate) || space.Blocked(candidate)) {
+          continue;
+        }
         best = distance2;
-        *free_W = p;
+        *cell = candidate;
         found = true;
       }
     }
   }
   return found;
-}
-
-bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) const {
-  if (!space.Blocked(*cell)) return true;
-  Eigen::Vector3d free_W;
-  if (!NearestFreePoint(space, space.map->CentreOf(*cell), kEndSearchRadius, &free_W)) return false;
-  *cell = space.map->CellOf(free_W);
-  return true;
 }
 
 void GridSearch::Reset(const FreeSpace& space) {

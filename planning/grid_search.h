@@ -38,6 +38,10 @@ class GridSearch {
                       const Eigen::Vector3d& to, int max_expansions,
                       std::vector<Eigen::Vector3d>* path);
 
+  /// Moves `cell` to the nearest free one within kEndSearchRadius; false if there is none. Does not
+  /// allocate.
+  static bool NearestFree(const FreeSpace& space, CellIndex* cell);
+
   int expansions() const { return expansions_; }
 
  private:
@@ -47,7 +51,6 @@ class GridSearch {
     std::uint32_t address;
   };
 
-  bool NearestFree(const FreeSpace& space, CellIndex* cell) const;
   void Reset(const FreeSpace& space);
 
   struct Step {
@@ -65,10 +68,5 @@ class GridSearch {
   std::uint32_t search_ = 0;
   int expansions_ = 0;
 };
-
-/// Nearest free cell centre to p_W within `radius`, by distance and then lattice order. False if
-/// there is none. Does not allocate.
-bool NearestFreePoint(const FreeSpace& space, const Eigen::Vector3d& p_W, double radius,
-                      Eigen::Vector3d* free_W);
 
 }  // namespace touchdown::planning

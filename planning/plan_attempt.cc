@@ -20,7 +20,6 @@ constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 64;
 constexpr double kPressure = 1.6;          // weight of the pairs grows by this every round
 constexpr double kGuideStep = 0.05;        // sampling of the committed curve as a guide [s]
-constexpr double kFreeStartRadius = 1.0;   // how far a blocked start looks for free space [m]
 
 int SegmentsFor(double duration) {
   const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
@@ -125,16 +124,7 @@ ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const Uniform
                                     const BlockedRun& run, GuidePath* guide,
                                     ReplanResult* result) {
   StageTimer timer(&result->times.search);
-  if (run.at_start) {
-    // Out of the inflated zone by the shortest way.
-    Eigen::Vector3d free_W;
-    if (!NearestFreePoint(*request.space, request.start.p, kFreeStartRadius, &free_W)) {
-      return ReplanReason::kStartBlocked;
-    }
-    *guide = {free_W};
-    return ReplanReason::kNone;
-  }
-  if (request.previous && request.previous->t_end() > run.t_out &&
+  if (!run.at_start && request.previous && request.previous->t_end() > run.t_out &&
       !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space))) {
     SampleGuide(*request.previous, request.t0, guide);
     return ReplanReason::kNone;
@@ -142,6 +132,8 @@ ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const Uniform
   const SearchStatus status =
       search_.Search(*request.space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
                      options_.max_expansions, guide);
+  // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
+  if (run.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   if (status != SearchStatus::kFound) return ReplanReason::kSearchFailed;
   result->guide_paths.push_back(*guide);
   return ReplanReason::kNone;

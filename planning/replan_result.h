@@ -51,8 +51,9 @@ enum class ReplanStatus {
   kKept,        ///< no new certified plan; the previous one is still safe
   kBraking,     ///< a certified braking trajectory to rest
   kClimbing,    ///< a certified climb straight up to rest
+  kEscaping,    ///< a certified way out of the inflated zone around an obstacle, to rest
   kHolding,     ///< at rest already and nothing better is certified: stay
-  kUnsafe,      ///< nothing could be certified: the previous trajectory goes on, uncertified
+  kUnsafe,      ///< nothing could be certified: it brakes, uncertified, and says so
 };
 
 /// Why no new plan was made; kNone with kPlanned.

@@ -26,7 +26,9 @@ constexpr double kStretch = 1.2;          // of the duration after an attempt th
 constexpr double kReTimeBelow = 0.75;     // a fresh guess this much shorter replaces the arrival
 constexpr double kKeepReserve = 0.5;      // time to spare before a kept plan has to brake [s]
 constexpr double kClimb = 1.5;            // [m]
-constexpr double kAtRest = 0.05;          // [m/s]
+constexpr double kAtRest = 0.05;          // below this speed and way to go [m/s, m]
+
+const Eigen::Vector3d kNoShift = Eigen::Vector3d::Zero();
 
 /// State on a curve; past its end it goes on at the end's velocity.
 FlatState StateOn(const UniformBspline& curve, double t) {
@@ -95,7 +97,8 @@ class Replanner::Impl {
   FreeSpace Space(const ReplanInput& input, double t_end, const OccupancyMap& map) const;
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   void FallBack(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
-  bool TryRest(const SplineState& start, double t0, double climb, const FreeSpace& space);
+  bool TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
+               const FreeSpace& space);
 
   PlanAttempt attempt_;
   ReplanResult result_;
@@ -191,9 +194,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   return reason;
 }
 
-bool Replanner::Impl::TryRest(const SplineState& start, double t0, double climb,
+bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
                               const FreeSpace& space) {
-  result_.curve = MakeRestTrajectory(start, t0, climb, options_.limits);
+  result_.curve = MakeRestTrajectory(start, t0, shift, options_.limits);
   StageTimer timer(&result_.times.certificate);
   result_.certificate = Certify(result_.curve, t0, nullptr, options_.limits, 0.0, space);
   return result_.certificate.passed();
@@ -202,13 +205,14 @@ bool Replanner::Impl::TryRest(const SplineState& start, double t0, double climb,
 void Replanner::Impl::FallBack(const ReplanInput& input, const SplineState& start,
                                const OccupancyMap& map) {
   const FreeSpace space = Space(input, input.t_start + options_.min_duration, map);
-  const UniformBspline brake = MakeRestTrajectory(start, input.t_start, 0.0, options_.limits);
+  const UniformBspline brake = MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits);
   const double reserve = brake.duration() + kKeepReserve;
   if (!result_.from_odometry) {
     const double hit = FirstBlockedTime(next_, input.t_start, space);
-    const bool moves_at_end = next_.AtKnot(next_.segments()).v.norm() > kAtRest;
+    const SplineState last = next_.AtKnot(next_.segments());
+    const bool moves_at_end = last.v.norm() > kAtRest;
     const double end = moves_at_end ? next_.t_end() : std::numeric_limits<double>::infinity();
-    const bool at_rest = !moves_at_end && input.t_start >= next_.t_end();
+    const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && (last.p - start.p).norm() <= kAtRest;
     if (std::min(hit, end) > input.t_start + reserve || at_rest) {
       result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
       result_.curve = next_;
@@ -217,12 +221,17 @@ void Replanner::Impl::FallBack(const ReplanInput& input, const SplineState& star
     }
   }
   planned_before_ = false;
-  if (TryRest(start, input.t_start, 0.0, space)) {
+  CellIndex way_out = map.CellOf(start.p);
+  const bool inside = space.Blocked(start.p) && GridSearch::NearestFree(space, &way_out);
+  const Eigen::Vector3d climb = kClimb * Eigen::Vector3d::UnitZ();
+  if (inside && TryRest(start, input.t_start, map.CentreOf(way_out) - start.p, space)) {
+    result_.status = ReplanStatus::kEscaping;
+  } else if (TryRest(start, input.t_start, kNoShift, space)) {
     result_.status = ReplanStatus::kBraking;
-  } else if (TryRest(start, input.t_start, kClimb, space)) {
+  } else if (TryRest(start, input.t_start, climb, space)) {
     result_.status = ReplanStatus::kClimbing;
   } else {
-    // Nothing is certified: the slowest that is known is to brake where it hits last.
+    // Nothing is certified. Of what is left, braking meets any obstacle slowest.
     result_.status = ReplanStatus::kUnsafe;
     result_.curve = brake;
   }
@@ -259,6 +268,7 @@ const char* ToString(ReplanStatus status) {
     case ReplanStatus::kKept: return "kept";
     case ReplanStatus::kBraking: return "braking";
     case ReplanStatus::kClimbing: return "climbing";
+    case ReplanStatus::kEscaping: return "escaping";
     case ReplanStatus::kHolding: return "holding";
     case ReplanStatus::kUnsafe: return "unsafe";
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Braking and climbing. The stopping point is where a cubic velocity profile from (v0, a0) to rest
+// Braking, climbing and escaping. The stopping point is where a cubic velocity profile from (v0, a0) to rest
 // ends, p0 + T v0/2 + T^2 a0/12; the spline between the ends is the quintic Hermite's.
 
 #include "touchdown/planning/rest_trajectory.h"
@@ -17,15 +17,14 @@ constexpr double kGrowth = 1.15;
 constexpr int kMaxTries = 24;      // up to 0.4 s * 1.15^24 = 11 s
 }  // namespace
 
-UniformBspline MakeRestTrajectory(const SplineState& start, double t0, double climb,
-                                  const Limits& limits) {
+UniformBspline MakeRestTrajectory(const SplineState& start, double t0,
+                                  const Eigen::Vector3d& shift, const Limits& limits) {
   const double speed = std::max(limits.speed, start.v.norm());
   const double acceleration = std::max(limits.acceleration, start.a.norm());
   double T = kShortest;
   for (int i = 0;; ++i, T *= kGrowth) {
     SplineState end;
-    end.p = start.p + 0.5 * T * start.v + T * T / 12.0 * start.a +
-            climb * Eigen::Vector3d::UnitZ();
+    end.p = start.p + 0.5 * T * start.v + T * T / 12.0 * start.a + shift;
     UniformBspline curve(HermiteControlPoints(start, end, kSegments, T), T / kSegments, t0);
     const DerivativeBounds bounds = BoundDerivatives(curve);
     const bool kept = bounds.speed <= speed + 1e-9 && bounds.acceleration <= acceleration + 1e-9;

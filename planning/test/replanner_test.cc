@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The replanning step over random pads, horizons, fields and both arrival modes: what is accepted is
+// certified, and every way it can fail has its name.
+
+#include "touchdown/planning/replanner.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "touchdown/planning/test/planning_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+/// A map of observed free space with random pillars between start and pad.
+OccupancyMap ObservedMap(double inflation = 0.35) {
+  OccupancyMapOptions options;
+  options.inflation_radius = inflation;
+  OccupancyMap map(options);
+  map.MarkOwnVolume(Eigen::Vector3d(0, 0, 0), 11.0);
+  return map;
+}
+
+void AddPillar(double x, double y, OccupancyMap* map) {
+  for (double dx = -0.25; dx <= 0.3; dx += 0.1) {
+    for (double dy = -0.25; dy <= 0.3; dy += 0.1) {
+      for (double z = 0.05; z < 3.1; z += 0.1) map->SetOccupied({x + dx, y + dy, z});
+    }
+  }
+}
+
+ReplannerOptions Options(ArrivalMode arrival) {
+  ReplannerOptions options;
+  options.arrival = arrival;
+  return options;
+}
+
+ReplanInput Input(const Eigen::Vector3d& p_WB, const estimation::PadPrediction& pad, double t) {
+  ReplanInput input;
+  input.t_now = t;
+  input.t_start = t + 0.02;
+  input.vehicle.t = t;
+  input.vehicle.p_WB = p_WB;
+  input.pad = &pad;
+  input.endpoint = {t, 1.3, 0.0, 1.3};
+  return input;
+}
+
+class BothArrivals : public ::testing::TestWithParam<ArrivalMode> {};
+INSTANTIATE_TEST_SUITE_P(Arrival, BothArrivals,
+                         ::testing::Values(ArrivalMode::kFixed, ArrivalMode::kFree),
+                         [](const auto& test) {
+                           return test.param == ArrivalMode::kFree ? "Free" : "Fixed";
+                         });
+
+TEST_P(BothArrivals, EveryAcceptedPlanEndsOnThePadAndIsCertified) {
+  Draw draw(31);
+  int planned = 0;
+  constexpr int kTrials = 60;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    OccupancyMap map = ObservedMap();
+    const Eigen::Vector3d start(draw.Uniform(-6, -4), draw.Uniform(-3, 3), draw.Uniform(1.2, 2.5));
+    for (int i = 0; i < 4; ++i) AddPillar(draw.Uniform(-2.5, 1.5), draw.Uniform(-4, 4), &map);
+    const ArcPad pad({draw.Uniform(3, 7), draw.Uniform(-4, 4), 0.3}, draw.Uniform(0, 1.2),
+                     draw.Uniform(-3, 3), draw.Uniform(-0.3, 0.3));
+    Replanner replanner(Options(GetParam()), solvers::StandardBackends());
+    const double t = draw.Uniform(0.0, 50.0);
+    replanner.CommitHover(start, t);
+    ReplanInput input = Input(start, pad, t);
+    input.endpoint.sink_rate = trial % 3 == 0 ? 0.1 : 0.0;
+    input.endpoint.height_floor = 0.5;
+    const ReplanResult& result = replanner.Replan(input, map);
+    if (result.status != ReplanStatus::kPlanned) continue;
+    ++planned;
+    EXPECT_TRUE(result.certificate.passed());
+
+    // Independent of the certificate: ends, limits and clearance by sampling.
+    const double t_end = result.curve.t_end();
+    const SplineState wanted = EndStateAt(pad, input.endpoint, t_end).state;
+    const FlatState last = result.curve.Evaluate(t_end);
+    EXPECT_LE((last.p_WB - wanted.p).norm(), 1e-9);
+    EXPECT_LE((last.v_WB - wanted.v).norm(), 1e-9);
+    EXPECT_LE((result.curve.Evaluate(input.t_start).p_WB - start).norm(), 1e-9);
+    for (double s = input.t_start; s <= t_end; s += 0.01) {
+      const FlatState at = result.curve.Evaluate(s);
+      EXPECT_LE(at.v_WB.norm(), 3.0 + 1e-6);
+      EXPECT_LE(at.a_WB.norm(), 6.0 + 1e-6);
+      EXPECT_FALSE(map.IsBlocked(at.p_WB));
+    }
+  }
+  EXPECT_GE(planned, kTrials * 9 / 10);
+}
+
+TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
+  // One replan every 0.1 s until well after arrival; the reference is flown exactly.
+  const ArcPad pad({5.0, 2.0, 0.3}, 1.0, 0.4, 0.1);
+  OccupancyMap map = ObservedMap();
+  AddPillar(0.5, 1.0, &map);
+  Replanner replanner(Options(GetParam()), solvers::StandardBackends());
+  Eigen::Vector3d p(-4.0, 0.0, 1.6);
+  replanner.CommitHover(p, 0.0);
+  double worst_jump = 0.0;
+  for (int step = 0; step < 100; ++step) {
+    const double t = 0.1 * step;
+    ReplanInput input = Input(p, pad, t);
+    input.vehicle.v_WB = replanner.Reference(t).v_WB;
+    const FlatState before = replanner.Reference(input.t_start);
+    map.Recentre(p);
+    map.MarkOwnVolume(p, 6.0);
+    const ReplanResult& result = replanner.Replan(input, map);
+    ASSERT_EQ(result.status, ReplanStatus::kPlanned) << ToString(result.reason) << " at " << t;
+    const FlatState after = replanner.Reference(input.t_start);
+    worst_jump = std::max({worst_jump, (after.p_WB - before.p_WB).norm(),
+                           (after.v_WB - before.v_WB).norm()});
+    p = replanner.Reference(t + 0.1).p_WB;
+  }
+  EXPECT_LT(worst_jump, 1e-9);  // the committed trajectory is continuous
+  const Eigen::Vector3d wanted = pad.At(10.0).p_WP + Eigen::Vector3d(0, 0, 1.3);
+  EXPECT_LT((p - wanted).norm(), 0.02);
+}
+
+TEST(Replanner, TheSameQuestionTwiceGivesTheSameBits) {
+  const auto run = [] {
+    OccupancyMap map = ObservedMap();
+    AddPillar(0.0, 0.2, &map);
+    const ArcPad pad({5.0, 0.0, 0.3}, 0.8, 0.3, 0.1);
+    Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+    replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
+    return replanner.Replan(Input({-4.0, 0.0, 1.5}, pad, 0.0), map).curve.control_points();
+  };
+  EXPECT_EQ(run(), run());
+}
+
+TEST(Replanner, NamesWhyThereIsNoPlan) {
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const ArcPad racing({5.0, 0.0, 0.3}, 6.0, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  const auto ask = [&](OccupancyMap map, const ReplanInput& input) {
+    Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+    replanner.CommitHover(start, 0.0);
+    const ReplanResult result = replanner.Replan(input, map);
+    EXPECT_STRNE(Explain(result.reason), "");
+    return result;
+  };
+  const OccupancyMap free = ObservedMap();
+
+  ReplanInput nan = Input(start, pad, 0.0);
+  nan.vehicle.p_WB.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(ask(free, nan).reason, ReplanReason::kInvalidInput);
+  ReplanInput past = Input(start, pad, 0.0);
+  past.t_start = -1.0;
+  EXPECT_EQ(ask(free, past).reason, ReplanReason::kInvalidInput);
+  ReplanInput no_pad = Input(start, pad, 0.0);
+  no_pad.pad = nullptr;
+  EXPECT_EQ(ask(free, no_pad).reason, ReplanReason::kInvalidInput);
+
+  EXPECT_EQ(ask(free, Input(start, racing, 0.0)).reason, ReplanReason::kPadUnreachable);
+
+  // A pad that stands inside a pillar.
+  OccupancyMap on_pad = ObservedMap();
+  AddPillar(5.0, 0.0, &on_pad);
+  const ArcPad standing({5.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  const ReplanResult goal = ask(on_pad, Input(start, standing, 0.0));
+  EXPECT_EQ(goal.reason, ReplanReason::kGoalBlocked);
+  EXPECT_EQ(goal.status, ReplanStatus::kHolding);  // it hovers, and that is safe
+
+  // A closed room around the start.
+  OccupancyMap room = ObservedMap();
+  for (double a = -1.5; a <= 1.55; a += 0.1) {
+    for (double b = -1.5; b <= 1.55; b += 0.1) {
+      for (const double wall : {-1.5, 1.5}) {
+        room.SetOccupied(start + Eigen::Vector3d(wall, a, b));
+        room.SetOccupied(start + Eigen::Vector3d(a, wall, b));
+        room.SetOccupied(start + Eigen::Vector3d(a, b, wall));
+      }
+    }
+  }
+  EXPECT_EQ(ask(room, Input(start, pad, 0.0)).reason, ReplanReason::kSearchFailed);
+
+  // Unobserved space ahead: nothing faster than a crawl is certified, and a crawl is too slow.
+  OccupancyMap unobserved{OccupancyMapOptions{}};
+  unobserved.MarkOwnVolume(start, 0.3);
+  const ReplanResult crawl = ask(unobserved, Input(start, pad, 0.0));
+  EXPECT_TRUE(crawl.status == ReplanStatus::kPlanned ||
+              crawl.reason == ReplanReason::kUnobserved);
+}
+
+TEST(Replanner, AStartInTheInflatedZoneEscapesAndThenPlans) {
+  OccupancyMap map = ObservedMap(0.4);
+  AddPillar(-3.4, 0.0, &map);  // its face is 0.3 m ahead of the start
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.1, 1.5);
+  ASSERT_TRUE(map.IsBlocked(start));
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  Eigen::Vector3d p = start;
+  ReplanStatus status = ReplanStatus::kUnsafe;
+  for (int step = 0; step < 30 && status != ReplanStatus::kPlanned; ++step) {
+    ReplanInput input = Input(p, pad, 0.1 * step);
+    input.vehicle.v_WB = replanner.Reference(input.t_now).v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    status = result.status;
+    EXPECT_TRUE(result.certificate.passed()) << ToString(result.reason) << " at step " << step;
+    if (step == 0) {
+      EXPECT_EQ(status, ReplanStatus::kEscaping);
+      EXPECT_TRUE(result.certificate.escaping);
+      EXPECT_GT(result.certificate.clearance, 0.2);
+    }
+    p = replanner.Reference(input.t_now + 0.1).p_WB;
+  }
+  EXPECT_EQ(status, ReplanStatus::kPlanned);
+}
+
+TEST(Replanner, BrakesWhenTheWayCloses) {
+  OccupancyMap map = ObservedMap();
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  replanner.CommitHover(start, 0.0);
+  ASSERT_EQ(replanner.Replan(Input(start, pad, 0.0), map).status, ReplanStatus::kPlanned);
+  // In full flight a wall appears from side to side and top to bottom, 1.8 m ahead.
+  const double t = 2.0;
+  const FlatState at = replanner.Reference(t);
+  ASSERT_GT(at.v_WB.norm(), 1.5);
+  for (double y = -12.75; y < 12.8; y += 0.1) {
+    for (double z = -3.15; z < 3.2; z += 0.1) {
+      map.SetOccupied({at.p_WB.x() + 1.8, y, z});
+    }
+  }
+  ReplanInput input = Input(at.p_WB, pad, t);
+  input.vehicle.v_WB = at.v_WB;
+  const ReplanResult& result = replanner.Replan(input, map);
+  EXPECT_EQ(result.status, ReplanStatus::kBraking) << ToString(result.reason);
+  EXPECT_TRUE(result.certificate.passed());
+  const FlatState end = replanner.Reference(result.curve.t_end());
+  EXPECT_LT(end.v_WB.norm(), 1e-9);
+  EXPECT_FALSE(map.IsBlocked(end.p_WB));
+}
+
+TEST(Replanner, StartsAtTheVehicleWhenTrackingIsLost) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
+  const Eigen::Vector3d blown_away(-4.0, 0.8, 1.5);
+  const ReplanResult& result = replanner.Replan(Input(blown_away, pad, 0.0), map);
+  EXPECT_TRUE(result.from_odometry);
+  EXPECT_LT((replanner.Reference(0.02).p_WB - blown_away).norm(), 1e-9);
+}
+
+TEST(Replanner, RefusesBadOptions) {
+  const auto make = [](auto change) {
+    ReplannerOptions options;
+    change(&options);
+    Replanner(options, solvers::StandardBackends());
+  };
+  EXPECT_THROW(make([](auto* o) { o->backend = "none"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto* o) { o->limits.speed = 0.0; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto* o) { o->min_duration = -1.0; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto* o) { o->ceiling_height = 0.1; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto* o) { o->vertical_cost = 0.5; }), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::planning
