@@ -32,7 +32,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
                                                                   : planning::ArrivalMode::kFixed;
   options.limits = {scenario.limits.speed, scenario.limits.acceleration};
-  options.hull_radius = model.hull_radius;
+  options.ceiling_height = scenario.planning.ceiling;
   // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
   options.reaction = 1.0 / scenario.planning.rate +
                      (scenario.planning.latency.measured ? 1.0 / scenario.planning.rate
@@ -120,34 +120,49 @@ void Pilot::StepMission(const estimation::VehicleState& vehicle,
 const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehicle,
                                             const estimation::PadFilter& filter,
                                             const planning::OccupancyMap& map) {
-  if (!mission_.plan_requested || !filter.initialized()) {
+  if (mission_.mode == control::MissionMode::kHovering || !mission_.motors_armed) {
     has_plan_ = false;
     return nullptr;
   }
-  const estimation::BeliefPrediction prediction = PredictionOf(scenario_, filter);
-  const bool oracle = scenario_.pad.prediction == PadPredictionKind::kOracle;
-  const estimation::PadPrediction& pad =
-      oracle ? static_cast<const estimation::PadPrediction&>(oracle_) : prediction;
-
   replan_.latency_s = Latency();
   replan_.input.t_now = vehicle.t;
   replan_.input.t_start = vehicle.t + replan_.latency_s;
   replan_.input.vehicle = vehicle;
-  replan_.input.pad = &pad;
   replan_.input.endpoint = Endpoint(vehicle.t);
-  replan_.pad = pad.At(vehicle.t);
 
   const auto begin = std::chrono::steady_clock::now();
-  const planning::ReplanResult& result = replanner_.Replan(replan_.input, map);
+  const planning::ReplanResult& result =
+      WantsPlan(filter, vehicle.t) ? PlanToPad(filter, map)
+                                   : replanner_.Rest(replan_.input, RestClimb(), map);
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  replan_.input.pad = nullptr;  // the prediction ends with this call
-
-  has_plan_ = result.status == planning::ReplanStatus::kPlanned ||
-              result.status == planning::ReplanStatus::kKept;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned;
+  has_plan_ = last_planned_ || result.status == planning::ReplanStatus::kKept;
   if (last_planned_) planned_t_ = vehicle.t;
   return &result;
+}
+
+bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
+  if (!filter.initialized()) return false;
+  if (mission_.guidance == control::Guidance::kFollowPad) return true;
+  // Holding ends with a plan to a known pad, so one is tried; without the pad the vehicle rests.
+  return mission_.mode == control::MissionMode::kHold && filter.Converged(t);
+}
+
+double Pilot::RestClimb() const {
+  return mission_.guidance == control::Guidance::kClimb ? parameters_.follow_height : 0.0;
+}
+
+const planning::ReplanResult& Pilot::PlanToPad(const estimation::PadFilter& filter,
+                                               const planning::OccupancyMap& map) {
+  const estimation::BeliefPrediction prediction = PredictionOf(scenario_, filter);
+  const bool oracle = scenario_.pad.prediction == PadPredictionKind::kOracle;
+  replan_.input.pad =
+      oracle ? static_cast<const estimation::PadPrediction*>(&oracle_) : &prediction;
+  replan_.pad = replan_.input.pad->At(replan_.input.t_now);
+  const planning::ReplanResult& result = replanner_.Replan(replan_.input, map);
+  replan_.input.pad = nullptr;  // the prediction ends with this call
+  return result;
 }
 
 control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) const {

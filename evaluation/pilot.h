@@ -38,7 +38,8 @@ class Pilot {
   void StepMission(const estimation::VehicleState& vehicle, const estimation::PadFilter& filter,
                    double foot_force, double dt);
 
-  /// One replanning step if the mission wants one; the result is replanner's until the next.
+  /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
+  /// hovering or disarmed. The result is the replanner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
                                        const planning::OccupancyMap& map);
@@ -58,6 +59,10 @@ class Pilot {
                         const estimation::PadFilter& filter) const;
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
+  bool WantsPlan(const estimation::PadFilter& filter, double t) const;
+  double RestClimb() const;
+  const planning::ReplanResult& PlanToPad(const estimation::PadFilter& filter,
+                                          const planning::OccupancyMap& map);
 
   Scenario scenario_;
   estimation::VehicleModel model_;

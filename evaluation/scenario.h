@@ -86,7 +86,8 @@ struct Scenario {
   struct Planning {
     double rate = 10.0;  ///< [Hz]
     PlanningLatency latency;
-    double clearance = 0.45;  ///< obstacles are grown by this in the map [m]
+    double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
+    double ceiling = 10.0;    ///< the body's origin stays below this [m]
   } planning;
 
   struct Solver {

@@ -167,6 +167,9 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 2, "m"),
                                   "obstacles are grown by this in the map",
                                   AT(planning.clearance)));
+  keys.push_back(Number<Scenario>("planning.ceiling", Above(0, 1000, "m"),
+                                  "flight ceiling of the vehicle's centre above the ground",
+                                  AT(planning.ceiling)));
   keys.push_back(Text("solver.backend", "a name of `touchdown list backends`", "optimiser",
                       AT(solver.backend)));
   keys.push_back(Choice("solver.arrival", {"fixed", "free"},

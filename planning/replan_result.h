@@ -25,7 +25,6 @@ struct ReplannerOptions {
   double floor_height = 0.45;      ///< body origin stays above this away from the pad [m]
   double ceiling_height = 10.0;    ///< and below this everywhere [m]
   double pad_radius = 1.2;         ///< half width of the strip over the pad without a floor [m]
-  double hull_radius = 0.30;       ///< the vehicle's own: an escape never comes nearer than this [m]
   double max_duration = 30.0;      ///< a pad farther away in time is unreachable [s]
   double min_duration = 0.8;       ///< shortest plan: a vehicle above the pad keeps following [s]
   double odometry_threshold = 0.5; ///< tracking error beyond which plans start at the vehicle [m]

@@ -44,13 +44,20 @@ FlatState StateOn(const UniformBspline& curve, double t) {
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
-bool Finite(const ReplanInput& input) {
-  return std::isfinite(input.t_now) && std::isfinite(input.t_start) && input.vehicle.p_WB.allFinite() &&
-         input.vehicle.v_WB.allFinite() && std::isfinite(input.endpoint.height) &&
-         std::isfinite(input.endpoint.sink_rate) && std::isfinite(input.endpoint.height_floor) &&
-         std::isfinite(input.endpoint.t_reference) && input.pad != nullptr &&
-         input.pad->At(input.t_start).p_WP.allFinite() &&
-         input.pad->At(input.t_start).v_WP.allFinite();
+bool StateValid(const ReplanInput& input) {
+  return std::isfinite(input.t_now) && std::isfinite(input.t_start) &&
+         input.t_start >= input.t_now && input.vehicle.p_WB.allFinite() &&
+         input.vehicle.v_WB.allFinite();
+}
+
+bool TargetValid(const ReplanInput& input) {
+  const EndpointTarget& end = input.endpoint;
+  if (input.pad == nullptr || !std::isfinite(end.height) || !std::isfinite(end.sink_rate) ||
+      !std::isfinite(end.height_floor) || !std::isfinite(end.t_reference)) {
+    return false;
+  }
+  const estimation::PadState pad = input.pad->At(input.t_start);
+  return pad.p_WP.allFinite() && pad.v_WP.allFinite();
 }
 
 void Require(bool ok, const char* name, double value, const char* range) {
@@ -89,66 +96,106 @@ class Replanner::Impl {
   const UniformBspline& InForce(double t) const { return t < next_.t0() ? current_ : next_; }
 
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
+  const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
 
   const ReplannerOptions options_;
   UniformBspline current_, next_;
 
  private:
-  FreeSpace Space(const ReplanInput& input, double t_end, const OccupancyMap& map) const;
+  FreeSpace Space(const OccupancyMap& map) const;
+  FreeSpace SpaceOverPad(const ReplanInput& input, double t_end, const OccupancyMap& map) const;
+  void Begin();
+  const ReplanResult& RefuseInput();
+  SplineState Start(const ReplanInput& input);
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
-  void FallBack(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
+  bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
+  void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
   bool TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
                const FreeSpace& space);
 
   PlanAttempt attempt_;
   ReplanResult result_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
+  double climbing_ = -1.0;       // the committed curve is the caller's rest with this climb
 };
 
-FreeSpace Replanner::Impl::Space(const ReplanInput& input, double t_end,
-                                 const OccupancyMap& map) const {
+FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
   FreeSpace space;
   space.map = &map;
   space.floor = options_.floor_height;
   space.ceiling = options_.ceiling_height;
+  return space;
+}
+
+FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, double t_end,
+                                        const OccupancyMap& map) const {
+  FreeSpace space = Space(map);
   space.pad_from = input.pad->At(input.t_start).p_WP.head<2>();
   space.pad_to = input.pad->At(t_end).p_WP.head<2>();
   space.pad_radius = options_.pad_radius;
   return space;
 }
 
-const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
+void Replanner::Impl::Begin() {
   result_.times = {};
-  StageTimer total(&result_.times.total);
   result_.guide_paths.clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
   result_.from_odometry = false;
+  result_.reason = ReplanReason::kNone;
   result_.solver = {};
-  if (!Finite(input) || input.t_start < input.t_now) {
-    result_.status = ReplanStatus::kKept;
-    result_.reason = ReplanReason::kInvalidInput;
-    result_.curve = next_;
-    return result_;
-  }
+}
 
+const ReplanResult& Replanner::Impl::RefuseInput() {
+  result_.status = ReplanStatus::kKept;
+  result_.reason = ReplanReason::kInvalidInput;
+  result_.curve = next_;
+  return result_;
+}
+
+/// The committed state when the answer takes over, or the vehicle's own where tracking is lost.
+SplineState Replanner::Impl::Start(const ReplanInput& input) {
   const FlatState reference = StateOn(InForce(input.t_now), input.t_now);
-  SplineState start = ToSpline(StateOn(InForce(input.t_start), input.t_start));
-  if ((reference.p_WB - input.vehicle.p_WB).norm() > options_.odometry_threshold) {
-    result_.from_odometry = true;
-    const double latency = input.t_start - input.t_now;
-    start.p = input.vehicle.p_WB + latency * input.vehicle.v_WB;
-    start.v = input.vehicle.v_WB;
-    start.a.setZero();
-  }
+  const double error = (reference.p_WB - input.vehicle.p_WB).norm();
+  result_.from_odometry = error > options_.odometry_threshold;
+  if (!result_.from_odometry) return ToSpline(StateOn(InForce(input.t_start), input.t_start));
+  const double latency = input.t_start - input.t_now;
+  return {input.vehicle.p_WB + latency * input.vehicle.v_WB, input.vehicle.v_WB,
+          Eigen::Vector3d::Zero()};
+}
 
+const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
+  Begin();
+  StageTimer total(&result_.times.total);
+  if (!StateValid(input) || !TargetValid(input)) return RefuseInput();
+  const SplineState start = Start(input);
+  climbing_ = -1.0;
   result_.reason = Plan(input, start, map);
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
     Commit(result_.curve);
-  } else {
-    FallBack(input, start, map);
+    return result_;
   }
+  const FreeSpace space = SpaceOverPad(input, input.t_start + options_.min_duration, map);
+  if (!KeepCommitted(input, start, space)) {
+    planned_before_ = false;
+    ComeToRest(input.t_start, start, 0.0, space);
+  }
+  return result_;
+}
+
+const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
+                                          const OccupancyMap& map) {
+  Begin();
+  StageTimer total(&result_.times.total);
+  if (!StateValid(input)) return RefuseInput();
+  const SplineState start = Start(input);
+  const FreeSpace space = Space(map);
+  planned_before_ = false;
+  const bool under_way = climbing_ == climb && !result_.from_odometry;
+  if (under_way && KeepCommitted(input, start, space)) return result_;
+  climbing_ = climb;
+  ComeToRest(input.t_start, start, climb, space);
   return result_;
 }
 
@@ -174,12 +221,13 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pad = input.pad;
   request.target = input.endpoint;
   request.arrival = options_.arrival;
-  request.previous = planned_before_ ? &next_ : nullptr;
   ReplanReason reason = ReplanReason::kNone;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
-    const FreeSpace space = Space(input, input.t_start + T, map);
+    const FreeSpace space = SpaceOverPad(input, input.t_start + T, map);
     request.duration = T;
     request.space = &space;
+    // The committed side of an obstacle is tried once; if it fails, the map decides anew.
+    request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
     reason = attempt_.Run(request, &result_);
     const bool slower_helps = reason == ReplanReason::kLimitsExceeded ||
                               reason == ReplanReason::kUnobserved ||
@@ -202,38 +250,43 @@ bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::
   return result_.certificate.passed();
 }
 
-void Replanner::Impl::FallBack(const ReplanInput& input, const SplineState& start,
-                               const OccupancyMap& map) {
-  const FreeSpace space = Space(input, input.t_start + options_.min_duration, map);
-  const UniformBspline brake = MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits);
-  const double reserve = brake.duration() + kKeepReserve;
-  if (!result_.from_odometry) {
-    const double hit = FirstBlockedTime(next_, input.t_start, space);
-    const SplineState last = next_.AtKnot(next_.segments());
-    const bool moves_at_end = last.v.norm() > kAtRest;
-    const double end = moves_at_end ? next_.t_end() : std::numeric_limits<double>::infinity();
-    const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && (last.p - start.p).norm() <= kAtRest;
-    if (std::min(hit, end) > input.t_start + reserve || at_rest) {
-      result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
-      result_.curve = next_;
-      result_.certificate = Certify(next_, input.t_start, nullptr, options_.limits, 0.0, space);
-      return;
-    }
-  }
-  planned_before_ = false;
-  CellIndex way_out = map.CellOf(start.p);
+/// True if the committed curve may go on: at rest and free, or clear for longer than braking takes.
+bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState& start,
+                                    const FreeSpace& space) {
+  if (result_.from_odometry) return false;
+  const double braking =
+      MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits).duration();
+  const double hit = FirstBlockedTime(next_, input.t_start, space);
+  const SplineState last = next_.AtKnot(next_.segments());
+  const bool moves_at_end = last.v.norm() > kAtRest;
+  const double end = moves_at_end ? next_.t_end() : std::numeric_limits<double>::infinity();
+  const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && !moves_at_end &&
+                       (last.p - start.p).norm() <= kAtRest;
+  if (!at_rest && std::min(hit, end) <= input.t_start + braking + kKeepReserve) return false;
+  result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
+  result_.curve = next_;
+  result_.certificate = Certify(next_, input.t_start, nullptr, options_.limits, 0.0, space);
+  return true;
+}
+
+/// Out of an inflated zone first; else what the caller wants; else brake; else climb.
+void Replanner::Impl::ComeToRest(double t0, const SplineState& start, double climb,
+                                 const FreeSpace& space) {
+  CellIndex way_out = space.map->CellOf(start.p);
   const bool inside = space.Blocked(start.p) && GridSearch::NearestFree(space, &way_out);
-  const Eigen::Vector3d climb = kClimb * Eigen::Vector3d::UnitZ();
-  if (inside && TryRest(start, input.t_start, map.CentreOf(way_out) - start.p, space)) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  if (inside && TryRest(start, t0, space.map->CentreOf(way_out) - start.p, space)) {
     result_.status = ReplanStatus::kEscaping;
-  } else if (TryRest(start, input.t_start, kNoShift, space)) {
+  } else if (climb > 0.0 && TryRest(start, t0, climb * up, space)) {
+    result_.status = ReplanStatus::kClimbing;
+  } else if (TryRest(start, t0, kNoShift, space)) {
     result_.status = ReplanStatus::kBraking;
-  } else if (TryRest(start, input.t_start, climb, space)) {
+  } else if (climb <= 0.0 && TryRest(start, t0, kClimb * up, space)) {
     result_.status = ReplanStatus::kClimbing;
   } else {
     // Nothing is certified. Of what is left, braking meets any obstacle slowest.
     result_.status = ReplanStatus::kUnsafe;
-    result_.curve = brake;
+    TryRest(start, t0, kNoShift, space);
   }
   Commit(result_.curve);
 }
@@ -258,53 +311,13 @@ const ReplanResult& Replanner::Replan(const ReplanInput& input, const OccupancyM
   return impl_->Replan(input, map);
 }
 
+const ReplanResult& Replanner::Rest(const ReplanInput& input, double climb,
+                                    const OccupancyMap& map) {
+  return impl_->Rest(input, climb, map);
+}
+
 FlatState Replanner::Reference(double t) const { return StateOn(impl_->InForce(t), t); }
 
 const ReplannerOptions& Replanner::options() const { return impl_->options_; }
-
-const char* ToString(ReplanStatus status) {
-  switch (status) {
-    case ReplanStatus::kPlanned: return "planned";
-    case ReplanStatus::kKept: return "kept";
-    case ReplanStatus::kBraking: return "braking";
-    case ReplanStatus::kClimbing: return "climbing";
-    case ReplanStatus::kEscaping: return "escaping";
-    case ReplanStatus::kHolding: return "holding";
-    case ReplanStatus::kUnsafe: return "unsafe";
-  }
-  return "unknown";
-}
-
-const char* ToString(ReplanReason reason) {
-  switch (reason) {
-    case ReplanReason::kNone: return "none";
-    case ReplanReason::kInvalidInput: return "invalid_input";
-    case ReplanReason::kStartBlocked: return "start_blocked";
-    case ReplanReason::kGoalBlocked: return "goal_blocked";
-    case ReplanReason::kPadUnreachable: return "pad_unreachable";
-    case ReplanReason::kSearchFailed: return "search_failed";
-    case ReplanReason::kSolverFailed: return "solver_failed";
-    case ReplanReason::kCollisionRemains: return "collision_remains";
-    case ReplanReason::kUnobserved: return "unobserved";
-    case ReplanReason::kLimitsExceeded: return "limits_exceeded";
-  }
-  return "unknown";
-}
-
-const char* Explain(ReplanReason reason) {
-  switch (reason) {
-    case ReplanReason::kNone: return "A new plan was certified.";
-    case ReplanReason::kInvalidInput: return "A number of the input is not finite, or the plan would start in the past.";
-    case ReplanReason::kStartBlocked: return "The start is inside an inflated obstacle and no certified way leads out.";
-    case ReplanReason::kGoalBlocked: return "The end is inside an inflated obstacle at every arrival time tried.";
-    case ReplanReason::kPadUnreachable: return "No arrival time up to the longest allowed reaches the pad within the limits.";
-    case ReplanReason::kSearchFailed: return "No way around an obstacle was found within the budget of expansions.";
-    case ReplanReason::kSolverFailed: return "The solver returned no usable point.";
-    case ReplanReason::kCollisionRemains: return "The curve is still blocked after every re-binding round.";
-    case ReplanReason::kUnobserved: return "The plan is too fast to stop before space that was never observed.";
-    case ReplanReason::kLimitsExceeded: return "The curve still exceeds a limit after every re-timing.";
-  }
-  return "unknown";
-}
 
 }  // namespace touchdown::planning

@@ -29,6 +29,11 @@ class Replanner {
   /// One replanning step against the map. The result stays valid until the next call.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
 
+  /// Comes to rest and stays, for want of a pad to go to: a certified braking trajectory, or with
+  /// `climb` > 0 [m] one that ends that much higher. Once it is under way and clear it is kept.
+  /// `input.pad` and `input.endpoint` are not used.
+  const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
+
   /// The committed reference at time t (yaw fields zero). The plan made by Replan takes over at its
   /// t_start; before that the older one is flown. Does not allocate.
   FlatState Reference(double t) const;

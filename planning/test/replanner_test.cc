@@ -238,6 +238,34 @@ TEST(Replanner, BrakesWhenTheWayCloses) {
   EXPECT_FALSE(map.IsBlocked(end.p_WB));
 }
 
+TEST(Replanner, ComesToRestOnRequestAndStays) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  for (const double climb : {0.0, 1.0}) {
+    Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+    const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+    replanner.CommitHover(start, 0.0);
+    ASSERT_EQ(replanner.Replan(Input(start, pad, 0.0), map).status, ReplanStatus::kPlanned);
+    double height = 0.0;
+    for (int step = 0; step < 40; ++step) {
+      const double t = 2.0 + 0.1 * step;
+      const FlatState at = replanner.Reference(t);
+      ReplanInput input = Input(at.p_WB, pad, t);
+      input.pad = nullptr;
+      input.vehicle.v_WB = at.v_WB;
+      const ReplanStatus status = replanner.Rest(input, climb, map).status;
+      if (step == 0) {
+        height = at.p_WB.z();
+        EXPECT_EQ(status, climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking);
+      } else {
+        EXPECT_TRUE(status == ReplanStatus::kKept || status == ReplanStatus::kHolding);
+      }
+    }
+    EXPECT_LT(replanner.Reference(6.0).v_WB.norm(), 1e-9);
+    EXPECT_NEAR(replanner.Reference(6.0).p_WB.z(), height + climb, 0.15);
+  }
+}
+
 TEST(Replanner, StartsAtTheVehicleWhenTrackingIsLost) {
   const OccupancyMap map = ObservedMap();
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
