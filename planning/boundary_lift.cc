@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both ends of a uniform cubic B-spline eliminated exactly. At a knot
-//   p = (Q_i + 4 Q_{i+1} + Q_{i+2})/6, v = (Q_{i+2} - Q_i)/(2h), a = (Q_i - 2 Q_{i+1} + Q_{i+2})/h^2,
+//   p = (Q_i + 4 Q_{i+1} + Q_{i+2})/6, v = (Q_{i+2} - Q_i)/(2h), a = (Q_i - 2 Q_{i+1} +
+//   Q_{i+2})/h^2,
 // which is inverted at the first and the last knot. Between them the control points follow
 //   c - (h^2/6) c'',  c the quintic Hermite polynomial between the ends:
-// the quasi-interpolant that reproduces cubics. Its weights on (p0, T v0, T^2 a0, P, T V, T^2 A) are
-// constants of the control point's index, so that derivatives with respect to T are plain. Without
-// this lift the interior points stay put while free arrival moves the ends, which is stiff.
+// the quasi-interpolant that reproduces cubics. Its weights on (p0, T v0, T^2 a0, P, T V, T^2 A)
+// are constants of the control point's index, so that derivatives with respect to T are plain.
+// Without this lift the interior points stay put while free arrival moves the ends, which is stiff.
 
 #include "touchdown/planning/boundary_lift.h"
 
@@ -31,20 +32,14 @@ std::array<double, 6> HermiteWeights(int i, int segments) {
   const double s = static_cast<double>(i - 1) / segments;
   const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
   const std::array<double, 6> value = {
-      1.0 - 10.0 * s3 + 15.0 * s4 - 6.0 * s5,
-      s - 6.0 * s3 + 8.0 * s4 - 3.0 * s5,
-      0.5 * s2 - 1.5 * s3 + 1.5 * s4 - 0.5 * s5,
-      10.0 * s3 - 15.0 * s4 + 6.0 * s5,
-      -4.0 * s3 + 7.0 * s4 - 3.0 * s5,
-      0.5 * s3 - s4 + 0.5 * s5,
+      1.0 - 10.0 * s3 + 15.0 * s4 - 6.0 * s5,    s - 6.0 * s3 + 8.0 * s4 - 3.0 * s5,
+      0.5 * s2 - 1.5 * s3 + 1.5 * s4 - 0.5 * s5, 10.0 * s3 - 15.0 * s4 + 6.0 * s5,
+      -4.0 * s3 + 7.0 * s4 - 3.0 * s5,           0.5 * s3 - s4 + 0.5 * s5,
   };
   const std::array<double, 6> curvature = {
-      -60.0 * s + 180.0 * s2 - 120.0 * s3,
-      -36.0 * s + 96.0 * s2 - 60.0 * s3,
-      1.0 - 9.0 * s + 18.0 * s2 - 10.0 * s3,
-      60.0 * s - 180.0 * s2 + 120.0 * s3,
-      -24.0 * s + 84.0 * s2 - 60.0 * s3,
-      3.0 * s - 12.0 * s2 + 10.0 * s3,
+      -60.0 * s + 180.0 * s2 - 120.0 * s3,   -36.0 * s + 96.0 * s2 - 60.0 * s3,
+      1.0 - 9.0 * s + 18.0 * s2 - 10.0 * s3, 60.0 * s - 180.0 * s2 + 120.0 * s3,
+      -24.0 * s + 84.0 * s2 - 60.0 * s3,     3.0 * s - 12.0 * s2 + 10.0 * s3,
   };
   std::array<double, 6> weights;
   for (int j = 0; j < 6; ++j) {
@@ -169,7 +164,7 @@ void BoundaryLift::At(double h, double* l, double* dl, double* d2l) const noexce
     const Moving q = ControlPoint(i, segments_, T, ends);
     for (int c = 0; c < 3; ++c) {
       l[3 * i + c] = q.value[c];
-      if (dl) dl[3 * i + c] = m * q.first[c];           // dT/dh = M
+      if (dl) dl[3 * i + c] = m * q.first[c];  // dT/dh = M
       if (d2l) d2l[3 * i + c] = m * m * q.second[c];
     }
   }

@@ -16,7 +16,8 @@ ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& 
                                    double duration);
 
 /// Exact elimination of both ends, with the boundary lift (design, section 2):
-///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,  Q_{N-3}..Q_{N-1} from (P, V, delta).
+///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,  Q_{N-3}..Q_{N-1} from (P, V,
+///   delta).
 /// Where the end acceleration is free, delta is the last reduced block; where it is fixed,
 /// delta = -h^2 A / 6 with the pad's own acceleration A. The pad's snap is not predicted, so that
 /// with a fixed end acceleration second derivatives with respect to a free h lack its share.

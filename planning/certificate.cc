@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certificate of a plan: what is checked here is checked on the plan itself, after the solver and
-// whatever the solver said.
+// The certificate of a plan: what is checked here is checked on the plan itself, after the solver
+// and whatever the solver said.
 
 #include "touchdown/planning/certificate.h"
 
@@ -17,7 +17,8 @@ namespace {
 // Rounding of sums of control points; limits are met by construction with equality at times.
 constexpr double kRounding = 1e-9;
 
-// A recovery may take this long to build up its deceleration: the start's acceleration is given [s].
+// A recovery may take this long to build up its deceleration: the start's acceleration is given
+// [s].
 constexpr double kRecoveryLag = 0.3;
 
 /// Every segment's hull stays below what is left of a start beyond the limits.

@@ -24,7 +24,7 @@ struct Certificate {
   bool stops_in_observed_space = true;      ///< braking from what is flown until the next plan
                                             ///< ends before the curve meets unobserved cells
   double clearance = 0.0;                   ///< that `clear` or `escaping` stands for [m]
-  double first_hit_t = 0.0;                 ///< absolute time of the first blocked cell if !clear [s]
+  double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 
   bool endpoint_met() const {
     return !endpoint_required ||

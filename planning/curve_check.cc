@@ -24,8 +24,8 @@ void ForEachChord(const UniformBspline& curve, double t_from, const FreeSpace& s
   const double h = curve.interval();
   int segment = std::min(static_cast<int>((t - curve.t0()) / h), curve.segments() - 1);
   for (; segment < curve.segments(); ++segment) {
-    const double t_end = segment + 1 == curve.segments() ? curve.t_end()
-                                                         : curve.t0() + (segment + 1) * h;
+    const double t_end =
+        segment + 1 == curve.segments() ? curve.t_end() : curve.t0() + (segment + 1) * h;
     const double a = std::max(curve.AtKnot(segment).a.norm(), curve.AtKnot(segment + 1).a.norm());
     const double dt_max = a > 0.0 ? std::sqrt(8.0 * kChordSagitta / a) : h;
     const int chords = std::max(1, static_cast<int>(std::ceil((t_end - t) / dt_max)));
@@ -33,9 +33,8 @@ void ForEachChord(const UniformBspline& curve, double t_from, const FreeSpace& s
     for (int i = 1; i <= chords; ++i) {
       const double t_next = t_start + (t_end - t_start) * i / chords;
       const Eigen::Vector3d p_next = curve.Evaluate(t_next).p_WB;
-      const bool clear =
-          TraverseCells(p, p_next, space.map->resolution(),
-                        [&](const CellIndex& cell) { return !space.Blocked(cell); });
+      const bool clear = TraverseCells(p, p_next, space.map->resolution(),
+                                       [&](const CellIndex& cell) { return !space.Blocked(cell); });
       if (!visit(t, t_next, !clear)) return;
       t = t_next;
       p = p_next;

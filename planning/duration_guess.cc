@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrival time of a one-dimensional plateau profile in the pad's frame. The pad's velocity is its mean
-// over the flight, so that a turning pad is followed by a few fixed-point steps on T.
+// Arrival time of a one-dimensional plateau profile in the pad's frame. The pad's velocity is its
+// mean over the flight, so that a turning pad is followed by a few fixed-point steps on T.
 
 #include "touchdown/planning/duration_guess.h"
 

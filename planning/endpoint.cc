@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The moving endpoint (eq. 17-18): the predicted pad plus a height above it that may sink. While the
-// height sinks, the approach velocity is the sinking itself, so that consecutive plans join; once
-// it rests on its floor the approach velocity is zero.
+// The moving endpoint (eq. 17-18): the predicted pad plus a height above it that may sink. While
+// the height sinks, the approach velocity is the sinking itself, so that consecutive plans join;
+// once it rests on its floor the approach velocity is zero.
 
 #include "touchdown/planning/endpoint.h"
 

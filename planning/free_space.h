@@ -8,16 +8,16 @@
 
 namespace touchdown::planning {
 
-/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the strip
-/// above the moving pad in which the floor does not hold. Unknown space counts as free. A view of
-/// the map, cheap to make anew for every replanning step.
+/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the
+/// strip above the moving pad in which the floor does not hold. Unknown space counts as free. A
+/// view of the map, cheap to make anew for every replanning step.
 struct FreeSpace {
   const OccupancyMap* map = nullptr;
-  double floor = 0.0;                                     ///< [m]
+  double floor = 0.0;                                        ///< [m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [m]
-  Eigen::Vector2d pad_from = Eigen::Vector2d::Zero();     ///< strip's axis: pad at start and arrival
+  Eigen::Vector2d pad_from = Eigen::Vector2d::Zero();  ///< strip's axis: pad at start and arrival
   Eigen::Vector2d pad_to = Eigen::Vector2d::Zero();
-  double pad_radius = 0.0;                                ///< strip's half width [m]; 0: none
+  double pad_radius = 0.0;  ///< strip's half width [m]; 0: none
 
   bool OverPad(const Eigen::Vector3d& p_W) const {
     if (pad_radius <= 0.0) return false;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A* (P. Hart, N. Nilsson and B. Raphael 1968; eq. 16 of the paper) on the cells of the rolling map.
-// Arrays are indexed by the position in the window; a search number in `seen_` spares clearing them.
+// A* (P. Hart, N. Nilsson and B. Raphael 1968; eq. 16 of the paper) on the cells of the rolling
+// map. Arrays are indexed by the position in the window; a search number in `seen_` spares clearing
+// them.
 
 #include "touchdown/planning/grid_search.h"
 
@@ -36,20 +37,25 @@ float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const 
   const auto lo = static_cast<float>(std::min(d.x(), d.y()));
   const auto hi = static_cast<float>(std::max(d.x(), d.y()));
   const auto up = static_cast<float>(d.z());
-  const float cubic = std::min(up, lo);           // steps (1, 1, 1)
+  const float cubic = std::min(up, lo);                 // steps (1, 1, 1)
   const float slanted = std::min(up - cubic, hi - lo);  // steps (1, 0, 1)
-  const float flat_diagonal = lo - cubic;         // steps (1, 1, 0)
+  const float flat_diagonal = lo - cubic;               // steps (1, 1, 0)
   return cubic * std::sqrt(2.0f + w * w) + slanted * std::sqrt(1.0f + w * w) +
          flat_diagonal * std::sqrt(2.0f) + (hi - lo - slanted) + (up - cubic - slanted) * w;
 }
 
 const char* ToString(SearchStatus status) {
   switch (status) {
-    case SearchStatus::kFound: return "found";
-    case SearchStatus::kEndsOutside: return "ends_outside";
-    case SearchStatus::kEndsBlocked: return "ends_blocked";
-    case SearchStatus::kNoPath: return "no_path";
-    case SearchStatus::kExpansionLimit: return "expansion_limit";
+    case SearchStatus::kFound:
+      return "found";
+    case SearchStatus::kEndsOutside:
+      return "ends_outside";
+    case SearchStatus::kEndsBlocked:
+      return "ends_blocked";
+    case SearchStatus::kNoPath:
+      return "no_path";
+    case SearchStatus::kExpansionLimit:
+      return "expansion_limit";
   }
   return "unknown";
 }
@@ -111,8 +117,8 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   };
   const auto cell_at = [&](std::uint32_t a) {
     const int i = static_cast<int>(a);
-    return CellIndex(origin + CellIndex(i % size.x(), i / size.x() % size.y(),
-                                        i / (size.x() * size.y())));
+    return CellIndex(origin +
+                     CellIndex(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y())));
   };
   const auto later = [](const Node& a, const Node& b) {
     return a.f != b.f ? a.f > b.f : a.order > b.order;

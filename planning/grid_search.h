@@ -20,11 +20,11 @@ enum class SearchStatus {
 };
 const char* ToString(SearchStatus status);
 
-/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance on
-/// the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is preferred
-/// to going over, where a forward camera sees little. A blocked end is first moved to the nearest free cell within
-/// `kEndSearchRadius`. Deterministic: ties are broken by the order of insertion. Its arrays have the
-/// size of the map's window and are kept between searches.
+/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance
+/// on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
+/// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
+/// nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the order of
+/// insertion. Its arrays have the size of the map's window and are kept between searches.
 class GridSearch {
  public:
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]

@@ -25,10 +25,9 @@ solvers::ProblemShape Shape(int segments, const LandingProblemOptions& options) 
                                 " segments, it needs at least 6");
   }
   if (!(options.limits.speed > 0.0 && options.limits.acceleration > 0.0)) {
-    throw std::invalid_argument("LandingProblem: limits are " +
-                                std::to_string(options.limits.speed) + " m/s and " +
-                                std::to_string(options.limits.acceleration) +
-                                " m/s^2, both must be > 0");
+    throw std::invalid_argument(
+        "LandingProblem: limits are " + std::to_string(options.limits.speed) + " m/s and " +
+        std::to_string(options.limits.acceleration) + " m/s^2, both must be > 0");
   }
   solvers::ProblemShape shape;
   shape.blocks = segments + 3;
@@ -51,9 +50,9 @@ LandingProblem::LandingProblem(int segments, const LandingProblemOptions& option
   problem_.AddTerm(MakeSmoothness(n, options.smoothness_weight, options.jerk_weight),
                    solvers::Role::kCost);
   problem_.AddTerm(pairs_, solvers::Role::kCost);
-  problem_.AddTerm(MakeSpeedLimit(n, margin * options.limits.speed, options.speed_weight,
-                                  kSpeedHingeWidth),
-                   solvers::Role::kCost);
+  problem_.AddTerm(
+      MakeSpeedLimit(n, margin * options.limits.speed, options.speed_weight, kSpeedHingeWidth),
+      solvers::Role::kCost);
   problem_.AddTerm(MakeAccelerationLimit(n, margin * options.limits.acceleration,
                                          options.acceleration_weight, kAccelerationHingeWidth),
                    solvers::Role::kCost);

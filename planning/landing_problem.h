@@ -23,18 +23,18 @@ struct Limits {
 
 struct LandingProblemOptions {
   ArrivalMode arrival = ArrivalMode::kFixed;
-  bool free_end_acceleration = true;   ///< else the pad's own acceleration at arrival
+  bool free_end_acceleration = true;  ///< else the pad's own acceleration at arrival
   Limits limits;
-  double soft_limit_margin = 0.93;     ///< soft limits act from this share of the hard ones
-  double smoothness_weight = 1.0;      ///< on int |a|^2 dt
-  double jerk_weight = 0.1;            ///< on int |j|^2 dt, relative to the acceleration [s^2]
+  double soft_limit_margin = 0.93;  ///< soft limits act from this share of the hard ones
+  double smoothness_weight = 1.0;   ///< on int |a|^2 dt
+  double jerk_weight = 0.1;         ///< on int |j|^2 dt, relative to the acceleration [s^2]
   double pair_weight = 3000.0;
-  double pair_clearance = 0.30;        ///< s_f, beyond the inflation radius [m]
+  double pair_clearance = 0.30;  ///< s_f, beyond the inflation radius [m]
   double speed_weight = 300.0;
   double acceleration_weight = 30.0;
-  double time_weight = 8.0;            ///< price of a second, free arrival only
-  double max_duration = 30.0;          ///< upper bound of a free arrival [s]
-  double min_duration = 0.5;           ///< lower bound of a free arrival [s]
+  double time_weight = 8.0;    ///< price of a second, free arrival only
+  double max_duration = 30.0;  ///< upper bound of a free arrival [s]
+  double min_duration = 0.5;   ///< lower bound of a free arrival [s]
   int max_pairs_per_point = 6;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rolling window of log-odds cells, addressed modulo its power-of-two size so that moving it copies
-// nothing. Log-odds are kept in steps of 1/16 in one byte. Inflation is incremental: every cell holds
-// the number of occupied cells whose ball covers it, so that one flip costs one ball and a query one
-// load. Fusion as in A. Hornung et al., "OctoMap", Autonomous Robots 2013, section 3: rays clear,
-// end points hit, one update per cell and frame in which hits win.
+// A rolling window of log-odds cells, addressed modulo its power-of-two size so that moving it
+// copies nothing. Log-odds are kept in steps of 1/16 in one byte. Inflation is incremental: every
+// cell holds the number of occupied cells whose ball covers it, so that one flip costs one ball and
+// a query one load. Fusion as in A. Hornung et al., "OctoMap", Autonomous Robots 2013, section 3:
+// rays clear, end points hit, one update per cell and frame in which hits win.
 
 #include "touchdown/planning/occupancy_map.h"
 
@@ -53,9 +53,9 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options) : options_(option
   min_ = Quantise(options.probability_min);
   max_ = Quantise(options.probability_max);
   occupied_ = Quantise(options.probability_occupied);
-  Require(occupied_ > 0 && occupied_ <= max_,
-          "probability_occupied is " + number(options.probability_occupied) +
-              ", it must be in (0.5, probability_max]");
+  Require(occupied_ > 0 && occupied_ <= max_, "probability_occupied is " +
+                                                  number(options.probability_occupied) +
+                                                  ", it must be in (0.5, probability_max]");
 
   for (int c = 0; c < 3; ++c) size_[c] = 1 << options.size_log2[c];
   mask_ = size_ - CellIndex::Ones();
@@ -65,7 +65,8 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options) : options_(option
   inflation_.assign(cells, 0);
   stamp_.assign(cells, 0);
 
-  // A cell is blocked if any of its points is nearer than the radius to any point of an occupied cell.
+  // A cell is blocked if any of its points is nearer than the radius to any point of an occupied
+  // cell.
   const double reach = (options.inflation_radius + kSagitta) / options.resolution;
   const int n = static_cast<int>(std::ceil(reach)) + 1;
   for (int z = -n; z <= n; ++z) {

@@ -14,16 +14,16 @@ using CellIndex = Eigen::Vector3i;  ///< cell of the unbounded lattice: floor(p 
 
 /// Parameters of the rolling grid. Log-odds as in EGO-Planner's map.
 struct OccupancyMapOptions {
-  double resolution = 0.1;                    ///< cell side [m]
-  Eigen::Vector3i size_log2 = {8, 8, 6};      ///< window of 2^n cells a side: 25.6 x 25.6 x 6.4 m
-  double inflation_radius = 0.45;             ///< obstacles are grown by this [m]
+  double resolution = 0.1;                ///< cell side [m]
+  Eigen::Vector3i size_log2 = {8, 8, 6};  ///< window of 2^n cells a side: 25.6 x 25.6 x 6.4 m
+  double inflation_radius = 0.45;         ///< obstacles are grown by this [m]
   double probability_hit = 0.65;
   double probability_miss = 0.35;
-  double probability_min = 0.12;              ///< clamps
+  double probability_min = 0.12;  ///< clamps
   double probability_max = 0.90;
-  double probability_occupied = 0.70;         ///< a cell at least this likely blocks
-  double min_ray = 0.2;                       ///< nearer returns are ignored [m]
-  double ground_height = 0.15;                ///< returns below are ground, not obstacles [m]
+  double probability_occupied = 0.70;  ///< a cell at least this likely blocks
+  double min_ray = 0.2;                ///< nearer returns are ignored [m]
+  double ground_height = 0.15;         ///< returns below are ground, not obstacles [m]
 };
 
 /// A vertical cylinder that is left out of the map: the pad's own volume.
@@ -50,8 +50,8 @@ class OccupancyMap {
   const OccupancyMapOptions& options() const { return options_; }
   double resolution() const { return options_.resolution; }
 
-  /// Moves the window so that it is centred at p_W, once p_W is a sixteenth of the window's size off
-  /// its centre; cells that enter are unknown, cells that leave are forgotten.
+  /// Moves the window so that it is centred at p_W, once p_W is a sixteenth of the window's size
+  /// off its centre; cells that enter are unknown, cells that leave are forgotten.
   void Recentre(const Eigen::Vector3d& p_W);
 
   /// Fuses one depth frame: every cell is updated once, hits win over misses.
@@ -63,7 +63,8 @@ class OccupancyMap {
   /// Marks the unknown cells within `radius` of p_W as observed free: the vehicle is there itself.
   void MarkOwnVolume(const Eigen::Vector3d& p_W, double radius);
 
-  /// Frees what stands inside the volume: cells that were seen before the pad was known to be there.
+  /// Frees what stands inside the volume: cells that were seen before the pad was known to be
+  /// there.
   void Clear(const ExcludedVolume& excluded);
 
   CellIndex CellOf(const Eigen::Vector3d& p_W) const {
@@ -114,8 +115,8 @@ class OccupancyMap {
   std::vector<CellIndex> ball_;                    // cells that one obstacle cell blocks
   int ball_reach_ = 0;                             // its largest extent along an axis
   std::vector<std::int8_t> log_odds_;
-  std::vector<std::uint16_t> inflation_;           // number of obstacle cells whose ball holds it
-  std::vector<std::uint32_t> stamp_;               // frame of the last vote, hit in the lowest bit
+  std::vector<std::uint16_t> inflation_;  // number of obstacle cells whose ball holds it
+  std::vector<std::uint32_t> stamp_;      // frame of the last vote, hit in the lowest bit
   std::vector<CellIndex> touched_;
   std::vector<CellFlip> flips_;
   std::uint32_t frame_ = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One attempt at a plan: solve without obstacles, then check / bind / solve until the whole curve is
-// clear. Pairs start empty at every attempt, so that none outlives the obstacle it was made for; the
-// side of an obstacle is kept by taking the committed curve, while it is clear, as the guide path,
-// and only else a new A* path.
+// One attempt at a plan: solve without obstacles, then check / bind / solve until the whole curve
+// is clear. Pairs start empty at every attempt, so that none outlives the obstacle it was made for;
+// the side of an obstacle is kept by taking the committed curve, while it is clear, as the guide
+// path, and only else a new A* path.
 
 #include "touchdown/planning/plan_attempt.h"
 
@@ -18,8 +18,8 @@ namespace {
 constexpr double kSegmentDuration = 0.20;  // [s], aimed at
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 64;
-constexpr double kPressure = 1.6;          // weight of the pairs grows by this every round
-constexpr double kGuideStep = 0.05;        // sampling of the committed curve as a guide [s]
+constexpr double kPressure = 1.6;    // weight of the pairs grows by this every round
+constexpr double kGuideStep = 0.05;  // sampling of the committed curve as a guide [s]
 
 int SegmentsFor(double duration) {
   const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
@@ -95,8 +95,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   result->pairs = static_cast<int>(pairs_.size());
 
   StageTimer timer(&result->times.certificate);
-  const SplineState wanted =
-      EndStateAt(*request.pad, request.target, result->curve.t_end()).state;
+  const SplineState wanted = EndStateAt(*request.pad, request.target, result->curve.t_end()).state;
   result->certificate = Certify(result->curve, request.t0, &wanted, options_.limits,
                                 options_.reaction, *request.space);
   if (result->certificate.passed()) return ReplanReason::kNone;
@@ -121,8 +120,7 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
 }
 
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                                    const BlockedRun& run, GuidePath* guide,
-                                    ReplanResult* result) {
+                                    const BlockedRun& run, GuidePath* guide, ReplanResult* result) {
   StageTimer timer(&result->times.search);
   if (!run.at_start && request.previous && request.previous->t_end() > run.t_out &&
       !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space))) {

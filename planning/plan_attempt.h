@@ -20,7 +20,7 @@ struct AttemptRequest {
   double t0 = 0.0;
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget target;
-  double duration = 1.0;                     ///< T, or its first guess [s]
+  double duration = 1.0;  ///< T, or its first guess [s]
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice while clear

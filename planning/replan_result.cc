@@ -7,45 +7,72 @@ namespace touchdown::planning {
 
 const char* ToString(ReplanStatus status) {
   switch (status) {
-    case ReplanStatus::kPlanned: return "planned";
-    case ReplanStatus::kKept: return "kept";
-    case ReplanStatus::kBraking: return "braking";
-    case ReplanStatus::kClimbing: return "climbing";
-    case ReplanStatus::kEscaping: return "escaping";
-    case ReplanStatus::kHolding: return "holding";
-    case ReplanStatus::kUnsafe: return "unsafe";
+    case ReplanStatus::kPlanned:
+      return "planned";
+    case ReplanStatus::kKept:
+      return "kept";
+    case ReplanStatus::kBraking:
+      return "braking";
+    case ReplanStatus::kClimbing:
+      return "climbing";
+    case ReplanStatus::kEscaping:
+      return "escaping";
+    case ReplanStatus::kHolding:
+      return "holding";
+    case ReplanStatus::kUnsafe:
+      return "unsafe";
   }
   return "unknown";
 }
 
 const char* ToString(ReplanReason reason) {
   switch (reason) {
-    case ReplanReason::kNone: return "none";
-    case ReplanReason::kInvalidInput: return "invalid_input";
-    case ReplanReason::kStartBlocked: return "start_blocked";
-    case ReplanReason::kGoalBlocked: return "goal_blocked";
-    case ReplanReason::kPadUnreachable: return "pad_unreachable";
-    case ReplanReason::kSearchFailed: return "search_failed";
-    case ReplanReason::kSolverFailed: return "solver_failed";
-    case ReplanReason::kCollisionRemains: return "collision_remains";
-    case ReplanReason::kUnobserved: return "unobserved";
-    case ReplanReason::kLimitsExceeded: return "limits_exceeded";
+    case ReplanReason::kNone:
+      return "none";
+    case ReplanReason::kInvalidInput:
+      return "invalid_input";
+    case ReplanReason::kStartBlocked:
+      return "start_blocked";
+    case ReplanReason::kGoalBlocked:
+      return "goal_blocked";
+    case ReplanReason::kPadUnreachable:
+      return "pad_unreachable";
+    case ReplanReason::kSearchFailed:
+      return "search_failed";
+    case ReplanReason::kSolverFailed:
+      return "solver_failed";
+    case ReplanReason::kCollisionRemains:
+      return "collision_remains";
+    case ReplanReason::kUnobserved:
+      return "unobserved";
+    case ReplanReason::kLimitsExceeded:
+      return "limits_exceeded";
   }
   return "unknown";
 }
 
 const char* Explain(ReplanReason reason) {
   switch (reason) {
-    case ReplanReason::kNone: return "A new plan was certified.";
-    case ReplanReason::kInvalidInput: return "A number of the input is not finite, or the plan would start in the past.";
-    case ReplanReason::kStartBlocked: return "The start is inside an inflated obstacle and no certified way leads out.";
-    case ReplanReason::kGoalBlocked: return "The end is inside an inflated obstacle at every arrival time tried.";
-    case ReplanReason::kPadUnreachable: return "No arrival time up to the longest allowed reaches the pad within the limits.";
-    case ReplanReason::kSearchFailed: return "No way around an obstacle was found within the budget of expansions.";
-    case ReplanReason::kSolverFailed: return "The solver returned no usable point.";
-    case ReplanReason::kCollisionRemains: return "The curve is still blocked after every re-binding round.";
-    case ReplanReason::kUnobserved: return "The plan is too fast to stop before space that was never observed.";
-    case ReplanReason::kLimitsExceeded: return "The curve still exceeds a limit after every re-timing.";
+    case ReplanReason::kNone:
+      return "A new plan was certified.";
+    case ReplanReason::kInvalidInput:
+      return "A number of the input is not finite, or the plan would start in the past.";
+    case ReplanReason::kStartBlocked:
+      return "The start is inside an inflated obstacle and no certified way leads out.";
+    case ReplanReason::kGoalBlocked:
+      return "The end is inside an inflated obstacle at every arrival time tried.";
+    case ReplanReason::kPadUnreachable:
+      return "No arrival time up to the longest allowed reaches the pad within the limits.";
+    case ReplanReason::kSearchFailed:
+      return "No way around an obstacle was found within the budget of expansions.";
+    case ReplanReason::kSolverFailed:
+      return "The solver returned no usable point.";
+    case ReplanReason::kCollisionRemains:
+      return "The curve is still blocked after every re-binding round.";
+    case ReplanReason::kUnobserved:
+      return "The plan is too fast to stop before space that was never observed.";
+    case ReplanReason::kLimitsExceeded:
+      return "The curve still exceeds a limit after every re-timing.";
   }
   return "unknown";
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What goes into and comes out of a replanning step: plain data that a record can hold and play again.
+// What goes into and comes out of a replanning step: plain data that a record can hold and play
+// again.
 #pragma once
 
 #include <string>
@@ -21,38 +22,38 @@ struct ReplannerOptions {
   std::string backend = "ceres";
   ArrivalMode arrival = ArrivalMode::kFixed;
   Limits limits;
-  LandingProblemOptions problem;   ///< weights; its limits, arrival and durations follow from here
-  double floor_height = 0.45;      ///< body origin stays above this away from the pad [m]
-  double ceiling_height = 10.0;    ///< and below this everywhere [m]
-  double pad_radius = 1.2;         ///< half width of the strip over the pad without a floor [m]
-  double max_duration = 30.0;      ///< a pad farther away in time is unreachable [s]
-  double min_duration = 0.8;       ///< shortest plan: a vehicle above the pad keeps following [s]
-  double odometry_threshold = 0.5; ///< tracking error beyond which plans start at the vehicle [m]
-  double reaction = 0.15;          ///< a plan is flown this long before the next can take over [s]
-  double vertical_cost = 2.0;      ///< of A*: a metre up or down costs as much as this many ahead
-  int max_rebinds = 6;             ///< solve / check / re-bind rounds per attempt
-  int max_iterations = 50;         ///< solver iterations per solve
-  int max_expansions = 200000;     ///< A* expansions per search
+  LandingProblemOptions problem;    ///< weights; its limits, arrival and durations follow from here
+  double floor_height = 0.45;       ///< body origin stays above this away from the pad [m]
+  double ceiling_height = 10.0;     ///< and below this everywhere [m]
+  double pad_radius = 1.2;          ///< half width of the strip over the pad without a floor [m]
+  double max_duration = 30.0;       ///< a pad farther away in time is unreachable [s]
+  double min_duration = 0.8;        ///< shortest plan: a vehicle above the pad keeps following [s]
+  double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
+  double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]
+  double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
+  int max_rebinds = 6;              ///< solve / check / re-bind rounds per attempt
+  int max_iterations = 50;          ///< solver iterations per solve
+  int max_expansions = 200000;      ///< A* expansions per search
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.
 struct ReplanInput {
-  double t_now = 0.0;                                ///< when the question is put [s]
-  double t_start = 0.0;                              ///< when the answer takes over, >= t_now [s]
-  estimation::VehicleState vehicle;                  ///< estimated state at t_now
+  double t_now = 0.0;                ///< when the question is put [s]
+  double t_start = 0.0;              ///< when the answer takes over, >= t_now [s]
+  estimation::VehicleState vehicle;  ///< estimated state at t_now
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget endpoint;
 };
 
 /// What is flown after a replanning step.
 enum class ReplanStatus {
-  kPlanned,     ///< a new certified plan
-  kKept,        ///< no new certified plan; the previous one is still safe
-  kBraking,     ///< a certified braking trajectory to rest
-  kClimbing,    ///< a certified climb straight up to rest
-  kEscaping,    ///< a certified way out of the inflated zone around an obstacle, to rest
-  kHolding,     ///< at rest already and nothing better is certified: stay
-  kUnsafe,      ///< nothing could be certified: it brakes, uncertified, and says so
+  kPlanned,   ///< a new certified plan
+  kKept,      ///< no new certified plan; the previous one is still safe
+  kBraking,   ///< a certified braking trajectory to rest
+  kClimbing,  ///< a certified climb straight up to rest
+  kEscaping,  ///< a certified way out of the inflated zone around an obstacle, to rest
+  kHolding,   ///< at rest already and nothing better is certified: stay
+  kUnsafe,    ///< nothing could be certified: it brakes, uncertified, and says so
 };
 
 /// Why no new plan was made; kNone with kPlanned.
@@ -87,14 +88,14 @@ struct StageTimes {
 struct ReplanResult {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
-  bool from_odometry = false;                     ///< started at the vehicle, not at the old plan
-  UniformBspline curve;                           ///< what is flown from t_start on
+  bool from_odometry = false;  ///< started at the vehicle, not at the old plan
+  UniformBspline curve;        ///< what is flown from t_start on
   Certificate certificate;
   std::vector<std::vector<Eigen::Vector3d>> guide_paths;  ///< A* paths of this step, in W [m]
-  int pairs = 0;                                  ///< {p, v} pairs bound at the end
-  int solves = 0;                                 ///< solver calls
-  int rebinds = 0;                                ///< of these, after a re-binding
-  solvers::SolverResult solver;                   ///< of the last solve
+  int pairs = 0;                                          ///< {p, v} pairs bound at the end
+  int solves = 0;                                         ///< solver calls
+  int rebinds = 0;                                        ///< of these, after a re-binding
+  solvers::SolverResult solver;                           ///< of the last solve
   StageTimes times;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The replanning step: start from the committed trajectory (or from the vehicle where tracking lost
-// it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified. If
-// nothing is: keep the previous plan while it is safe, else brake, else climb, and say so.
+// it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified.
+// If nothing is: keep the previous plan while it is safe, else brake, else climb, and say so.
 
 #include "touchdown/planning/replanner.h"
 
@@ -22,11 +22,11 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kMaxAttempts = 6;
-constexpr double kStretch = 1.2;          // of the duration after an attempt that failed
-constexpr double kReTimeBelow = 0.75;     // a fresh guess this much shorter replaces the arrival
-constexpr double kKeepReserve = 0.5;      // time to spare before a kept plan has to brake [s]
-constexpr double kClimb = 1.5;            // [m]
-constexpr double kAtRest = 0.05;          // below this speed and way to go [m/s, m]
+constexpr double kStretch = 1.2;       // of the duration after an attempt that failed
+constexpr double kReTimeBelow = 0.75;  // a fresh guess this much shorter replaces the arrival
+constexpr double kKeepReserve = 0.5;   // time to spare before a kept plan has to brake [s]
+constexpr double kClimb = 1.5;         // [m]
+constexpr double kAtRest = 0.05;       // below this speed and way to go [m/s, m]
 
 const Eigen::Vector3d kNoShift = Eigen::Vector3d::Zero();
 
@@ -229,10 +229,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
     reason = attempt_.Run(request, &result_);
-    const bool slower_helps = reason == ReplanReason::kLimitsExceeded ||
-                              reason == ReplanReason::kUnobserved ||
-                              reason == ReplanReason::kCollisionRemains ||
-                              reason == ReplanReason::kGoalBlocked;
+    const bool slower_helps =
+        reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
+        reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
     if (!slower_helps) return reason;
     // Free arrival traded a limit for time: fix a longer one.
     if (request.arrival == ArrivalMode::kFree) T = std::max(T, result_.curve.duration());

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Braking, climbing and escaping. The stopping point is where a cubic velocity profile from (v0, a0) to rest
-// ends, p0 + T v0/2 + T^2 a0/12; the spline between the ends is the quintic Hermite's.
+// Braking, climbing and escaping. The stopping point is where a cubic velocity profile from (v0,
+// a0) to rest ends, p0 + T v0/2 + T^2 a0/12; the spline between the ends is the quintic Hermite's.
 
 #include "touchdown/planning/rest_trajectory.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "touchdown/planning/boundary_lift.h"
 
@@ -14,22 +16,30 @@ namespace {
 constexpr int kSegments = 12;
 constexpr double kShortest = 0.4;  // [s]
 constexpr double kGrowth = 1.15;
-constexpr int kMaxTries = 24;      // up to 0.4 s * 1.15^24 = 11 s
+constexpr int kMaxTries = 24;  // up to 0.4 s * 1.15^24 = 11 s
 }  // namespace
 
-UniformBspline MakeRestTrajectory(const SplineState& start, double t0,
-                                  const Eigen::Vector3d& shift, const Limits& limits) {
+UniformBspline MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
+                                  const Limits& limits) {
   const double speed = std::max(limits.speed, start.v.norm());
   const double acceleration = std::max(limits.acceleration, start.a.norm());
+  UniformBspline best;
+  double least_excess = std::numeric_limits<double>::infinity();
   double T = kShortest;
-  for (int i = 0;; ++i, T *= kGrowth) {
+  for (int i = 0; i <= kMaxTries; ++i, T *= kGrowth) {
     SplineState end;
     end.p = start.p + 0.5 * T * start.v + T * T / 12.0 * start.a + shift;
     UniformBspline curve(HermiteControlPoints(start, end, kSegments, T), T / kSegments, t0);
     const DerivativeBounds bounds = BoundDerivatives(curve);
-    const bool kept = bounds.speed <= speed + 1e-9 && bounds.acceleration <= acceleration + 1e-9;
-    if (kept || i == kMaxTries) return curve;
+    const double excess = std::max(bounds.speed / speed, bounds.acceleration / acceleration);
+    if (excess <= 1.0 + 1e-9) return curve;
+    // A start that still speeds up at its limit cannot keep it: then the least excess has to do.
+    if (excess < least_excess) {
+      least_excess = excess;
+      best = std::move(curve);
+    }
   }
+  return best;
 }
 
 }  // namespace touchdown::planning

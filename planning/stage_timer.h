@@ -12,9 +12,7 @@ namespace touchdown::planning {
 class StageTimer {
  public:
   explicit StageTimer(StageTimes::Span* span)
-      : span_(span),
-        wall_(std::chrono::steady_clock::now()),
-        cpu_(solvers::ThreadCpuSeconds()) {}
+      : span_(span), wall_(std::chrono::steady_clock::now()), cpu_(solvers::ThreadCpuSeconds()) {}
   ~StageTimer() {
     const auto elapsed = std::chrono::steady_clock::now() - wall_;
     span_->wall += std::chrono::duration<double>(elapsed).count();

@@ -63,8 +63,8 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
   const double h = curve.interval();
   const int n = static_cast<int>(q.cols());
   DerivativeBounds bounds;
-  // Bezier points of the velocity on segment i: v at knot i, V_{i+1}, v at knot i + 1. The first and
-  // the last derivative control point, V_0 and V_{N-2}, are no Bezier points.
+  // Bezier points of the velocity on segment i: v at knot i, V_{i+1}, v at knot i + 1. The first
+  // and the last derivative control point, V_0 and V_{N-2}, are no Bezier points.
   for (int k = 0; k <= curve.segments(); ++k) {
     const SplineState knot = curve.AtKnot(k);
     bounds.speed = std::max(bounds.speed, knot.v.norm());

@@ -24,16 +24,16 @@ class UniformBspline {
   /// A spline that stands at the origin for one second from t = 0.
   UniformBspline();
 
-  /// Throws std::invalid_argument if there are fewer than 4 control points, if h is not positive and
-  /// finite, or if a number is not finite. Allocates.
+  /// Throws std::invalid_argument if there are fewer than 4 control points, if h is not positive
+  /// and finite, or if a number is not finite. Allocates.
   UniformBspline(ControlPoints control_points, double interval, double t0);
 
   const ControlPoints& control_points() const { return control_points_; }
-  double interval() const { return h_; }                                 ///< h [s]
-  double t0() const { return t0_; }                                      ///< start [s]
+  double interval() const { return h_; }  ///< h [s]
+  double t0() const { return t0_; }       ///< start [s]
   int segments() const { return static_cast<int>(control_points_.cols()) - 3; }
-  double duration() const { return segments() * h_; }                    ///< T [s]
-  double t_end() const { return t0_ + duration(); }                      ///< [s]
+  double duration() const { return segments() * h_; }  ///< T [s]
+  double t_end() const { return t0_ + duration(); }    ///< [s]
 
   /// Position and its first three derivatives at time t, which is clamped to [t0, t0 + T]. The yaw
   /// fields are left zero. Does not allocate.

@@ -19,8 +19,8 @@ class LiftOffset {
 /// offset. Enough to eliminate both ends of a spline exactly, and it keeps the band.
 struct AffineLift {
   int reduced_blocks = 0;
-  std::vector<int> block;            ///< b(i), nondecreasing where >= 0; -1: x_i is the offset alone
-  std::vector<double> coefficient;   ///< c_i
+  std::vector<int> block;           ///< b(i), nondecreasing where >= 0; -1: x_i is the offset alone
+  std::vector<double> coefficient;  ///< c_i
   std::shared_ptr<const LiftOffset> offset;  ///< null: zero
 
   /// x = y.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Storage of an arrowhead of a block-banded symmetric matrix: the Hessian of every windowed problem.
+// Storage of an arrowhead of a block-banded symmetric matrix: the Hessian of every windowed
+// problem.
 
 #include "touchdown/solvers/bordered_band_matrix.h"
 

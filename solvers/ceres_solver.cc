@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Levenberg-Marquardt by Ceres Solver. One residual block per window and term, on the reduced blocks
-// that the window reaches. All numbers of one point come from one pass over the Problem, made in
-// Ceres's evaluation callback; the residual blocks only copy their slice, so that the problem is
-// never evaluated twice and no term knows of Ceres.
-// The trust region starts so wide that the first step is Gauss-Newton's: the landing problem is
-// nearly quadratic once its pairs are fixed.
+// Levenberg-Marquardt by Ceres Solver. One residual block per window and term, on the reduced
+// blocks that the window reaches. All numbers of one point come from one pass over the Problem,
+// made in Ceres's evaluation callback; the residual blocks only copy their slice, so that the
+// problem is never evaluated twice and no term knows of Ceres. The trust region starts so wide that
+// the first step is Gauss-Newton's: the landing problem is nearly quadratic once its pairs are
+// fixed.
 
 #include "touchdown/solvers/ceres_solver.h"
 
@@ -74,8 +74,8 @@ class WindowResidual : public ceres::CostFunction {
       }
       if (view_.free_interval() && jacobians[reduced_count_]) {
         jacobians[reduced_count_][c] =
-            block.dr[i] * view_.IntervalDerivative(du, block.du_dh[i], first_block_, shape.window,
-                                                   point_.last());
+            block.dr[i] *
+            view_.IntervalDerivative(du, block.du_dh[i], first_block_, shape.window, point_.last());
       }
     }
     return true;
@@ -115,8 +115,10 @@ class CeresSolver : public SolverBackend {
       : SolverBackend(
             "ceres",
             SolverOptions({
-                {"function_tolerance", 1e-6, 1e-16, 1.0, false, "relative decrease that ends a solve"},
-                {"gradient_tolerance", 1e-10, 1e-16, 1.0, false, "largest gradient that ends a solve"},
+                {"function_tolerance", 1e-6, 1e-16, 1.0, false,
+                 "relative decrease that ends a solve"},
+                {"gradient_tolerance", 1e-10, 1e-16, 1.0, false,
+                 "largest gradient that ends a solve"},
                 {"parameter_tolerance", 1e-8, 1e-16, 1.0, false, "relative step that ends a solve"},
                 {"initial_trust_region_radius", 1e8, 1e-3, 1e16, false, "1e8: nearly Gauss-Newton"},
             })) {}
@@ -190,9 +192,12 @@ class CeresSolver : public SolverBackend {
 
   static SolveStatus Status(ceres::TerminationType type, const Evaluator& evaluator) {
     switch (type) {
-      case ceres::CONVERGENCE: return SolveStatus::kConverged;
-      case ceres::NO_CONVERGENCE: return SolveStatus::kIterationLimit;
-      case ceres::USER_SUCCESS: return evaluator.stop_status();
+      case ceres::CONVERGENCE:
+        return SolveStatus::kConverged;
+      case ceres::NO_CONVERGENCE:
+        return SolveStatus::kIterationLimit;
+      case ceres::USER_SUCCESS:
+        return evaluator.stop_status();
       default:
         return evaluator.evaluation_failed() ? SolveStatus::kEvaluationFailed
                                              : SolveStatus::kNumericalFailure;

@@ -107,8 +107,7 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, double st
     for (int j = 0; j < n; ++j) mine(i, j) = at.hessian.At(i, j);
   }
   errors.evaluated = true;
-  errors.gradient =
-      RelativeError(Eigen::Map<const VectorXd>(at.gradient.data(), n), gradient);
+  errors.gradient = RelativeError(Eigen::Map<const VectorXd>(at.gradient.data(), n), gradient);
   errors.hessian = RelativeError(mine, hessian);
   errors.residual_jacobian = RelativeError(r_jacobian, r_difference);
   errors.row_jacobian = RelativeError(u_jacobian, u_difference);

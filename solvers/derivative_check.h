@@ -10,11 +10,11 @@ namespace touchdown::solvers {
 /// Worst disagreement between derivatives and central differences, relative to the size of the
 /// compared array: max |a - b| / (1 + max |b|).
 struct DerivativeErrors {
-  bool evaluated = false;           ///< false: the point could not be evaluated
-  double gradient = 0.0;            ///< of the objective
-  double hessian = 0.0;             ///< of the objective, against differences of the gradient
-  double residual_jacobian = 0.0;   ///< of every residual, in reduced variables
-  double row_jacobian = 0.0;        ///< of every u, in reduced variables
+  bool evaluated = false;          ///< false: the point could not be evaluated
+  double gradient = 0.0;           ///< of the objective
+  double hessian = 0.0;            ///< of the objective, against differences of the gradient
+  double residual_jacobian = 0.0;  ///< of every residual, in reduced variables
+  double row_jacobian = 0.0;       ///< of every u, in reduced variables
   double worst() const;
 };
 

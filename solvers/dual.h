@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forward automatic differentiation with a fixed number of directions. Nests: Dual<Dual<double, n>, n>
-// carries exact second derivatives. The whole derivative vector lives on the stack.
+// Forward automatic differentiation with a fixed number of directions. Nests: Dual<Dual<double, n>,
+// n> carries exact second derivatives. The whole derivative vector lives on the stack.
 #pragma once
 
 #include <array>

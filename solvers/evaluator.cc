@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counting, caching, stopping and best-point tracking around View::Evaluate. A point is better if it
-// violates less (beyond the feasibility tolerance), or is as feasible and costs less.
+// Counting, caching, stopping and best-point tracking around View::Evaluate. A point is better if
+// it violates less (beyond the feasibility tolerance), or is as feasible and costs less.
 
 #include "touchdown/solvers/evaluator.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scalar losses rho(u): what a term's inner map is measured by. Each knows its first two derivatives,
-// the residual r(u) with r^2 = 2 rho that least-squares backends want, and the interval that it
-// stands for where the term is made a hard constraint. All are plain values; none allocates.
+// Scalar losses rho(u): what a term's inner map is measured by. Each knows its first two
+// derivatives, the residual r(u) with r^2 = 2 rho that least-squares backends want, and the
+// interval that it stands for where the term is made a hard constraint. All are plain values; none
+// allocates.
 #pragma once
 
 #include <limits>
@@ -44,8 +45,8 @@ class SquareLoss {
 };
 
 /// The C2 cubic-quadratic hinge of EGO-Planner (Zhou et al. 2020, eq. 5) on c = max(0, u):
-/// rho = w c^3 for c <= s and w (3 s c^2 - 3 s^2 c + s^3) beyond; zero for u <= 0. Nondecreasing and
-/// convex, so that a convex inner map stays convex.
+/// rho = w c^3 for c <= s and w (3 s c^2 - 3 s^2 c + s^3) beyond; zero for u <= 0. Nondecreasing
+/// and convex, so that a convex inner map stays convex.
 class HingeLoss {
  public:
   static constexpr bool kConvex = true;

@@ -27,11 +27,10 @@ Problem::Problem(const ProblemShape& shape) : shape_(shape) {
 void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
   const TermShape& t = term->shape();
   if (t.block_size != shape_.block_size || t.window < 1 || t.window > shape_.blocks) {
-    throw std::invalid_argument("Problem: term " + term->info().name + " has windows of " +
-                                std::to_string(t.window) + " blocks of " +
-                                std::to_string(t.block_size) + ", the problem has " +
-                                std::to_string(shape_.blocks) + " blocks of " +
-                                std::to_string(shape_.block_size));
+    throw std::invalid_argument(
+        "Problem: term " + term->info().name + " has windows of " + std::to_string(t.window) +
+        " blocks of " + std::to_string(t.block_size) + ", the problem has " +
+        std::to_string(shape_.blocks) + " blocks of " + std::to_string(shape_.block_size));
   }
   half_bandwidth_ = std::max(half_bandwidth_, t.window - 1);
   terms_.push_back({std::move(term), role});
@@ -43,9 +42,8 @@ bool Problem::has_constraints() const {
 }
 
 bool Problem::convex() const {
-  return !shape_.free_interval && std::all_of(terms_.begin(), terms_.end(), [](const Entry& e) {
-    return e.term->info().convex;
-  });
+  return !shape_.free_interval && std::all_of(terms_.begin(), terms_.end(),
+                                              [](const Entry& e) { return e.term->info().convex; });
 }
 
 void Problem::Resize(Evaluation* evaluation) const {

@@ -14,22 +14,22 @@ enum class Role { kCost, kConstraint };
 
 /// Size of a problem's variables: N blocks of d scalars and, if free, the knot interval h.
 struct ProblemShape {
-  int blocks = 0;             ///< N >= 1
-  int block_size = 3;         ///< d >= 1
-  bool free_interval = false; ///< h is a variable
-  double interval_min = 1e-3; ///< bounds of a free interval [s]
+  int blocks = 0;              ///< N >= 1
+  int block_size = 3;          ///< d >= 1
+  bool free_interval = false;  ///< h is a variable
+  double interval_min = 1e-3;  ///< bounds of a free interval [s]
   double interval_max = 1e3;
 };
 
 /// Result storage of one evaluation; one per thread. Sized by Problem::Resize.
 struct Evaluation {
-  bool ok = false;                     ///< false: a term returned NaN or threw
-  double value = 0.0;                  ///< sum of the cost terms
-  double max_violation = 0.0;          ///< worst violation of a constraint row
-  std::vector<double> gradient;        ///< blocks x d, then h if free
-  BorderedBandMatrix hessian;          ///< of the objective, plus multipliers times constraints
-  std::vector<double> cost_by_term;    ///< [term]; 0 for constraints
-  std::vector<TermBlock> terms;        ///< [term]
+  bool ok = false;                   ///< false: a term returned NaN or threw
+  double value = 0.0;                ///< sum of the cost terms
+  double max_violation = 0.0;        ///< worst violation of a constraint row
+  std::vector<double> gradient;      ///< blocks x d, then h if free
+  BorderedBandMatrix hessian;        ///< of the objective, plus multipliers times constraints
+  std::vector<double> cost_by_term;  ///< [term]; 0 for constraints
+  std::vector<TermBlock> terms;      ///< [term]
 };
 
 /// An optimisation problem over blocks with windowed terms. Its structure is fixed at construction
@@ -65,9 +65,9 @@ class Problem {
   /// Allocates everything that Evaluate needs.
   void Resize(Evaluation* evaluation) const;
 
-  /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. `multipliers` holds
-  /// one row array [window][output] per term, null where the term is a cost; the whole argument may
-  /// be null. Does not allocate. Returns evaluation->ok.
+  /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. `multipliers`
+  /// holds one row array [window][output] per term, null where the term is a cost; the whole
+  /// argument may be null. Does not allocate. Returns evaluation->ok.
   bool Evaluate(const double* x, double h, Want want, const double* const* multipliers,
                 Evaluation* evaluation) const noexcept;
 

@@ -45,9 +45,9 @@ void SolverBackend::Solve(const View& view, const Eigen::VectorXd& warm, const S
   const int n = view.num_variables();
   if (prepared_variables_ != n || warm.size() != n) {
     throw std::invalid_argument("backend " + name_ + ": prepared for " +
-                                std::to_string(prepared_variables_) + " variables, warm start has " +
-                                std::to_string(warm.size()) + ", the view has " +
-                                std::to_string(n));
+                                std::to_string(prepared_variables_) +
+                                " variables, warm start has " + std::to_string(warm.size()) +
+                                ", the view has " + std::to_string(n));
   }
   if (!warm.allFinite()) {
     throw std::invalid_argument("backend " + name_ + ": the warm start is not finite");
@@ -63,9 +63,8 @@ void SolverBackend::Solve(const View& view, const Eigen::VectorXd& warm, const S
 
   result->x = evaluator.has_best() ? evaluator.best() : warm;
   result->cost = evaluator.best_cost();
-  result->max_violation = evaluator.best_violation() > Evaluator::kFeasible
-                              ? evaluator.best_violation()
-                              : 0.0;
+  result->max_violation =
+      evaluator.best_violation() > Evaluator::kFeasible ? evaluator.best_violation() : 0.0;
   result->cost_by_term.resize(evaluator.best_cost_by_term().size());
   for (std::size_t i = 0; i < result->cost_by_term.size(); ++i) {
     result->cost_by_term[i] = {view.problem().term(static_cast<int>(i)).info().name,
@@ -79,13 +78,20 @@ void SolverBackend::Solve(const View& view, const Eigen::VectorXd& warm, const S
 
 const char* ToString(SolveStatus status) {
   switch (status) {
-    case SolveStatus::kConverged: return "converged";
-    case SolveStatus::kIterationLimit: return "iteration_limit";
-    case SolveStatus::kTimeLimit: return "time_limit";
-    case SolveStatus::kStopped: return "stopped";
-    case SolveStatus::kInfeasible: return "infeasible";
-    case SolveStatus::kEvaluationFailed: return "evaluation_failed";
-    case SolveStatus::kNumericalFailure: return "numerical_failure";
+    case SolveStatus::kConverged:
+      return "converged";
+    case SolveStatus::kIterationLimit:
+      return "iteration_limit";
+    case SolveStatus::kTimeLimit:
+      return "time_limit";
+    case SolveStatus::kStopped:
+      return "stopped";
+    case SolveStatus::kInfeasible:
+      return "infeasible";
+    case SolveStatus::kEvaluationFailed:
+      return "evaluation_failed";
+    case SolveStatus::kNumericalFailure:
+      return "numerical_failure";
   }
   return "unknown";
 }

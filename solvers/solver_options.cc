@@ -26,7 +26,8 @@ void SolverOptions::Set(const std::string& name, double value) {
     if (!(value >= spec.lo && value <= spec.hi) || !whole) {
       std::ostringstream text;
       text << "solver option " << name << " is " << value << ", it must be "
-           << (spec.integer ? "a whole number " : "") << "in [" << spec.lo << ", " << spec.hi << "]";
+           << (spec.integer ? "a whole number " : "") << "in [" << spec.lo << ", " << spec.hi
+           << "]";
       throw std::invalid_argument(text.str());
     }
     spec.value = value;

@@ -10,13 +10,13 @@ namespace touchdown::solvers {
 
 /// How a solve ended. "Did not converge" is a status, never an exception.
 enum class SolveStatus {
-  kConverged,          ///< the backend's own stop test was met
-  kIterationLimit,     ///< iteration or evaluation budget used up
-  kTimeLimit,          ///< the wall-clock deadline passed
-  kStopped,            ///< the caller's callback asked to stop
-  kInfeasible,         ///< constraints cannot be met from here
-  kEvaluationFailed,   ///< a term returned NaN or threw
-  kNumericalFailure,   ///< the backend gave up
+  kConverged,         ///< the backend's own stop test was met
+  kIterationLimit,    ///< iteration or evaluation budget used up
+  kTimeLimit,         ///< the wall-clock deadline passed
+  kStopped,           ///< the caller's callback asked to stop
+  kInfeasible,        ///< constraints cannot be met from here
+  kEvaluationFailed,  ///< a term returned NaN or threw
+  kNumericalFailure,  ///< the backend gave up
 };
 const char* ToString(SolveStatus status);
 
@@ -37,17 +37,17 @@ struct TermCost {
 
 struct SolverResult {
   SolveStatus status = SolveStatus::kNumericalFailure;
-  Eigen::VectorXd x;                     ///< best feasible point, variables of the solved view
+  Eigen::VectorXd x;  ///< best feasible point, variables of the solved view
   double cost = 0.0;
   std::vector<TermCost> cost_by_term;
-  double max_violation = 0.0;            ///< worst constraint violation at x
+  double max_violation = 0.0;  ///< worst constraint violation at x
   int iterations = 0;
-  int evaluations = 0;                   ///< evaluations of value, gradient or residuals
+  int evaluations = 0;  ///< evaluations of value, gradient or residuals
   double wall_s = 0.0;
-  double cpu_s = 0.0;                    ///< thread CPU time
-  int native_status = 0;                 ///< the backend's own code
-  std::string message;                   ///< the backend's own words
-  std::vector<IterationRecord> trace;    ///< filled if asked for
+  double cpu_s = 0.0;                  ///< thread CPU time
+  int native_status = 0;               ///< the backend's own code
+  std::string message;                 ///< the backend's own words
+  std::vector<IterationRecord> trace;  ///< filled if asked for
 
   /// The point may be used: it was evaluated, whether or not the solve converged.
   bool usable() const {

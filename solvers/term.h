@@ -23,22 +23,23 @@ struct TermInfo {
 /// A term of the objective or a set of constraint rows: sum over windows k and components c of
 /// rho(u_c(q_k .. q_{k+w-1}, h, t_k)), t_k = t0 + k h. Or, as rows: lo <= u_c <= hi.
 struct TermShape {
-  int block_size = 3;   ///< scalars in a block, d
-  int window = 1;       ///< consecutive blocks in a window, w <= 6
-  int outputs = 1;      ///< components of u, m
-  int max_windows = 0;  ///< most windows it can ever have at this problem size
+  int block_size = 3;         ///< scalars in a block, d
+  int window = 1;             ///< consecutive blocks in a window, w <= 6
+  int outputs = 1;            ///< components of u, m
+  int max_windows = 0;        ///< most windows it can ever have at this problem size
   bool uses_interval = true;  ///< u depends on h
 };
 
 /// Where a term is evaluated.
 struct TermInput {
-  const double* x = nullptr;  ///< blocks x block_size, block by block
-  double h = 1.0;             ///< knot interval [s]
-  double t0 = 0.0;            ///< absolute time of knot 0 [s]
-  bool free_interval = false; ///< h is a variable: its derivatives are wanted too
+  const double* x = nullptr;   ///< blocks x block_size, block by block
+  double h = 1.0;              ///< knot interval [s]
+  double t0 = 0.0;             ///< absolute time of knot 0 [s]
+  bool free_interval = false;  ///< h is a variable: its derivatives are wanted too
 };
 
-/// What is wanted of an evaluation; implied parts are added by the term (a Hessian needs gradients).
+/// What is wanted of an evaluation; implied parts are added by the term (a Hessian needs
+/// gradients).
 struct Want {
   bool gradient = false;
   bool hessian = false;
@@ -47,13 +48,13 @@ struct Want {
 /// What one term hands to adapters and views: plain arrays over its active windows, sized once.
 /// With v = w d scalars in a window, arrays are row-major over [window][output][v].
 struct TermBlock {
-  int windows = 0;                  ///< active now, <= max_windows
-  std::vector<int> first_block;     ///< [window]
-  std::vector<double> u;            ///< [window][output]
-  std::vector<double> du;           ///< [window][output][v]
-  std::vector<double> du_dh;        ///< [window][output], t_k's share included
+  int windows = 0;                       ///< active now, <= max_windows
+  std::vector<int> first_block;          ///< [window]
+  std::vector<double> u;                 ///< [window][output]
+  std::vector<double> du;                ///< [window][output][v]
+  std::vector<double> du_dh;             ///< [window][output], t_k's share included
   std::vector<double> rho, drho, d2rho;  ///< [window][output]
-  std::vector<double> r, dr;        ///< [window][output], residual and dr/du
+  std::vector<double> r, dr;             ///< [window][output], residual and dr/du
   /// [window][v + 1][v + 1], symmetric, h last: sum_c m_c d2u_c with m = drho for a cost and the
   /// given multiplier for a row.
   std::vector<double> curvature;

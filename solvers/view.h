@@ -20,10 +20,10 @@ struct ViewEvaluation {
   BorderedBandMatrix hessian;
 };
 
-/// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is free.
-/// With the identity lift this is the Full view; with the elimination of planning/boundary_lift the
-/// Reduced one. The problem and the lift's offset must outlive the view and hold still while a
-/// solve runs.
+/// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is
+/// free. With the identity lift this is the Full view; with the elimination of
+/// planning/boundary_lift the Reduced one. The problem and the lift's offset must outlive the view
+/// and hold still while a solve runs.
 class View {
  public:
   /// Throws std::invalid_argument if the lift does not fit the problem.

@@ -46,8 +46,7 @@ class HalfSpaces {
   void Set(std::span<const ObstaclePair> pairs) {
     if (pairs.size() > pairs_.capacity()) {
       throw std::invalid_argument("obstacle_pair: " + std::to_string(pairs.size()) +
-                                  " pairs, there is room for " +
-                                  std::to_string(pairs_.capacity()));
+                                  " pairs, there is room for " + std::to_string(pairs_.capacity()));
     }
     for (const ObstaclePair& pair : pairs) {
       if (pair.control_point < 0 || pair.control_point >= control_points_) {

@@ -13,8 +13,8 @@ namespace touchdown::planning {
 /// One {p, v} pair of a control point: the half-space that keeps it off an obstacle.
 struct ObstaclePair {
   int control_point = 0;
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< on the surface of the inflated obstacle [m]
-  Eigen::Vector3d v = Eigen::Vector3d::UnitX(); ///< unit vector out of it
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();   ///< on the surface of the inflated obstacle [m]
+  Eigen::Vector3d v = Eigen::Vector3d::UnitX();  ///< unit vector out of it
 };
 
 /// Distance of control points to their obstacles: d = (Q_i - p) . v wants to be >= s_f. Inner map

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The landing problem as a whole: both ends met exactly at every point the solver can reach, and the
-// one optimum of the convex problem from any start.
+// The landing problem as a whole: both ends met exactly at every point the solver can reach, and
+// the one optimum of the convex problem from any start.
 
 #include <gtest/gtest.h>
 
@@ -65,8 +65,8 @@ TEST(LandingProblem, FixedArrivalIsConvexAndHasOneOptimum) {
     const UniformBspline guess = problem.Curve(problem.Guess());
     std::vector<ObstaclePair> pairs;
     for (int i = 6; i < 16; i += 3) {
-      pairs.push_back({i, guess.control_points().col(i) + draw.Vector(0.3),
-                       draw.Vector(1.0).normalized()});
+      pairs.push_back(
+          {i, guess.control_points().col(i) + draw.Vector(0.3), draw.Vector(1.0).normalized()});
     }
     problem.SetPairs(pairs);
 

@@ -129,9 +129,9 @@ TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
   Draw draw(11);
   for (int step = 0; step < 8; ++step) {
     for (int i = 0; i < 6; ++i) {
-      map.SetOccupied(map.CentreOf(map.origin()) +
-                      Eigen::Vector3d(draw.Uniform(0, 6.3), draw.Uniform(0, 6.3),
-                                      draw.Uniform(0, 1.5)));
+      map.SetOccupied(map.CentreOf(map.origin()) + Eigen::Vector3d(draw.Uniform(0, 6.3),
+                                                                   draw.Uniform(0, 6.3),
+                                                                   draw.Uniform(0, 1.5)));
     }
     std::set<std::array<int, 3>> kept;
     CellIndex c;

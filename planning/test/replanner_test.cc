@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The replanning step over random pads, horizons, fields and both arrival modes: what is accepted is
-// certified, and every way it can fail has its name.
+// The replanning step over random pads, horizons, fields and both arrival modes: what is accepted
+// is certified, and every way it can fail has its name.
 
 #include "touchdown/planning/replanner.h"
 
@@ -111,8 +111,8 @@ TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
     const ReplanResult& result = replanner.Replan(input, map);
     ASSERT_EQ(result.status, ReplanStatus::kPlanned) << ToString(result.reason) << " at " << t;
     const FlatState after = replanner.Reference(input.t_start);
-    worst_jump = std::max({worst_jump, (after.p_WB - before.p_WB).norm(),
-                           (after.v_WB - before.v_WB).norm()});
+    worst_jump = std::max(
+        {worst_jump, (after.p_WB - before.p_WB).norm(), (after.v_WB - before.v_WB).norm()});
     p = replanner.Reference(t + 0.1).p_WB;
   }
   EXPECT_LT(worst_jump, 1e-9);  // the committed trajectory is continuous
@@ -182,8 +182,7 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
   OccupancyMap unobserved{OccupancyMapOptions{}};
   unobserved.MarkOwnVolume(start, 0.3);
   const ReplanResult crawl = ask(unobserved, Input(start, pad, 0.0));
-  EXPECT_TRUE(crawl.status == ReplanStatus::kPlanned ||
-              crawl.reason == ReplanReason::kUnobserved);
+  EXPECT_TRUE(crawl.status == ReplanStatus::kPlanned || crawl.reason == ReplanReason::kUnobserved);
 }
 
 TEST(Replanner, AStartInTheInflatedZoneEscapesAndThenPlans) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Identities of the uniform cubic B-spline: partition of unity, derivatives, reproduction of cubics,
-// hull bounds.
+// Identities of the uniform cubic B-spline: partition of unity, derivatives, reproduction of
+// cubics, hull bounds.
 
 #include "touchdown/planning/uniform_bspline.h"
 

@@ -15,7 +15,9 @@ namespace {
 
 class EveryBackend : public ::testing::TestWithParam<std::string> {
  protected:
-  std::unique_ptr<SolverBackend> Make() const { return MakeBackend(StandardBackends(), GetParam()); }
+  std::unique_ptr<SolverBackend> Make() const {
+    return MakeBackend(StandardBackends(), GetParam());
+  }
 
   SolverResult Solve(const Problem& problem, const Eigen::VectorXd& warm, const Stop& stop = {}) {
     const View view(problem, AffineLift::Identity(problem.shape().blocks));
@@ -94,10 +96,10 @@ TEST_P(EveryBackend, NanIsAStatusAndTheBestPointSurvives) {
 
 TEST_P(EveryBackend, ATermThatThrowsIsAStatus) {
   Problem problem = Scalars(1);
-  problem.AddTerm(SumOfSquares<1, 1>(
-                      "throws",
-                      [](const auto*, auto*) { throw std::runtime_error("term"); }, false),
-                  Role::kCost);
+  problem.AddTerm(
+      SumOfSquares<1, 1>(
+          "throws", [](const auto*, auto*) { throw std::runtime_error("term"); }, false),
+      Role::kCost);
   EXPECT_EQ(Solve(problem, Eigen::VectorXd::Zero(1)).status, SolveStatus::kEvaluationFailed);
 }
 

@@ -40,4 +40,23 @@ std::shared_ptr<Term> SumOfSquares(const std::string& name, Function function, b
       TermInfo{name, "sum u^2", "1", "test", convex}, Map(function), SquareLoss(2.0), 1);
 }
 
+/// A nonlinear map on windows of three 2-vectors that uses h and t.
+class WavyMap {
+ public:
+  static constexpr int kBlockSize = 2, kWindow = 3, kOutputs = 2;
+  static constexpr bool kUsesInterval = true, kLinearInBlocks = false;
+  explicit WavyMap(int windows) : windows_(windows) {}
+  int windows() const { return windows_; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& h, const T& t, T* u) const {
+    using std::cos, std::sin;
+    u[0] = sin(q[0] * q[3]) + q[5] / h + 0.3 * cos(t);
+    u[1] = (q[4] - q[0]) * (q[1] + q[2]) * h;
+  }
+
+ private:
+  int windows_;
+};
+
 }  // namespace touchdown::solvers

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The moving endpoint: offsets, approach velocity and derivatives with respect to the arrival time.
+
+#include "touchdown/planning/endpoint.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/test/planning_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+TEST(Endpoint, IsThePadPlusItsHeight) {
+  const ArcPad pad({1, 2, 0.3}, 0.8, 0.4, 0.2);
+  const EndState end = EndStateAt(pad, {0.0, 1.5, 0.0, 1.5}, 3.0);
+  EXPECT_LT((end.state.p - pad.At(3.0).p_WP - Eigen::Vector3d(0, 0, 1.5)).norm(), 1e-14);
+  EXPECT_LT((end.state.v - pad.At(3.0).v_WP).norm(), 1e-14);
+}
+
+TEST(Endpoint, SinksAtItsRateDownToItsFloor) {
+  const ArcPad pad({1, 2, 0.3}, 0.8, 0.4, 0.0);
+  const EndpointTarget target{1.0, 1.5, 0.5, 0.2};
+  EXPECT_NEAR(EndStateAt(pad, target, 2.0).state.p.z(), 0.3 + 1.0, 1e-14);
+  EXPECT_NEAR(EndStateAt(pad, target, 2.0).state.v.z(), -0.5, 1e-14);
+  EXPECT_NEAR(EndStateAt(pad, target, 9.0).state.p.z(), 0.3 + 0.2, 1e-14);
+  EXPECT_NEAR(EndStateAt(pad, target, 9.0).state.v.z(), 0.0, 1e-14);
+}
+
+TEST(Endpoint, DerivativesMatchDifferences) {
+  Draw draw(41);
+  const double d = 1e-5;
+  for (int trial = 0; trial < 50; ++trial) {
+    const ArcPad pad = draw.Pad();
+    const EndpointTarget target{0.0, 2.0, 0.1, 0.2};
+    const double t = draw.Uniform(0.5, 8.0);
+    const EndState at = EndStateAt(pad, target, t), plus = EndStateAt(pad, target, t + d),
+                   minus = EndStateAt(pad, target, t - d);
+    EXPECT_LT(((plus.state.p - minus.state.p) / (2 * d) - at.derivative.p).norm(), 1e-8);
+    EXPECT_LT(((plus.state.v - minus.state.v) / (2 * d) - at.derivative.v).norm(), 1e-8);
+    EXPECT_LT(((plus.state.a - minus.state.a) / (2 * d) - at.derivative.a).norm(), 1e-8);
+    EXPECT_LT(((plus.derivative.p - minus.derivative.p) / (2 * d) - at.second_derivative.p).norm(),
+              1e-8);
+    EXPECT_LT(((plus.derivative.v - minus.derivative.v) / (2 * d) - at.second_derivative.v).norm(),
+              1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::planning

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A* against Dijkstra, and what stops it.
+
+#include "touchdown/planning/grid_search.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <queue>
+
+#include "touchdown/planning/collision_pairs.h"
+#include "touchdown/planning/test/small_map.h"
+
+namespace touchdown::planning {
+namespace {
+
+constexpr double kUp = 2.0;
+
+/// Length of the shortest path by Dijkstra on the same lattice, independent of A*'s heuristic.
+double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellIndex& to) {
+  std::map<std::array<int, 3>, double> best;
+  using Item = std::pair<double, std::array<int, 3>>;
+  std::priority_queue<Item, std::vector<Item>, std::greater<>> queue;
+  queue.push({0.0, {from.x(), from.y(), from.z()}});
+  while (!queue.empty()) {
+    const auto [length, at] = queue.top();
+    queue.pop();
+    if (best.count(at)) continue;
+    best[at] = length;
+    if (at == std::array<int, 3>{to.x(), to.y(), to.z()}) return length;
+    for (int dz = -1; dz <= 1; ++dz) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          const CellIndex next(at[0] + dx, at[1] + dy, at[2] + dz);
+          if (!space.map->InWindow(next) || space.Blocked(next)) continue;
+          queue.push({length + std::sqrt(dx * dx + dy * dy + kUp * kUp * dz * dz),
+                      {next.x(), next.y(), next.z()}});
+        }
+      }
+    }
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+TEST(GridSearch, FindsShortestPathsThroughFreeCells) {
+  Draw draw(23);
+  OccupancyMapOptions options = SmallMap(0.2);
+  options.size_log2 = {5, 5, 4};
+  GridSearch search(kUp);
+  for (int trial = 0; trial < 8; ++trial) {
+    OccupancyMap map(options);
+    for (int i = 0; i < 6; ++i) {
+      const double x = draw.Uniform(-1.0, 1.0), y = draw.Uniform(-1.4, 1.4);
+      for (double z = -0.75; z < 0.8; z += 0.1) map.SetOccupied({x, y, z});
+    }
+    const FreeSpace space = SpaceOf(map);
+    const Eigen::Vector3d from(-1.45, -1.45, 0.05), to(1.45, 1.35, 0.05);
+    GuidePath path;
+    const SearchStatus status = search.Search(space, from, to, 100000, &path);
+    const double shortest = DijkstraLength(space, map.CellOf(from), map.CellOf(to));
+    ASSERT_EQ(status == SearchStatus::kFound, std::isfinite(shortest));
+    if (status != SearchStatus::kFound) continue;
+    double length = 0.0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      EXPECT_FALSE(space.Blocked(path[i]));
+      if (i == 0) continue;
+      const Eigen::Vector3d step = (path[i] - path[i - 1]) / map.resolution();
+      length += Eigen::Vector3d(step.x(), step.y(), kUp * step.z()).norm();
+    }
+    EXPECT_NEAR(length, shortest, 1e-3);
+  }
+}
+
+TEST(GridSearch, NamesWhatStopsIt) {
+  OccupancyMap map(SmallMap(0.0));
+  const FreeSpace space = SpaceOf(map);
+  GridSearch search;
+  GuidePath path;
+  EXPECT_EQ(search.Search(space, {0, 0, 0}, {50, 0, 0}, 1000, &path), SearchStatus::kEndsOutside);
+  EXPECT_EQ(search.Search(space, {-3, -3, 0}, {3, 3, 0}, 5, &path), SearchStatus::kExpansionLimit);
+  // A closed shell around the goal.
+  for (double x = -0.95; x < 1.0; x += 0.1) {
+    for (double y = -0.95; y < 1.0; y += 0.1) {
+      for (double z = -0.95; z < 1.0; z += 0.1) {
+        const double far = std::max({std::abs(x), std::abs(y), std::abs(z)});
+        if (far > 0.9) map.SetOccupied({x, y, z});
+      }
+    }
+  }
+  EXPECT_EQ(search.Search(space, {-3, -3, 0.05}, {0.05, 0.05, 0.05}, 200000, &path),
+            SearchStatus::kNoPath);
+  // The search is the caller's object: it works again after any failure.
+  EXPECT_EQ(search.Search(space, {-3, -3, 0.05}, {-3, 3, 0.05}, 200000, &path),
+            SearchStatus::kFound);
+}
+
+TEST(GridSearch, MovesBlockedEndsToFreeCells) {
+  OccupancyMap map(SmallMap(0.3));
+  map.SetOccupied({0.05, 0.05, 0.05});
+  const FreeSpace space = SpaceOf(map);
+  GridSearch search;
+  GuidePath path;
+  ASSERT_EQ(search.Search(space, {0.05, 0.05, 0.05}, {2.0, 0.0, 0.0}, 10000, &path),
+            SearchStatus::kFound);
+  EXPECT_FALSE(space.Blocked(path.front()));
+}
+
+}  // namespace
+}  // namespace touchdown::planning

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Structure checks and constraint rows.
+
+#include "touchdown/solvers/problem.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/solvers/test/test_terms.h"
+
+namespace touchdown::solvers {
+namespace {
+
+TEST(Problem, RefusesTermsThatDoNotFit) {
+  Problem problem({.blocks = 2, .block_size = 2});
+  const auto wavy = std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
+      TermInfo{"wavy", "", "", "", false}, WavyMap(1), SquareLoss(1.0), 1);
+  EXPECT_THROW(problem.AddTerm(wavy, Role::kCost), std::invalid_argument);
+  EXPECT_THROW(Problem({.blocks = 0}), std::invalid_argument);
+}
+
+TEST(Problem, ConstraintRowsReportTheirViolationAndCurvature) {
+  Problem problem({.blocks = 1, .block_size = 1});
+  // u = x^2 - 4 <= 0 as a row; its curvature with multiplier 3 is 6.
+  const auto map = [](const auto* x, auto* u) { u[0] = x[0] * x[0] - 4.0; };
+  using Map = WholeMap<1, 1, decltype(map)>;
+  problem.AddTerm(std::make_shared<WindowTerm<Map, HingeLoss>>(TermInfo{"row", "", "", "", true},
+                                                               Map(map), HingeLoss(1.0, 1.0), 1),
+                  Role::kConstraint);
+  Evaluation e;
+  problem.Resize(&e);
+  const double x = 3.0, multiplier = 3.0;
+  const double* multipliers[] = {&multiplier};
+  ASSERT_TRUE(problem.Evaluate(&x, 1.0, {.gradient = true, .hessian = true}, multipliers, &e));
+  EXPECT_EQ(e.value, 0.0);
+  EXPECT_DOUBLE_EQ(e.max_violation, 5.0);
+  EXPECT_DOUBLE_EQ(e.terms[0].du[0], 6.0);
+  EXPECT_DOUBLE_EQ(e.hessian.At(0, 0), 6.0);
+  EXPECT_EQ(e.gradient[0], 0.0);
+}
+
+}  // namespace
+}  // namespace touchdown::solvers

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Problems through views against central differences.
+
+#include "touchdown/solvers/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "touchdown/solvers/derivative_check.h"
+#include "touchdown/solvers/test/test_terms.h"
+
+namespace touchdown::solvers {
+namespace {
+
+/// An offset that moves nonlinearly with h.
+class CurvedOffset : public LiftOffset {
+ public:
+  explicit CurvedOffset(int n) : n_(n) {}
+  void At(double h, double* l, double* dl, double* d2l) const noexcept override {
+    for (int i = 0; i < n_; ++i) {
+      l[i] = std::sin(i + h);
+      if (dl) dl[i] = std::cos(i + h);
+      if (d2l) d2l[i] = -std::sin(i + h);
+    }
+  }
+
+ private:
+  int n_;
+};
+
+View FoldedView(const Problem& problem) {
+  // Blocks 0 and 1 fixed, the last three folded onto one reduced block, as a landing's ends are.
+  AffineLift lift;
+  const int n = problem.shape().blocks;
+  for (int i = 0; i < n; ++i) {
+    lift.block.push_back(i < 2 ? -1 : std::min(i - 2, n - 5));
+    lift.coefficient.push_back(i < 2 ? 0.0 : i == n - 2 ? 1.0 : i > n - 4 ? -2.0 : 1.0);
+  }
+  lift.reduced_blocks = n - 4;
+  lift.offset = std::make_shared<CurvedOffset>(2 * n);
+  return View(problem, lift);
+}
+
+TEST(View, EveryDerivativeMatchesDifferences) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (const bool free_interval : {false, true}) {
+    Problem problem({.blocks = 9, .block_size = 2, .free_interval = free_interval});
+    problem.set_interval(0.8);
+    problem.set_t0(0.3);
+    problem.AddTerm(std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
+                        TermInfo{"wavy", "", "", "", false}, WavyMap(7), SquareLoss(1.3), 7),
+                    Role::kCost);
+    problem.AddTerm(std::make_shared<WindowTerm<WavyMap, HingeLoss>>(
+                        TermInfo{"hinged", "", "", "", false}, WavyMap(5), HingeLoss(0.7, 0.4), 5),
+                    Role::kCost);
+    for (const View& view : {View(problem, AffineLift::Identity(9)), FoldedView(problem)}) {
+      for (int trial = 0; trial < 10; ++trial) {
+        Eigen::VectorXd y(view.num_variables());
+        for (int i = 0; i < y.size(); ++i) y[i] = 0.7 * normal(random);
+        if (free_interval) y[y.size() - 1] = 0.8;
+        const DerivativeErrors errors = CheckDerivatives(view, y);
+        ASSERT_TRUE(errors.evaluated);
+        EXPECT_LT(errors.worst(), 1e-5);
+      }
+    }
+  }
+}
+
+TEST(View, RestrictInvertsLift) {
+  Problem problem({.blocks = 9, .block_size = 2, .free_interval = true});
+  const View view = FoldedView(problem);
+  Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(view.num_variables(), 0.1, 2.0);
+  std::vector<double> x;
+  double h = 0.0;
+  view.Lift(y.data(), &x, &h);
+  EXPECT_EQ(h, y[y.size() - 1]);
+  EXPECT_LT((view.Restrict(x.data(), h) - y).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(View, RefusesALiftThatDoesNotFit) {
+  Problem problem({.blocks = 4, .block_size = 1});
+  EXPECT_THROW(View(problem, AffineLift::Identity(5)), std::invalid_argument);
+  AffineLift jumps = AffineLift::Identity(4);
+  jumps.block = {0, 2, 1, 3};
+  EXPECT_THROW(View(problem, jumps), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::solvers
