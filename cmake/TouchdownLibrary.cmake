@@ -1,7 +1,8 @@
 # touchdown_add_library(<folder> SOURCES ... PUBLIC ... PRIVATE ...)
 #   One library per top-level folder: target touchdown_<folder>, alias touchdown::<folder>.
-# touchdown_add_test(<folder> SOURCES ... LINK ... [DATA ...])
-#   One GoogleTest executable per folder; every TEST becomes a CTest entry.
+# touchdown_add_test(<folder> SOURCES ... LINK ... [CLOSED_LOOP <filter>])
+#   One GoogleTest executable per folder; every TEST becomes a CTest entry with the label unit, or
+#   closed_loop where the filter takes it: whole flights, which sanitizers make too slow.
 
 # Headers are included as "touchdown/<folder>/<file>.h", in the tree through this link and after
 # installation through the include directory.
@@ -45,12 +46,18 @@ function(touchdown_add_test folder)
   if(NOT TOUCHDOWN_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "CLOSED_LOOP" "SOURCES;LINK" ${ARGN})
   set(target ${folder}_test)
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE ${ARG_LINK} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${target} PRIVATE
     TOUCHDOWN_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TOUCHDOWN_BINARY_DIR="${PROJECT_BINARY_DIR}")
   touchdown_compile_options(${target})
-  gtest_discover_tests(${target} PROPERTIES LABELS "unit;${folder}" DISCOVERY_TIMEOUT 60)
+  if(ARG_CLOSED_LOOP)
+    gtest_discover_tests(${target} TEST_FILTER "${ARG_CLOSED_LOOP}" TEST_LIST closed_loop_tests
+                         PROPERTIES LABELS "closed_loop;${folder}" DISCOVERY_TIMEOUT 60)
+    set(unit_filter TEST_FILTER "-${ARG_CLOSED_LOOP}")
+  endif()
+  gtest_discover_tests(${target} ${unit_filter} PROPERTIES LABELS "unit;${folder}"
+                       DISCOVERY_TIMEOUT 60)
 endfunction()
