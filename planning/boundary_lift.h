@@ -15,7 +15,7 @@ namespace touchdown::planning {
 ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
                                    double duration);
 
-/// Exact elimination of both ends, with the boundary lift (design, section 2):
+/// Exact elimination of both ends, with the boundary lift (docs/formulation.md):
 ///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,  Q_{N-3}..Q_{N-1} from (P, V,
 ///   delta).
 /// Where the end acceleration is free, delta is the last reduced block; where it is fixed,

@@ -38,7 +38,7 @@ struct LandingProblemOptions {
   int max_pairs_per_point = 6;
 };
 
-/// The landing problem (design, section 2): smoothness, {p, v} pairs and norm limits over a uniform
+/// The landing problem (docs/formulation.md): smoothness, {p, v} pairs and norm limits over a uniform
 /// cubic B-spline whose start is fixed and whose end is the predicted pad at arrival, both
 /// eliminated exactly. One instance per number of segments; its parameters change at every replan
 /// without allocation.

@@ -12,7 +12,7 @@
 
 namespace touchdown::planning {
 
-/// Plans, re-plans and holds the committed trajectory (design: section "Replanning"). One instance
+/// Plans, re-plans and holds the committed trajectory (docs/architecture.md). One instance
 /// per vehicle; not thread-safe; different instances are independent.
 class Replanner {
  public:

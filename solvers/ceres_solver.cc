@@ -17,8 +17,6 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr int kMaxWindow = 6;
-
 /// Evaluates the whole view whenever Ceres moves to a new point.
 class PointEvaluation : public ceres::EvaluationCallback {
  public:
@@ -94,17 +92,19 @@ class WindowResidual : public ceres::CostFunction {
 /// Hands every iteration to the evaluator's budget and to the trace.
 class IterationWatch : public ceres::IterationCallback {
  public:
-  IterationWatch(Evaluator* evaluator, SolverResult* result)
-      : evaluator_(evaluator), result_(result) {}
+  IterationWatch(bool trace, Evaluator* evaluator, SolverResult* result)
+      : trace_(trace), evaluator_(evaluator), result_(result) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    result_->trace.push_back({summary.iteration, summary.cost, summary.step_norm,
-                              summary.gradient_max_norm, evaluator_->elapsed_s()});
+    if (trace_)
+      result_->trace.push_back({summary.iteration, summary.cost, summary.step_norm,
+                                summary.gradient_max_norm, evaluator_->elapsed_s()});
     if (summary.iteration > 0) evaluator_->CountIteration();
     return evaluator_->CheckStop() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
+  bool trace_;
   Evaluator* evaluator_;
   SolverResult* result_;
 };
@@ -130,9 +130,9 @@ class CeresSolver : public SolverBackend {
     y_.resize(static_cast<std::size_t>(view.num_variables()));
   }
 
-  void DoSolve(const View& view, const Eigen::VectorXd& warm, const Stop& stop,
-               Evaluator* evaluator, SolverResult* result) override {
-    std::copy(warm.data(), warm.data() + warm.size(), y_.begin());
+  void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
+               SolverResult* result) override {
+    std::copy(warm.y.data(), warm.y.data() + warm.y.size(), y_.begin());
     // The first evaluation also tells which windows are active now.
     if (!evaluator->Evaluate(y_.data(), {.gradient = true, .hessian = false})) {
       result->status = SolveStatus::kEvaluationFailed;
@@ -145,7 +145,7 @@ class CeresSolver : public SolverBackend {
     AddResiduals(view, evaluator->last(), point, &problem);
 
     ceres::Solver::Options solver = Options(stop);
-    IterationWatch watch(evaluator, result);
+    IterationWatch watch(stop.trace, evaluator, result);
     solver.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);

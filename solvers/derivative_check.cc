@@ -59,6 +59,24 @@ MatrixXd StackJacobian(const View& view, const ViewEvaluation& e, bool residuals
   return jacobian;
 }
 
+/// factor x gradient of the objective + J^T lambda over the constraint rows.
+VectorXd LagrangianGradient(const View& view, const ViewEvaluation& e,
+                            const Lagrangian& lagrangian) {
+  VectorXd gradient = lagrangian.objective_factor *
+                      Eigen::Map<const VectorXd>(e.gradient.data(), view.num_variables());
+  if (!lagrangian.multipliers) return gradient;
+  const MatrixXd rows = StackJacobian(view, e, false);
+  Eigen::Index row = 0;
+  for (int i = 0; i < view.problem().num_terms(); ++i) {
+    const int count = e.full.terms[i].windows * view.problem().term(i).shape().outputs;
+    for (int j = 0; j < count; ++j, ++row) {
+      if (view.problem().role(i) != Role::kConstraint) continue;
+      gradient += lagrangian.multipliers[i][j] * rows.row(row).transpose();
+    }
+  }
+  return gradient;
+}
+
 double RelativeError(const MatrixXd& mine, const MatrixXd& difference) {
   if (mine.size() == 0) return 0.0;
   const double scale = 1.0 + difference.cwiseAbs().maxCoeff();
@@ -69,14 +87,16 @@ double RelativeError(const MatrixXd& mine, const MatrixXd& difference) {
 }  // namespace
 
 double DerivativeErrors::worst() const {
+  if (!evaluated) return HUGE_VAL;
   return std::max({gradient, hessian, residual_jacobian, row_jacobian});
 }
 
-DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, double step) {
+DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lagrangian& lagrangian,
+                                  double step) {
   DerivativeErrors errors;
   ViewEvaluation at, plus, minus;
   for (ViewEvaluation* e : {&at, &plus, &minus}) view.Resize(e);
-  if (!view.Evaluate(y.data(), {.gradient = true, .hessian = true}, nullptr, &at)) return errors;
+  if (!view.Evaluate(y.data(), {.gradient = true, .hessian = true}, lagrangian, &at)) return errors;
 
   const int n = view.num_variables();
   const MatrixXd u_jacobian = StackJacobian(view, at, false);
@@ -87,16 +107,18 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, double st
     const double dy = step * std::max(1.0, std::abs(y[j]));
     VectorXd moved = y;
     moved[j] = y[j] + dy;
-    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = false}, nullptr, &plus)) {
+    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true}, lagrangian, &plus)) {
       return errors;
     }
     moved[j] = y[j] - dy;
-    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = false}, nullptr, &minus)) {
+    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true}, lagrangian, &minus)) {
       return errors;
     }
     gradient[j] = (plus.full.value - minus.full.value) / (2.0 * dy);
+    const VectorXd plus_slope = LagrangianGradient(view, plus, lagrangian);
+    const VectorXd minus_slope = LagrangianGradient(view, minus, lagrangian);
     for (int i = 0; i < n; ++i) {
-      hessian(i, j) = (plus.gradient[i] - minus.gradient[i]) / (2.0 * dy);
+      hessian(i, j) = (plus_slope[i] - minus_slope[i]) / (2.0 * dy);
     }
     u_difference.col(j) = (Stack(view, plus, false) - Stack(view, minus, false)) / (2.0 * dy);
     r_difference.col(j) = (Stack(view, plus, true) - Stack(view, minus, true)) / (2.0 * dy);

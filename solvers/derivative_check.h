@@ -12,14 +12,15 @@ namespace touchdown::solvers {
 struct DerivativeErrors {
   bool evaluated = false;          ///< false: the point could not be evaluated
   double gradient = 0.0;           ///< of the objective
-  double hessian = 0.0;            ///< of the objective, against differences of the gradient
+  double hessian = 0.0;            ///< of the Lagrangian, against differences of its gradient
   double residual_jacobian = 0.0;  ///< of every residual, in reduced variables
   double row_jacobian = 0.0;       ///< of every u, in reduced variables
-  double worst() const;
+  double worst() const;            ///< infinite where nothing was evaluated
 };
 
 /// Checks every derivative that `view` offers at y by central differences with the given relative
-/// step. For tests and for `touchdown check-term`; allocates.
-DerivativeErrors CheckDerivatives(const View& view, const Eigen::VectorXd& y, double step = 1e-6);
+/// step. Allocates.
+DerivativeErrors CheckDerivatives(const View& view, const Eigen::VectorXd& y,
+                                  const Lagrangian& lagrangian = {}, double step = 1e-6);
 
 }  // namespace touchdown::solvers

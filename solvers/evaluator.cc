@@ -6,61 +6,86 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace touchdown::solvers {
 
-Evaluator::Evaluator(const View& view, const Stop& stop, ViewEvaluation* storage)
-    : view_(view),
-      stop_(stop),
-      storage_(storage),
-      cached_(view.num_variables()),
-      best_(view.num_variables()),
-      best_cost_by_term_(static_cast<std::size_t>(view.problem().num_terms()), 0.0),
-      start_(std::chrono::steady_clock::now()) {}
+void Evaluator::Prepare(const View& view) {
+  view.Resize(&storage_);
+  cached_.resize(view.num_variables());
+  best_.resize(view.num_variables());
+  best_cost_by_term_.assign(static_cast<std::size_t>(view.problem().num_terms()), 0.0);
+}
+
+void Evaluator::Begin(const View& view, const Stop& stop) {
+  view_ = &view;
+  stop_ = &stop;
+  cache_valid_ = false;
+  evaluations_ = iterations_ = 0;
+  failed_ = false;
+  stop_status_ = SolveStatus::kConverged;
+  has_best_ = false;
+  best_cost_ = best_violation_ = 0.0;
+  start_ = std::chrono::steady_clock::now();
+}
 
 double Evaluator::elapsed_s() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-bool Evaluator::Evaluate(const double* y, Want want) {
+bool Evaluator::AtCachedPoint(const double* y) const {
   const auto bytes = static_cast<std::size_t>(cached_.size()) * sizeof(double);
-  const bool same = cache_valid_ && std::memcmp(cached_.data(), y, bytes) == 0 &&
-                    (!want.gradient || cached_want_.gradient) &&
-                    (!want.hessian || cached_want_.hessian);
-  if (!same) {
+  return cache_valid_ && std::memcmp(cached_.data(), y, bytes) == 0;
+}
+
+bool Evaluator::Evaluate(const double* y, Want want) {
+  const bool same = AtCachedPoint(y);
+  if (same) {
+    const bool known =
+        (!want.gradient || cached_want_.gradient) && (!want.hessian || cached_want_.hessian);
+    if (known) return true;
+    want.gradient = want.gradient || cached_want_.gradient;
+    want.hessian = want.hessian || cached_want_.hessian;
+  } else {
     ++evaluations_;
-    std::memcpy(cached_.data(), y, bytes);
-    cached_want_ = want;
-    cache_valid_ = view_.Evaluate(y, want, nullptr, storage_);
-    if (!cache_valid_) {
-      failed_ = true;
-      return false;
-    }
-    Track(y);
+    cached_ = Eigen::Map<const Eigen::VectorXd>(y, cached_.size());
   }
+  cached_want_ = want;
+  cache_valid_ = view_->Evaluate(y, want, {}, &storage_);
+  if (cache_valid_ && !same) Track(y);
+  failed_ = failed_ || !cache_valid_;
   CheckStop();
-  return true;
+  return cache_valid_;
+}
+
+bool Evaluator::EvaluateLagrangian(const double* y, const Lagrangian& lagrangian) {
+  if (!Evaluate(y, {.gradient = true})) return false;
+  // Everything but the Hessian comes out the same; the Hessian is this Lagrangian's alone.
+  cached_want_.hessian = false;
+  cache_valid_ = view_->Evaluate(y, {.gradient = true, .hessian = true}, lagrangian, &storage_);
+  failed_ = failed_ || !cache_valid_;
+  return cache_valid_;
 }
 
 bool Evaluator::CheckStop() {
   if (must_stop()) return true;
-  if (iterations_ >= stop_.max_iterations || evaluations_ >= stop_.max_evaluations) {
+  if (iterations_ >= stop_->max_iterations || evaluations_ >= stop_->max_evaluations) {
     stop_status_ = SolveStatus::kIterationLimit;
-  } else if (stop_.wall_limit_s < std::numeric_limits<double>::infinity() &&
-             elapsed_s() >= stop_.wall_limit_s) {
+  } else if (stop_->wall_limit_s < std::numeric_limits<double>::infinity() &&
+             elapsed_s() >= stop_->wall_limit_s) {
     stop_status_ = SolveStatus::kTimeLimit;
-  } else if (stop_.callback && cache_valid_) {
+  } else if (stop_->callback && cache_valid_) {
     const StopQuery query{{cached_.data(), static_cast<std::size_t>(cached_.size())},
-                          storage_->full.cost_by_term,
+                          storage_.full.cost_by_term,
                           evaluations_};
-    if (stop_.callback(query)) stop_status_ = SolveStatus::kStopped;
+    if (stop_->callback(query)) stop_status_ = SolveStatus::kStopped;
   }
   return must_stop();
 }
 
 void Evaluator::Track(const double* y) {
-  const double violation = std::max(storage_->full.max_violation, kFeasible);
-  const double cost = storage_->full.value;
+  const double violation = std::max(storage_.full.max_violation, kFeasible);
+  const double cost = storage_.full.value;
   const bool better = !has_best_ || violation < best_violation_ ||
                       (violation == best_violation_ && cost < best_cost_);
   if (!better) return;
@@ -68,7 +93,7 @@ void Evaluator::Track(const double* y) {
   best_violation_ = violation;
   best_cost_ = cost;
   best_ = Eigen::Map<const Eigen::VectorXd>(y, best_.size());
-  best_cost_by_term_ = storage_->full.cost_by_term;
+  best_cost_by_term_ = storage_.full.cost_by_term;
 }
 
 }  // namespace touchdown::solvers

@@ -17,13 +17,18 @@ class Evaluator {
   /// A point counts as feasible up to this constraint violation.
   static constexpr double kFeasible = 1e-6;
 
-  /// `storage` is sized for `view` already. All three outlive the evaluator.
-  Evaluator(const View& view, const Stop& stop, ViewEvaluation* storage);
+  /// Sizes all storage for views of this structure. The only call that allocates.
+  void Prepare(const View& view);
+  /// Starts a solve. Both arguments outlive it.
+  void Begin(const View& view, const Stop& stop);
 
-  /// Evaluates at y; false if a term could not. A repeated question at the same point is answered
-  /// from the cache. Does not allocate.
+  /// Evaluates the objective and all rows at y; false if a term could not. A backend may ask for
+  /// value, gradient and Hessian one by one: what is known of the last point is not forgotten, and
+  /// only a new point counts as an evaluation.
   bool Evaluate(const double* y, Want want);
-  const ViewEvaluation& last() const { return *storage_; }
+  /// The Hessian of the Lagrangian at y, in last().hessian.
+  bool EvaluateLagrangian(const double* y, const Lagrangian& lagrangian);
+  const ViewEvaluation& last() const { return storage_; }
 
   /// Tells of one finished iteration; the budget of iterations is counted here.
   void CountIteration() { ++iterations_; }
@@ -31,7 +36,7 @@ class Evaluator {
   /// The status that ends the solve now, or kConverged while it may go on.
   SolveStatus stop_status() const { return stop_status_; }
   bool must_stop() const { return stop_status_ != SolveStatus::kConverged; }
-  /// Asks the budgets and the clock again, without an evaluation.
+  /// Asks the budgets, the clock and the callback again, without an evaluation.
   bool CheckStop();
 
   int evaluations() const { return evaluations_; }
@@ -46,11 +51,12 @@ class Evaluator {
   const std::vector<double>& best_cost_by_term() const { return best_cost_by_term_; }
 
  private:
+  bool AtCachedPoint(const double* y) const;
   void Track(const double* y);
 
-  const View& view_;
-  const Stop& stop_;
-  ViewEvaluation* storage_;
+  const View* view_ = nullptr;
+  const Stop* stop_ = nullptr;
+  ViewEvaluation storage_;
   Eigen::VectorXd cached_;
   bool cache_valid_ = false;
   Want cached_want_;

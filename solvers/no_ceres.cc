@@ -16,7 +16,7 @@ class NoCeresSolver : public SolverBackend {
 
  private:
   void DoPrepare(const View& view) override { throw std::invalid_argument(Refusal(view)); }
-  void DoSolve(const View& view, const Eigen::VectorXd&, const Stop&, Evaluator*,
+  void DoSolve(const View& view, const WarmStart&, const Stop&, Evaluator*,
                SolverResult*) override {
     throw std::invalid_argument(Refusal(view));
   }

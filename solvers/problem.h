@@ -21,15 +21,23 @@ struct ProblemShape {
   double interval_max = 1e3;
 };
 
+/// Weights of the Lagrangian whose Hessian is wanted: factor x objective + sum of multiplier x row.
+struct Lagrangian {
+  double objective_factor = 1.0;
+  /// [term] -> [window][output], null where the term is a cost; the whole may be null: no rows.
+  const double* const* multipliers = nullptr;
+};
+
 /// Result storage of one evaluation; one per thread. Sized by Problem::Resize.
 struct Evaluation {
-  bool ok = false;                   ///< false: a term returned NaN or threw
-  double value = 0.0;                ///< sum of the cost terms
-  double max_violation = 0.0;        ///< worst violation of a constraint row
-  std::vector<double> gradient;      ///< blocks x d, then h if free
-  BorderedBandMatrix hessian;        ///< of the objective, plus multipliers times constraints
-  std::vector<double> cost_by_term;  ///< [term]; 0 for constraints
-  std::vector<TermBlock> terms;      ///< [term]
+  bool ok = false;                          ///< false: a term returned NaN or threw
+  double value = 0.0;                       ///< sum of the cost terms
+  double max_violation = 0.0;               ///< worst violation of a constraint row
+  std::vector<double> gradient;             ///< of the objective: blocks x d, then h if free
+  BorderedBandMatrix hessian;               ///< of the Lagrangian
+  std::vector<double> lagrangian_gradient;  ///< of the Lagrangian, filled with the Hessian
+  std::vector<double> cost_by_term;         ///< [term]; 0 for constraints
+  std::vector<TermBlock> terms;             ///< [term]
 };
 
 /// An optimisation problem over blocks with windowed terms. Its structure is fixed at construction
@@ -65,10 +73,9 @@ class Problem {
   /// Allocates everything that Evaluate needs.
   void Resize(Evaluation* evaluation) const;
 
-  /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. `multipliers`
-  /// holds one row array [window][output] per term, null where the term is a cost; the whole
-  /// argument may be null. Does not allocate. Returns evaluation->ok.
-  bool Evaluate(const double* x, double h, Want want, const double* const* multipliers,
+  /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. Does not allocate.
+  /// Returns evaluation->ok.
+  bool Evaluate(const double* x, double h, Want want, const Lagrangian& lagrangian,
                 Evaluation* evaluation) const noexcept;
 
  private:
@@ -76,8 +83,14 @@ class Problem {
     std::shared_ptr<const Term> term;
     Role role;
   };
-  void AddGradient(const Entry& entry, const TermBlock& block, Evaluation* evaluation) const;
-  void AddHessian(const Entry& entry, const TermBlock& block, Evaluation* evaluation) const;
+  bool AddCost(std::size_t i, Evaluation* evaluation) const;
+  bool AddViolation(std::size_t i, Evaluation* evaluation) const;
+  bool WindowsFit(const TermShape& shape, const TermBlock& block) const;
+  /// Adds sum of weight(c) du_c to `gradient`, a full-size array.
+  void AddGradient(const TermShape& shape, const TermBlock& block, double factor,
+                   const double* weights, std::vector<double>* gradient) const;
+  void AddHessian(const Entry& entry, const TermBlock& block, double factor,
+                  Evaluation* evaluation) const;
 
   ProblemShape shape_;
   std::vector<Entry> terms_;

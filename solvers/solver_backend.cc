@@ -5,6 +5,7 @@
 
 #include "touchdown/solvers/solver_backend.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "touchdown/solvers/thread_clock.h"
@@ -32,47 +33,88 @@ std::string SolverBackend::Refusal(const View& view) const {
   return "";
 }
 
+namespace {
+
+/// Everything of a view's structure that storage depends on, number by number.
+template <class Visit>
+void ForEachStructureNumber(const View& view, Visit&& visit) {
+  const Problem& problem = view.problem();
+  visit(view.num_variables());
+  visit(view.blocks());
+  visit(problem.shape().blocks);
+  visit(problem.num_terms());
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    const TermShape& shape = problem.term(i).shape();
+    visit(shape.window);
+    visit(shape.outputs);
+    visit(shape.max_windows);
+    visit(static_cast<int>(problem.role(i)));
+  }
+}
+
+bool Matches(const View& view, const std::vector<int>& signature) {
+  std::size_t at = 0;
+  bool same = true;
+  ForEachStructureNumber(view, [&](int number) {
+    same = same && at < signature.size() && signature[at] == number;
+    ++at;
+  });
+  return same && at == signature.size();
+}
+
+}  // namespace
+
 void SolverBackend::Prepare(const View& view) {
   const std::string refusal = Refusal(view);
   if (!refusal.empty()) throw std::invalid_argument(refusal);
-  view.Resize(&storage_);
+  evaluator_.Prepare(view);
   DoPrepare(view);
-  prepared_variables_ = view.num_variables();
+  prepared_.clear();
+  ForEachStructureNumber(view, [this](int number) { prepared_.push_back(number); });
 }
 
-void SolverBackend::Solve(const View& view, const Eigen::VectorXd& warm, const Stop& stop,
+void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,
                           SolverResult* result) {
   const int n = view.num_variables();
-  if (prepared_variables_ != n || warm.size() != n) {
-    throw std::invalid_argument("backend " + name_ + ": prepared for " +
-                                std::to_string(prepared_variables_) +
-                                " variables, warm start has " + std::to_string(warm.size()) +
-                                ", the view has " + std::to_string(n));
+  if (!Matches(view, prepared_)) {
+    throw std::invalid_argument("backend " + name_ +
+                                ": this view does not have the structure it was prepared for");
   }
-  if (!warm.allFinite()) {
-    throw std::invalid_argument("backend " + name_ + ": the warm start is not finite");
+  if (warm.y.size() != n || !warm.y.allFinite()) {
+    throw std::invalid_argument("backend " + name_ + ": the warm start has " +
+                                std::to_string(warm.y.size()) + " numbers, it needs " +
+                                std::to_string(n) + " finite ones");
+  }
+  const ProblemShape& shape = view.problem().shape();
+  if (view.free_interval() &&
+      !(warm.y[n - 1] >= shape.interval_min && warm.y[n - 1] <= shape.interval_max)) {
+    WarmStart inside = warm;
+    inside.y[n - 1] = std::clamp(warm.y[n - 1], shape.interval_min, shape.interval_max);
+    return Solve(view, inside, stop, result);
   }
   const double cpu_start = ThreadCpuSeconds();
-  Evaluator evaluator(view, stop, &storage_);
+  evaluator_.Begin(view, stop);
   result->trace.clear();
   result->message.clear();
+  result->multipliers.clear();
+  result->interval_multiplier = 0.0;
   result->native_status = 0;
-  DoSolve(view, warm, stop, &evaluator, result);
-  if (evaluator.must_stop() && result->usable()) result->status = evaluator.stop_status();
-  if (!evaluator.has_best()) result->status = SolveStatus::kEvaluationFailed;
+  DoSolve(view, warm, stop, &evaluator_, result);
+  if (evaluator_.must_stop() && result->usable()) result->status = evaluator_.stop_status();
+  if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
 
-  result->x = evaluator.has_best() ? evaluator.best() : warm;
-  result->cost = evaluator.best_cost();
-  result->max_violation =
-      evaluator.best_violation() > Evaluator::kFeasible ? evaluator.best_violation() : 0.0;
-  result->cost_by_term.resize(evaluator.best_cost_by_term().size());
+  result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
+  result->cost = evaluator_.best_cost();
+  const double violation = evaluator_.best_violation();
+  result->max_violation = violation > Evaluator::kFeasible ? violation : 0.0;
+  result->cost_by_term.resize(evaluator_.best_cost_by_term().size());
   for (std::size_t i = 0; i < result->cost_by_term.size(); ++i) {
-    result->cost_by_term[i] = {view.problem().term(static_cast<int>(i)).info().name,
-                               evaluator.best_cost_by_term()[i]};
+    result->cost_by_term[i].name = view.problem().term(static_cast<int>(i)).info().name;
+    result->cost_by_term[i].cost = evaluator_.best_cost_by_term()[i];
   }
-  result->iterations = evaluator.iterations();
-  result->evaluations = evaluator.evaluations();
-  result->wall_s = evaluator.elapsed_s();
+  result->iterations = evaluator_.iterations();
+  result->evaluations = evaluator_.evaluations();
+  result->wall_s = evaluator_.elapsed_s();
   result->cpu_s = ThreadCpuSeconds() - cpu_start;
 }
 

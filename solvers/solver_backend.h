@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -40,10 +41,11 @@ class SolverBackend {
   /// refusal if the backend cannot solve it.
   void Prepare(const View& view);
 
-  /// Solves from `warm` (view.num_variables() numbers). The view must have the prepared structure;
-  /// its parameters may have changed. Numerical outcomes are in result->status. Throws
-  /// std::invalid_argument on a wrong size, a number that is not finite, or without Prepare.
-  void Solve(const View& view, const Eigen::VectorXd& warm, const Stop& stop, SolverResult* result);
+  /// Solves from `warm` (view.num_variables() numbers; a free interval is moved into its bounds).
+  /// The view must have the prepared structure; its parameters may have changed. Numerical outcomes
+  /// are in result->status. Throws std::invalid_argument on another structure, a wrong size, a
+  /// number that is not finite, or without Prepare.
+  void Solve(const View& view, const WarmStart& warm, const Stop& stop, SolverResult* result);
 
  protected:
   SolverBackend(std::string name, SolverOptions options)
@@ -51,15 +53,16 @@ class SolverBackend {
 
  private:
   virtual void DoPrepare(const View& view) = 0;
-  /// Runs the solver from `warm`, evaluating only through `evaluator`. Sets status, native_status,
-  /// message and trace; the base fills in the rest from the evaluator.
-  virtual void DoSolve(const View& view, const Eigen::VectorXd& warm, const Stop& stop,
+  /// Runs the solver from `warm`, evaluating only through `evaluator`. Sets status, native_status
+  /// and message, the trace if stop.trace, multipliers if it has them; the base fills in the rest
+  /// from the evaluator.
+  virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 
   std::string name_;
   SolverOptions options_;
-  ViewEvaluation storage_;
-  int prepared_variables_ = -1;
+  Evaluator evaluator_;
+  std::vector<int> prepared_;  // signature of the prepared structure
 };
 
 }  // namespace touchdown::solvers

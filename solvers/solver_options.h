@@ -6,8 +6,8 @@
 
 namespace touchdown::solvers {
 
-/// One option of a backend: named, ranged, documented, so that it can be set from a scenario file
-/// or a command line and swept like any other number.
+/// One option of a backend: named, ranged, documented, so that a caller can offer it to
+/// people and sweep it like any other number.
 struct OptionSpec {
   std::string name;
   double value = 0.0;  ///< default

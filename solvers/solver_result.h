@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,19 +36,32 @@ struct TermCost {
   double cost = 0.0;
 };
 
+/// Where a solve starts: variables of the view, and multipliers of an earlier result for backends
+/// that can use them (empty: none).
+struct WarmStart {
+  WarmStart(Eigen::VectorXd point) : y(std::move(point)) {}  // NOLINT: a point is a warm start
+  WarmStart(Eigen::VectorXd point, std::vector<std::vector<double>> duals)
+      : y(std::move(point)), multipliers(std::move(duals)) {}
+  Eigen::VectorXd y;
+  std::vector<std::vector<double>> multipliers;
+};
+
 struct SolverResult {
   SolveStatus status = SolveStatus::kNumericalFailure;
   Eigen::VectorXd x;  ///< best feasible point, variables of the solved view
   double cost = 0.0;
   std::vector<TermCost> cost_by_term;
   double max_violation = 0.0;  ///< worst constraint violation at x
+  /// [term][window x output] of constraint terms at x, where the backend has them; else empty.
+  std::vector<std::vector<double>> multipliers;
+  double interval_multiplier = 0.0;  ///< of an active bound of a free interval
   int iterations = 0;
   int evaluations = 0;  ///< evaluations of value, gradient or residuals
   double wall_s = 0.0;
   double cpu_s = 0.0;                  ///< thread CPU time
   int native_status = 0;               ///< the backend's own code
   std::string message;                 ///< the backend's own words
-  std::vector<IterationRecord> trace;  ///< filled if asked for
+  std::vector<IterationRecord> trace;  ///< filled if Stop::trace asks for it
 
   /// The point may be used: it was evaluated, whether or not the solve converged.
   bool usable() const {

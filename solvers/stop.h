@@ -14,13 +14,14 @@ struct StopQuery {
   int evaluations = 0;
 };
 
-/// When a solve must end, whatever its own stop test says. Budgets in iterations or evaluations are
-/// deterministic; a wall-clock limit is not.
+/// When a solve must end, whatever its own stop test says, and how it is watched. Budgets in
+/// iterations or evaluations are deterministic; a wall-clock limit is not.
 struct Stop {
   double wall_limit_s = std::numeric_limits<double>::infinity();
   int max_iterations = 100;
   int max_evaluations = std::numeric_limits<int>::max();
   std::function<bool(const StopQuery&)> callback;  ///< true: stop now
+  bool trace = false;  ///< record every iteration in the result (allocates)
 };
 
 }  // namespace touchdown::solvers

@@ -20,11 +20,14 @@ struct TermInfo {
   bool convex = false;  ///< convex in the blocks at a fixed interval
 };
 
+/// Longest window a term may have, in blocks.
+inline constexpr int kMaxWindow = 6;
+
 /// A term of the objective or a set of constraint rows: sum over windows k and components c of
 /// rho(u_c(q_k .. q_{k+w-1}, h, t_k)), t_k = t0 + k h. Or, as rows: lo <= u_c <= hi.
 struct TermShape {
   int block_size = 3;         ///< scalars in a block, d
-  int window = 1;             ///< consecutive blocks in a window, w <= 6
+  int window = 1;             ///< consecutive blocks in a window, w <= kMaxWindow
   int outputs = 1;            ///< components of u, m
   int max_windows = 0;        ///< most windows it can ever have at this problem size
   bool uses_interval = true;  ///< u depends on h

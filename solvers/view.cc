@@ -2,7 +2,8 @@
 // A problem through x = E y + l(h). With g, H the full gradient and Hessian and ' = d/dh:
 //   g_y = E^T g,             g_h = dJ/dh + l' . g
 //   H_yy = E^T H E,          H_yh = E^T (H l' + H_xh)
-//   H_hh = d2J/dh2 + 2 l' . H_xh + l'^T H l' + l'' . g.
+//   H_hh = d2J/dh2 + 2 l' . H_xh + l'^T H l' + l'' . g,
+// in the last line with g of the Lagrangian, as H is.
 
 #include "touchdown/solvers/view.h"
 
@@ -26,14 +27,23 @@ View::View(const Problem& problem, AffineLift lift) : problem_(&problem), lift_(
     throw std::invalid_argument("View: the lift has " + std::to_string(lift_.block.size()) +
                                 " blocks, the problem has " + std::to_string(blocks));
   }
-  int last = 0;
-  for (const int b : lift_.block) {
+  int last = -1;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const int b = lift_.block[i];
     if (b < 0) continue;
+    if (lift_.coefficient[i] == 0.0) {
+      throw std::invalid_argument("View: block " + std::to_string(i) +
+                                  " depends on a reduced block with coefficient 0");
+    }
     if (b >= lift_.reduced_blocks || b < last || b > last + 1) {
       throw std::invalid_argument("View: reduced block " + std::to_string(b) +
                                   " is out of order; reduced blocks must follow the blocks");
     }
     last = b;
+  }
+  if (last + 1 != lift_.reduced_blocks) {
+    throw std::invalid_argument("View: the lift uses " + std::to_string(last + 1) + " of " +
+                                std::to_string(lift_.reduced_blocks) + " reduced blocks");
   }
 }
 
@@ -60,7 +70,7 @@ void AddReducedBlocks(const double* y, const AffineLift& lift, int d, double* x)
 
 }  // namespace
 
-bool View::Evaluate(const double* y, Want want, const double* const* multipliers,
+bool View::Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                     ViewEvaluation* e) const noexcept {
   e->h = free_interval() ? y[num_variables() - 1] : problem_->interval();
   if (lift_.offset) {
@@ -70,9 +80,7 @@ bool View::Evaluate(const double* y, Want want, const double* const* multipliers
     std::fill(e->x.begin(), e->x.end(), 0.0);
   }
   AddReducedBlocks(y, lift_, block_size(), e->x.data());
-  // The offset's curvature needs the gradient.
-  want.gradient = want.gradient || (want.hessian && free_interval());
-  if (!problem_->Evaluate(e->x.data(), e->h, want, multipliers, &e->full)) return false;
+  if (!problem_->Evaluate(e->x.data(), e->h, want, lagrangian, &e->full)) return false;
   if (want.gradient) ReduceGradient(e);
   if (want.hessian) ReduceHessian(e);
   return true;
@@ -135,7 +143,8 @@ void View::ReduceHessian(ViewEvaluation* e) const {
     for (int r = 0; r < d; ++r) {
       const double cross = H.border()[i * d + r];
       if (bi >= 0) e->hessian.border()[bi * d + r] += ci * cross;
-      corner += 2.0 * e->dl[i * d + r] * cross + e->d2l[i * d + r] * e->full.gradient[i * d + r];
+      corner += 2.0 * e->dl[i * d + r] * cross +
+                e->d2l[i * d + r] * e->full.lagrangian_gradient[i * d + r];
     }
   }
   e->hessian.corner() = corner;

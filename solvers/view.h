@@ -16,8 +16,8 @@ struct ViewEvaluation {
   std::vector<double> x;         ///< lifted blocks
   std::vector<double> dl, d2l;   ///< derivatives of the offset with respect to h
   double h = 1.0;                ///< interval of this evaluation
-  std::vector<double> gradient;  ///< reduced blocks x d, then h if free
-  BorderedBandMatrix hessian;
+  std::vector<double> gradient;  ///< of the objective: reduced blocks x d, then h if free
+  BorderedBandMatrix hessian;    ///< of the Lagrangian
 };
 
 /// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is
@@ -39,7 +39,7 @@ class View {
   void Resize(ViewEvaluation* evaluation) const;
 
   /// Evaluates at y; see Problem::Evaluate. Does not allocate.
-  bool Evaluate(const double* y, Want want, const double* const* multipliers,
+  bool Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                 ViewEvaluation* evaluation) const noexcept;
 
   /// The problem's blocks at y, and the interval there.

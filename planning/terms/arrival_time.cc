@@ -32,7 +32,7 @@ class RootOfDuration {
   double segments_;
 };
 
-solvers::TermInfo Info() { return {"arrival_time", "w T", "s^0.5", "design, section 2", false}; }
+solvers::TermInfo Info() { return {"arrival_time", "w T", "s^0.5", "docs/formulation.md", false}; }
 
 }  // namespace
 

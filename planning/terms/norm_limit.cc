@@ -25,7 +25,8 @@ class DerivativeNorm {
   DerivativeNorm(int windows, double limit) : windows_(windows), limit_(limit) {}
 
   int windows() const { return windows_; }
-  int first_block(int k) const { return k + 1; }
+  // What the start state fixes is not limited: V_0, V_1 and A_0.
+  int first_block(int k) const { return k + kFirst; }
 
   template <class T>
   void operator()(int /*k*/, const T* q, const T& h, const T& /*t*/, T* u) const {
@@ -52,6 +53,7 @@ class DerivativeNorm {
   }
 
  private:
+  static constexpr int kFirst = kOrder == 1 ? 2 : 1;
   static constexpr double kRow[3] = {kOrder == 1 ? -1.0 : 1.0, kOrder == 1 ? 1.0 : -2.0, 1.0};
 
   template <class T>
@@ -72,8 +74,8 @@ std::shared_ptr<solvers::Term> Make(const solvers::TermInfo& info, int control_p
     throw std::invalid_argument(info.name + ": limit is " + std::to_string(limit) +
                                 ", it must be > 0");
   }
-  // Velocity points 1..N-3 and acceleration points 1..N-3: as many as there are segments.
-  const int windows = control_points - 3;
+  // Up to V_{N-3} and A_{N-3}, which the end state moves.
+  const int windows = control_points - (kOrder == 1 ? 4 : 3);
   return std::make_shared<solvers::WindowTerm<DerivativeNorm<kOrder>, solvers::HingeLoss>>(
       info, DerivativeNorm<kOrder>(windows, limit), solvers::HingeLoss(weight, width), windows);
 }

@@ -77,7 +77,7 @@ class SegmentDerivatives {
 };
 
 solvers::TermInfo Info() {
-  return {"smoothness", "w int |a|^2 + w_j |j|^2 dt", "m/s^1.5", "paper eq. 15", true};
+  return {"smoothness", "w int (|a|^2 + w_j |j|^2) dt", "m/s^1.5", "paper eq. 15", true};
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST(LandingProblem, FreeArrivalBeatsTheGuessAndStaysInItsBounds) {
     solvers::SolverResult result;
     solvers::ViewEvaluation at_guess;
     problem.view().Resize(&at_guess);
-    ASSERT_TRUE(problem.view().Evaluate(problem.Guess().data(), {}, nullptr, &at_guess));
+    ASSERT_TRUE(problem.view().Evaluate(problem.Guess().data(), {}, {}, &at_guess));
     backend->Solve(problem.view(), problem.Guess(), {}, &result);
     ASSERT_TRUE(result.usable()) << result.message;
     EXPECT_LE(result.cost, at_guess.full.value);

@@ -136,9 +136,12 @@ TEST_P(EveryBackend, RefusesConstraintsItCannotTake) {
   problem.AddTerm(Rosenbrock(), Role::kConstraint);  // a square loss: equality rows
   const View view(problem, AffineLift::Identity(2));
   auto backend = Make();
-  if (backend->capabilities().equality_rows) return;
-  EXPECT_NE(backend->Refusal(view).find("rosenbrock"), std::string::npos);
-  EXPECT_THROW(backend->Prepare(view), std::invalid_argument);
+  if (backend->capabilities().equality_rows) {
+    EXPECT_EQ(backend->Refusal(view), "");
+  } else {
+    EXPECT_NE(backend->Refusal(view).find("rosenbrock"), std::string::npos);
+    EXPECT_THROW(backend->Prepare(view), std::invalid_argument);
+  }
 }
 
 TEST_P(EveryBackend, RefusesMisuse) {
@@ -147,12 +150,22 @@ TEST_P(EveryBackend, RefusesMisuse) {
   const View view(problem, AffineLift::Identity(2));
   auto backend = Make();
   SolverResult result;
-  EXPECT_THROW(backend->Solve(view, Eigen::Vector2d::Zero(), {}, &result), std::invalid_argument);
-  backend->Prepare(view);
-  EXPECT_THROW(backend->Solve(view, Eigen::Vector3d::Zero(), {}, &result), std::invalid_argument);
-  EXPECT_THROW(backend->Solve(view, Eigen::Vector2d(0, std::nan("")), {}, &result),
+  EXPECT_THROW(backend->Solve(view, WarmStart(Eigen::VectorXd::Zero(2)), {}, &result),
                std::invalid_argument);
+  backend->Prepare(view);
+  EXPECT_THROW(backend->Solve(view, WarmStart(Eigen::VectorXd::Zero(3)), {}, &result),
+               std::invalid_argument);
+  EXPECT_THROW(
+      backend->Solve(view, WarmStart(Eigen::VectorXd::Constant(2, std::nan(""))), {}, &result),
+      std::invalid_argument);
   EXPECT_THROW(backend->options().Set("no_such_option", 1.0), std::invalid_argument);
+  // As many variables, but another structure.
+  Problem other = Scalars(2);
+  other.AddTerm(Rosenbrock(), Role::kCost);
+  other.AddTerm(Rosenbrock(), Role::kCost);
+  const View other_view(other, AffineLift::Identity(2));
+  EXPECT_THROW(backend->Solve(other_view, WarmStart(Eigen::VectorXd::Zero(2)), {}, &result),
+               std::invalid_argument);
 }
 
 TEST_P(EveryBackend, TwoThreadsGiveTheBitsOfOne) {

@@ -22,17 +22,21 @@ struct Bounded {
                         TermInfo{"bound", "", "", "", true}, Map(row), HingeLoss(1.0, 1.0), 1),
                     Role::kConstraint);
     view = std::make_unique<View>(problem, AffineLift::Identity(1));
-    view->Resize(&storage);
+  }
+  Evaluator Begin(const Stop& stop) const {
+    Evaluator evaluator;
+    evaluator.Prepare(*view);
+    evaluator.Begin(*view, stop);
+    return evaluator;
   }
   Problem problem;
   std::unique_ptr<View> view;
-  ViewEvaluation storage;
 };
 
 TEST(Evaluator, KeepsTheBestFeasiblePointNotTheCheapest) {
   Bounded b;
   const Stop stop;
-  Evaluator evaluator(*b.view, stop, &b.storage);
+  Evaluator evaluator = b.Begin(stop);
   for (const double x : {2.9, 0.0, 0.9, 2.0, 0.5}) ASSERT_TRUE(evaluator.Evaluate(&x, {}));
   EXPECT_EQ(evaluator.best()[0], 0.9);
   EXPECT_NEAR(evaluator.best_cost(), 2.1 * 2.1, 1e-12);
@@ -41,7 +45,7 @@ TEST(Evaluator, KeepsTheBestFeasiblePointNotTheCheapest) {
 TEST(Evaluator, WhileNothingIsFeasibleKeepsTheLeastViolation) {
   Bounded b;
   const Stop stop;
-  Evaluator evaluator(*b.view, stop, &b.storage);
+  Evaluator evaluator = b.Begin(stop);
   for (const double x : {2.9, 1.5, 2.0}) ASSERT_TRUE(evaluator.Evaluate(&x, {}));
   EXPECT_EQ(evaluator.best()[0], 1.5);
   EXPECT_NEAR(evaluator.best_violation(), 0.5, 1e-12);
@@ -50,20 +54,37 @@ TEST(Evaluator, WhileNothingIsFeasibleKeepsTheLeastViolation) {
 TEST(Evaluator, AnswersARepeatedQuestionFromItsCache) {
   Bounded b;
   const Stop stop;
-  Evaluator evaluator(*b.view, stop, &b.storage);
+  Evaluator evaluator = b.Begin(stop);
   const double x = 0.25;
   ASSERT_TRUE(evaluator.Evaluate(&x, {.gradient = true}));
   ASSERT_TRUE(evaluator.Evaluate(&x, {}));
   EXPECT_EQ(evaluator.evaluations(), 1);
-  ASSERT_TRUE(evaluator.Evaluate(&x, {.hessian = true}));  // more than was asked before
-  EXPECT_EQ(evaluator.evaluations(), 2);
+  ASSERT_TRUE(evaluator.Evaluate(&x, {.hessian = true}));  // more of the same point
+  EXPECT_EQ(evaluator.evaluations(), 1);
+  EXPECT_DOUBLE_EQ(evaluator.last().hessian.At(0, 0), 2.0);
+  EXPECT_DOUBLE_EQ(evaluator.last().gradient[0], 2.0 * (0.25 - 3.0));
+}
+
+TEST(Evaluator, TheLagrangiansHessianDoesNotReplaceTheObjectives) {
+  Bounded b;
+  const Stop stop;
+  Evaluator evaluator = b.Begin(stop);
+  const double x = 0.25, multiplier = 3.0;
+  const double* multipliers[] = {nullptr, &multiplier};
+  ASSERT_TRUE(
+      evaluator.EvaluateLagrangian(&x, {.objective_factor = 0.5, .multipliers = multipliers}));
+  EXPECT_DOUBLE_EQ(evaluator.last().hessian.At(0, 0), 1.0);  // half of 2; the row is linear
+  EXPECT_DOUBLE_EQ(evaluator.last().gradient[0], 2.0 * (0.25 - 3.0));
+  ASSERT_TRUE(evaluator.Evaluate(&x, {.hessian = true}));
+  EXPECT_DOUBLE_EQ(evaluator.last().hessian.At(0, 0), 2.0);
+  EXPECT_EQ(evaluator.evaluations(), 1);
 }
 
 TEST(Evaluator, StopsOnItsBudgets) {
   Bounded b;
   Stop stop;
   stop.max_evaluations = 2;
-  Evaluator evaluator(*b.view, stop, &b.storage);
+  Evaluator evaluator = b.Begin(stop);
   double x = 0.0;
   evaluator.Evaluate(&x, {});
   EXPECT_FALSE(evaluator.must_stop());

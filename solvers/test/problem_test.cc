@@ -16,6 +16,27 @@ TEST(Problem, RefusesTermsThatDoNotFit) {
       TermInfo{"wavy", "", "", "", false}, WavyMap(1), SquareLoss(1.0), 1);
   EXPECT_THROW(problem.AddTerm(wavy, Role::kCost), std::invalid_argument);
   EXPECT_THROW(Problem({.blocks = 0}), std::invalid_argument);
+  Problem scalars({.blocks = 9, .block_size = 1});
+  const auto sum = [](const auto* x, auto* u) { u[0] = x[0] + x[6]; };
+  EXPECT_THROW(scalars.AddTerm((SumOfSquares<7, 1>("long", sum, true)), Role::kCost),
+               std::invalid_argument);
+}
+
+TEST(Problem, AWindowOutsideTheProblemIsAnEvaluationThatFails) {
+  class Stray : public WavyMap {
+   public:
+    Stray() : WavyMap(1) {}
+    int first_block(int /*k*/) const { return 8; }
+  };
+  Problem problem({.blocks = 10, .block_size = 2});
+  problem.AddTerm(std::make_shared<WindowTerm<Stray, SquareLoss>>(
+                      TermInfo{"stray", "", "", "", false}, Stray(), SquareLoss(1.0), 1),
+                  Role::kCost);
+  Evaluation e;
+  problem.Resize(&e);
+  // Room for the stray window's read; what it would write has none.
+  const std::vector<double> x(24, 0.5);
+  EXPECT_FALSE(problem.Evaluate(x.data(), 1.0, {.gradient = true}, {}, &e));
 }
 
 TEST(Problem, ConstraintRowsReportTheirViolationAndCurvature) {
@@ -30,7 +51,8 @@ TEST(Problem, ConstraintRowsReportTheirViolationAndCurvature) {
   problem.Resize(&e);
   const double x = 3.0, multiplier = 3.0;
   const double* multipliers[] = {&multiplier};
-  ASSERT_TRUE(problem.Evaluate(&x, 1.0, {.gradient = true, .hessian = true}, multipliers, &e));
+  ASSERT_TRUE(problem.Evaluate(&x, 1.0, {.gradient = true, .hessian = true},
+                               {.multipliers = multipliers}, &e));
   EXPECT_EQ(e.value, 0.0);
   EXPECT_DOUBLE_EQ(e.max_violation, 5.0);
   EXPECT_DOUBLE_EQ(e.terms[0].du[0], 6.0);

@@ -69,6 +69,32 @@ TEST(View, EveryDerivativeMatchesDifferences) {
   }
 }
 
+TEST(View, TheLagrangiansHessianMatchesDifferences) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  for (const bool free_interval : {false, true}) {
+    Problem problem({.blocks = 9, .block_size = 2, .free_interval = free_interval});
+    problem.set_interval(0.8);
+    const auto wavy = [](int windows) {
+      return std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
+          TermInfo{"wavy", "", "", "", false}, WavyMap(windows), SquareLoss(1.3), windows);
+    };
+    problem.AddTerm(wavy(7), Role::kCost);
+    problem.AddTerm(wavy(6), Role::kConstraint);
+    std::vector<double> row_multipliers(12);
+    for (double& m : row_multipliers) m = normal(random);
+    const double* multipliers[] = {nullptr, row_multipliers.data()};
+    for (const View& view : {View(problem, AffineLift::Identity(9)), FoldedView(problem)}) {
+      Eigen::VectorXd y(view.num_variables());
+      for (int i = 0; i < y.size(); ++i) y[i] = 0.7 * normal(random);
+      if (free_interval) y[y.size() - 1] = 0.8;
+      const Lagrangian lagrangian{.objective_factor = 0.4, .multipliers = multipliers};
+      const DerivativeErrors errors = CheckDerivatives(view, y, lagrangian);
+      EXPECT_LT(errors.worst(), 1e-5);
+    }
+  }
+}
+
 TEST(View, RestrictInvertsLift) {
   Problem problem({.blocks = 9, .block_size = 2, .free_interval = true});
   const View view = FoldedView(problem);
@@ -86,6 +112,12 @@ TEST(View, RefusesALiftThatDoesNotFit) {
   AffineLift jumps = AffineLift::Identity(4);
   jumps.block = {0, 2, 1, 3};
   EXPECT_THROW(View(problem, jumps), std::invalid_argument);
+  AffineLift flat = AffineLift::Identity(4);
+  flat.coefficient[2] = 0.0;
+  EXPECT_THROW(View(problem, flat), std::invalid_argument);
+  AffineLift unused = AffineLift::Identity(4);
+  unused.reduced_blocks = 5;
+  EXPECT_THROW(View(problem, unused), std::invalid_argument);
 }
 
 }  // namespace
