@@ -64,7 +64,7 @@ double DistanceToOccupied(const OccupancyMap& map, const Eigen::Vector3d& p_W) {
 // A start inside the inflated zone may leave it within this time [s] ...
 constexpr double kEscapeTime = 1.5;
 constexpr double kEscapeStep = 0.02;
-// ... without coming nearer to what it leaves, or lower, than this [m].
+// ... without coming back by more than this, or sinking more below the floor [m].
 constexpr double kEscapeSlack = 0.02;
 
 /// For a curve whose start is blocked: certifies that it only moves away until it is free, and is
@@ -72,14 +72,16 @@ constexpr double kEscapeSlack = 0.02;
 bool Escapes(const UniformBspline& curve, double t_from, const FreeSpace& space,
              double* clearance) {
   const Eigen::Vector3d start = curve.Evaluate(t_from).p_WB;
-  const double allowed = DistanceToOccupied(*space.map, start) - kEscapeSlack;
-  *clearance = allowed;
+  double reached = DistanceToOccupied(*space.map, start);
+  *clearance = reached;
+  if (reached <= 0.0) return false;  // inside an obstacle: no way out can be proven
   for (double t = t_from; t <= std::min(t_from + kEscapeTime, curve.t_end()); t += kEscapeStep) {
     const Eigen::Vector3d p = curve.Evaluate(t).p_WB;
     if (!space.Blocked(p) && !std::isfinite(FirstBlockedTime(curve, t, space))) return true;
     const double distance = DistanceToOccupied(*space.map, p);
     const bool sinks = p.z() < std::min(space.floor, start.z() - kEscapeSlack);
-    if (distance < allowed || (sinks && !space.OverPad(p))) return false;
+    if (distance < reached - kEscapeSlack || (sinks && !space.OverPad(p))) return false;
+    reached = std::max(reached, distance);
     *clearance = std::min(*clearance, distance);
   }
   return false;
@@ -136,10 +138,8 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   if (!c.clear && space.Blocked(curve.Evaluate(t_from).p_WB)) {
     c.escaping = Escapes(curve, t_from, space, &c.clearance);
   }
-  if (wanted) {
-    const double t = std::min(t_from + reaction, curve.t_end());
-    c.stops_in_observed_space = StopsInObservedSpace(curve, t, limits, space);
-  }
+  const double decided = std::min(t_from + reaction, curve.t_end());
+  c.stops_in_observed_space = StopsInObservedSpace(curve, decided, limits, space);
   return c;
 }
 

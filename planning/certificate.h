@@ -7,7 +7,8 @@
 
 namespace touchdown::planning {
 
-/// What was proven about a plan before it may be flown. No plan is flown with passed() false.
+/// What was proven about a trajectory. A new one is committed only if passed(), but for the last
+/// resort that ReplanStatus::kUnsafe names.
 struct Certificate {
   bool endpoint_required = true;            ///< false for braking and climbing: they end at rest
   double endpoint_position_residual = 0.0;  ///< |p(T) - wanted| [m]
@@ -38,9 +39,9 @@ struct Certificate {
 /// Certifies `curve` from `t_from` to its end: the endpoint against `wanted` (nullptr: none is
 /// required), the limits by the convex hull, the clearance by visiting every cell of `space` that
 /// the curve passes. A start beyond a limit is certified against the recovery profile
-/// max(limit, |v0| - amax (t - 0.3 s) / 2), and alike for the acceleration. Where an end is wanted,
-/// the vehicle must also be able to brake, `reaction` seconds after t_from, before the curve meets
-/// cells that were never observed (the strip over the pad excepted). Does not allocate.
+/// max(limit, |v0| - amax (t - 0.3 s) / 2), and alike for the acceleration. The vehicle must also be
+/// able to brake, `reaction` seconds after t_from, before the curve meets cells that were never
+/// observed (the strip over the pad excepted). Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
                     const Limits& limits, double reaction, const FreeSpace& space);
 

@@ -8,9 +8,9 @@
 
 namespace touchdown::planning {
 
-/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the
-/// strip above the moving pad in which the floor does not hold. Unknown space counts as free. A
-/// view of the map, cheap to make anew for every replanning step.
+/// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the strip
+/// above the moving pad that has a floor of its own. Unknown space counts as free. A view of the map,
+/// cheap to make anew for every replanning step.
 struct FreeSpace {
   const OccupancyMap* map = nullptr;
   double floor = 0.0;                                        ///< [m]
@@ -18,6 +18,7 @@ struct FreeSpace {
   Eigen::Vector2d pad_from = Eigen::Vector2d::Zero();  ///< strip's axis: pad at start and arrival
   Eigen::Vector2d pad_to = Eigen::Vector2d::Zero();
   double pad_radius = 0.0;  ///< strip's half width [m]; 0: none
+  double pad_floor = 0.0;   ///< floor within the strip [m]
 
   bool OverPad(const Eigen::Vector3d& p_W) const {
     if (pad_radius <= 0.0) return false;
@@ -32,7 +33,7 @@ struct FreeSpace {
     if (map->IsBlocked(cell)) return true;
     const Eigen::Vector3d centre = map->CentreOf(cell);
     if (centre.z() > ceiling) return true;
-    return centre.z() < floor && !OverPad(centre);
+    return centre.z() < (OverPad(centre) ? pad_floor : floor);
   }
   bool Blocked(const Eigen::Vector3d& p_W) const { return Blocked(map->CellOf(p_W)); }
 };

@@ -181,6 +181,7 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const Excluded
       Eigen::Vector3d ray_C((u + 0.5 - k.cx) / k.focal, (v + 0.5 - k.cy) / k.focal, 1.0);
       const double per_depth = ray_C.norm();
       const bool returned = std::isfinite(depth);
+      if (std::isnan(depth)) continue;  // an invalid pixel says nothing
       const double range = returned ? depth * per_depth : frame.max_range;
       if (range < options_.min_ray) continue;
       const Eigen::Vector3d end = frame.p_WC + frame.R_WC * (ray_C * (range / per_depth));

@@ -18,13 +18,14 @@ namespace {
 constexpr double kSegmentDuration = 0.20;  // [s], aimed at
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 64;
+constexpr int kSegmentStep = 4;      // keeps the number of prepared problems small
 constexpr double kPressure = 1.6;    // weight of the pairs grows by this every round
 constexpr double kGuideStep = 0.05;  // sampling of the committed curve as a guide [s]
 
 int SegmentsFor(double duration) {
   const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
-  // Steps of four keep the number of prepared problems small.
-  return std::clamp((wanted + 3) / 4 * 4, kFewestSegments, kMostSegments);
+  const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
+  return std::clamp(rounded, kFewestSegments, kMostSegments);
 }
 
 void SampleGuide(const UniformBspline& curve, double t_from, GuidePath* guide) {
@@ -39,28 +40,28 @@ void SampleGuide(const UniformBspline& curve, double t_from, GuidePath* guide) {
 
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options), backends_(backends), search_(options.vertical_cost) {
-  // Refusals surface here, not in the middle of a flight.
-  PreparedFor(options.min_duration, options.arrival);
+  // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
+  // arrival falls back to a fixed one.
+  for (int segments = kFewestSegments; segments <= kMostSegments; segments += kSegmentStep) {
+    Prepare(segments, ArrivalMode::kFixed);
+    if (options.arrival == ArrivalMode::kFree) Prepare(segments, ArrivalMode::kFree);
+  }
 }
 
-PlanAttempt::Prepared& PlanAttempt::PreparedFor(double duration, ArrivalMode arrival) {
-  const int segments = SegmentsFor(duration);
+void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
+  LandingProblemOptions problem = options_.problem;
+  problem.arrival = arrival;
+  problem.limits = options_.limits;
+  problem.min_duration = options_.min_duration;
+  problem.max_duration = options_.max_duration;
   Prepared& prepared = prepared_[{segments, arrival}];
-  if (!prepared.problem) {
-    LandingProblemOptions problem = options_.problem;
-    problem.arrival = arrival;
-    problem.limits = options_.limits;
-    problem.min_duration = options_.min_duration;
-    problem.max_duration = options_.max_duration;
-    prepared.problem = std::make_unique<LandingProblem>(segments, problem);
-    prepared.backend = solvers::MakeBackend(backends_, options_.backend);
-    prepared.backend->Prepare(prepared.problem->view());
-  }
-  return prepared;
+  prepared.problem = std::make_unique<LandingProblem>(segments, problem);
+  prepared.backend = solvers::MakeBackend(backends_, options_.backend);
+  prepared.backend->Prepare(prepared.problem->view());
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
-  Prepared& prepared = PreparedFor(request.duration, request.arrival);
+  Prepared& prepared = prepared_.at({SegmentsFor(request.duration), request.arrival});
   LandingProblem& problem = *prepared.problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
   problem.SetDuration(request.duration);

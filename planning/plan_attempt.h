@@ -41,7 +41,7 @@ class PlanAttempt {
     std::unique_ptr<LandingProblem> problem;
     std::unique_ptr<solvers::SolverBackend> backend;
   };
-  Prepared& PreparedFor(double duration, ArrivalMode arrival);
+  void Prepare(int segments, ArrivalMode arrival);
   ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve,
                     std::size_t max_pairs, ReplanResult* result);
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,

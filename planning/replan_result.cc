@@ -56,7 +56,8 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kNone:
       return "A new plan was certified.";
     case ReplanReason::kInvalidInput:
-      return "A number of the input is not finite, or the plan would start in the past.";
+      return "A number of the input is not finite or absurd, or an earlier answer has not taken "
+             "over yet.";
     case ReplanReason::kStartBlocked:
       return "The start is inside an inflated obstacle and no certified way leads out.";
     case ReplanReason::kGoalBlocked:

@@ -59,7 +59,7 @@ enum class ReplanStatus {
 /// Why no new plan was made; kNone with kPlanned.
 enum class ReplanReason {
   kNone,
-  kInvalidInput,      ///< a number of the input is not finite, or t_start lies before t_now
+  kInvalidInput,      ///< a number is not finite or absurd, or an earlier answer is still pending
   kStartBlocked,      ///< the start is inside an inflated obstacle
   kGoalBlocked,       ///< the end is inside an inflated obstacle
   kPadUnreachable,    ///< no arrival time up to max_duration keeps the limits

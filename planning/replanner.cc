@@ -22,11 +22,13 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kMaxAttempts = 6;
-constexpr double kStretch = 1.2;       // of the duration after an attempt that failed
-constexpr double kReTimeBelow = 0.75;  // a fresh guess this much shorter replaces the arrival
-constexpr double kKeepReserve = 0.5;   // time to spare before a kept plan has to brake [s]
-constexpr double kClimb = 1.5;         // [m]
-constexpr double kAtRest = 0.05;       // below this speed and way to go [m/s, m]
+constexpr double kStretch = 1.2;         // of the duration after an attempt that failed
+constexpr double kReTimeBelow = 0.75;    // a fresh guess this much shorter replaces the arrival
+constexpr double kKeepReserve = 0.5;     // time to spare before a kept plan has to brake [s]
+constexpr double kPadSlack = 0.15;       // of a plan over the pad below both its ends [m]
+constexpr double kClimb = 1.5;           // [m]
+constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kAtRest = 0.05;         // below this speed and way to go [m/s, m]
 
 const Eigen::Vector3d kNoShift = Eigen::Vector3d::Zero();
 
@@ -44,10 +46,18 @@ FlatState StateOn(const UniformBspline& curve, double t) {
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
+// Beyond these a number is taken for a fault; within them lattice indices cannot overflow.
+constexpr double kFarthest = 1e6;  // [m]
+constexpr double kFastest = 1e3;   // [m/s]
+
+bool Plausible(const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
+  return p.cwiseAbs().maxCoeff() < kFarthest && v.cwiseAbs().maxCoeff() < kFastest;
+}
+
 bool StateValid(const ReplanInput& input) {
   return std::isfinite(input.t_now) && std::isfinite(input.t_start) &&
          input.t_start >= input.t_now && input.vehicle.p_WB.allFinite() &&
-         input.vehicle.v_WB.allFinite();
+         input.vehicle.v_WB.allFinite() && Plausible(input.vehicle.p_WB, input.vehicle.v_WB);
 }
 
 bool TargetValid(const ReplanInput& input) {
@@ -57,7 +67,7 @@ bool TargetValid(const ReplanInput& input) {
     return false;
   }
   const estimation::PadState pad = input.pad->At(input.t_start);
-  return pad.p_WP.allFinite() && pad.v_WP.allFinite();
+  return pad.p_WP.allFinite() && pad.v_WP.allFinite() && Plausible(pad.p_WP, pad.v_WP);
 }
 
 void Require(bool ok, const char* name, double value, const char* range) {
@@ -103,10 +113,12 @@ class Replanner::Impl {
 
  private:
   FreeSpace Space(const OccupancyMap& map) const;
-  FreeSpace SpaceOverPad(const ReplanInput& input, double t_end, const OccupancyMap& map) const;
+  FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
+                         const OccupancyMap& map) const;
   void Begin();
-  const ReplanResult& RefuseInput();
+  const ReplanResult& RefuseState();
   SplineState Start(const ReplanInput& input);
+  bool InTime(const ReplanInput& input) const;
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
   void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
@@ -127,12 +139,15 @@ FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
   return space;
 }
 
-FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, double t_end,
-                                        const OccupancyMap& map) const {
+FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineState& start,
+                                        double t_end, const OccupancyMap& map) const {
   FreeSpace space = Space(map);
   space.pad_from = input.pad->At(input.t_start).p_WP.head<2>();
   space.pad_to = input.pad->At(t_end).p_WP.head<2>();
   space.pad_radius = options_.pad_radius;
+  // Over the pad a plan goes no lower than where it starts or ends: the pad vehicle is there.
+  const double end = EndStateAt(*input.pad, input.endpoint, t_end).state.p.z();
+  space.pad_floor = std::min(start.p.z(), end) - kPadSlack;
   return space;
 }
 
@@ -142,10 +157,14 @@ void Replanner::Impl::Begin() {
   result_.pairs = result_.solves = result_.rebinds = 0;
   result_.from_odometry = false;
   result_.reason = ReplanReason::kNone;
-  result_.solver = {};
+  result_.certificate = {};
+  result_.solver.status = solvers::SolveStatus::kNumericalFailure;
+  result_.solver.iterations = result_.solver.evaluations = 0;
+  result_.solver.cost = 0.0;
 }
 
-const ReplanResult& Replanner::Impl::RefuseInput() {
+/// Without a usable state of the vehicle nothing can be decided: what is committed goes on.
+const ReplanResult& Replanner::Impl::RefuseState() {
   result_.status = ReplanStatus::kKept;
   result_.reason = ReplanReason::kInvalidInput;
   result_.curve = next_;
@@ -163,20 +182,28 @@ SplineState Replanner::Impl::Start(const ReplanInput& input) {
           Eigen::Vector3d::Zero()};
 }
 
+/// The last answer must have taken over before the next is asked for: only one is ever pending.
+bool Replanner::Impl::InTime(const ReplanInput& input) const {
+  return input.t_now >= next_.t0() - kClockRounding;
+}
+
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
   Begin();
   StageTimer total(&result_.times.total);
-  if (!StateValid(input) || !TargetValid(input)) return RefuseInput();
+  if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
   climbing_ = -1.0;
-  result_.reason = Plan(input, start, map);
+  const bool target_valid = TargetValid(input);
+  result_.reason = target_valid ? Plan(input, start, map) : ReplanReason::kInvalidInput;
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
     Commit(result_.curve);
     return result_;
   }
-  const FreeSpace space = SpaceOverPad(input, input.t_start + options_.min_duration, map);
+  const FreeSpace space =
+      target_valid ? SpaceOverPad(input, start, input.t_start + options_.min_duration, map)
+                   : Space(map);
   if (!KeepCommitted(input, start, space)) {
     planned_before_ = false;
     ComeToRest(input.t_start, start, 0.0, space);
@@ -188,14 +215,16 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
                                           const OccupancyMap& map) {
   Begin();
   StageTimer total(&result_.times.total);
-  if (!StateValid(input)) return RefuseInput();
+  if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
   const FreeSpace space = Space(map);
   planned_before_ = false;
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (under_way && KeepCommitted(input, start, space)) return result_;
-  climbing_ = climb;
   ComeToRest(input.t_start, start, climb, space);
+  // What came out otherwise (an escape, a brake instead of a climb) is no reason to stop trying.
+  const ReplanStatus wanted = climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking;
+  climbing_ = result_.status == wanted ? climb : -1.0;
   return result_;
 }
 
@@ -208,12 +237,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   }
   if (!(fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   // An arrival once promised is kept: guessing anew at every step would put it off for ever.
-  double T = fresh;
-  if (planned_before_ && !result_.from_odometry) {
-    const double left = next_.t_end() - input.t_start;
-    if (fresh > kReTimeBelow * left) T = left;
-  }
-  T = std::max(T, options_.min_duration);
+  const double left = next_.t_end() - input.t_start;
+  const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
+  double T = std::clamp(promised ? left : fresh, options_.min_duration, options_.max_duration);
 
   AttemptRequest request;
   request.start = start;
@@ -221,9 +247,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pad = input.pad;
   request.target = input.endpoint;
   request.arrival = options_.arrival;
-  ReplanReason reason = ReplanReason::kNone;
+  ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
-    const FreeSpace space = SpaceOverPad(input, input.t_start + T, map);
+    const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     request.duration = T;
     request.space = &space;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
@@ -236,7 +262,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     // Free arrival traded a limit for time: fix a longer one.
     if (request.arrival == ArrivalMode::kFree) T = std::max(T, result_.curve.duration());
     request.arrival = ArrivalMode::kFixed;
-    T *= kStretch;
+    // A promise that cannot be kept binds no longer: the pad may have jumped.
+    T = std::max(kStretch * T, fresh);
   }
   return reason;
 }
@@ -245,26 +272,34 @@ bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::
                               const FreeSpace& space) {
   result_.curve = MakeRestTrajectory(start, t0, shift, options_.limits);
   StageTimer timer(&result_.times.certificate);
-  result_.certificate = Certify(result_.curve, t0, nullptr, options_.limits, 0.0, space);
+  result_.certificate =
+      Certify(result_.curve, t0, nullptr, options_.limits, options_.reaction, space);
   return result_.certificate.passed();
 }
 
-/// True if the committed curve may go on: at rest and free, or clear for longer than braking takes.
+/// True if the committed curve may go on: at rest and free, or clear for longer than braking takes
+/// and slow enough for what was observed.
 bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState& start,
                                     const FreeSpace& space) {
   if (result_.from_odometry) return false;
-  const double braking =
-      MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits).duration();
-  const double hit = FirstBlockedTime(next_, input.t_start, space);
+  const Certificate now =
+      Certify(next_, input.t_start, nullptr, options_.limits, options_.reaction, space);
   const SplineState last = next_.AtKnot(next_.segments());
   const bool moves_at_end = last.v.norm() > kAtRest;
-  const double end = moves_at_end ? next_.t_end() : std::numeric_limits<double>::infinity();
   const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && !moves_at_end &&
                        (last.p - start.p).norm() <= kAtRest;
-  if (!at_rest && std::min(hit, end) <= input.t_start + braking + kKeepReserve) return false;
+  if (!at_rest) {
+    if (!now.stops_in_observed_space) return false;
+    const double braking =
+        MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits).duration();
+    const double never = std::numeric_limits<double>::infinity();
+    const double hit = now.clear ? never : now.first_hit_t;
+    const double end = moves_at_end ? next_.t_end() : never;
+    if (std::min(hit, end) <= input.t_start + braking + kKeepReserve) return false;
+  }
   result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
   result_.curve = next_;
-  result_.certificate = Certify(next_, input.t_start, nullptr, options_.limits, 0.0, space);
+  result_.certificate = now;
   return true;
 }
 

@@ -62,6 +62,23 @@ TEST(Certificate, AStartInTheInflatedZoneMayOnlyLeave) {
   EXPECT_FALSE(Certify(crosses, 0.0, &through, {3.0, 6.0}, 0.1, space).passed());
 }
 
+TEST(Certificate, AnEscapeProvesNothingFromInsideAnObstacleOrPastAnother) {
+  OccupancyMap map(SmallMap(0.4));
+  map.MarkOwnVolume(Eigen::Vector3d::Zero(), 5.0);
+  map.SetOccupied({0.05, 0.05, 0.05});
+  const FreeSpace space = SpaceOf(map);
+  const auto curve = [](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    const SplineState start{from, {0, 0, 0}, {0, 0, 0}}, end{to, {0, 0, 0}, {0, 0, 0}};
+    return UniformBspline(HermiteControlPoints(start, end, 12, 2.0), 2.0 / 12, 0.0);
+  };
+  const UniformBspline inside = curve({0.05, 0.05, 0.05}, {1.5, 0.05, 0.05});
+  EXPECT_FALSE(Certify(inside, 0.0, nullptr, {3.0, 6.0}, 0.1, space).passed());
+  // Leaves one obstacle and comes nearer to a second than it was to the first.
+  map.SetOccupied({0.85, 0.05, 0.05});
+  const UniformBspline between = curve({0.25, 0.05, 0.05}, {0.70, 0.05, 0.05});
+  EXPECT_FALSE(Certify(between, 0.0, nullptr, {3.0, 6.0}, 0.1, space).passed());
+}
+
 TEST(Certificate, NeedsRoomToBrakeInObservedSpace) {
   OccupancyMap map(SmallMap(0.2));
   const FreeSpace space = SpaceOf(map);

@@ -177,12 +177,99 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
     }
   }
   EXPECT_EQ(ask(room, Input(start, pad, 0.0)).reason, ReplanReason::kSearchFailed);
+}
 
-  // Unobserved space ahead: nothing faster than a crawl is certified, and a crawl is too slow.
+TEST(Replanner, UnobservedSpaceIsEnteredAtACrawlOrNotAtAll) {
   OccupancyMap unobserved{OccupancyMapOptions{}};
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
   unobserved.MarkOwnVolume(start, 0.3);
-  const ReplanResult crawl = ask(unobserved, Input(start, pad, 0.0));
-  EXPECT_TRUE(crawl.status == ReplanStatus::kPlanned || crawl.reason == ReplanReason::kUnobserved);
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  const ReplanInput input = Input(start, pad, 0.0);
+  replanner.Replan(input, unobserved);
+  // What is flown until the next plan can stop within the 0.3 m that were observed.
+  const double t = input.t_start + replanner.options().reaction;
+  const double speed = replanner.Reference(t).v_WB.norm();
+  EXPECT_LE(speed * speed / (2 * 0.6 * 6.0), 0.3);
+}
+
+TEST(Replanner, BrakesBeforeSpaceThatStaysUnobserved) {
+  // The camera is dead: the map never grows beyond 4 m around the start.
+  OccupancyMap map{OccupancyMapOptions{}};
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  map.MarkOwnVolume(start, 4.0);
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  bool braked = false;
+  for (int step = 0; step < 80; ++step) {
+    const double t = 0.1 * step;
+    const FlatState at = replanner.Reference(t);
+    EXPECT_LE((at.p_WB - start).norm(), 4.0 + 0.1);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    braked = replanner.Replan(input, map).status == ReplanStatus::kBraking || braked;
+  }
+  EXPECT_TRUE(braked);
+}
+
+TEST(Replanner, APadThatBecomesNanBringsItToRest) {
+  class BrokenPad : public ArcPad {
+   public:
+    using ArcPad::ArcPad;
+    estimation::PadState At(double t) const noexcept override {
+      estimation::PadState state = ArcPad::At(t);
+      if (broken) state.p_WP.x() = std::numeric_limits<double>::quiet_NaN();
+      return state;
+    }
+    bool broken = false;
+  };
+  const OccupancyMap map = ObservedMap();
+  BrokenPad pad({6.0, 0.0, 0.3}, 0.8, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-6.0, 0.0, 1.5}, 0.0);
+  for (int step = 0; step < 120; ++step) {
+    const double t = 0.1 * step;
+    pad.broken = t > 1.5;
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    EXPECT_EQ(result.reason, pad.broken ? ReplanReason::kInvalidInput : ReplanReason::kNone);
+    EXPECT_TRUE(result.certificate.passed());
+  }
+  EXPECT_LT(replanner.Reference(12.0).v_WB.norm(), 1e-9);
+}
+
+TEST(Replanner, APadEstimateThatJumpsIsFollowed) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad before({0.0, 0.0, 0.3}, 0.0, 0.0, 0.0), after({5.0, 3.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-2.0, 0.0, 1.6}, 0.0);
+  for (int step = 0; step < 140; ++step) {
+    const double t = 0.1 * step;
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, t < 5.0 ? before : after, t);
+    input.vehicle.v_WB = at.v_WB;
+    EXPECT_EQ(replanner.Replan(input, map).status, ReplanStatus::kPlanned) << "at " << t;
+  }
+  EXPECT_LT((replanner.Reference(14.0).p_WB - Eigen::Vector3d(5.0, 3.0, 1.6)).norm(), 0.02);
+}
+
+TEST(Replanner, OneAnswerIsPendingAtATime) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
+  ReplanInput input = Input({-4.0, 0.0, 1.5}, pad, 0.0);
+  input.t_start = 0.3;
+  ASSERT_EQ(replanner.Replan(input, map).status, ReplanStatus::kPlanned);
+  const Eigen::Vector3d promised = replanner.Reference(1.0).p_WB;
+  input.t_now = 0.1;
+  input.t_start = 0.4;
+  EXPECT_EQ(replanner.Replan(input, map).reason, ReplanReason::kInvalidInput);
+  EXPECT_EQ(replanner.Reference(1.0).p_WB, promised);
 }
 
 TEST(Replanner, AStartInTheInflatedZoneEscapesAndThenPlans) {
