@@ -33,7 +33,7 @@ struct DepthFrame {
 struct PadGpsFix {
   double t = 0.0;                                  ///< time stamp [s]
   Eigen::Vector2d p_WP = Eigen::Vector2d::Zero();  ///< [m]
-  double sigma = 0.01;                             ///< standard deviation, each axis [m]
+  double sigma = 0.01;                             ///< standard deviation, each axis [m], >= 0
 };
 
 /// Pose of the pad seen by the downward camera through its tags, relative to the vehicle.

@@ -55,8 +55,9 @@ PadUpdate PadFilter::AddGps(const PadGpsFix& fix) {
   Measurement measurement;
   measurement.t = fix.t;
   measurement.p_WP = fix.p_WP;
-  measurement.cov_p = fix.sigma * fix.sigma * Eigen::Matrix2d::Identity();
-  if (!(fix.sigma > 0.0)) measurement.t = std::nan("");
+  const double sigma = std::max(fix.sigma, kLeastGpsSigma);
+  measurement.cov_p = sigma * sigma * Eigen::Matrix2d::Identity();
+  if (!(fix.sigma >= 0.0)) measurement.t = std::nan("");
   return Add(measurement);
 }
 

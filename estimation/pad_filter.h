@@ -31,9 +31,13 @@ enum class PadUpdate {
   kGated,         ///< too unlikely; nothing changed but the count
   kTooOld,        ///< older than the buffer reaches
   kNotUsed,       ///< GPS in the paper's model while the tags guide (hand-over at 2 m)
-  kInvalid,       ///< not finite, or a standard deviation that is not positive
+  kInvalid,       ///< not finite, or a standard deviation out of range
 };
 std::string_view ToString(PadUpdate update);
+
+/// A GPS fix that claims a smaller standard deviation, down to none at all, is taken as this good:
+/// an exact receiver must not make the covariance singular. [m]
+inline constexpr double kLeastGpsSigma = 1e-3;
 
 struct PadFilterOptions {
   PadModel model = PadModel::kTurnRate;
@@ -99,8 +103,10 @@ class PadFilter {
   /// Throws std::invalid_argument naming the first option out of its range.
   explicit PadFilter(const PadFilterOptions& options = {});
 
+  /// The fix's standard deviation must not be negative; kLeastGpsSigma is the least that counts.
   PadUpdate AddGps(const PadGpsFix& fix);
 
+  /// All standard deviations must be positive.
   /// `vehicle` is the vehicle's state at the sighting's time stamp.
   PadUpdate AddSighting(const PadSighting& sighting, const VehicleState& vehicle);
 

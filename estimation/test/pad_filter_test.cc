@@ -206,7 +206,7 @@ TEST_P(BothModels, BrokenMeasurementsAreRefused) {
   PadFilter filter(With(GetParam()));
   EXPECT_EQ(filter.AddGps({nan, Eigen::Vector2d::Zero(), 0.1}), PadUpdate::kInvalid);
   EXPECT_EQ(filter.AddGps({0.0, Eigen::Vector2d(nan, 0.0), 0.1}), PadUpdate::kInvalid);
-  EXPECT_EQ(filter.AddGps({0.0, Eigen::Vector2d::Zero(), 0.0}), PadUpdate::kInvalid);
+  EXPECT_EQ(filter.AddGps({0.0, Eigen::Vector2d::Zero(), -0.1}), PadUpdate::kInvalid);
   EXPECT_EQ(filter.AddGps({0.0, Eigen::Vector2d::Zero(), nan}), PadUpdate::kInvalid);
   PadSighting sighting;
   EXPECT_EQ(filter.AddSighting(sighting, VehicleState{}), PadUpdate::kInvalid);
@@ -218,6 +218,21 @@ TEST_P(BothModels, BrokenMeasurementsAreRefused) {
   EXPECT_FALSE(filter.Converged(0.0));
   EXPECT_EQ(filter.diagnostics().invalid, 6);
   EXPECT_THROW(Predict(filter), std::invalid_argument);
+}
+
+TEST_P(BothModels, AnExactReceiverCountsAsOneOfAMillimetre) {
+  PadFilter exact(With(GetParam()));
+  PadFilter fine(With(GetParam()));
+  for (int i = 0; i <= 50; ++i) {
+    const double t = 0.1 * i;
+    const Eigen::Vector2d p_WP(0.8 * t, 1.0);
+    EXPECT_NE(exact.AddGps({t, p_WP, 0.0}), PadUpdate::kInvalid);
+    fine.AddGps({t, p_WP, kLeastGpsSigma});
+  }
+  EXPECT_TRUE(exact.Converged(5.0));
+  EXPECT_LT((exact.Estimate(5.0).p_WP.head<2>() - Eigen::Vector2d(4.0, 1.0)).norm(), 1e-3);
+  EXPECT_EQ(exact.belief().mean, fine.belief().mean);
+  EXPECT_EQ(exact.belief().cov, fine.belief().cov);
 }
 
 TEST_P(BothModels, CopiesAreIndependentAndDeterministic) {
