@@ -6,9 +6,11 @@
 
 #include <chrono>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/equilibrium.h"
 #include "touchdown/evaluation/metrics.h"
 #include "touchdown/evaluation/perception.h"
@@ -29,7 +31,7 @@ class Trial {
         TrialRecord* record)
       : scenario_(scenario),
         world_(WorldOf(scenario, DrawTrial(scenario, seed))),
-        perception_(scenario, world_, seed),
+        perception_(scenario, world_, seed, record != nullptr),
         pilot_(scenario, world_.model(), world_.pad_motion(), backends, world_.vehicle()),
         clearance_(world_.config().obstacles, world_.model()),
         judge_(LandingRule{}, scenario.timeout),
@@ -42,7 +44,12 @@ class Trial {
   }
 
   TrialResult Run() {
-    while (!judge_.outcome()) Step();
+    try {
+      while (!judge_.outcome()) Step();
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
+                                           world_.time(), result_.seed, error.what()));
+    }
     Finish();
     return result_;
   }
@@ -68,8 +75,17 @@ class Trial {
     Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(vehicle); });
     std::array<double, 4> command;
     for (int i = 0; i < 4; ++i) command[i] = mix.thrusts[i];
-    Timed(&result_.timing.physics_cpu_s, [&] { world_.Step(command); });
+    Timed(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
     Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, mix.saturated); });
+  }
+
+  // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
+  void StepPhysics(const std::array<double, 4>& command) {
+    try {
+      world_.Step(command);
+    } catch (const std::runtime_error& error) {
+      physics_failure_ = error.what();
+    }
   }
 
   void StepMission(const estimation::VehicleState& vehicle) {
@@ -129,7 +145,10 @@ class Trial {
     sample.t = vehicle.t;
     sample.vehicle = vehicle;
     sample.pad = pad;
-    for (const sim::Contact& contact : world_.contacts()) TakeContact(contact, &sample);
+    sample.simulated = physics_failure_.empty();
+    if (sample.simulated) {
+      for (const sim::Contact& contact : world_.contacts()) TakeContact(contact, &sample);
+    }
     sample.armed = pilot_.mission().motors_armed;
     sample.pad_known = perception_.pad_filter().Converged(vehicle.t);
     sample.plan_valid = pilot_.plan_valid(vehicle.t);
@@ -165,8 +184,10 @@ class Trial {
         sample->beside_pad = true;
         break;
       case sim::ContactKind::kObstacle:
+        sample->on_obstacle = true;
+        break;
       case sim::ContactKind::kHullDeck:
-        sample->collides = true;
+        sample->hull_on_deck = true;
         break;
     }
     touched_ = sim::ToString(contact.kind);
@@ -202,6 +223,7 @@ class Trial {
     result_.simulated_s = world_.time();
     if (!result_.landed()) {
       result_.detail = Explain(result_.outcome);
+      if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
       if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
       result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
     }
@@ -226,7 +248,19 @@ class Trial {
   TrialRecord* record_;
   TrialResult result_;
   std::string touched_;
+  std::string physics_failure_;  ///< empty while the physics works
 };
+
+// What the simulator or a backend refuses before the flight is the user's to mend.
+Trial SetUp(const Scenario& scenario, std::uint64_t seed, const solvers::BackendRegistry& backends,
+            TrialRecord* record) {
+  try {
+    return Trial(scenario, seed, backends, record);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: it cannot be set up with seed {}: {}.", scenario.name, seed,
+                               error.what()));
+  }
+}
 
 }  // namespace
 
@@ -234,7 +268,7 @@ TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed,
                      const solvers::BackendRegistry& backends, TrialRecord* record) {
   const auto wall = std::chrono::steady_clock::now();
   const double cpu = solvers::ThreadCpuSeconds();
-  TrialResult result = Trial(scenario, seed, backends, record).Run();
+  TrialResult result = SetUp(scenario, seed, backends, record).Run();
   result.timing.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   result.timing.cpu_s = solvers::ThreadCpuSeconds() - cpu;

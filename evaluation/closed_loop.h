@@ -14,8 +14,9 @@ namespace touchdown::evaluation {
 /// sensors and replanning at the scenario's rates. A pure function of scenario and seed but for the
 /// result's timing, unless planning.latency is `measured`. Any number may run in threads at a time.
 /// @param record filled if not null.
-/// @throws std::invalid_argument if the scenario cannot be set up, std::runtime_error if the
-/// physics fails.
+/// Physics that fails is an outcome, `unstable`.
+/// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
+/// a part of the program fails.
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed,
                      const solvers::BackendRegistry& backends, TrialRecord* record = nullptr);
 

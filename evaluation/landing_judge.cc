@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The success rule of the evaluation as an incremental observer of the true state: first contact
 // of a foot with the pad is judged on relative velocity and attitude, then one second of rest,
-// upright and disarmed, makes a landing. Everything else is exactly one failure class.
+// upright and disarmed, makes a landing. Everything else is exactly one failure class; an obstacle
+// that is touched before the landing is over is a collision, whatever the feet stand on.
 #include "touchdown/evaluation/landing_judge.h"
 
 #include <algorithm>
@@ -78,7 +79,7 @@ const char* Explain(Outcome outcome) {
     case Outcome::kTimeout:
       return "Time ran out before the vehicle had landed.";
     case Outcome::kUnstable:
-      return "The simulation left finite numbers.";
+      return "The simulated physics failed.";
     case Outcome::kError:
       return "The program failed in this trial.";
   }
@@ -101,8 +102,10 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   without_pad_ += forget * ((sample.pad_known ? 0.0 : 1.0) - without_pad_);
   without_plan_ += forget * ((sample.plan_valid ? 0.0 : 1.0) - without_plan_);
 
-  if (!Finite(sample)) {
+  if (!sample.simulated || !Finite(sample)) {
     outcome_ = Outcome::kUnstable;
+  } else if (sample.on_obstacle) {
+    outcome_ = Outcome::kCollision;
   } else {
     outcome_ = touchdown_ ? OnThePad(sample) : InTheAir(sample);
   }
@@ -111,7 +114,7 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
 }
 
 std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
-  if (sample.collides) return Outcome::kCollision;
+  if (sample.hull_on_deck) return Outcome::kCollision;
   if (sample.beside_pad) {
     const double distance = (sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm();
     return distance <= rule_.off_pad_distance ? Outcome::kOffPad : Outcome::kCollision;
@@ -143,8 +146,7 @@ std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
 
 std::optional<Outcome> LandingJudge::OnThePad(const JudgeSample& sample) {
   const double tilt = estimation::Tilt(sample.vehicle.q_WB);
-  if (tilt > rule_.tip_over_tilt) return Outcome::kTipOver;
-  if (sample.collides) return sample.foot_on_pad ? Outcome::kTipOver : Outcome::kCollision;
+  if (tilt > rule_.tip_over_tilt || sample.hull_on_deck) return Outcome::kTipOver;
   if (sample.beside_pad) return Outcome::kBouncedOff;
   if (sample.foot_on_pad) last_contact_t_ = sample.t;
   const double gap = sample.t - last_contact_t_;

@@ -13,7 +13,8 @@ namespace touchdown::evaluation {
 /// How a trial ended. One class each, the first that applies.
 enum class Outcome {
   kLanded,
-  kCollision,        ///< touched something that is not the pad before the landing
+  kCollision,        ///< touched an obstacle before the landing was over, or in the air the ground
+                     ///< far from the pad, or the pad with anything but a foot
   kOffPad,           ///< the feet came down beside the pad
   kHardTouchdown,    ///< too fast relative to the deck at first contact
   kTiltedTouchdown,  ///< too far from the equilibrium attitude, or tilted too much, at contact
@@ -23,7 +24,7 @@ enum class Outcome {
   kLostPad,          ///< time ran out while the vehicle did not know where the pad was
   kInfeasible,       ///< time ran out while no certified plan to the pad existed
   kTimeout,          ///< time ran out otherwise
-  kUnstable,         ///< the simulation left finite numbers
+  kUnstable,         ///< the simulated physics failed
   kError,            ///< the program failed in this trial; never set by the judge
 };
 
@@ -56,8 +57,10 @@ struct JudgeSample {
   bool foot_on_pad = false;  ///< a foot touches the deck
   bool beside_pad = false;   ///< anything touches the ground or the pad
                              ///< vehicle's body below the deck
-  bool collides = false;     ///< an obstacle is touched, or the hull the deck
-  bool armed = true;         ///< rotors may turn
+  bool on_obstacle = false;  ///< anything touches an obstacle
+  bool hull_on_deck = false;
+  bool simulated = true;  ///< false: the physics failed, the state is the last good one
+  bool armed = true;      ///< rotors may turn
   /// Unit thrust axis at which the vehicle would hold its velocity against the relative wind's mean
   /// over the last second, in W.
   Eigen::Vector3d equilibrium_axis = Eigen::Vector3d::UnitZ();

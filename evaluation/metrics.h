@@ -24,7 +24,7 @@ class Metrics {
   void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad,
               const std::optional<double>& clearance);
 
-  /// The filter's estimate against the truth.
+  /// The filter's estimate against the truth, after a measurement while it is converged.
   void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth);
 
   /// Writes the figures into `result`; those at contact only if `touchdown` is set there.

@@ -39,7 +39,8 @@ planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
 
 }  // namespace
 
-Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed)
+Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed,
+                       bool keep_changes)
     : gps_({scenario.gps.sigma, scenario.gps.rate}, seed),
       tags_(TagConfig(scenario), world.config().obstacles, seed),
       depth_(sim::DepthCameraConfig{}, world.config().obstacles, world.config().pad, seed),
@@ -47,7 +48,8 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       pad_filter_(FilterOptions(scenario)),
       map_(MapOptions(scenario)),
       deck_half_diagonal_(scenario.pad.deck_size * std::sqrt(0.5)),
-      deck_height_(scenario.pad.deck_height) {}
+      deck_height_(scenario.pad.deck_height),
+      keep_changes_(keep_changes) {}
 
 void Perception::Sense(const sim::World& world) {
   const double begin = solvers::ThreadCpuSeconds();
@@ -90,6 +92,7 @@ planning::ExcludedVolume Perception::PadVolume(double t) const {
 }
 
 void Perception::KeepFlips() {
+  if (!keep_changes_) return;
   changes_.insert(changes_.end(), map_.flips().begin(), map_.flips().end());
 }
 

@@ -20,7 +20,9 @@ namespace touchdown::evaluation {
 class Perception {
  public:
   /// `world` only gives the configuration. Every sensor has its own stream of `seed`.
-  Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed);
+  /// `keep_changes`: the map's changes are kept for TakeMapChanges.
+  Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed,
+             bool keep_changes);
 
   /// Takes the measurements that are due at the world's time. Call once per physics step.
   void Sense(const sim::World& world);
@@ -31,7 +33,7 @@ class Perception {
   /// A GPS fix or a sighting was taken in the last call of Sense.
   bool pad_measured() const { return pad_measured_; }
 
-  /// Cells that changed since the last call, in order.
+  /// Cells that changed since the last call, in order; none unless they are kept.
   std::vector<planning::CellFlip> TakeMapChanges();
 
   double sensing_cpu_s() const {
@@ -53,6 +55,7 @@ class Perception {
   std::vector<planning::CellFlip> changes_;
   double deck_half_diagonal_;
   double deck_height_;
+  bool keep_changes_;
   bool pad_measured_ = false;
   double sensing_cpu_s_ = 0.0;
   double mapping_cpu_s_ = 0.0;

@@ -13,7 +13,8 @@
 
 namespace touchdown::evaluation {
 
-/// How well the pad filter did, against the truth, until first contact.
+/// How well the pad filter did, against the truth: right after each of its measurements while it
+/// counts as converged, until first contact.
 struct EstimatorQuality {
   double rmse_position_m = 0.0;     ///< horizontal
   double rmse_velocity_mps = 0.0;   ///< horizontal

@@ -134,15 +134,22 @@ TEST_F(LandingJudgeTest, BeyondTheAbsoluteTiltIsTilted) {
 
 TEST_F(LandingJudgeTest, AnyOtherTouchBeforeIsACollision) {
   Run(1.0);
-  sample_.collides = true;
+  sample_.on_obstacle = true;
   Run(1.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
   EXPECT_FALSE(judge_.touchdown().has_value());
 }
 
+TEST_F(LandingJudgeTest, TheHullOnTheDeckInTheAirIsACollision) {
+  Run(1.0);
+  sample_.hull_on_deck = true;
+  Run(1.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
+}
+
 TEST_F(LandingJudgeTest, AFootOnThePadDoesNotExcuseACollision) {
   Run(1.0);
-  sample_.collides = true;
+  sample_.on_obstacle = true;
   sample_.foot_on_pad = true;
   Run(1.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
@@ -191,9 +198,35 @@ TEST_F(LandingJudgeTest, FallingOverIsATipOver) {
 
 TEST_F(LandingJudgeTest, TheHullOnTheDeckAfterContactIsATipOver) {
   Touch();
-  sample_.collides = true;
+  sample_.hull_on_deck = true;
   Run(1.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kTipOver);
+}
+
+TEST_F(LandingJudgeTest, AnObstacleTouchedWhileStandingOnThePadIsACollision) {
+  Touch();
+  sample_.armed = false;
+  Run(0.9);
+  EXPECT_FALSE(judge_.outcome());
+  sample_.on_obstacle = true;
+  Run(1.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
+}
+
+TEST_F(LandingJudgeTest, AnObstacleCountsBeforeTheFallThatItCauses) {
+  Touch();
+  sample_.vehicle.q_WB = Tilted(65.0);
+  sample_.on_obstacle = true;
+  Run(1.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
+}
+
+TEST_F(LandingJudgeTest, PhysicsThatFailedIsUnstable) {
+  Run(1.0);
+  sample_.simulated = false;
+  sample_.on_obstacle = true;
+  Run(1.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kUnstable);
 }
 
 TEST_F(LandingJudgeTest, TimeRunsOut) {
@@ -230,9 +263,9 @@ TEST_F(LandingJudgeTest, NumbersThatAreNotFiniteAreUnstable) {
 }
 
 TEST_F(LandingJudgeTest, TheFirstOutcomeStays) {
-  sample_.collides = true;
+  sample_.on_obstacle = true;
   Run(1.0);
-  sample_.collides = false;
+  sample_.on_obstacle = false;
   sample_.foot_on_pad = true;
   EXPECT_EQ(judge_.Observe(sample_), Outcome::kCollision);
 }
