@@ -4,12 +4,15 @@
 #include "touchdown/evaluation/build_info.h"
 
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/utsname.h>
 #include <Eigen/Core>
+#include <boost/uuid/name_generator_sha1.hpp>
+#include <boost/uuid/uuid_io.hpp>
 
 namespace touchdown::evaluation {
 namespace {
@@ -31,10 +34,21 @@ std::string Kernel() {
                            : "unknown";
 }
 
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+// SHA-1 of the facts and of the program file, in the shape of a version 5 UUID. The program file
+// holds the library's own code; the facts stand for what it is linked to and runs on.
+std::string Hash(const Pairs& facts) {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  for (const auto& [key, value] : facts) bytes += key + '\0' + value + '\0';
+  return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::x500dn())(bytes));
+}
+
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> BuildManifest() {
-  return {
+Pairs BuildManifest() {
+  Pairs facts = {
       {"touchdown_version", TOUCHDOWN_VERSION},
       {"build_type", TOUCHDOWN_BUILD_TYPE},
       {"compiler", __VERSION__},
@@ -46,9 +60,13 @@ std::vector<std::pair<std::string, std::string>> BuildManifest() {
       {"sqlite", sqlite3_libversion()},
       {"cpu", CpuInfo("model name")},
       {"cpu_flags", CpuInfo("flags")},
-      {"cpus", std::to_string(std::thread::hardware_concurrency())},
-      {"kernel", Kernel()},
   };
+  const std::string hash = Hash(facts);
+  facts.emplace_back("build_hash", hash);
+  // What no figure but those of the wall clock depends on.
+  facts.emplace_back("cpus", std::to_string(std::thread::hardware_concurrency()));
+  facts.emplace_back("kernel", Kernel());
+  return facts;
 }
 
 }  // namespace touchdown::evaluation

@@ -8,8 +8,8 @@
 namespace touchdown::evaluation {
 
 /// What a figure was made with: program version, compiler, flags, libraries, CPU,
-/// operating system. Pairs of key and value in a fixed order. Results that depend on bits may only
-/// be merged when all of these agree.
+/// operating system. Pairs of key and value in a fixed order. `build_hash` is one figure for
+/// everything that bits depend on: only results that agree in it may be merged.
 std::vector<std::pair<std::string, std::string>> BuildManifest();
 
 }  // namespace touchdown::evaluation

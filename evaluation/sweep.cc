@@ -57,6 +57,7 @@ Variation Variation::Parse(const std::string& text) {
     throw BadInput(fmt::format("--vary {}: write KEY=LO..HI or KEY=a,b,c.", text));
   }
   Variation variation;
+  variation.text = text;
   variation.key = text.substr(0, equals);
   const std::string rest = text.substr(equals + 1);
   if (FindScenarioKey(variation.key) == nullptr || variation.key == "seed") {

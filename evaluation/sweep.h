@@ -15,6 +15,7 @@ namespace touchdown::evaluation {
 
 /// One key of a sweep that changes from trial to trial.
 struct Variation {
+  std::string text;  ///< as it was written
   std::string key;
   std::vector<std::string> values;  ///< taken in turn by all combinations; empty: a range
   double lo = 0.0;                  ///< otherwise drawn uniformly in [lo, hi] per trial

@@ -3,6 +3,8 @@
 // can be compared row by row.
 #include "touchdown/evaluation/trial_table.h"
 
+#include <nlohmann/json.hpp>
+
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/sqlite_db.h"
@@ -72,6 +74,10 @@ void WriteManifest(SqliteDb& db, const SweepOptions& options, const std::vector<
   insert.Run("version", "1");
   insert.Run("sweep_seed", std::to_string(options.seed));
   insert.Run("trials", std::to_string(rows.size()));
+  nlohmann::json variations = nlohmann::json::array();
+  for (const Variation& variation : options.variations) variations.push_back(variation.text);
+  insert.Run("set", nlohmann::json(options.overrides).dump());
+  insert.Run("vary", variations.dump());
   if (!rows.empty()) {
     insert.Run("scenario", rows.front().trial.scenario.name);
     insert.Run("scenario_yaml", DumpScenario(rows.front().trial.scenario));
@@ -92,8 +98,7 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
     WriteManifest(db, options, rows);
     SqliteStatement trial = db.Prepare(
         "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-        "?, "
-        "?, ?, ?)");
+        "?, ?, ?, ?)");
     SqliteStatement variation = db.Prepare("INSERT INTO variation VALUES(?, ?, ?)");
     SqliteStatement timing =
         db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
