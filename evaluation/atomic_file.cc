@@ -11,10 +11,9 @@
 namespace touchdown::evaluation {
 
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
-  const std::filesystem::path directory = std::filesystem::path(path_).parent_path();
-  if (!directory.empty()) std::filesystem::create_directories(directory);
   working_path_ = path_ + ".partial-" + std::to_string(getpid());
-  std::filesystem::remove(working_path_);
+  std::error_code ignored;
+  std::filesystem::remove(working_path_, ignored);
 }
 
 AtomicFile::~AtomicFile() {

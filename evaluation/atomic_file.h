@@ -9,7 +9,6 @@ namespace touchdown::evaluation {
 /// removed again on destruction.
 class AtomicFile {
  public:
-  /// Creates the directory of `path` if needed. @throws std::filesystem::filesystem_error
   explicit AtomicFile(std::string path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;

@@ -5,11 +5,12 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/record.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/evaluation/statistics.h"
@@ -66,29 +67,42 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
   return text;
 }
 
+void CheckOutputs(const LandArguments& arguments) {
+  if (!arguments.record.empty()) CheckOutputPath("--record", arguments.record);
+  if (arguments.plot.empty()) return;
+  CheckOutputPath("--plot", arguments.plot);
+  const std::string kind = std::filesystem::path(arguments.plot).extension().string();
+  if (kind != ".png" && kind != ".pdf" && kind != ".svg") {
+    throw BadInput(
+        fmt::format("--plot {}: the name must end in .png, .pdf or .svg.", arguments.plot));
+  }
+}
+
+// The picture is drawn from a record; without --record that one is not kept.
+void Draw(const LandArguments& arguments, const Scenario& scenario, const TrialResult& result,
+          const TrialRecord& record) {
+  if (!arguments.record.empty()) return DrawLanding(arguments.record, arguments.plot);
+  const AtomicFile unkept(arguments.plot + ".record");
+  WriteRecord(unkept.working_path(), scenario, result, record);
+  DrawLanding(unkept.working_path(), arguments.plot);
+}
+
+// The result is printed first: a file or picture that fails does not take it along.
 int Land(const LandArguments& arguments, const Registries& registries) {
   const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
                                          arguments.scenario.Overrides(), BackendNames(registries));
+  CheckOutputs(arguments);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
   const TrialResult result =
       RunTrial(scenario, scenario.seed, registries.backends, recorded ? &record : nullptr);
-  if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
-  if (!arguments.plot.empty()) {
-    if (arguments.record.empty()) {
-      // The picture is drawn from a record; without --record that one is not kept.
-      const AtomicFile unkept(arguments.plot + ".record");
-      WriteRecord(unkept.working_path(), scenario, result, record);
-      DrawLanding(unkept.working_path(), arguments.plot);
-    } else {
-      DrawLanding(arguments.record, arguments.plot);
-    }
-  }
   if (arguments.json) {
-    std::cout << LandJson(scenario, result).dump(2) << "\n";
+    std::cout << LandJson(scenario, result).dump(2) << std::endl;
   } else {
-    std::cout << Summary(scenario, result);
+    std::cout << Summary(scenario, result) << std::flush;
   }
+  if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
+  if (!arguments.plot.empty()) Draw(arguments, scenario, result, record);
   return result.landed() ? kDone : kFellShort;
 }
 
@@ -99,9 +113,9 @@ void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run
   const auto arguments = std::make_shared<LandArguments>();
   arguments->scenario.AddTo(*command, false);
   command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=")->type_name("S");
-  command->add_option("--record", arguments->record, "Write the record, an SQLite file")
-      ->type_name("F.db");
-  command->add_option("--plot", arguments->plot, "Draw plan and side view")->type_name("F.png");
+  AddOutputOption(*command, "--record", &arguments->record, "Write the record, an SQLite file",
+                  "F.db");
+  AddOutputOption(*command, "--plot", &arguments->plot, "Draw plan and side view", "F.png");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Land(*arguments, registries); };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown sweep: many landings of one scenario on threads, their table and its study file.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -11,6 +12,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
 #include "touchdown/evaluation/trial_table.h"
@@ -50,11 +52,14 @@ class Progress {
   Clock::time_point last_ = begin_;
 };
 
-int Sweep(const SweepArguments& arguments, const Registries& registries) {
-  if (!arguments.db.empty() && std::filesystem::exists(arguments.db)) {
-    throw BadInput(
-        fmt::format("--db {}: the file exists; a study is never overwritten.", arguments.db));
+void CheckOutput(const std::string& db) {
+  CheckOutputPath("--db", db);
+  if (std::filesystem::exists(db)) {
+    throw BadInput(fmt::format("--db {}: the file exists; a study is never overwritten.", db));
   }
+}
+
+int Sweep(const SweepArguments& arguments, const Registries& registries) {
   SweepOptions options;
   options.scenario_path = FindScenario(arguments.scenario.scenario);
   options.overrides = arguments.scenario.Overrides();
@@ -69,15 +74,19 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
           "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
     }
   }
+  if (!arguments.db.empty()) CheckOutput(arguments.db);
   const std::vector<SweepRow> rows =
       RunSweep(trials, arguments.jobs, registries.backends, Progress(options.trials));
-  if (!arguments.db.empty()) WriteTrialTable(arguments.db, options, rows);
   if (arguments.json) {
-    std::cout << SweepJson(options, rows).dump(2) << "\n";
+    std::cout << SweepJson(options, rows).dump(2) << std::endl;
   } else {
-    std::cout << SweepText(options, rows);
+    std::cout << SweepText(options, rows) << std::flush;
   }
-  return kDone;
+  if (!arguments.db.empty()) WriteTrialTable(arguments.db, options, rows);
+  const bool all_flown = std::none_of(rows.begin(), rows.end(), [](const SweepRow& row) {
+    return row.result.outcome == Outcome::kError;
+  });
+  return all_flown ? kDone : kFellShort;
 }
 
 }  // namespace
@@ -99,8 +108,8 @@ void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
       ->capture_default_str();
-  command->add_option("--db", arguments->db, "Write the trial table, an SQLite file")
-      ->type_name("F.db");
+  AddOutputOption(*command, "--db", &arguments->db, "Write the trial table, an SQLite file",
+                  "F.db");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Sweep(*arguments, registries); };

@@ -37,6 +37,11 @@ struct ScenarioArguments {
   std::vector<std::string> Overrides() const;
 };
 
+/// An option that names a file to write; an empty name is refused. The command asks CheckOutputPath
+/// before it runs.
+CLI::Option* AddOutputOption(CLI::App& command, const std::string& name, std::string* path,
+                             const std::string& help, const std::string& type);
+
 /// Names of the registry's backends.
 std::vector<std::string> BackendNames(const Registries& registries);
 

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "touchdown/estimation/pad_predictor.h"
+#include "touchdown/evaluation/planner_options.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -23,22 +24,6 @@ constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with th
 control::DescentStyle StyleOf(DescentKind kind) {
   return kind == DescentKind::kNone ? control::DescentStyle::kNone
                                     : control::DescentStyle::kVertical;
-}
-
-planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
-                                          const estimation::VehicleModel& model) {
-  planning::ReplannerOptions options;
-  options.backend = scenario.solver.backend;
-  options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
-                                                                  : planning::ArrivalMode::kFixed;
-  options.limits = {scenario.limits.speed, scenario.limits.acceleration};
-  options.ceiling_height = scenario.planning.ceiling;
-  // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
-  options.reaction = 1.0 / scenario.planning.rate +
-                     (scenario.planning.latency.measured ? 1.0 / scenario.planning.rate
-                                                         : 1e-3 * scenario.planning.latency.ms);
-  options.floor_height = std::max(options.floor_height, model.foot_depth + 0.3);
-  return options;
 }
 
 // The paper extrapolates along the heading: a turn that the filter knows of is left out.
@@ -131,9 +116,9 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   replan_.input.endpoint = Endpoint(vehicle.t);
 
   const auto begin = std::chrono::steady_clock::now();
-  const planning::ReplanResult& result =
-      WantsPlan(filter, vehicle.t) ? PlanToPad(filter, map)
-                                   : replanner_.Rest(replan_.input, RestClimb(), map);
+  const planning::ReplanResult& result = WantsPlan(filter, vehicle.t)
+                                             ? PlanToPad(filter, map)
+                                             : replanner_.Rest(replan_.input, RestClimb(), map);
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   last_planned_ = result.status == planning::ReplanStatus::kPlanned;
@@ -207,7 +192,7 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
 
 double Pilot::Latency() const {
   if (!scenario_.planning.latency.measured) return 1e-3 * scenario_.planning.latency.ms;
-  return std::clamp(kMeasuredMargin * measured_latency_, 1e-3, 1.0 / scenario_.planning.rate);
+  return std::clamp(kMeasuredMargin * measured_latency_, 1e-3, LongestLatency(scenario_));
 }
 
 }  // namespace touchdown::evaluation

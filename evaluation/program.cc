@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parses the command line with CLI11 and maps every way to fail to the program's exit statuses:
-// what the user wrote is 2, what the program could not do is 1, each with one sentence on stderr.
+// what the user wrote (CLI::ParseError, BadInput) is 2, what the program could not do (any other
+// exception) is 1, each with one sentence on stderr.
 #include "touchdown/evaluation/program.h"
 
 #include <algorithm>
@@ -38,6 +39,14 @@ std::vector<std::string> ScenarioArguments::Overrides() const {
   if (!backend.empty()) overrides.push_back("solver.backend=" + backend);
   if (!seed.empty()) overrides.push_back("seed=" + seed);
   return overrides;
+}
+
+CLI::Option* AddOutputOption(CLI::App& command, const std::string& name, std::string* path,
+                             const std::string& help, const std::string& type) {
+  const auto named = [](const std::string& text) {
+    return std::string(text.empty() ? "no file is named" : "");
+  };
+  return command.add_option(name, *path, help)->type_name(type)->check(named);
 }
 
 std::vector<std::string> BackendNames(const Registries& registries) {
@@ -85,9 +94,6 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     spdlog::error("{} (try --help)", error.what());
     return kBadInput;
   } catch (const BadInput& error) {
-    spdlog::error("{}", error.what());
-    return kBadInput;
-  } catch (const std::invalid_argument& error) {
     spdlog::error("{}", error.what());
     return kBadInput;
   } catch (const std::exception& error) {

@@ -12,8 +12,12 @@ struct Registries {
   planning::TermRegistry terms;
 };
 
-/// The program `touchdown`. Results go to stdout, logs to stderr. Returns the exit status: 0 done
-/// (for `land`: landed), 1 ran but fell short, 2 bad usage or bad input.
+/// The program `touchdown`. Results go to stdout, logs to stderr. Returns the exit status:
+/// 0 done; for `land`: landed, and all that was asked for is written; for `sweep`: every trial was
+///   flown to an outcome, whichever
+/// 1 ran but fell short: not landed, a picture or file that could not be made, a trial that came to
+///   no outcome (`error`), an internal error
+/// 2 bad usage or bad input; nothing was run and nothing written
 int RunProgram(int argc, const char* const* argv, const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs the distribution's Python as a child, without a shell: paths are arguments, not text. What
-// the child prints goes to stderr, so that stdout stays one JSON document.
+// the child prints is read from a pipe: stdout stays one JSON document, and a traceback becomes one
+// sentence.
 #include "touchdown/evaluation/report_program.h"
 
-#include <filesystem>
+#include <array>
+#include <cerrno>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -14,35 +17,63 @@
 
 namespace touchdown::evaluation {
 
+namespace {
+
+// Everything that can be read until the other end is closed.
+std::string ReadAll(int descriptor) {
+  std::string text;
+  std::array<char, 4096> buffer;
+  for (;;) {
+    const ssize_t count = read(descriptor, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+}
+
+// A Python traceback says what is wrong in its last line.
+std::string LastLine(const std::string& text) {
+  const std::size_t end = text.find_last_not_of(" \n");
+  if (end == std::string::npos) return "it gave no reason";
+  const std::size_t begin = text.rfind('\n', end);
+  return text.substr(begin + 1, end - begin);
+}
+
+[[noreturn]] void Fail(const std::string& picture_path, const std::string& why) {
+  throw std::runtime_error(
+      fmt::format("--plot {}: the picture was not drawn: {}.", picture_path, why));
+}
+
+}  // namespace
+
 void DrawLanding(const std::string& record_path, const std::string& picture_path) {
   const std::string python = TOUCHDOWN_PYTHON;
   if (access(python.c_str(), X_OK) != 0) {
-    throw std::runtime_error(
-        fmt::format("--plot needs {}, which is missing: install python3-matplotlib.", python));
+    Fail(picture_path, fmt::format("{} is missing (install python3-matplotlib)", python));
   }
   const std::vector<std::string> directories = PythonDirectories();
-  if (directories.empty())
-    throw std::runtime_error("--plot: the package touchdown_report is missing.");
-  const std::filesystem::path directory = std::filesystem::path(picture_path).parent_path();
-  if (!directory.empty()) std::filesystem::create_directories(directory);
+  if (directories.empty()) Fail(picture_path, "the package touchdown_report is missing");
 
+  std::array<int, 2> ends;
+  if (pipe(ends.data()) != 0) Fail(picture_path, "no pipe could be opened");
   const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("--plot: no child process could be started.");
   if (child == 0) {
-    dup2(STDERR_FILENO, STDOUT_FILENO);
+    dup2(ends[1], STDOUT_FILENO);
+    dup2(ends[1], STDERR_FILENO);
+    close(ends[0]);
+    close(ends[1]);
     setenv("PYTHONPATH", directories.front().c_str(), 1);
     execl(python.c_str(), python.c_str(), "-m", "touchdown_report.landing", record_path.c_str(),
           picture_path.c_str(), static_cast<char*>(nullptr));
     _exit(127);
   }
+  close(ends[1]);
+  const std::string said = ReadAll(ends[0]);
+  close(ends[0]);
+  if (child < 0) Fail(picture_path, "no child process could be started");
   int status = 0;
   waitpid(child, &status, 0);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error(
-        fmt::format("{} -m touchdown_report.landing failed (status {}): is python3-matplotlib "
-                    "installed?",
-                    python, WIFEXITED(status) ? WEXITSTATUS(status) : -1));
-  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) Fail(picture_path, LastLine(said));
 }
 
 }  // namespace touchdown::evaluation

@@ -167,7 +167,8 @@ Scenario LoadScenario(const std::string& path, const std::vector<std::string>& o
   } catch (const YAML::Exception& error) {
     throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
   }
-  if (!root.IsNull()) Reader(&source, path).Read(root, "");
+  if (root.IsNull()) throw BadInput(fmt::format("{}: the scenario file holds no key.", path));
+  Reader(&source, path).Read(root, "");
   for (const std::string& text : overrides) ApplyOverride(text, &source);
   CheckScenario(source, backends);
   return source.scenario;

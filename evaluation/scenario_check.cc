@@ -11,7 +11,9 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/control/landing_state_machine.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/vehicle_file.h"
@@ -19,7 +21,15 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kPathStep = 0.1;  // [s]
+constexpr double kPathStep = 0.1;  // [s], and [m] along the drawn phase
+
+estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
+  try {
+    return sim::LoadVehicleModel(VehicleMjcf(source.scenario));
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: {}", source.WhereOf("vehicle").ToString(), error.what()));
+  }
+}
 
 // Horizontal distance between a point's box of half size `spread` and an obstacle's outline, if
 // they overlap in height [z_lo, z_hi]; infinite otherwise.
@@ -36,6 +46,46 @@ double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centr
     return offset.cwiseMax(0.0).norm() - half.x();
   }
   return (offset - half).cwiseMax(0.0).norm();
+}
+
+void CheckCeiling(const ScenarioSource& source, const estimation::VehicleModel& model) {
+  const Scenario& s = source.scenario;
+  const double followed =
+      s.pad.deck_height + control::MissionParameters{}.follow_height + model.foot_depth;
+  const std::pair<double, const char*> lowest =
+      std::max({std::pair{PlannerOptions(s, model).floor_height, "the floor of plans"},
+                std::pair{s.start.position.z() + s.start.position_spread.z(),
+                          "start.position with its spread"},
+                std::pair{followed, "the height at which the pad is followed"}});
+  if (s.planning.ceiling <= lowest.first) {
+    throw BadInput(
+        fmt::format("{}: planning.ceiling must be in ({:.4g}, 1000] m, above {}, not "
+                    "'{}'.",
+                    source.WhereOf("planning.ceiling").ToString(), lowest.first, lowest.second,
+                    s.planning.ceiling));
+  }
+}
+
+void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel& model) {
+  const Scenario& s = source.scenario;
+  const PlanningLatency& latency = s.planning.latency;
+  const double longest = 1e3 * LongestLatency(s);
+  if (!latency.measured && latency.ms > longest) {
+    // With the latency left at its default it is the rate that was chosen too high.
+    const bool chosen = source.where.count("planning.latency") != 0;
+    throw BadInput(fmt::format(
+        "{}: planning.latency must be in [0, {:.4g}] ms, the time between two replanning steps at "
+        "a planning.rate of {} Hz, not '{}'.",
+        source.WhereOf(chosen ? "planning.latency" : "planning.rate").ToString(), longest,
+        s.planning.rate, latency.ms));
+  }
+  if (s.planning.clearance < model.hull_radius) {
+    throw BadInput(fmt::format(
+        "{}: planning.clearance must be in [{:.4g}, 1] m, from the radius of the vehicle's hull "
+        "on, not '{}'.",
+        source.WhereOf("planning.clearance").ToString(), model.hull_radius, s.planning.clearance));
+  }
+  CheckCeiling(source, model);
 }
 
 void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
@@ -59,6 +109,41 @@ void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
                       "start.position "
                       "with its spread, and is at {:.2f} m.",
                       source.WhereOf(named.key).ToString(), named.key, model.hull_radius, gap));
+    }
+  }
+}
+
+// The motion's own limits, at the key they come from.
+void CheckPadMotion(const ScenarioSource& source) {
+  try {
+    sim::PadMotion(PadMotionOf(source.scenario, source.scenario.pad.phase));
+  } catch (const std::invalid_argument& error) {
+    const std::string_view text = error.what();
+    std::string key = "pad.motion";
+    if (text.find("pad.speed") != text.npos) key = "pad.speed";
+    if (text.find("pad.turn_rate") != text.npos) key = "pad.turn_rate";
+    if (text.find("pad.turn_angle") != text.npos) key = "pad.turn_deg";
+    throw BadInput(fmt::format("{}: {} does not suit this pad.motion: {}.",
+                               source.WhereOf(key).ToString(), key, text));
+  }
+}
+
+// The pad may begin anywhere in the drawn phase: its path there is sampled like its way later on.
+void CheckStartBesidePad(const ScenarioSource& source, const estimation::VehicleModel& model) {
+  const Scenario& s = source.scenario;
+  const Eigen::Vector3d& p = s.start.position;
+  const Eigen::Vector3d& spread = s.start.position_spread;
+  if (p.z() - spread.z() - model.foot_depth > s.pad.deck_height) return;
+  const double needed = s.pad.deck_size * std::sqrt(0.5) + model.hull_radius;
+  for (double shift = -s.pad.phase_spread; shift <= s.pad.phase_spread; shift += kPathStep) {
+    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift));
+    const Eigen::Vector2d offset = motion.At(0.0).p_WP.head<2>() - p.head<2>();
+    const double gap = (offset.cwiseAbs() - spread.head<2>()).cwiseMax(0.0).norm();
+    if (gap <= needed) {
+      throw BadInput(fmt::format(
+          "{}: start.position must be above the deck or more than {:.2f} m from the pad's centre, "
+          "and with its spread is at {:.2f} m.",
+          source.WhereOf("start.position").ToString(), needed, gap));
     }
   }
 }
@@ -107,14 +192,13 @@ void CheckScenario(const ScenarioSource& source, const std::vector<std::string>&
                                source.WhereOf("pad.speed").ToString(), 0.9 * s.limits.speed,
                                s.pad.speed));
   }
-  try {
-    const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(s));
-    const ObstacleList obstacles = ObstaclesOf(s);
-    CheckStart(source, obstacles, model);
-    CheckPadPath(source, obstacles);
-  } catch (const std::invalid_argument& error) {
-    throw BadInput(fmt::format("{}: {}", source.WhereOf("vehicle").ToString(), error.what()));
-  }
+  const estimation::VehicleModel model = ReadVehicle(source);
+  const ObstacleList obstacles = ObstaclesOf(s);
+  CheckPlanning(source, model);
+  CheckPadMotion(source);
+  CheckStart(source, obstacles, model);
+  CheckStartBesidePad(source, model);
+  CheckPadPath(source, obstacles);
 }
 
 }  // namespace touchdown::evaluation

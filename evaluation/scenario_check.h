@@ -20,8 +20,9 @@ struct ScenarioSource {
   Where WhereOf(const std::string& key) const;
 };
 
-/// What no single key shows: obstacles on the start or on the pad's way, a pad faster than the
-/// vehicle, an unknown backend, an unreadable vehicle file. @throws BadInput
+/// What no single key shows: obstacles or the pad on the start, obstacles on the pad's way, a pad
+/// faster than the vehicle, a latency beyond the replanning period, a clearance below the hull, a
+/// ceiling below what is flown, an unknown backend, an unreadable vehicle file. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const std::vector<std::string>& backends);
 
 }  // namespace touchdown::evaluation

@@ -55,6 +55,9 @@ std::string FindScenario(const std::string& name_or_path) {
       }
     }
   }
+  if (fs::is_directory(name_or_path, ignored)) {
+    throw BadInput(fmt::format("{}: a scenario is a file, and this is a directory.", name_or_path));
+  }
   throw BadInput(fmt::format("{}: there is no such scenario file; shipped are {}.", name_or_path,
                              Enumerate(ListScenarios())));
 }

@@ -127,7 +127,9 @@ void AddVehicleKeys(std::vector<SchemaKey<Scenario>>& keys) {
 
 void AddSensorKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Number<Scenario>("gps.sigma", In(0, 5, "m"),
-                                  "standard deviation of the pad's GPS, each axis", AT(gps.sigma)));
+                                  "standard deviation of the pad's GPS, each axis; the pad filter "
+                                  "reckons with 1 mm at least",
+                                  AT(gps.sigma)));
   keys.push_back(
       Number<Scenario>("gps.rate", Above(0, 100, "Hz"), "rate of the pad's GPS", AT(gps.rate)));
   keys.push_back(Number<Scenario>("tags.rate", Above(0, 100, "Hz"), "rate of the downward camera",
@@ -150,7 +152,8 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
                                   AT(planning.rate)));
   const ValueRange latency = In(0, 1000, "ms");
   keys.push_back({"planning.latency", "number or word", "ms", latency.ToString() + " or measured",
-                  "time from the question to the plan that is flown; measured: the wall clock's",
+                  "time from the question to the plan that is flown, no more than the period of "
+                  "planning.rate; measured: the wall clock's",
                   [latency](Scenario& s, const YAML::Node& n, const Where& w) {
                     s.planning.latency.measured = n.IsScalar() && n.Scalar() == "measured";
                     if (s.planning.latency.measured) return;
@@ -164,11 +167,13 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
                     return s.planning.latency.measured ? "measured"
                                                        : WriteNumber(s.planning.latency.ms);
                   }});
-  keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 2, "m"),
-                                  "obstacles are grown by this in the map",
+  keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 1, "m"),
+                                  "obstacles are grown by this in the map; no less than the "
+                                  "radius of the vehicle's hull",
                                   AT(planning.clearance)));
   keys.push_back(Number<Scenario>("planning.ceiling", Above(0, 1000, "m"),
-                                  "flight ceiling of the vehicle's centre above the ground",
+                                  "flight ceiling of the vehicle's centre above the ground; above "
+                                  "the start and the height at which the pad is followed",
                                   AT(planning.ceiling)));
   keys.push_back(Text("solver.backend", "a name of `touchdown list backends`", "optimiser",
                       AT(solver.backend)));
@@ -179,9 +184,12 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Number<Scenario>("limits.speed", In(0.5, 20, "m/s"), "norm of the velocity",
                                   AT(limits.speed)));
   keys.push_back(Number<Scenario>("limits.acceleration", In(0.5, 20, "m/s^2"),
-                                  "norm of the acceleration", AT(limits.acceleration)));
+                                  "norm of the acceleration; plans keep the lesser of this and "
+                                  "g tan(limits.tilt_deg)",
+                                  AT(limits.acceleration)));
   keys.push_back(Number<Scenario>("limits.tilt_deg", In(5, 60, "deg"),
-                                  "tilt that plan and controller may ask for",
+                                  "plans accelerate no more than this tilt gives in level flight; "
+                                  "the controller may tilt 10 deg more",
                                   AT(limits.tilt_deg)));
 }
 

@@ -61,7 +61,9 @@ sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase) {
   config.p_start << pad.start, pad.deck_height;
   config.heading = pad.heading_deg * kRadPerDeg;
   config.speed = pad.motion == PadMotionKind::kStatic ? 0.0 : pad.speed;
-  config.turn_rate = pad.turn_rate;
+  // A straight_turn has its sense from the angle.
+  config.turn_rate =
+      pad.motion == PadMotionKind::kStraightTurn ? std::abs(pad.turn_rate) : pad.turn_rate;
   config.turn_start = pad.turn_start;
   config.turn_angle = pad.turn_deg * kRadPerDeg;
   config.phase = phase;

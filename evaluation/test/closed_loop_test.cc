@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/closed_loop.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include <gtest/gtest.h>
 
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/trial_json.h"
+#include "touchdown/sim/vehicle_file.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -28,14 +34,70 @@ TEST(ClosedLoop, LandsInThePapersFirstCase) {
   EXPECT_GT(*result.min_clearance_m, 0.0);
   EXPECT_LT(*result.mean_abs_error_x_m, 0.226);
   EXPECT_LT(*result.mean_abs_error_y_m, 0.263);
-  // No plan was flown without its certificate.
-  for (const RecordPlan& plan : record.plans) {
-    if (plan.status == planning::ReplanStatus::kPlanned) {
-      EXPECT_TRUE(plan.certificate.passed());
+}
+
+// Whatever a replanning step commits to is certified; what it keeps or holds was when it began.
+TEST(ClosedLoop, NothingIsFlownWithoutItsCertificate) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Scenario scenario =
+        Shipped("straight_turn", {"start.position_spread=[1, 1, 0]", "start.yaw_random=true"});
+    TrialRecord record;
+    RunTrial(scenario, seed, solvers::StandardBackends(), &record);
+    int planned = 0;
+    for (const RecordPlan& plan : record.plans) {
+      using planning::ReplanStatus;
+      EXPECT_NE(plan.status, ReplanStatus::kUnsafe) << "seed " << seed << " at " << plan.t_now;
+      const bool kept = plan.status == ReplanStatus::kKept || plan.status == ReplanStatus::kHolding;
+      if (!kept) {
+        EXPECT_TRUE(plan.certificate.passed())
+            << planning::ToString(plan.status) << ", seed " << seed << " at " << plan.t_now;
+      }
+      if (plan.status != ReplanStatus::kPlanned) continue;
+      ++planned;
       EXPECT_LE(plan.certificate.endpoint_position_residual, 1e-9);
       EXPECT_LE(plan.certificate.endpoint_velocity_residual, 1e-9);
     }
+    EXPECT_GT(planned, 20);
   }
+}
+
+// A feather with the drag of a parachute: its explicit integration gains speed at every step.
+TEST(ClosedLoop, PhysicsThatFailsIsTheOutcomeUnstableAndIsRecorded) {
+  std::string mjcf = sim::DefaultVehicleMjcf();
+  const auto replace = [&mjcf](const std::string& from, const std::string& to) {
+    mjcf.replace(mjcf.find(from), from.size(), to);
+  };
+  replace("mass=\"1.18\"", "mass=\"0.002\"");
+  replace("0.19 0.19 0.0", "10 10 10");
+  const std::string path = ::testing::TempDir() + "touchdown_feather.xml";
+  std::ofstream(path) << mjcf;
+  const Scenario scenario = Shipped("open", {"vehicle=" + path});
+  TrialRecord record;
+  const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends(), &record);
+  EXPECT_EQ(result.outcome, Outcome::kUnstable) << result.detail;
+  EXPECT_NE(result.detail.find("Simulator: the simulation failed at t = "), std::string::npos);
+  EXPECT_FALSE(record.samples.empty());
+  ASSERT_FALSE(record.events.empty());
+  EXPECT_EQ(record.events.back().text, "unstable");
+  std::filesystem::remove(path);
+}
+
+TEST(ClosedLoop, AnExactGpsLandsToo) {
+  const Scenario scenario = Shipped("open", {"gps.sigma=0"});
+  const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends());
+  EXPECT_EQ(result.outcome, Outcome::kLanded) << result.detail;
+}
+
+TEST(ClosedLoop, AScenarioThatCannotBeSetUpIsBadInput) {
+  Scenario scenario = Shipped("open");
+  scenario.start.position << scenario.pad.start, scenario.pad.deck_height;
+  EXPECT_THROW(RunTrial(scenario, 1, solvers::StandardBackends()), BadInput);
+}
+
+TEST(ClosedLoop, PlansAccelerateNoMoreThanTheTiltAllows) {
+  const Scenario scenario = Shipped("open", {"limits.tilt_deg=10"});
+  EXPECT_NEAR(PlannerOptions(scenario, {}).limits.acceleration, 9.81 * 0.17633, 1e-3);
+  EXPECT_EQ(PlannerOptions(Scenario{}, {}).limits.acceleration, 6.0);
 }
 
 TEST(ClosedLoop, TheSameSeedGivesTheSameBitsRecordedOrNot) {

@@ -85,7 +85,8 @@ TEST(Record, HoldsWhatWasWritten) {
 TEST(Record, ReplacesAnOlderOneAndLeavesNothingElse) {
   const std::string directory = ::testing::TempDir() + "touchdown_records";
   std::filesystem::remove_all(directory);
-  const std::string path = directory + "/sub/landing.db";
+  std::filesystem::create_directories(directory);
+  const std::string path = directory + "/landing.db";
   WriteRecord(path, Scenario{}, TrialResult{}, TrialRecord{});
   WriteRecord(path, Scenario{}, TrialResult{}, SmallRecord());
   SqliteDb db(path, SqliteDb::Mode::kReadOnly);
@@ -93,7 +94,7 @@ TEST(Record, ReplacesAnOlderOneAndLeavesNothingElse) {
   ASSERT_TRUE(count.Step());
   EXPECT_EQ(count.Integer(0), 1);
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(directory + "/sub")) {
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     files += entry.is_regular_file() ? 1 : 0;
   }
   EXPECT_EQ(files, 1);

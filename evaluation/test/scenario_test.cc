@@ -46,8 +46,14 @@ class ScenarioTest : public ::testing::Test {
   std::string path_;
 };
 
-TEST_F(ScenarioTest, AnEmptyFileIsTheDefaults) {
-  EXPECT_EQ(DumpScenario(Load("")), DumpScenario(Scenario{}));
+TEST_F(ScenarioTest, KeysLeftOutKeepTheirDefaults) {
+  EXPECT_EQ(DumpScenario(Load("seed: 1\n")), DumpScenario(Scenario{}));
+}
+
+TEST_F(ScenarioTest, AFileWithoutAKeyIsRefused) {
+  for (const char* text : {"", "\n", "# nothing but a comment\n", "---\n"}) {
+    EXPECT_THAT(Refusal(text), AllOf(HasSubstr(path_), HasSubstr("holds no key")));
+  }
 }
 
 TEST_F(ScenarioTest, NestedAndDottedKeysAreTheSame) {
@@ -181,17 +187,79 @@ TEST_F(ScenarioTest, AStartInTheGroundIsRefused) {
   EXPECT_THAT(Refusal("start: {position: [0, 0, 0.1]}\n"), HasSubstr("start.position"));
 }
 
+TEST_F(ScenarioTest, AStartOnThePadIsRefused) {
+  EXPECT_THAT(Refusal("seed: 1\nstart: {position: [7, 6.5, 0.6]}\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("start.position"), HasSubstr("1.36 m")));
+  // Only the drawn phase brings the pad there.
+  EXPECT_THAT(Refusal("pad: {phase_spread: 3}\nstart: {position: [9.5, 6.5, 0.6]}\n"),
+              HasSubstr("above the deck"));
+  EXPECT_EQ(Refusal("start: {position: [7, 6.5, 2]}\n"), "accepted");
+  EXPECT_EQ(Refusal("start: {position: [4, 4, 0.6]}\n"), "accepted");
+}
+
+TEST_F(ScenarioTest, ALatencyBeyondTheReplanningPeriodIsRefused) {
+  EXPECT_THAT(Refusal("planning:\n  rate: 20\n  latency: 60\n"),
+              AllOf(HasSubstr(path_ + ":3"), HasSubstr("planning.latency must be in [0, 50] ms"),
+                    HasSubstr("not '60'")));
+  EXPECT_THAT(Refusal("seed: 1\n", {"planning.latency=101"}),
+              AllOf(HasSubstr("--set planning.latency=101"), HasSubstr("[0, 100] ms")));
+  // The rate is what was chosen: the latency has its default.
+  EXPECT_THAT(Refusal("seed: 1\nplanning: {rate: 100}\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("[0, 10] ms"), HasSubstr("not '20'")));
+  // A third of a second is 166.7 time steps: some steps follow each other after 166.
+  EXPECT_THAT(Refusal("planning: {rate: 3, latency: 333}\n"), HasSubstr("[0, 332] ms"));
+  EXPECT_EQ(Refusal("planning: {rate: 10, latency: 100}\n"), "accepted");
+  EXPECT_EQ(Refusal("planning: {rate: 100, latency: measured}\n"), "accepted");
+}
+
+TEST_F(ScenarioTest, AClearanceBelowTheHullOrBeyondTheMapIsRefused) {
+  EXPECT_THAT(Refusal("planning:\n  clearance: 0.25\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("planning.clearance must be in [0.3, 1] m"),
+                    HasSubstr("not '0.25'")));
+  EXPECT_THAT(Refusal("planning: {clearance: 1.2}\n"),
+              HasSubstr("planning.clearance must be a number in [0.1, 1] m"));
+  EXPECT_EQ(Refusal("planning: {clearance: 1}\n"), "accepted");
+}
+
+TEST_F(ScenarioTest, ACeilingBelowWhatIsFlownIsRefused) {
+  EXPECT_THAT(Refusal("planning: {ceiling: 2.5}\n"),
+              AllOf(HasSubstr(path_ + ":1"), HasSubstr("planning.ceiling must be in (2.5, 1000] m"),
+                    HasSubstr("start.position with its spread")));
+  EXPECT_THAT(Refusal("planning: {ceiling: 3}\nstart: {position_spread: [0, 0, 1]}\n"),
+              HasSubstr("(3.5, 1000] m"));
+  EXPECT_THAT(Refusal("planning: {ceiling: 2}\nstart: {position: [0, 0, 1]}\n"),
+              HasSubstr("(2.12, 1000] m, above the height at which the pad is followed"));
+}
+
+TEST_F(ScenarioTest, AMotionThatThePadCannotDriveNamesItsKey) {
+  EXPECT_THAT(Refusal("pad:\n  motion: circle\n  turn_rate: 0\n"),
+              AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.turn_rate")));
+  EXPECT_THAT(Refusal("pad:\n  speed: 0\n"), AllOf(HasSubstr(":2"), HasSubstr("pad.speed")));
+  EXPECT_THAT(Refusal("pad:\n  turn_deg: 1\n"), AllOf(HasSubstr(":2"), HasSubstr("turn_deg")));
+  EXPECT_EQ(Refusal("pad: {turn_rate: -0.25}\n"), "accepted");
+}
+
+TEST_F(ScenarioTest, ADirectoryIsNoScenario) {
+  try {
+    FindScenario("/tmp");
+    FAIL();
+  } catch (const BadInput& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("/tmp"), HasSubstr("directory")));
+  }
+}
+
 TEST_F(ScenarioTest, AVehicleFileThatIsNotThereIsRefused) {
   EXPECT_THAT(Refusal("vehicle: no/such/file.xml\n"), HasSubstr("no/such/file.xml"));
 }
 
 TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
   EXPECT_EQ(Load("seed: 5\n", {"seed=6", "pad.speed=1.5"}).seed, 6U);
-  EXPECT_EQ(Load("", {"start.position=[1, 2, 3]"}).start.position, Eigen::Vector3d(1, 2, 3));
-  EXPECT_THAT(Refusal("", {"pad.speed=9"}),
+  EXPECT_EQ(Load("seed: 1\n", {"start.position=[1, 2, 3]"}).start.position,
+            Eigen::Vector3d(1, 2, 3));
+  EXPECT_THAT(Refusal("seed: 1\n", {"pad.speed=9"}),
               AllOf(HasSubstr("--set pad.speed=9"), HasSubstr("[0, 3] m/s")));
-  EXPECT_THAT(Refusal("", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
-  EXPECT_THAT(Refusal("", {"nonsense"}), HasSubstr("write KEY=VALUE"));
+  EXPECT_THAT(Refusal("seed: 1\n", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
+  EXPECT_THAT(Refusal("seed: 1\n", {"nonsense"}), HasSubstr("write KEY=VALUE"));
 }
 
 TEST_F(ScenarioTest, AMissingFileNamesTheShippedOnes) {

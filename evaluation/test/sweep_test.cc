@@ -86,8 +86,11 @@ TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
   EXPECT_NE(text.find("1 x error"), std::string::npos);
 }
 
+// Between the buildings: search, pairs and the map take part.
 TEST(RunSweep, OneAndTwoThreadsGiveTheSameRows) {
-  const SweepOptions options = OpenSweep(4);
+  SweepOptions options = OpenSweep(4);
+  options.scenario_path = FindScenario("straight_turn");
+  options.overrides = {"start.position_spread=[1, 1, 0]", "start.yaw_random=true", "timeout=4"};
   const std::vector<SweepTrial> trials = PlanSweep(options, kBackends);
   const auto rows = [&](int jobs) {
     nlohmann::ordered_json json =

@@ -18,9 +18,14 @@ def program():
 def run(program):
     """Runs the program; returns the finished process with its text."""
 
-    def call(*arguments, cwd=None):
+    def call(*arguments, cwd=None, timeout=None):
         return subprocess.run(
-            [program, *arguments], capture_output=True, text=True, cwd=cwd, check=False
+            [program, *arguments],
+            capture_output=True,
+            text=True,
+            cwd=cwd,
+            check=False,
+            timeout=timeout,
         )
 
     return call

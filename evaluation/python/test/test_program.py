@@ -31,6 +31,11 @@ def test_help_lists_what_is_built(run):
         (("land", "--no-such-option"), ["--no-such-option"]),
         (("land", "no_such_scenario"), ["no_such_scenario", "straight_turn"]),
         (("land", "no/such/file.yaml"), ["no/such/file.yaml"]),
+        (("land", "/"), ["/", "directory"]),
+        (("land", "--set", "planning.latency=101"), ["planning.latency", "[0, 100] ms", "101"]),
+        (("land", "--set", "planning.clearance=0.2"), ["planning.clearance", "[0.3, 1] m"]),
+        (("land", "--set", "planning.ceiling=1"), ["planning.ceiling", "1000] m"]),
+        (("land", "--set", "start.position=[7, 6.5, 0.6]"), ["start.position", "1.36 m"]),
         (("land", "--set", "pad.sped=1"), ["pad.sped", "pad.speed"]),
         (("land", "--set", "pad.speed=fast"), ["pad.speed", "[0, 3] m/s", "fast"]),
         (("land", "--set", "pad.speed=99"), ["pad.speed", "[0, 3] m/s", "99"]),
@@ -60,12 +65,65 @@ def test_bad_usage_is_status_2_with_one_sentence(run, tmp_path, arguments, parts
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_obstacle_on_the_start_names_file_and_line(run, tmp_path):
-    path = tmp_path / "bad.yaml"
-    path.write_text("obstacles:\n  boxes:\n    - {centre: [0, 0], size: [1, 1, 4]}\n")
-    done = run("land", str(path))
+@pytest.mark.parametrize("command", [("land", "--record"), ("sweep", "--db")])
+@pytest.mark.parametrize(
+    "text, line, parts",
+    [
+        ("obstacles:\n  boxes:\n    - {centre: [0, 0], size: [1, 1, 4]}\n", 3, ["the start"]),
+        ("seed: 1\npad:\n  sped: 1\n", 3, ["pad.sped", "pad.speed"]),
+        ("pad:\n  speed: fast\n", 2, ["pad.speed", "[0, 3] m/s", "fast"]),
+        ("gps:\n  sigma: -1\n", 2, ["gps.sigma", "[0, 5] m", "-1"]),
+        ("planning:\n  rate: 20\n  latency: 60\n", 3, ["planning.latency", "[0, 50] ms", "60"]),
+        ("pad: {speed: 0.5\nseed: [\n", 2, []),
+        ("", None, ["holds no key"]),
+    ],
+)
+def test_a_bad_file_names_file_line_key_and_range(run, tmp_path, command, text, line, parts):
+    (tmp_path / "in").mkdir()
+    (tmp_path / "cwd").mkdir()
+    path = tmp_path / "in" / "bad.yaml"
+    path.write_text(text)
+    done = run(command[0], str(path), command[1], "out.db", cwd=tmp_path / "cwd")
     assert done.returncode == 2
-    assert f"{path}:3" in done.stderr and "start" in done.stderr
+    assert done.stdout == "" and one_sentence(done.stderr), done.stderr
+    assert (f"{path}:{line}" if line else str(path)) in done.stderr
+    assert all(part in done.stderr for part in parts), done.stderr
+    assert list((tmp_path / "cwd").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "arguments, part",
+    [
+        (("land", "open", "--record", "no/such/x.db"), "no/such"),
+        (("land", "open", "--record", "/proc/x.db"), "cannot be written"),
+        (("land", "open", "--record", "."), "directory"),
+        (("land", "open", "--record", "/dev/null"), "regular file"),
+        (("land", "open", "--record", ""), "--record"),
+        (("land", "open", "--plot", "no/such/x.png"), "no/such"),
+        (("land", "open", "--plot", "x.bananas"), ".png"),
+        (("land", "open", "--record", "x.db", "--plot", "/proc/x.png"), "cannot be written"),
+        (("sweep", "open", "--db", "no/such/x.db"), "no/such"),
+        (("sweep", "open", "--db", "/proc/x.db"), "cannot be written"),
+    ],
+)
+def test_a_place_that_cannot_be_written_is_refused_before_the_run(run, tmp_path, arguments, part):
+    # A run would take far longer than this allows.
+    done = run(*arguments, cwd=tmp_path, timeout=5)
+    assert done.returncode == 2
+    assert done.stdout == "" and one_sentence(done.stderr), done.stderr
+    assert part in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_that_fails_leaves_the_result_and_the_record(run, tmp_path):
+    # Python looks into the working directory first.
+    (tmp_path / "matplotlib.py").write_text("raise ImportError('No module named matplotlib')\n")
+    done = run("land", "open", "--json", "--record", "x.db", "--plot", "x.png", cwd=tmp_path)
+    assert done.returncode == 1
+    assert json.loads(done.stdout)["landed"] is True
+    assert one_sentence(done.stderr), done.stderr
+    assert "x.png" in done.stderr and "No module named matplotlib" in done.stderr
+    assert sorted(p.name for p in tmp_path.iterdir() if p.is_file()) == ["matplotlib.py", "x.db"]
 
 
 def test_land_json_is_one_document_with_every_field(run):
@@ -93,10 +151,10 @@ def test_the_same_seed_twice_is_the_same_document(run):
 
 
 def test_a_landing_is_status_0_and_drawn(run, tmp_path):
-    done = run("land", "open", "--plot", "out/landing.png", cwd=tmp_path)
+    done = run("land", "open", "--plot", "landing.png", cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "landed on open" in done.stdout
-    assert [p.name for p in (tmp_path / "out").iterdir()] == ["landing.png"]
+    assert [p.name for p in tmp_path.iterdir()] == ["landing.png"]
 
 
 def test_a_sweep_writes_its_table_once(run, tmp_path):
@@ -110,9 +168,38 @@ def test_a_sweep_writes_its_table_once(run, tmp_path):
         assert db.execute("SELECT count(*) FROM timing").fetchone() == (3,)
         assert db.execute("SELECT count(*) FROM variation").fetchone() == (3,)
         manifest = dict(db.execute("SELECT key, value FROM manifest"))
-        assert {"scenario_yaml", "sweep_seed", "compiler", "cpu"} <= set(manifest)
+        assert {"scenario_yaml", "sweep_seed", "compiler", "cpu", "build_hash"} <= set(manifest)
     again = run(*arguments, *SHORT, cwd=tmp_path)
     assert again.returncode == 2 and "never overwritten" in again.stderr
+
+
+def rows_of(path):
+    """Everything of a study but what the wall clock says."""
+    with sqlite3.connect(path) as db:
+        return {
+            table: db.execute(f"SELECT * FROM {table} ORDER BY rowid").fetchall()
+            for table in ("manifest", "trial", "variation")
+        }
+
+
+def test_a_sweep_is_repeated_from_its_file(run, tmp_path):
+    first = ("sweep", "open", "--trials", "3", "--seed", "9", "--db", "a.db", "--planner", "landing")
+    vary = ("--vary", "pad.speed=0.2..0.4", "--vary", "controller=geometric,paper")
+    assert run(*first, *vary, *SHORT, "--jobs", "2", cwd=tmp_path).returncode == 0
+    rows = rows_of(tmp_path / "a.db")
+    manifest = dict(rows["manifest"])
+    assert json.loads(manifest["set"]) == ["timeout=2", "planner=landing"]
+
+    (tmp_path / f"{manifest['scenario']}.yaml").write_text(manifest["scenario_yaml"])
+    again = ["sweep", "./open.yaml", "--db", "b.db", "--jobs", "1"]
+    again += ["--trials", manifest["trials"], "--seed", manifest["sweep_seed"]]
+    for variation in json.loads(manifest["vary"]):
+        again += ["--vary", variation]
+    assert run(*again, cwd=tmp_path).returncode == 0
+    repeated = rows_of(tmp_path / "b.db")
+    assert dict(repeated.pop("manifest"))["build_hash"] == manifest["build_hash"]
+    rows.pop("manifest")
+    assert repeated == rows
 
 
 @pytest.mark.parametrize(

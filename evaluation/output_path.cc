@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a directory can be written to is found out by writing: permissions alone do not tell of
+// read-only file systems, and root may do anything that they forbid.
+#include "touchdown/evaluation/output_path.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Refuse(const std::string& option, const std::string& path,
+                         const std::string& why) {
+  throw BadInput(fmt::format("{} {}: {}.", option, path, why));
+}
+
+}  // namespace
+
+void CheckOutputPath(const std::string& option, const std::string& path) {
+  std::error_code ignored;
+  const fs::path directory = fs::path(path).parent_path();
+  if (!directory.empty() && !fs::is_directory(directory, ignored)) {
+    Refuse(option, path, fmt::format("there is no directory {}", directory.string()));
+  }
+  if (fs::is_directory(path, ignored) || fs::path(path).filename().empty()) {
+    Refuse(option, path, "a file must be named, and this is a directory");
+  }
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
+    Refuse(option, path, "something that is no regular file is in its place");
+  }
+  const AtomicFile probe(path);
+  errno = 0;
+  if (!std::ofstream(probe.working_path())) {
+    Refuse(option, path, fmt::format("it cannot be written ({})", std::strerror(errno)));
+  }
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace touchdown::evaluation {
+
+/// Makes sure, before a long run, that a file can be written at `path` after it; leaves nothing
+/// behind. Directories are not created. `option` is the one that named the path, for the sentence.
+/// @throws BadInput
+void CheckOutputPath(const std::string& option, const std::string& path);
+
+}  // namespace touchdown::evaluation

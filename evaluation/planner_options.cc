@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scenario's keys to the replanner's options.
+#include "touchdown/evaluation/planner_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/sim/world.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
+constexpr double kFeetAboveGround = 0.3;  // away from the pad [m]
+
+}  // namespace
+
+planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
+                                          const estimation::VehicleModel& model) {
+  planning::ReplannerOptions options;
+  options.backend = scenario.solver.backend;
+  options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
+                                                                  : planning::ArrivalMode::kFixed;
+  const double of_tilt = estimation::kGravity * std::tan(scenario.limits.tilt_deg * kRadPerDeg);
+  options.limits = {scenario.limits.speed, std::min(scenario.limits.acceleration, of_tilt)};
+  options.ceiling_height = scenario.planning.ceiling;
+  // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
+  const double period = 1.0 / scenario.planning.rate;
+  options.reaction =
+      period + (scenario.planning.latency.measured ? period : 1e-3 * scenario.planning.latency.ms);
+  options.floor_height = std::max(options.floor_height, model.foot_depth + kFeetAboveGround);
+  return options;
+}
+
+double LongestLatency(const Scenario& scenario) {
+  // Steps are taken on the simulation's clock: where the period is no multiple of its time step,
+  // some follow each other a little faster.
+  const double step = sim::WorldConfig{}.timestep;
+  return step * std::floor(1.0 / scenario.planning.rate / step + 1e-6);
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program as a library function, with a backend that is broken on purpose: what goes wrong in
+// flight is the program's fault and must not look like the user's.
+#include "touchdown/evaluation/program.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class BrokenSolver : public solvers::SolverBackend {
+ public:
+  BrokenSolver() : SolverBackend("broken", {}) {}
+  solvers::Capabilities capabilities() const override { return {}; }
+
+ private:
+  void DoPrepare(const solvers::View&) override {}
+  void DoSolve(const solvers::View&, const solvers::WarmStart&, const solvers::Stop&,
+               solvers::Evaluator*, solvers::SolverResult*) override {
+    throw std::invalid_argument("broken on purpose");
+  }
+};
+
+struct Ran {
+  int status = 0;
+  std::string out;
+  std::string err;
+};
+
+Ran Call(std::vector<const char*> arguments) {
+  Registries registries{solvers::StandardBackends(), planning::StandardTerms()};
+  registries.backends.push_back(
+      {"broken", "throws", [] { return std::make_unique<BrokenSolver>(); }});
+  arguments.insert(arguments.begin(), "touchdown");
+  Ran ran;
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  ran.status = RunProgram(static_cast<int>(arguments.size()), arguments.data(), registries);
+  ran.out = ::testing::internal::GetCapturedStdout();
+  ran.err = ::testing::internal::GetCapturedStderr();
+  return ran;
+}
+
+TEST(Program, AFaultInFlightIsNoBadInput) {
+  const Ran ran = Call({"land", "open", "--backend", "broken"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_TRUE(ran.out.empty());
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("internal error in flight at "), HasSubstr("(seed 1)"),
+                             HasSubstr("broken on purpose")));
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
+}
+
+TEST(Program, AFaultInASweepIsAnErrorRowAndStatusOne) {
+  const Ran ran = Call({"sweep", "open", "--trials", "2", "--set", "timeout=2", "--vary",
+                        "solver.backend=ceres,broken", "--jobs", "1"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("1 x error"), HasSubstr("1 x timeout"),
+                             HasSubstr("broken on purpose")));
+}
+
+TEST(Program, ASweepOfFlightsThatFailIsDone) {
+  const Ran ran = Call({"sweep", "open", "--trials", "2", "--set", "timeout=1", "--jobs", "1"});
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_THAT(ran.out, HasSubstr("0 of 2 landed"));
+}
+
+TEST(Program, AScenarioThatIsRefusedIsBadInput) {
+  const Ran ran = Call({"land", "open", "--backend", "unheard_of"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("solver.backend"), HasSubstr("broken")));
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
