@@ -107,6 +107,7 @@ void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       ->capture_default_str();
   AddOutputOption(*command, "--db", &arguments->db, "Write the trial table, an SQLite file",
                   "F.db");

@@ -20,24 +20,24 @@ namespace {
 
 constexpr char kObstacles[] = "obstacles";
 
-Where WhereIs(const YAML::Node& node, const std::string& file) {
-  return {file, node.Mark().line >= 0 ? node.Mark().line + 1 : 0};
-}
-
 class Reader {
  public:
-  Reader(ScenarioSource* source, std::string file) : source_(source), file_(std::move(file)) {}
+  /// `file` stands in every sentence; `lines`: with the line.
+  Reader(ScenarioSource* source, std::string file, bool lines)
+      : source_(source), file_(std::move(file)), lines_(lines) {}
 
-  void Read(const YAML::Node& node, const std::string& prefix) {
+  void Read(const YAML::Node& root) { ReadMap(root, "", WhereIs(root)); }
+
+  void ReadMap(const YAML::Node& node, const std::string& prefix, const Where& place) {
     if (!node.IsMap()) {
-      throw BadInput(fmt::format("{}: {} must be a map of keys.", WhereIs(node, file_).ToString(),
+      throw BadInput(fmt::format("{}: {} must be a map of keys.", place.ToString(),
                                  prefix.empty() ? "a scenario" : prefix));
     }
     std::set<std::string> seen;
     for (const auto& entry : node) {
-      const Where where = WhereIs(entry.first, file_);
-      const std::string name =
-          prefix.empty() ? entry.first.Scalar() : prefix + "." + entry.first.Scalar();
+      const Where where = WhereIs(entry.first);
+      const std::string key = KeyText(entry.first);
+      const std::string name = prefix.empty() ? key : prefix + "." + key;
       if (!seen.insert(name).second) {
         throw BadInput(
             fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
@@ -55,13 +55,23 @@ class Reader {
     } else if (name == "obstacles.cylinders") {
       ReadList(name, value, where, CylinderKeys(), &source_->scenario.cylinders);
     } else if (IsGroup(name)) {
-      Read(value, name);
+      ReadMap(value, name, where);
     } else {
       throw BadInput(fmt::format("{}: unknown key {}; {}.", where.ToString(), name, Suggest(name)));
     }
   }
 
  private:
+  Where WhereIs(const YAML::Node& node) const {
+    return {file_, lines_ && node.Mark().line >= 0 ? node.Mark().line + 1 : 0};
+  }
+
+  // YAML allows lists and maps as keys.
+  std::string KeyText(const YAML::Node& key) const {
+    if (!key.IsScalar()) RefuseValue(WhereIs(key), "a key", "a text", key);
+    return key.Scalar();
+  }
+
   static bool IsGroup(const std::string& name) {
     if (name == kObstacles) return true;
     return std::any_of(ScenarioKeys().begin(), ScenarioKeys().end(),
@@ -92,14 +102,14 @@ class Reader {
     for (std::size_t i = 0; i < list.size(); ++i) {
       const YAML::Node& node = list[i];
       const std::string label = fmt::format("{}[{}]", name, i);
-      const Where here = WhereIs(node, file_);
+      const Where here = WhereIs(node);
       if (!node.IsMap()) RefuseValue(here, label, "a map of keys", node);
       Element element;
       std::set<std::string> seen;
       for (const auto& entry : node) {
-        ReadElementKey(keys, entry.first.Scalar(), entry.second, WhereIs(entry.first, file_), label,
-                       &element);
-        seen.insert(entry.first.Scalar());
+        const std::string key = KeyText(entry.first);
+        ReadElementKey(keys, key, entry.second, WhereIs(entry.first), label, &element);
+        seen.insert(key);
       }
       for (const auto& key : keys) {
         if (seen.count(key.name) == 0) {
@@ -126,13 +136,24 @@ class Reader {
 
   ScenarioSource* source_;
   std::string file_;
+  bool lines_;
 };
 
-YAML::Node ParseYaml(const std::string& text, const std::string& file) {
+YAML::Node ParseFile(const std::string& path) {
   try {
-    return YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(path);
+    if (documents.empty() || documents.front().IsNull()) {
+      throw BadInput(fmt::format("{}: the scenario file holds no key.", path));
+    }
+    if (documents.size() > 1) {
+      throw BadInput(fmt::format("{}: a scenario file holds one YAML document, and this one {}.",
+                                 path, documents.size()));
+    }
+    return documents.front();
+  } catch (const YAML::BadFile&) {
+    throw BadInput(fmt::format("{}: the scenario file cannot be read.", path));
   } catch (const YAML::Exception& error) {
-    throw BadInput(fmt::format("{}:{}: {}.", file, error.mark.line + 1, error.msg));
+    throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
   }
 }
 
@@ -143,11 +164,15 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
   }
   const std::string name = text.substr(0, equals);
   const std::string file = "--set " + text;
-  const YAML::Node value = ParseYaml(text.substr(equals + 1), file);
+  YAML::Node value;
+  try {
+    value = YAML::Load(text.substr(equals + 1));
+  } catch (const YAML::Exception& error) {
+    throw BadInput(fmt::format("{}: {}.", file, error.msg));
+  }
   Where where;
   where.file = file;
-  Reader reader(source, file);
-  reader.ReadEntry(name, value, where);
+  Reader(source, file, false).ReadEntry(name, value, where);
 }
 
 }  // namespace
@@ -159,16 +184,7 @@ Scenario LoadScenario(const std::string& path, const std::vector<std::string>& o
   ScenarioSource source;
   source.scenario.name = std::filesystem::path(path).stem().string();
   source.file = path;
-  YAML::Node root;
-  try {
-    root = YAML::LoadFile(path);
-  } catch (const YAML::BadFile&) {
-    throw BadInput(fmt::format("{}: the scenario file cannot be read.", path));
-  } catch (const YAML::Exception& error) {
-    throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
-  }
-  if (root.IsNull()) throw BadInput(fmt::format("{}: the scenario file holds no key.", path));
-  Reader(&source, path).Read(root, "");
+  Reader(&source, path, true).Read(ParseFile(path));
   for (const std::string& text : overrides) ApplyOverride(text, &source);
   CheckScenario(source, backends);
   return source.scenario;

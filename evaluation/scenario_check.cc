@@ -27,7 +27,11 @@ estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
   try {
     return sim::LoadVehicleModel(VehicleMjcf(source.scenario));
   } catch (const std::invalid_argument& error) {
-    throw BadInput(fmt::format("{}: {}", source.WhereOf("vehicle").ToString(), error.what()));
+    std::string why = error.what();  // MuJoCo's own words may have several lines
+    why.erase(why.find_last_not_of(" \n.") + 1);
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    throw BadInput(fmt::format("{}: vehicle {}: {}.", source.WhereOf("vehicle").ToString(),
+                               source.scenario.vehicle, why));
   }
 }
 

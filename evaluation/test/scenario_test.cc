@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::vector<std::string> kBackends = {"ceres"};
 
@@ -139,6 +140,19 @@ TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
               AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be ceres, not 'newton'")));
 }
 
+TEST_F(ScenarioTest, ASecondDocumentIsRefused) {
+  EXPECT_THAT(Refusal("seed: 1\n---\nseed: 2\n"), HasSubstr("one YAML document, and this one 2"));
+}
+
+TEST_F(ScenarioTest, AKeyThatIsNoTextIsRefused) {
+  EXPECT_THAT(Refusal("seed: 1\n? {a: 1}\n: 2\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("a key must be a text, not a map")));
+}
+
+TEST_F(ScenarioTest, AGroupWithoutKeysNamesItsOwnLine) {
+  EXPECT_THAT(Refusal("pad:\nseed: 1\n"), HasSubstr(path_ + ":1: pad must be a map of keys"));
+}
+
 TEST_F(ScenarioTest, AKeyTwiceIsRefused) {
   EXPECT_THAT(Refusal("pad:\n  speed: 0.5\n  speed: 0.8\n"),
               AllOf(HasSubstr(":3"), HasSubstr("second time")));
@@ -250,6 +264,9 @@ TEST_F(ScenarioTest, ADirectoryIsNoScenario) {
 
 TEST_F(ScenarioTest, AVehicleFileThatIsNotThereIsRefused) {
   EXPECT_THAT(Refusal("vehicle: no/such/file.xml\n"), HasSubstr("no/such/file.xml"));
+  // A file that is no MJCF: MuJoCo answers with several lines.
+  EXPECT_THAT(Refusal("vehicle: /etc/passwd\n"),
+              AllOf(HasSubstr(path_ + ":1: vehicle /etc/passwd: "), Not(HasSubstr("\n"))));
 }
 
 TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
@@ -260,6 +277,9 @@ TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
               AllOf(HasSubstr("--set pad.speed=9"), HasSubstr("[0, 3] m/s")));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense"}), HasSubstr("write KEY=VALUE"));
+  // There is no line to name.
+  EXPECT_THAT(Refusal("seed: 1\n", {"pad.start=[1"}), HasSubstr("--set pad.start=[1: end of "));
+  EXPECT_THAT(Refusal("seed: 1\n", {"pad=3"}), HasSubstr("--set pad=3: pad must be a map"));
 }
 
 TEST_F(ScenarioTest, AMissingFileNamesTheShippedOnes) {

@@ -45,6 +45,7 @@ def test_help_lists_what_is_built(run):
         (("land", "--planner", "rrt"), ["planner", "landing"]),
         (("sweep",), ["SCENARIO"]),
         (("sweep", "open", "--trials", "0"), ["--trials"]),
+        (("sweep", "open", "--seed", "-4"), ["--seed", "9007199254740992"]),
         (("sweep", "open", "--vary", "pad.sped=1..2"), ["pad.sped"]),
         (("sweep", "open", "--jobs", "2", "--set", "planning.latency=measured"), ["--jobs"]),
         (("list", "bananas"), ["bananas"]),
