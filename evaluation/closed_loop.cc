@@ -29,8 +29,7 @@ class Trial {
  public:
   Trial(const Scenario& scenario, std::uint64_t seed, const solvers::BackendRegistry& backends,
         TrialRecord* record)
-      : scenario_(scenario),
-        world_(WorldOf(scenario, DrawTrial(scenario, seed))),
+      : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
         perception_(scenario, world_, seed, record != nullptr),
         pilot_(scenario, world_.model(), world_.pad_motion(), backends, world_.vehicle()),
         clearance_(world_.config().obstacles, world_.model()),
@@ -234,7 +233,6 @@ class Trial {
     Note(world_.time(), "outcome", ToString(result_.outcome));
   }
 
-  const Scenario& scenario_;
   sim::World world_;
   Perception perception_;
   Pilot pilot_;

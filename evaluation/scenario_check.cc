@@ -139,7 +139,9 @@ void CheckStartBesidePad(const ScenarioSource& source, const estimation::Vehicle
   const Eigen::Vector3d& spread = s.start.position_spread;
   if (p.z() - spread.z() - model.foot_depth > s.pad.deck_height) return;
   const double needed = s.pad.deck_size * std::sqrt(0.5) + model.hull_radius;
-  for (double shift = -s.pad.phase_spread; shift <= s.pad.phase_spread; shift += kPathStep) {
+  const int steps = static_cast<int>(std::ceil(2.0 * s.pad.phase_spread / kPathStep));
+  for (int i = 0; i <= steps; ++i) {
+    const double shift = std::min(i * kPathStep, 2.0 * s.pad.phase_spread) - s.pad.phase_spread;
     const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift));
     const Eigen::Vector2d offset = motion.At(0.0).p_WP.head<2>() - p.head<2>();
     const double gap = (offset.cwiseAbs() - spread.head<2>()).cwiseMax(0.0).norm();
@@ -157,7 +159,8 @@ void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles) {
   const double half_diagonal = s.pad.deck_size * std::sqrt(0.5);
   for (const double shift : {-s.pad.phase_spread, s.pad.phase_spread}) {
     const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift));
-    for (double t = 0.0; t <= s.timeout; t += kPathStep) {
+    for (int i = 0; i * kPathStep <= s.timeout; ++i) {
+      const double t = i * kPathStep;
       const Eigen::Vector2d p_WP = motion.At(t).p_WP.head<2>();
       for (const NamedObstacle& named : obstacles) {
         const double gap = HorizontalGap(named.obstacle, p_WP, Eigen::Vector2d::Zero(), 0.0,
