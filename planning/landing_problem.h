@@ -32,7 +32,7 @@ struct LandingProblemOptions {
   double pair_clearance = 0.30;  ///< s_f, beyond the inflation radius [m]
   double speed_weight = 300.0;
   double acceleration_weight = 30.0;
-  double time_weight = 8.0;    ///< price of a second, free arrival only
+  double time_weight = 30.0;   ///< price of a second, free arrival only
   double max_duration = 30.0;  ///< upper bound of a free arrival [s]
   double min_duration = 0.5;   ///< lower bound of a free arrival [s]
   int max_pairs_per_point = 6;
