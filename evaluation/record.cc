@@ -27,7 +27,8 @@ CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT,
   from_odometry INTEGER, t0 REAL, h REAL, points INTEGER, pairs INTEGER, solves INTEGER,
   rebinds INTEGER, iterations INTEGER, cost REAL, passed INTEGER, endpoint_position_residual REAL,
   endpoint_velocity_residual REAL, speed_bound REAL, acceleration_bound REAL, limits_kept INTEGER,
-  recovering INTEGER, clear INTEGER, clearance REAL);
+  recovering INTEGER, clear INTEGER, clearance REAL, endpoint_required INTEGER,
+  escaping INTEGER, stops_in_observed_space INTEGER);
 CREATE TABLE control_point(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE guide_path(plan INTEGER, path INTEGER, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE map_change(plan INTEGER, ix INTEGER, iy INTEGER, iz INTEGER, occupied INTEGER);
@@ -93,7 +94,7 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
 void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement plan = db.Prepare(
       "INSERT INTO plan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?)");
+      "?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO control_point VALUES(?, ?, ?, ?, ?)");
   SqliteStatement guide = db.Prepare("INSERT INTO guide_path VALUES(?, ?, ?, ?, ?, ?)");
   SqliteStatement change = db.Prepare("INSERT INTO map_change VALUES(?, ?, ?, ?, ?)");
@@ -108,7 +109,8 @@ void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
              p.from_odometry, p.curve.t0(), p.curve.interval(), static_cast<int>(q.cols()), p.pairs,
              p.solves, p.rebinds, p.iterations, p.cost, c.passed(), c.endpoint_position_residual,
              c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.limits_kept,
-             c.recovering, c.clear, c.clearance);
+             c.recovering, c.clear, c.clearance, c.endpoint_required, c.escaping,
+             c.stops_in_observed_space);
     for (int i = 0; i < q.cols(); ++i) point.Run(id, i, q(0, i), q(1, i), q(2, i));
     for (std::size_t k = 0; k < p.guide_paths.size(); ++k) {
       for (std::size_t i = 0; i < p.guide_paths[k].size(); ++i) {

@@ -162,6 +162,7 @@ class CeresSolver : public SolverBackend {
       for (int k = 0; k < block.windows; ++k) {
         auto residual = std::make_unique<WindowResidual>(view, i, k, block.first_block[k], point);
         std::vector<double*> parameters;
+        parameters.reserve(kMaxWindow + 1);
         for (int b = 0; b < residual->reduced_count(); ++b) {
           parameters.push_back(&y_[residual->reduced(b) * d]);
         }
