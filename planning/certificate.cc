@@ -103,7 +103,7 @@ bool StopsInObservedSpace(const UniformBspline& curve, double t, const Limits& l
     left -= (at.p_WB - from).norm();
     const bool observed =
         TraverseCells(from, at.p_WB, space.map->resolution(), [&](const CellIndex& cell) {
-          return space.map->IsKnown(cell) || space.OverPad(space.map->CentreOf(cell));
+          return space.map->IsObservedFree(cell) || space.OverPad(space.map->CentreOf(cell));
         });
     if (!observed) return false;
   }

@@ -23,7 +23,7 @@ struct Certificate {
                                             ///< inflated cells and never comes nearer to an
                                             ///< occupied one than it is at its start
   bool stops_in_observed_space = true;      ///< braking from what is flown until the next plan
-                                            ///< ends before the curve meets unobserved cells
+                                            ///< ends before the curve meets cells not observed free
   double clearance = 0.0;                   ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 

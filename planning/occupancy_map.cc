@@ -170,6 +170,12 @@ void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
   }
 }
 
+bool OccupancyMap::IsObservedFree(const CellIndex& cell) const {
+  if (!InWindow(cell)) return false;
+  const std::int8_t log_odds = log_odds_[Address(cell)];
+  return log_odds != kUnknown && log_odds < 0;
+}
+
 void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded) {
   flips_.clear();
   touched_.clear();

@@ -12,16 +12,18 @@ namespace touchdown::planning {
 
 using CellIndex = Eigen::Vector3i;  ///< cell of the unbounded lattice: floor(p / resolution)
 
-/// Parameters of the rolling grid. Log-odds as in EGO-Planner's map.
+/// Parameters of the rolling grid. Probabilities as in EGO-Planner's map, but for the threshold: what
+/// was seen once blocks, as in OctoMap.
 struct OccupancyMapOptions {
   double resolution = 0.1;                ///< cell side [m]
   Eigen::Vector3i size_log2 = {8, 8, 6};  ///< window of 2^n cells a side: 25.6 x 25.6 x 6.4 m
-  double inflation_radius = 0.45;         ///< obstacles are grown by this [m]
+  double inflation_radius = 0.40;         ///< obstacles are grown by this [m]
   double probability_hit = 0.65;
   double probability_miss = 0.35;
   double probability_min = 0.12;  ///< clamps
   double probability_max = 0.90;
-  double probability_occupied = 0.70;  ///< a cell at least this likely blocks
+  double probability_occupied = 0.60;  ///< a cell at least this likely blocks: one hit on an
+                                       ///< unknown cell does
   double min_ray = 0.2;                ///< nearer returns are ignored [m]
   double ground_height = 0.15;         ///< returns below are ground, not obstacles [m]
 };
@@ -86,6 +88,8 @@ class OccupancyMap {
   bool IsOccupied(const CellIndex& cell) const;
   /// Observed at least once, free or occupied.
   bool IsKnown(const CellIndex& cell) const;
+  /// Observed, and likelier free than not. A cell that was hit once may be neither free nor occupied.
+  bool IsObservedFree(const CellIndex& cell) const;
 
   /// Lowest cell of the window and its extent [cells].
   const CellIndex& origin() const { return origin_; }

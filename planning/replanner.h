@@ -26,7 +26,9 @@ class Replanner {
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   void CommitHover(const Eigen::Vector3d& p_W, double t);
 
-  /// One replanning step against the map. The result stays valid until the next call.
+  /// One replanning step against the map. The result stays valid until the next call. What the map
+  /// has not observed cannot be braked in: a map that was filled by hand needs MarkOwnVolume around
+  /// the vehicle, as a sensor's map needs the vehicle's own hull.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
 
   /// Comes to rest and stays, for want of a pad to go to: a certified braking trajectory, or with

@@ -89,6 +89,24 @@ TEST(OccupancyMap, SeesAWallAndWhatIsFreeBeforeIt) {
   ExpectInflationIsConsistent(map);
 }
 
+TEST(OccupancyMap, OneHitBlocksUnlessMoreIsAskedAndIsNeverFree) {
+  OccupancyMapOptions wary = SmallMap();
+  wary.probability_occupied = 0.8;
+  OccupancyMap map(wary);
+  OccupancyMap usual(SmallMap());
+  usual.Recentre({0.05, 0.05, 0.85});
+  usual.Integrate(WallFrame({0.05, 0.05, 0.85}, 2.0), {});
+  EXPECT_TRUE(usual.IsOccupied(usual.CellOf({2.01, 0.05, 0.85})));
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  map.Integrate(WallFrame(p_WC, 2.0), {});
+  const CellIndex wall = map.CellOf({2.01, 0.05, 0.85});
+  EXPECT_TRUE(map.IsKnown(wall));
+  EXPECT_FALSE(map.IsOccupied(wall));
+  EXPECT_FALSE(map.IsObservedFree(wall));
+  EXPECT_TRUE(map.IsObservedFree(map.CellOf({1.5, 0.05, 0.85})));
+}
+
 TEST(OccupancyMap, ForgetsAnObstacleThatHasGone) {
   OccupancyMap map(SmallMap());
   const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);

@@ -1,18 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plans around nothing on an installed library: a straight spline, and the names of what it links.
+// The planner alone, on an installed library: a wall that was put into the map by hand, a pad that
+// drives straight, one certified plan around the wall.
 #include <iostream>
 
-#include "touchdown/planning/term_registry.h"
-#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/replanner.h"
 #include "touchdown/solvers/backend_registry.h"
+
+namespace {
+
+/// A pad that drives along x at constant speed.
+class StraightPad : public touchdown::estimation::PadPrediction {
+ public:
+  touchdown::estimation::PadState At(double t) const noexcept override {
+    touchdown::estimation::PadState pad;
+    pad.p_WP = {6.0 + 0.8 * t, 0.0, 0.5};
+    pad.v_WP = {0.8, 0.0, 0.0};
+    return pad;
+  }
+};
+
+}  // namespace
 
 int main() {
   namespace planning = touchdown::planning;
-  planning::ControlPoints points(3, 5);
-  for (int i = 0; i < 5; ++i) points.col(i) = Eigen::Vector3d(i, 0.0, 1.0);
-  const planning::UniformBspline curve(points, 0.5, 0.0);
-  for (const auto& entry : touchdown::solvers::StandardBackends()) std::cout << entry.name << "\n";
-  for (const auto& term : planning::StandardTerms()) std::cout << term.info.name << "\n";
-  // One control point a knot interval: 1 m in 0.5 s.
-  return std::abs(curve.Evaluate(0.3).v_WB.x() - 2.0) < 1e-12 ? 0 : 1;
+  const Eigen::Vector3d start(0.0, 0.0, 2.0);
+
+  planning::OccupancyMap map{planning::OccupancyMapOptions{}};
+  map.Recentre(start);
+  map.MarkOwnVolume(start, 2.0);  // observed: the vehicle may move here
+  for (double y = -1.0; y <= 1.0; y += 0.1) {
+    for (double z = 0.05; z < 4.0; z += 0.1) map.SetOccupied({3.0, y, z});
+  }
+
+  planning::Replanner replanner(planning::ReplannerOptions{},
+                                touchdown::solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  const StraightPad pad;
+  planning::ReplanInput input;
+  input.t_start = 0.02;  // flown from here on
+  input.vehicle.p_WB = start;
+  input.pad = &pad;
+  input.endpoint = {.t_reference = 0.0, .height = 1.5, .height_floor = 1.5};
+  const planning::ReplanResult& plan = replanner.Replan(input, map);
+
+  std::cout << planning::ToString(plan.status) << ": " << planning::Explain(plan.reason) << "\n";
+  for (double t = plan.curve.t0(); t < plan.curve.t_end(); t += 0.5) {
+    std::cout << "t " << t << "  p_WB " << replanner.Reference(t).p_WB.transpose() << "\n";
+  }
+  return plan.status == planning::ReplanStatus::kPlanned && plan.certificate.passed() ? 0 : 1;
 }
