@@ -156,12 +156,12 @@ class Trial {
     if (sample_clock_.Due(vehicle.t)) {
       through_air_.Add(vehicle.t, vehicle.v_WB);  // the air stands still
       if (in_flight) {
-        metrics_.Sample(vehicle.t, vehicle, pad, TrueClearanceAt(vehicle));
+        metrics_.Sample(vehicle.t, vehicle, pad);
       }
       if (record_ != nullptr) RecordState(vehicle, pad);
     }
     if (in_flight) {
-      metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep());
+      metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
       if (perception_.pad_measured() && perception_.pad_filter().Converged(vehicle.t)) {
         metrics_.Estimate(perception_.pad_filter().Estimate(vehicle.t), pad);
       }

@@ -15,17 +15,18 @@ constexpr double kErrorWindow = 5.0;  // the paper's [s]
 
 }  // namespace
 
-void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt) {
+void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt,
+                   const std::optional<double>& clearance) {
   for (const double thrust : rotor_thrusts) effort_ += thrust * thrust * dt;
   ++steps_;
   if (saturated) ++saturated_;
+  if (clearance) clearance_ = clearance_ ? std::min(*clearance_, *clearance) : *clearance;
 }
 
 void Metrics::Sample(double t, const estimation::VehicleState& vehicle,
-                     const estimation::PadState& pad, const std::optional<double>& clearance) {
+                     const estimation::PadState& pad) {
   recent_.push_back({t, (vehicle.p_WB - pad.p_WP).head<2>().cwiseAbs()});
   while (recent_.front().t < t - kErrorWindow) recent_.pop_front();
-  if (clearance) clearance_ = clearance_ ? std::min(*clearance_, *clearance) : *clearance;
   max_speed_ = std::max(max_speed_, vehicle.v_WB.norm());
   if (v_previous_ && t > t_previous_) {
     const double acceleration = (vehicle.v_WB - *v_previous_).norm() / (t - t_previous_);

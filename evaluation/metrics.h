@@ -17,12 +17,13 @@ namespace touchdown::evaluation {
 /// order and stop at first contact.
 class Metrics {
  public:
-  /// Every control step. @param rotor_thrusts [N]. @param dt length of the step [s].
-  void Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt);
+  /// Every physics step. @param rotor_thrusts [N]. @param dt length of the step [s].
+  /// @param clearance true distance to the nearest obstacle [m], empty without obstacles.
+  void Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt,
+            const std::optional<double>& clearance);
 
-  /// Every 20 ms. `clearance`: true distance to the nearest obstacle [m], empty without obstacles.
-  void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad,
-              const std::optional<double>& clearance);
+  /// Every 20 ms.
+  void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);
 
   /// The filter's estimate against the truth, after a measurement while it is converged.
   void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth);

@@ -115,10 +115,12 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   replan_.input.vehicle = vehicle;
   replan_.input.endpoint = Endpoint(vehicle.t);
 
+  const bool wants_plan = WantsPlan(filter, vehicle.t);
+  // No plan is missing while none is tried: a climb must not end as a failure to plan.
+  if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
-  const planning::ReplanResult& result = WantsPlan(filter, vehicle.t)
-                                             ? PlanToPad(filter, map)
-                                             : replanner_.Rest(replan_.input, RestClimb(), map);
+  const planning::ReplanResult& result =
+      wants_plan ? PlanToPad(filter, map) : replanner_.Rest(replan_.input, RestClimb(), map);
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   last_planned_ = result.status == planning::ReplanStatus::kPlanned;

@@ -32,7 +32,7 @@ class BoundaryLift : public solvers::LiftOffset {
   void Set(const SplineState& start, double t0, const estimation::PadPrediction& pad,
            const EndpointTarget& target);
 
-  /// Structure of the elimination; `offset` is this object, which the caller keeps alive.
+  /// Structure of the elimination. Its `offset` is left null: the owner sets it to this object.
   solvers::AffineLift Structure() const;
 
   void At(double h, double* l, double* dl, double* d2l) const noexcept override;

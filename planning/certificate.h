@@ -2,7 +2,7 @@
 #pragma once
 
 #include "touchdown/planning/free_space.h"
-#include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/limits.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {

@@ -17,10 +17,6 @@ struct BlockedRun {
   bool at_end = false;    ///< and this one ends blocked
 };
 
-/// Largest distance between a chord of the check and the curve [m]; the map's inflation includes
-/// it.
-inline constexpr double kChordSagitta = 0.002;
-
 /// Visits every cell that the curve passes from t_from to its end, on chords whose sagitta is at
 /// most kChordSagitta, and collects the blocked runs in order. Appends to `runs` (cleared first).
 void FindBlockedRuns(const UniformBspline& curve, double t_from, const FreeSpace& space,

@@ -14,8 +14,11 @@ namespace {
 
 // Shares of the limits that the profile uses: a smooth spline cannot sit on its limits.
 constexpr double kCruiseShare = 0.80;
+constexpr double kHurryShare = 0.97;
+constexpr double kSlowestClosing = 0.02;
 constexpr double kAccelerationShare = 0.45;
 constexpr int kFixedPointSteps = 6;
+constexpr double kThere = 1e-3;  // [m]
 
 /// Time to cover `length` from closing speed v0 to rest with plateau `cruise` and acceleration a.
 double PlateauTime(double length, double v0, double cruise, double a) {
@@ -29,16 +32,17 @@ double PlateauTime(double length, double v0, double cruise, double a) {
   return peak >= v0 ? (peak - v0) / a + peak / a : 2.0 * v0 / a;
 }
 
-}  // namespace
-
-double GuessDuration(const SplineState& start, double t0, const estimation::PadPrediction& pad,
-                     const EndpointTarget& target, const Limits& limits, double detour) noexcept {
+/// The fixed point for one cruise share; +infinity if the end runs away from it.
+double GuessAtShare(const SplineState& start, double t0, const estimation::PadPrediction& pad,
+                    const EndpointTarget& target, const Limits& limits, double detour,
+                    double share) noexcept {
   const double a = kAccelerationShare * limits.acceleration;
+  const double speed = share * limits.speed;
   const SplineState goal_now = EndStateAt(pad, target, t0).state;
   const Eigen::Vector3d gap = goal_now.p - start.p;
   const double length = gap.norm() * detour;
-  const Eigen::Vector3d along =
-      length > 1e-6 ? Eigen::Vector3d(gap.normalized()) : Eigen::Vector3d::Zero();
+  if (length < kThere) return 0.0;
+  const Eigen::Vector3d along = gap.normalized();
   double T = length / limits.speed;
   for (int i = 0; i < kFixedPointSteps; ++i) {
     const Eigen::Vector3d mean_velocity =
@@ -46,10 +50,9 @@ double GuessDuration(const SplineState& start, double t0, const estimation::PadP
                  : goal_now.v;
     const double with_us = mean_velocity.dot(along);
     const double across = (mean_velocity - with_us * along).norm();
-    const double speed = kCruiseShare * limits.speed;
     if (speed <= across) return std::numeric_limits<double>::infinity();
     const double cruise = std::sqrt(speed * speed - across * across) - with_us;
-    if (cruise < 0.05 * limits.speed) return std::numeric_limits<double>::infinity();
+    if (cruise < kSlowestClosing * limits.speed) return std::numeric_limits<double>::infinity();
     const Eigen::Vector3d relative = start.v - mean_velocity;
     const double closing = relative.dot(along);
     const double sideways = (relative - closing * along).norm();
@@ -59,6 +62,16 @@ double GuessDuration(const SplineState& start, double t0, const estimation::PadP
         away / a + 0.5 * sideways / a;
   }
   return T;
+}
+
+}  // namespace
+
+double GuessDuration(const SplineState& start, double t0, const estimation::PadPrediction& pad,
+                     const EndpointTarget& target, const Limits& limits, double detour) noexcept {
+  const double T = GuessAtShare(start, t0, pad, target, limits, detour, kCruiseShare);
+  if (std::isfinite(T)) return T;
+  // A fast pad leaves no room for comfort; the certificate decides whether it can be caught.
+  return GuessAtShare(start, t0, pad, target, limits, detour, kHurryShare);
 }
 
 }  // namespace touchdown::planning

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "touchdown/planning/endpoint.h"
-#include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/limits.h"
 
 namespace touchdown::planning {
 

@@ -44,22 +44,6 @@ float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const 
          flat_diagonal * std::sqrt(2.0f) + (hi - lo - slanted) + (up - cubic - slanted) * w;
 }
 
-const char* ToString(SearchStatus status) {
-  switch (status) {
-    case SearchStatus::kFound:
-      return "found";
-    case SearchStatus::kEndsOutside:
-      return "ends_outside";
-    case SearchStatus::kEndsBlocked:
-      return "ends_blocked";
-    case SearchStatus::kNoPath:
-      return "no_path";
-    case SearchStatus::kExpansionLimit:
-      return "expansion_limit";
-  }
-  return "unknown";
-}
-
 bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
   if (!space.Blocked(*cell)) return true;
   const CellIndex centre = *cell;

@@ -18,7 +18,6 @@ enum class SearchStatus {
   kNoPath,          ///< everything reachable was expanded
   kExpansionLimit,  ///< the budget of expansions was used up
 };
-const char* ToString(SearchStatus status);
 
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance
 /// on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is

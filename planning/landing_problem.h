@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "touchdown/planning/boundary_lift.h"
+#include "touchdown/planning/limits.h"
 #include "touchdown/planning/terms/obstacle_pair.h"
 #include "touchdown/planning/uniform_bspline.h"
 #include "touchdown/solvers/problem.h"
@@ -14,12 +15,6 @@
 namespace touchdown::planning {
 
 enum class ArrivalMode { kFixed, kFree };
-
-/// Limits on the norms of velocity and acceleration.
-struct Limits {
-  double speed = 3.0;         ///< [m/s]
-  double acceleration = 6.0;  ///< [m/s^2]
-};
 
 struct LandingProblemOptions {
   ArrivalMode arrival = ArrivalMode::kFixed;

@@ -19,8 +19,6 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kStepsPerLogOdds = 16.0;
-// The certificate's chords leave the curve by up to this much; the inflation makes up for it [m].
-constexpr double kSagitta = 0.002;
 // Never observed. Outside the clamps, so that no update can reach it.
 constexpr std::int8_t kUnknown = -128;
 
@@ -67,7 +65,7 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options) : options_(option
 
   // A cell is blocked if any of its points is nearer than the radius to any point of an occupied
   // cell.
-  const double reach = (options.inflation_radius + kSagitta) / options.resolution;
+  const double reach = (options.inflation_radius + kChordSagitta) / options.resolution;
   const int n = static_cast<int>(std::ceil(reach)) + 1;
   for (int z = -n; z <= n; ++z) {
     for (int y = -n; y <= n; ++y) {
@@ -241,7 +239,8 @@ void OccupancyMap::MarkOwnVolume(const Eigen::Vector3d& p_W, double radius) {
   ForEachCell(lo, hi, [&](const CellIndex& cell) {
     if (!InWindow(cell) || (CentreOf(cell) - p_W).norm() > radius) return;
     std::int8_t& stored = log_odds_[Address(cell)];
-    if (stored == kUnknown) stored = miss_;
+    // A stray hit that does not block yet is outweighed by being here.
+    if (stored == kUnknown || (stored >= 0 && stored < occupied_)) stored = miss_;
   });
 }
 
@@ -253,7 +252,8 @@ void OccupancyMap::Clear(const ExcludedVolume& excluded) {
   const CellIndex hi = CellOf({excluded.centre.x() + r, excluded.centre.y() + r, excluded.top});
   ForEachCell(lo, hi + CellIndex::Ones(), [&](const CellIndex& cell) {
     const bool inside = (CentreOf(cell).head<2>() - excluded.centre).norm() < r;
-    if (inside && IsOccupied(cell)) SetLogOdds(cell, min_);
+    const bool hit = InWindow(cell) && log_odds_[Address(cell)] >= 0;
+    if (inside && hit) SetLogOdds(cell, min_);
   });
 }
 

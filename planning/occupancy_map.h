@@ -10,6 +10,10 @@
 
 namespace touchdown::planning {
 
+/// Largest distance between a chord of the whole-curve check and the curve [m]. The inflation is
+/// larger by it, so that what is checked on chords holds on the curve.
+inline constexpr double kChordSagitta = 0.002;
+
 using CellIndex = Eigen::Vector3i;  ///< cell of the unbounded lattice: floor(p / resolution)
 
 /// Parameters of the rolling grid. Probabilities as in EGO-Planner's map, but for the threshold: what
@@ -62,7 +66,8 @@ class OccupancyMap {
   /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored.
   void SetOccupied(const Eigen::Vector3d& p_W);
 
-  /// Marks the unknown cells within `radius` of p_W as observed free: the vehicle is there itself.
+  /// Marks the cells within `radius` of p_W that are not occupied as observed free: the vehicle is
+  /// there itself.
   void MarkOwnVolume(const Eigen::Vector3d& p_W, double radius);
 
   /// Frees what stands inside the volume: cells that were seen before the pad was known to be

@@ -66,6 +66,9 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
   problem.SetDuration(request.duration);
   pairs_.clear();
+  expansions_left_ = options_.max_expansions;
+  previous_clear_ = request.previous &&
+                    !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space));
   Eigen::VectorXd y = problem.Guess();
   solvers::Stop stop;
   stop.max_iterations = options_.max_iterations;
@@ -87,7 +90,9 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
       StageTimer timer(&result->times.check);
       FindBlockedRuns(result->curve, request.t0, *request.space, &runs_);
     }
-    if (runs_.empty() || round == options_.max_rebinds) break;
+    // A blocked start alone is for the certificate: it may be an escape.
+    const bool only_start = runs_.size() == 1 && runs_.front().at_start && round > 0;
+    if (runs_.empty() || only_start || round == options_.max_rebinds) break;
     const ReplanReason reason =
         Bind(request, result->curve, static_cast<std::size_t>(problem.max_pairs()), result);
     if (reason != ReplanReason::kNone) return reason;
@@ -103,34 +108,37 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   if (!result->certificate.clear && !result->certificate.escaping) {
     return runs_.front().at_start ? ReplanReason::kStartBlocked : ReplanReason::kCollisionRemains;
   }
+  if (!result->certificate.endpoint_met()) return ReplanReason::kSolverFailed;
   return result->certificate.limits_kept ? ReplanReason::kUnobserved
                                          : ReplanReason::kLimitsExceeded;
 }
 
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
                                std::size_t max_pairs, ReplanResult* result) {
+  int bound = 0;
   for (const BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
     GuidePath guide;
     const ReplanReason reason = FindGuide(request, curve, run, &guide, result);
     if (reason != ReplanReason::kNone) return reason;
     StageTimer timer(&result->times.pairs);
-    BindPairs(curve, run, guide, *request.space, max_pairs, &pairs_);
+    bound += BindPairs(curve, run, guide, *request.space, max_pairs, &pairs_);
   }
-  return ReplanReason::kNone;
+  // Without a new pair the next solve would be the last one again.
+  return bound > 0 ? ReplanReason::kNone : ReplanReason::kCollisionRemains;
 }
 
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
                                     const BlockedRun& run, GuidePath* guide, ReplanResult* result) {
   StageTimer timer(&result->times.search);
-  if (!run.at_start && request.previous && request.previous->t_end() > run.t_out &&
-      !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space))) {
+  if (!run.at_start && previous_clear_ && request.previous->t_end() > run.t_out) {
     SampleGuide(*request.previous, request.t0, guide);
     return ReplanReason::kNone;
   }
   const SearchStatus status =
       search_.Search(*request.space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
-                     options_.max_expansions, guide);
+                     expansions_left_, guide);
+  expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
   // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (run.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   if (status != SearchStatus::kFound) return ReplanReason::kSearchFailed;

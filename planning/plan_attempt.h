@@ -51,6 +51,8 @@ class PlanAttempt {
   solvers::BackendRegistry backends_;
   std::map<std::pair<int, ArrivalMode>, Prepared> prepared_;
   GridSearch search_;
+  int expansions_left_ = 0;      // of this attempt
+  bool previous_clear_ = false;  // the committed curve can serve as a guide
   std::vector<BlockedRun> runs_;
   std::vector<ObstaclePair> pairs_;
 };

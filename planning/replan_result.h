@@ -33,7 +33,7 @@ struct ReplannerOptions {
   double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
   int max_rebinds = 6;              ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;          ///< solver iterations per solve
-  int max_expansions = 200000;      ///< A* expansions per search
+  int max_expansions = 200000;      ///< A* expansions per attempt
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.

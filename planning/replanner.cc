@@ -24,7 +24,8 @@ namespace {
 constexpr int kMaxAttempts = 6;
 constexpr double kStretch = 1.2;         // of the duration after an attempt that failed
 constexpr double kReTimeBelow = 0.75;    // a fresh guess this much shorter replaces the arrival
-constexpr double kKeepReserve = 0.5;     // time to spare before a kept plan has to brake [s]
+constexpr double kStripMemory = 2.0;     // the strip over a pad that was lost holds this long [s]
+constexpr double kMoving = 1e-6;         // [m/s]
 constexpr double kPadSlack = 0.15;       // of a plan over the pad below both its ends [m]
 constexpr double kClimb = 1.5;           // [m]
 constexpr double kClockRounding = 1e-6;  // [s]
@@ -113,6 +114,8 @@ class Replanner::Impl {
 
  private:
   FreeSpace Space(const OccupancyMap& map) const;
+  FreeSpace SpaceWithoutPad(const ReplanInput& input, const OccupancyMap& map) const;
+  double WatchedUntil(const ReplanInput& input) const;
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
   void Begin();
@@ -128,7 +131,9 @@ class Replanner::Impl {
   PlanAttempt attempt_;
   ReplanResult result_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
-  double climbing_ = -1.0;       // the committed curve is the caller's rest with this climb
+  FreeSpace strip_;              // over the last known pad ...
+  double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
+  double climbing_ = -1.0;  // the committed curve is the caller's rest with this climb
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -149,6 +154,19 @@ FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineSt
   const double end = EndStateAt(*input.pad, input.endpoint, t_end).state.p.z();
   space.pad_floor = std::min(start.p.z(), end) - kPadSlack;
   return space;
+}
+
+/// A vehicle that has just lost its pad is still above it: the strip stays for a while.
+FreeSpace Replanner::Impl::SpaceWithoutPad(const ReplanInput& input,
+                                           const OccupancyMap& map) const {
+  FreeSpace space = input.t_start - strip_t_ <= kStripMemory ? strip_ : Space(map);
+  space.map = &map;
+  return space;
+}
+
+/// The strip over the pad reaches as far as the committed plan does.
+double Replanner::Impl::WatchedUntil(const ReplanInput& input) const {
+  return std::max(input.t_start + options_.min_duration, next_.t_end());
 }
 
 void Replanner::Impl::Begin() {
@@ -195,15 +213,17 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   climbing_ = -1.0;
   const bool target_valid = TargetValid(input);
   result_.reason = target_valid ? Plan(input, start, map) : ReplanReason::kInvalidInput;
+  if (target_valid) {
+    strip_ = SpaceOverPad(input, start, WatchedUntil(input), map);
+    strip_t_ = input.t_start;
+  }
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
     Commit(result_.curve);
     return result_;
   }
-  const FreeSpace space =
-      target_valid ? SpaceOverPad(input, start, input.t_start + options_.min_duration, map)
-                   : Space(map);
+  const FreeSpace space = target_valid ? strip_ : SpaceWithoutPad(input, map);
   if (!KeepCommitted(input, start, space)) {
     planned_before_ = false;
     ComeToRest(input.t_start, start, 0.0, space);
@@ -217,7 +237,7 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
-  const FreeSpace space = Space(map);
+  const FreeSpace space = SpaceWithoutPad(input, map);
   planned_before_ = false;
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (under_way && KeepCommitted(input, start, space)) return result_;
@@ -258,10 +278,12 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
-    if (!slower_helps) return reason;
-    // Free arrival traded a limit for time: fix a longer one.
-    if (request.arrival == ArrivalMode::kFree) T = std::max(T, result_.curve.duration());
+    const bool was_free = request.arrival == ArrivalMode::kFree;
+    if (!slower_helps && !was_free) return reason;
     request.arrival = ArrivalMode::kFixed;
+    if (!slower_helps) continue;
+    // Free arrival traded a limit for time: fix a longer one.
+    if (was_free) T = std::max(T, result_.curve.duration());
     // A promise that cannot be kept binds no longer: the pad may have jumped.
     T = std::max(kStretch * T, fresh);
   }
@@ -285,17 +307,18 @@ bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState&
   const Certificate now =
       Certify(next_, input.t_start, nullptr, options_.limits, options_.reaction, space);
   const SplineState last = next_.AtKnot(next_.segments());
-  const bool moves_at_end = last.v.norm() > kAtRest;
+  const bool moves_at_end = last.v.norm() > kMoving;
   const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && !moves_at_end &&
                        (last.p - start.p).norm() <= kAtRest;
-  if (!at_rest) {
+  const bool leaves = now.escaping && now.passed();
+  if (!at_rest && !leaves) {
     if (!now.stops_in_observed_space) return false;
     const double braking =
         MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits).duration();
     const double never = std::numeric_limits<double>::infinity();
     const double hit = now.clear ? never : now.first_hit_t;
     const double end = moves_at_end ? next_.t_end() : never;
-    if (std::min(hit, end) <= input.t_start + braking + kKeepReserve) return false;
+    if (std::min(hit, end) <= input.t_start + braking + options_.reaction) return false;
   }
   result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
   result_.curve = next_;

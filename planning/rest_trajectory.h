@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/limits.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {

@@ -31,7 +31,6 @@ struct LossBounds {
 /// rho(u) = w u^2 / 2. The residual keeps the sign: r = sqrt(w) u.
 class SquareLoss {
  public:
-  static constexpr bool kConvex = true;
   /// Throws std::invalid_argument unless weight >= 0.
   explicit SquareLoss(double weight);
 
@@ -49,7 +48,6 @@ class SquareLoss {
 /// and convex, so that a convex inner map stays convex.
 class HingeLoss {
  public:
-  static constexpr bool kConvex = true;
   /// `width` is s, in the unit of u. Throws std::invalid_argument unless weight >= 0, width > 0.
   HingeLoss(double weight, double width);
 

@@ -37,11 +37,6 @@ void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
   terms_.push_back({std::move(term), role});
 }
 
-bool Problem::has_constraints() const {
-  return std::any_of(terms_.begin(), terms_.end(),
-                     [](const Entry& e) { return e.role == Role::kConstraint; });
-}
-
 bool Problem::convex() const {
   return !shape_.free_interval && std::all_of(terms_.begin(), terms_.end(),
                                               [](const Entry& e) { return e.term->info().convex; });

@@ -57,7 +57,6 @@ class Problem {
   int num_terms() const { return static_cast<int>(terms_.size()); }
   const Term& term(int i) const { return *terms_[i].term; }
   Role role(int i) const { return terms_[i].role; }
-  bool has_constraints() const;
   /// Every cost is convex at a fixed interval and the interval is fixed.
   bool convex() const;
   /// Block diagonals above the main one that can be nonzero.

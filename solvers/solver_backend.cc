@@ -35,27 +35,32 @@ std::string SolverBackend::Refusal(const View& view) const {
 
 namespace {
 
-/// Everything of a view's structure that storage depends on, number by number.
+/// Everything of a view's structure that storage, sparsity or a refusal depends on.
 template <class Visit>
 void ForEachStructureNumber(const View& view, Visit&& visit) {
   const Problem& problem = view.problem();
-  visit(view.num_variables());
-  visit(view.blocks());
   visit(problem.shape().blocks);
+  visit(problem.shape().block_size);
+  visit(problem.shape().free_interval);
+  visit(view.blocks());
+  for (const int block : view.lift().block) visit(block);
+  for (const double coefficient : view.lift().coefficient) visit(coefficient);
   visit(problem.num_terms());
   for (int i = 0; i < problem.num_terms(); ++i) {
     const TermShape& shape = problem.term(i).shape();
     visit(shape.window);
     visit(shape.outputs);
     visit(shape.max_windows);
-    visit(static_cast<int>(problem.role(i)));
+    visit(problem.role(i) == Role::kConstraint);
+    visit(problem.term(i).bounds().lo);
+    visit(problem.term(i).bounds().hi);
   }
 }
 
-bool Matches(const View& view, const std::vector<int>& signature) {
+bool Matches(const View& view, const std::vector<double>& signature) {
   std::size_t at = 0;
   bool same = true;
-  ForEachStructureNumber(view, [&](int number) {
+  ForEachStructureNumber(view, [&](double number) {
     same = same && at < signature.size() && signature[at] == number;
     ++at;
   });
@@ -70,7 +75,7 @@ void SolverBackend::Prepare(const View& view) {
   evaluator_.Prepare(view);
   DoPrepare(view);
   prepared_.clear();
-  ForEachStructureNumber(view, [this](int number) { prepared_.push_back(number); });
+  ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
 }
 
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,

@@ -62,7 +62,7 @@ class SolverBackend {
   std::string name_;
   SolverOptions options_;
   Evaluator evaluator_;
-  std::vector<int> prepared_;  // signature of the prepared structure
+  std::vector<double> prepared_;  // signature of the prepared structure
 };
 
 }  // namespace touchdown::solvers

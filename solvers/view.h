@@ -30,6 +30,7 @@ class View {
   View(const Problem& problem, AffineLift lift);
 
   const Problem& problem() const { return *problem_; }
+  const AffineLift& lift() const { return lift_; }
   int blocks() const { return lift_.reduced_blocks; }
   int block_size() const { return problem_->shape().block_size; }
   bool free_interval() const { return problem_->shape().free_interval; }

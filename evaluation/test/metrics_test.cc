@@ -17,7 +17,8 @@ TEST(Metrics, TheErrorIsAveragedOverTheLastFiveSecondsOnly) {
     // 100 m away in the first half of 10 s; then 0.2 m in x and, with both signs, 0.1 m in y.
     vehicle.p_WB = t < 4.99 ? Eigen::Vector3d(100.0, 0.0, 0.0)
                             : Eigen::Vector3d(-0.2, i % 2 == 0 ? 0.1 : -0.1, 0.0);
-    metrics.Sample(t, vehicle, pad, 3.0 - t);
+    metrics.Sample(t, vehicle, pad);
+    metrics.Step({}, false, 0.02, 3.0 - t);
   }
   TrialResult result;
   result.touchdown = Touchdown{};
@@ -29,7 +30,7 @@ TEST(Metrics, TheErrorIsAveragedOverTheLastFiveSecondsOnly) {
 
 TEST(Metrics, FieldsAtContactStayEmptyWithoutContact) {
   Metrics metrics;
-  metrics.Sample(0.0, {}, {}, std::nullopt);
+  metrics.Sample(0.0, {}, {});
   TrialResult result;
   metrics.Fill(&result);
   EXPECT_FALSE(result.mean_abs_error_x_m.has_value());
@@ -39,7 +40,7 @@ TEST(Metrics, FieldsAtContactStayEmptyWithoutContact) {
 
 TEST(Metrics, EffortAndSaturationAddUp) {
   Metrics metrics;
-  for (int i = 0; i < 100; ++i) metrics.Step({1.0, 2.0, 3.0, 4.0}, i < 25, 0.002);
+  for (int i = 0; i < 100; ++i) metrics.Step({1.0, 2.0, 3.0, 4.0}, i < 25, 0.002, std::nullopt);
   TrialResult result;
   metrics.Fill(&result);
   EXPECT_NEAR(result.effort_n2s, 30.0 * 0.2, 1e-12);

@@ -41,6 +41,18 @@ TEST(DurationGuess, APadThatRunsAwayIsUnreachable) {
   EXPECT_TRUE(std::isinf(GuessDuration({}, 0.0, pad, {0.0, 1.5, 0.0, 1.5}, {3.0, 6.0}, 1.0)));
 }
 
+TEST(DurationGuess, APadAtNineTenthsOfTheSpeedLimitCanBeCaught) {
+  const Limits limits{1.0, 6.0};
+  const EndpointTarget target{0.0, 1.5, 0.0, 1.5};
+  for (const double speed : {0.8, 0.9}) {
+    const ArcPad fleeing({3, 0, 0.3}, speed, 0.0, 0.0), crossing({3, 0, 0.3}, speed, 1.5, 0.0);
+    EXPECT_TRUE(std::isfinite(GuessDuration({}, 0.0, fleeing, target, limits, 1.0)));
+    EXPECT_TRUE(std::isfinite(GuessDuration({}, 0.0, crossing, target, limits, 1.0)));
+    const SplineState there = EndStateAt(fleeing, target, 0.0).state;
+    EXPECT_LT(GuessDuration(there, 0.0, fleeing, target, limits, 1.0), 0.8);
+  }
+}
+
 TEST(DurationGuess, IsSmallForAVehicleThatIsThereAlready) {
   const ArcPad pad({8, 0, 0.3}, 0.8, 0.3, 0.1);
   const EndpointTarget target{0.0, 1.5, 0.0, 1.5};

@@ -257,6 +257,24 @@ TEST(Replanner, APadEstimateThatJumpsIsFollowed) {
   EXPECT_LT((replanner.Reference(14.0).p_WB - Eigen::Vector3d(5.0, 3.0, 1.6)).norm(), 0.02);
 }
 
+TEST(Replanner, APlanThatEndsInACreepIsNotFlownPastItsEnd) {
+  OccupancyMap map = ObservedMap();
+  const ArcPad creeping({0.0, 0.0, 0.3}, 0.03, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-2.0, 0.0, 1.6}, 0.0);
+  for (int step = 0; step < 400; ++step) {
+    const double t = 0.1 * step;
+    if (step == 60) AddPillar(0.9, 0.0, &map);  // the pad drives on into a pillar
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, creeping, t);
+    input.vehicle.v_WB = at.v_WB;
+    const ReplanStatus status = replanner.Replan(input, map).status;
+    EXPECT_NE(status, ReplanStatus::kUnsafe) << "at " << t;
+    EXPECT_FALSE(map.IsBlocked(at.p_WB)) << "at " << t;
+  }
+  EXPECT_LT(replanner.Reference(40.0).v_WB.norm(), 1e-9);
+}
+
 TEST(Replanner, OneAnswerIsPendingAtATime) {
   const OccupancyMap map = ObservedMap();
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
