@@ -80,8 +80,8 @@ ValueRange Above(double lo, double hi, std::string unit) { return {lo, hi, true,
 void AddPadKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Choice("pad.motion", {"straight_turn", "circle", "line", "static"},
                         "path of the pad vehicle", AT(pad.motion)));
-  keys.push_back(
-      Number<Scenario>("pad.speed", In(0, 3, "m/s"), "speed along the path", AT(pad.speed)));
+  keys.push_back(Number<Scenario>("pad.speed", In(0.01, 3, "m/s"),
+                                  "speed along the path; at most 0.9 limits.speed", AT(pad.speed)));
   keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
                                      "pad centre at the start of the path, in W", AT(pad.start)));
   keys.push_back(Number<Scenario>("pad.heading_deg", In(-360, 360, "deg"),

@@ -31,6 +31,18 @@ double RangeEnd(const std::string& text, const std::string& variation) {
   return value;
 }
 
+// Every value that a variation can take must be allowed, whatever a seed draws: the ends of a range
+// stand for all of it. @throws BadInput
+void CheckValues(const Variation& variation) {
+  const SchemaKey<Scenario>* key = FindScenarioKey(variation.key);
+  std::vector<std::string> values = variation.values;
+  if (values.empty()) values = {WriteNumber(variation.lo), WriteNumber(variation.hi)};
+  for (const std::string& value : values) {
+    Scenario probe;
+    key->set(probe, YAML::Node(value), {.file = "--vary " + variation.text});
+  }
+}
+
 std::size_t Combinations(const std::vector<Variation>& variations) {
   std::size_t count = 1;
   for (const Variation& v : variations) count *= std::max<std::size_t>(1, v.values.size());
@@ -69,6 +81,7 @@ Variation Variation::Parse(const std::string& text) {
     if (variation.lo > variation.hi) {
       throw BadInput(fmt::format("--vary {}: LO must not be above HI.", text));
     }
+    CheckValues(variation);
     return variation;
   }
   for (std::size_t begin = 0; begin <= rest.size();) {
@@ -76,6 +89,7 @@ Variation Variation::Parse(const std::string& text) {
     variation.values.push_back(rest.substr(begin, comma - begin));
     begin = comma + 1;
   }
+  CheckValues(variation);
   return variation;
 }
 

@@ -109,7 +109,7 @@ TEST_F(ScenarioTest, AnUnknownKeyNamesFileLineAndWhatIsAllowed) {
 
 TEST_F(ScenarioTest, AWrongTypeNamesTheRange) {
   EXPECT_THAT(Refusal("\npad:\n  speed: fast\n"),
-              AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.speed must be a number in [0, 3] m/s"),
+              AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.speed must be a number in [0.01, 3] m/s"),
                     HasSubstr("'fast'")));
   EXPECT_THAT(Refusal("pad: {start: [1, 2, 3]}\n"), HasSubstr("a list of 2 numbers"));
   EXPECT_THAT(Refusal("pad: {start: 3}\n"), HasSubstr("a list of 2 numbers"));
@@ -274,7 +274,7 @@ TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
   EXPECT_EQ(Load("seed: 1\n", {"start.position=[1, 2, 3]"}).start.position,
             Eigen::Vector3d(1, 2, 3));
   EXPECT_THAT(Refusal("seed: 1\n", {"pad.speed=9"}),
-              AllOf(HasSubstr("--set pad.speed=9"), HasSubstr("[0, 3] m/s")));
+              AllOf(HasSubstr("--set pad.speed=9"), HasSubstr("[0.01, 3] m/s")));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense"}), HasSubstr("write KEY=VALUE"));
   // There is no line to name.

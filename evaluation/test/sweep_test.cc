@@ -69,8 +69,10 @@ TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
     speeds.insert(trial.scenario.pad.speed);
   }
   EXPECT_EQ(speeds.size(), 20U);
-  options.variations = {Variation::Parse("pad.speed=50..60")};
-  EXPECT_THROW(PlanSweep(options, kBackends), BadInput);
+  // Both ends of a range and every listed value, before any seed is drawn.
+  EXPECT_THROW(Variation::Parse("pad.speed=50..60"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=0.2..60"), BadInput);
+  EXPECT_THROW(Variation::Parse("controller=geometric,psychic"), BadInput);
 }
 
 TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
