@@ -19,13 +19,13 @@ struct Certificate {
   bool recovering = false;                  ///< the start was beyond a limit: certified against
                                             ///< the recovery profile instead
   bool clear = false;                       ///< every cell the curve passes is free after inflation
-  bool escaping = false;                    ///< the start itself is blocked; the curve leaves the
-                                            ///< inflated cells and never comes nearer to an
-                                            ///< occupied one than it is at its start
-  bool stops_in_observed_space = true;      ///< braking from what is flown until the next plan
-                                            ///< ends before the curve meets cells not observed free
-  double clearance = 0.0;                   ///< that `clear` or `escaping` stands for [m]
-  double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
+  /// The start itself is blocked; the curve leaves the inflated cells and on the way never comes
+  /// back by more than 2 cm towards an occupied one.
+  bool escaping = false;
+  bool stops_in_observed_space = true;  ///< braking from what is flown until the next plan
+                                        ///< ends before the curve meets cells not observed free
+  double clearance = 0.0;               ///< that `clear` or `escaping` stands for [m]
+  double first_hit_t = 0.0;             ///< absolute time of the first blocked cell if !clear [s]
 
   bool endpoint_met() const {
     return !endpoint_required ||
