@@ -26,6 +26,32 @@ void BorderedBandMatrix::SetZero() {
   corner_ = 0.0;
 }
 
+void BorderedBandMatrix::Multiply(const double* in, double* out) const {
+  std::fill(out, out + size(), 0.0);
+  const int d = d_;
+  for (int i = 0; i < blocks_; ++i) {
+    for (int k = 0; k <= half_ && i + k < blocks_; ++k) {
+      const double* a = block(i, k);
+      const double* in_j = in + (i + k) * d;
+      const double* in_i = in + i * d;
+      double* out_i = out + i * d;
+      double* out_j = out + (i + k) * d;
+      for (int r = 0; r < d; ++r) {
+        for (int s = 0; s < d; ++s) out_i[r] += a[r * d + s] * in_j[s];
+        if (k == 0) continue;
+        for (int s = 0; s < d; ++s) out_j[s] += a[r * d + s] * in_i[r];
+      }
+    }
+  }
+  if (!bordered_) return;
+  const int n = blocks_ * d;
+  for (int i = 0; i < n; ++i) {
+    out[i] += border_[i] * in[n];
+    out[n] += border_[i] * in[i];
+  }
+  out[n] += corner_ * in[n];
+}
+
 double BorderedBandMatrix::At(int row, int column) const {
   if (row > column) std::swap(row, column);
   const int n = blocks_ * d_;

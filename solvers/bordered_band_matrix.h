@@ -31,6 +31,9 @@ class BorderedBandMatrix {
   double& corner() { return corner_; }
   double corner() const { return corner_; }
 
+  /// out = A in, both of size(). Does not allocate.
+  void Multiply(const double* in, double* out) const;
+
   /// Element (row, column) of the whole symmetric matrix; zero outside the band.
   double At(int row, int column) const;
 

@@ -23,7 +23,8 @@ class PointEvaluation : public ceres::EvaluationCallback {
   PointEvaluation(const double* y, Evaluator* evaluator) : y_(y), evaluator_(evaluator) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool /*new_evaluation_point*/) override {
-    ok_ = evaluator_->Evaluate(y_, {.gradient = evaluate_jacobians, .hessian = false});
+    const ShareScope scope(evaluator_, Share::kAdapter);
+    ok_ = evaluator_->Evaluate(y_, {.gradient = evaluate_jacobians, .residual = true});
   }
   bool ok() const { return ok_; }
   const ViewEvaluation& last() const { return evaluator_->last(); }
@@ -89,24 +90,21 @@ class WindowResidual : public ceres::CostFunction {
   int reduced_count_ = 0;
 };
 
-/// Hands every iteration to the evaluator's budget and to the trace.
+/// Hands every iteration to the evaluator.
 class IterationWatch : public ceres::IterationCallback {
  public:
-  IterationWatch(bool trace, Evaluator* evaluator, SolverResult* result)
-      : trace_(trace), evaluator_(evaluator), result_(result) {}
+  explicit IterationWatch(Evaluator* evaluator) : evaluator_(evaluator) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (trace_)
-      result_->trace.push_back({summary.iteration, summary.cost, summary.step_norm,
-                                summary.gradient_max_norm, evaluator_->elapsed_s()});
-    if (summary.iteration > 0) evaluator_->CountIteration();
+    const ShareScope scope(evaluator_, Share::kAdapter);
+    if (summary.iteration > 0) {
+      evaluator_->FinishIteration(summary.step_norm, summary.gradient_max_norm);
+    }
     return evaluator_->CheckStop() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
  private:
-  bool trace_;
   Evaluator* evaluator_;
-  SolverResult* result_;
 };
 
 class CeresSolver : public SolverBackend {
@@ -134,7 +132,7 @@ class CeresSolver : public SolverBackend {
                SolverResult* result) override {
     std::copy(warm.y.data(), warm.y.data() + warm.y.size(), y_.begin());
     // The first evaluation also tells which windows are active now.
-    if (!evaluator->Evaluate(y_.data(), {.gradient = true, .hessian = false})) {
+    if (!evaluator->Evaluate(y_.data(), {.gradient = true, .residual = true})) {
       result->status = SolveStatus::kEvaluationFailed;
       return;
     }
@@ -145,10 +143,13 @@ class CeresSolver : public SolverBackend {
     AddResiduals(view, evaluator->last(), point, &problem);
 
     ceres::Solver::Options solver = Options(stop);
-    IterationWatch watch(stop.trace, evaluator, result);
+    IterationWatch watch(evaluator);
     solver.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
+    {
+      const ShareScope scope(evaluator, Share::kNative);
+      ceres::Solve(solver, &problem, &summary);
+    }
     result->native_status = summary.termination_type;
     result->message = summary.message;
     result->status = Status(summary.termination_type, *evaluator);

@@ -64,14 +64,14 @@ VectorXd LagrangianGradient(const View& view, const ViewEvaluation& e,
                             const Lagrangian& lagrangian) {
   VectorXd gradient = lagrangian.objective_factor *
                       Eigen::Map<const VectorXd>(e.gradient.data(), view.num_variables());
-  if (!lagrangian.multipliers) return gradient;
+  if (!lagrangian.rows) return gradient;
   const MatrixXd rows = StackJacobian(view, e, false);
   Eigen::Index row = 0;
   for (int i = 0; i < view.problem().num_terms(); ++i) {
     const int count = e.full.terms[i].windows * view.problem().term(i).shape().outputs;
     for (int j = 0; j < count; ++j, ++row) {
-      if (view.problem().role(i) != Role::kConstraint) continue;
-      gradient += lagrangian.multipliers[i][j] * rows.row(row).transpose();
+      if (!lagrangian.rows[i].multiplier) continue;
+      gradient += lagrangian.rows[i].multiplier[j] * rows.row(row).transpose();
     }
   }
   return gradient;
@@ -96,7 +96,9 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
   DerivativeErrors errors;
   ViewEvaluation at, plus, minus;
   for (ViewEvaluation* e : {&at, &plus, &minus}) view.Resize(e);
-  if (!view.Evaluate(y.data(), {.gradient = true, .hessian = true}, lagrangian, &at)) return errors;
+  if (!view.Evaluate(y.data(), {.gradient = true, .hessian = true, .residual = true}, lagrangian,
+                     &at))
+    return errors;
 
   const int n = view.num_variables();
   const MatrixXd u_jacobian = StackJacobian(view, at, false);
@@ -107,11 +109,13 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
     const double dy = step * std::max(1.0, std::abs(y[j]));
     VectorXd moved = y;
     moved[j] = y[j] + dy;
-    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true}, lagrangian, &plus)) {
+    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true, .residual = true},
+                       lagrangian, &plus)) {
       return errors;
     }
     moved[j] = y[j] - dy;
-    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true}, lagrangian, &minus)) {
+    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true, .residual = true},
+                       lagrangian, &minus)) {
       return errors;
     }
     gradient[j] = (plus.full.value - minus.full.value) / (2.0 * dy);

@@ -26,7 +26,11 @@ void Evaluator::Begin(const View& view, const Stop& stop) {
   stop_status_ = SolveStatus::kConverged;
   has_best_ = false;
   best_cost_ = best_violation_ = 0.0;
-  start_ = std::chrono::steady_clock::now();
+  storage_.HoldParameters();
+  trace_.clear();
+  shares_ = {};
+  share_ = Share::kAdapter;
+  start_ = share_start_ = std::chrono::steady_clock::now();
 }
 
 double Evaluator::elapsed_s() const {
@@ -41,30 +45,69 @@ bool Evaluator::AtCachedPoint(const double* y) const {
 bool Evaluator::Evaluate(const double* y, Want want) {
   const bool same = AtCachedPoint(y);
   if (same) {
-    const bool known =
-        (!want.gradient || cached_want_.gradient) && (!want.hessian || cached_want_.hessian);
+    const bool known = (!want.gradient || cached_want_.gradient) &&
+                       (!want.hessian || cached_want_.hessian) &&
+                       (!want.residual || cached_want_.residual);
     if (known) return true;
     want.gradient = want.gradient || cached_want_.gradient;
-    want.hessian = want.hessian || cached_want_.hessian;
-  } else {
-    ++evaluations_;
-    cached_ = Eigen::Map<const Eigen::VectorXd>(y, cached_.size());
+    want.residual = want.residual || cached_want_.residual;
   }
-  cached_want_ = want;
-  cache_valid_ = view_->Evaluate(y, want, {}, &storage_);
-  if (cache_valid_ && !same) Track(y);
-  failed_ = failed_ || !cache_valid_;
-  CheckStop();
-  return cache_valid_;
+  return Run(y, !same, want, {});
 }
 
 bool Evaluator::EvaluateLagrangian(const double* y, const Lagrangian& lagrangian) {
-  if (!Evaluate(y, {.gradient = true})) return false;
-  // Everything but the Hessian comes out the same; the Hessian is this Lagrangian's alone.
+  const bool same = AtCachedPoint(y);
+  const bool ok = Run(y, !same, {.gradient = true, .hessian = true}, lagrangian);
   cached_want_.hessian = false;
-  cache_valid_ = view_->Evaluate(y, {.gradient = true, .hessian = true}, lagrangian, &storage_);
+  return ok;
+}
+
+bool Evaluator::Run(const double* y, bool new_point, Want want, const Lagrangian& lagrangian) {
+  if (new_point) {
+    ++evaluations_;
+    std::copy(y, y + cached_.size(), cached_.data());
+  }
+  cached_want_ = want;
+  {
+    const ShareScope scope(this, Share::kEvaluation);
+    cache_valid_ = view_->Evaluate(y, want, lagrangian, &storage_);
+  }
+  if (cache_valid_ && new_point) Track(y);
   failed_ = failed_ || !cache_valid_;
+  if (new_point) CheckStop();
   return cache_valid_;
+}
+
+void Evaluator::FinishIteration(double step_norm, double gradient_max_norm) {
+  ++iterations_;
+  if (!stop_->trace) return;
+  trace_.push_back({iterations_, best_cost_, best_cost_by_term_,
+                    best_violation_ > kFeasible ? best_violation_ : 0.0, step_norm,
+                    gradient_max_norm, elapsed_s()});
+}
+
+Share Evaluator::SwitchShare(Share share) {
+  const Share before = share_;
+  if (!stop_->shares) return before;
+  const auto now = std::chrono::steady_clock::now();
+  const double spent = std::chrono::duration<double>(now - share_start_).count();
+  switch (before) {
+    case Share::kAdapter:
+      shares_.adapter_s += spent;
+      break;
+    case Share::kEvaluation:
+      shares_.evaluation_s += spent;
+      break;
+    case Share::kWhitening:
+      shares_.whitening_s += spent;
+      break;
+    case Share::kNative:
+      shares_.native_s += spent;
+      break;
+  }
+  share_start_ = now;
+  share_ = share;
+  return before;
 }
 
 bool Evaluator::CheckStop() {
@@ -76,6 +119,8 @@ bool Evaluator::CheckStop() {
     stop_status_ = SolveStatus::kTimeLimit;
   } else if (stop_->callback && cache_valid_) {
     const StopQuery query{{cached_.data(), static_cast<std::size_t>(cached_.size())},
+                          storage_.full.value,
+                          storage_.full.max_violation,
                           storage_.full.cost_by_term,
                           evaluations_};
     if (stop_->callback(query)) stop_status_ = SolveStatus::kStopped;

@@ -9,6 +9,9 @@
 
 namespace touchdown::solvers {
 
+/// What a moment of a solve is charged to; see SolveShares.
+enum class Share { kAdapter, kEvaluation, kWhitening, kNative };
+
 /// Every evaluation of a solve goes through here, whatever the backend: it counts, caches the last
 /// point, asks Stop, and keeps the best feasible iterate, so that no backend has to be trusted with
 /// any of this.
@@ -26,12 +29,18 @@ class Evaluator {
   /// value, gradient and Hessian one by one: what is known of the last point is not forgotten, and
   /// only a new point counts as an evaluation.
   bool Evaluate(const double* y, Want want);
-  /// The Hessian of the Lagrangian at y, in last().hessian.
+  /// As Evaluate with gradient and Hessian, of this Lagrangian; the Hessian is not cached.
   bool EvaluateLagrangian(const double* y, const Lagrangian& lagrangian);
   const ViewEvaluation& last() const { return storage_; }
+  /// The same, for products with its rows (View::MultiplyRows and its transpose).
+  ViewEvaluation* mutable_last() { return &storage_; }
 
-  /// Tells of one finished iteration; the budget of iterations is counted here.
-  void CountIteration() { ++iterations_; }
+  /// Tells of one finished iteration: counts it, and records it where Stop asks for a trace. NaN
+  /// where the backend does not know.
+  void FinishIteration(double step_norm, double gradient_max_norm);
+
+  /// Charges the time from now on to `share`; returns what it was charged to before.
+  Share SwitchShare(Share share);
 
   /// The status that ends the solve now, or kConverged while it may go on.
   SolveStatus stop_status() const { return stop_status_; }
@@ -50,8 +59,13 @@ class Evaluator {
   double best_violation() const { return best_violation_; }
   const std::vector<double>& best_cost_by_term() const { return best_cost_by_term_; }
 
+  std::vector<IterationRecord> TakeTrace() { return std::move(trace_); }
+  const SolveShares& shares() const { return shares_; }
+
  private:
   bool AtCachedPoint(const double* y) const;
+  /// Evaluates and keeps the books. `new_point`: y is not the cached one.
+  bool Run(const double* y, bool new_point, Want want, const Lagrangian& lagrangian);
   void Track(const double* y);
 
   const View* view_ = nullptr;
@@ -69,7 +83,25 @@ class Evaluator {
   std::vector<double> best_cost_by_term_;
   double best_cost_ = 0.0;
   double best_violation_ = 0.0;
+  std::vector<IterationRecord> trace_;
+  SolveShares shares_;
+  Share share_ = Share::kAdapter;
+  std::chrono::steady_clock::time_point share_start_;
   std::chrono::steady_clock::time_point start_;
+};
+
+/// Charges a scope to one share.
+class ShareScope {
+ public:
+  ShareScope(Evaluator* evaluator, Share share)
+      : evaluator_(evaluator), before_(evaluator->SwitchShare(share)) {}
+  ~ShareScope() { evaluator_->SwitchShare(before_); }
+  ShareScope(const ShareScope&) = delete;
+  ShareScope& operator=(const ShareScope&) = delete;
+
+ private:
+  Evaluator* evaluator_;
+  Share before_;
 };
 
 }  // namespace touchdown::solvers

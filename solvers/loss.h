@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scalar losses rho(u): what a term's inner map is measured by. Each knows its first two
 // derivatives, the residual r(u) with r^2 = 2 rho that least-squares backends want, and the
-// interval that it stands for where the term is made a hard constraint. All are plain values; none
-// allocates.
+// interval that it stands for where the term is made a hard constraint, and a nominal curvature: one
+// number that stands for rho'' near a solution. All are plain values; none allocates.
 #pragma once
 
 #include <limits>
@@ -31,11 +31,14 @@ struct LossBounds {
 /// rho(u) = w u^2 / 2. The residual keeps the sign: r = sqrt(w) u.
 class SquareLoss {
  public:
+  static constexpr bool kQuadratic = true;
+
   /// Throws std::invalid_argument unless weight >= 0.
   explicit SquareLoss(double weight);
 
   LossValue Value(double u) const { return {0.5 * w_ * u * u, w_ * u, w_}; }
   LossResidual Residual(double u) const { return {root_w_ * u, root_w_}; }
+  double NominalCurvature(double /*u*/) const { return w_; }
   LossBounds bounds() const { return {0.0, 0.0}; }
 
  private:
@@ -48,12 +51,16 @@ class SquareLoss {
 /// and convex, so that a convex inner map stays convex.
 class HingeLoss {
  public:
+  static constexpr bool kQuadratic = false;
+
   /// `width` is s, in the unit of u. Throws std::invalid_argument unless weight >= 0, width > 0.
   HingeLoss(double weight, double width);
 
   LossValue Value(double u) const;
   /// r = sqrt(2 rho); its derivative is 0 where the hinge is inactive.
   LossResidual Residual(double u) const;
+  /// Curvature at a typical excess, a tenth of the width; zero more than a width inside the limit.
+  double NominalCurvature(double u) const { return u > -s_ ? 0.6 * w_ * s_ : 0.0; }
   LossBounds bounds() const { return {-std::numeric_limits<double>::infinity(), 0.0}; }
 
  private:

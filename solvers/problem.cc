@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One pass over all terms: values, the gradient, and the block-banded Hessian
-//   sum_k rho''(u) du du^T + rho'(u) d2u   (costs),   sum_k lambda d2u   (constraints),
-// assembled from each term's plain arrays. Terms never learn their place in x.
+//   sum_k rho''(u) du du^T + rho'(u) d2u   (costs),   sum_k lambda d2u + w du du^T   (constraints).
+// At a fixed interval the share of quadratic terms in it is constant: it is computed once a solve
+// and copied.
 
 #include "touchdown/solvers/problem.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -42,25 +44,25 @@ bool Problem::convex() const {
                                               [](const Entry& e) { return e.term->info().convex; });
 }
 
+void Evaluation::HoldParameters() {
+  hold_ = true;
+  placed_ = constant_jacobian_ = false;
+  constant_factor_ = std::numeric_limits<double>::quiet_NaN();
+}
+
 void Problem::Resize(Evaluation* evaluation) const {
   const int n = shape_.blocks * shape_.block_size + (shape_.free_interval ? 1 : 0);
   evaluation->gradient.assign(static_cast<std::size_t>(n), 0.0);
-  evaluation->lagrangian_gradient.assign(static_cast<std::size_t>(n), 0.0);
-  evaluation->hessian.Resize(shape_.blocks, shape_.block_size, half_bandwidth_,
-                             shape_.free_interval);
+  evaluation->row_gradient.assign(static_cast<std::size_t>(n), 0.0);
+  for (BorderedBandMatrix* matrix : {&evaluation->hessian, &evaluation->constant_hessian_}) {
+    matrix->Resize(shape_.blocks, shape_.block_size, half_bandwidth_, shape_.free_interval);
+  }
   evaluation->cost_by_term.assign(terms_.size(), 0.0);
   evaluation->terms.resize(terms_.size());
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     evaluation->terms[i].Resize(terms_[i].term->shape());
   }
-}
-
-bool Problem::WindowsFit(const TermShape& shape, const TermBlock& block) const {
-  for (int k = 0; k < block.windows; ++k) {
-    const int first = block.first_block[k];
-    if (first < 0 || first + shape.window > shape_.blocks) return false;
-  }
-  return true;
+  evaluation->hold_ = false;
 }
 
 bool Problem::Evaluate(const double* x, double h, Want want, const Lagrangian& lagrangian,
@@ -69,39 +71,76 @@ bool Problem::Evaluate(const double* x, double h, Want want, const Lagrangian& l
   evaluation->ok = false;
   evaluation->value = 0.0;
   evaluation->max_violation = 0.0;
-  const auto zero = [](std::vector<double>* array) {
-    std::fill(array->begin(), array->end(), 0.0);
-  };
-  if (want.gradient) zero(&evaluation->gradient);
-  if (want.hessian) {
-    zero(&evaluation->lagrangian_gradient);
-    evaluation->hessian.SetZero();
-  }
+  want.gradient = want.gradient || want.hessian;
+  const TermSums sums{evaluation->gradient.data(), evaluation->row_gradient.data(),
+                      shape_.blocks * shape_.block_size, &evaluation->hessian};
+  if (want.gradient) std::fill(evaluation->gradient.begin(), evaluation->gradient.end(), 0.0);
   try {
+    if (!Place(evaluation)) return false;
+    if (want.hessian) StartHessian(lagrangian, input, sums, evaluation);
     for (std::size_t i = 0; i < terms_.size(); ++i) {
       const Entry& entry = terms_[i];
-      TermBlock& block = evaluation->terms[i];
-      const TermShape& shape = entry.term->shape();
+      const bool held = HeldConstant(entry, *evaluation);
+      TermRequest request{.want = want,
+                          .role = entry.role,
+                          .objective_factor = lagrangian.objective_factor,
+                          .nominal_curvature = lagrangian.nominal_curvature,
+                          .jacobian_known = held && evaluation->constant_jacobian_,
+                          .hessian_known = held};
+      if (lagrangian.rows && want.hessian) request.rows = lagrangian.rows[i];
+      entry.term->Evaluate(input, request, &evaluation->terms[i], sums);
       const bool cost = entry.role == Role::kCost;
-      const double* row_multipliers =
-          cost || !lagrangian.multipliers ? nullptr : lagrangian.multipliers[i];
-      entry.term->Evaluate(input, want, row_multipliers, &block);
-      if (!WindowsFit(shape, block)) return false;
       if (!(cost ? AddCost(i, evaluation) : AddViolation(i, evaluation))) return false;
-      if (want.gradient && cost) {
-        AddGradient(shape, block, 1.0, block.drho.data(), &evaluation->gradient);
-      }
-      // A row without multipliers is no part of the Lagrangian.
-      if (!want.hessian || (!cost && !row_multipliers)) continue;
-      const double factor = cost ? lagrangian.objective_factor : 1.0;
-      AddGradient(shape, block, factor, cost ? block.drho.data() : row_multipliers,
-                  &evaluation->lagrangian_gradient);
-      AddHessian(entry, block, factor, evaluation);
     }
   } catch (...) {
     return false;  // a term that throws cannot be evaluated here: the caller sees a status
   }
+  if (want.gradient || want.residual) evaluation->constant_jacobian_ = evaluation->hold_;
   return evaluation->ok = true;
+}
+
+bool Problem::Place(Evaluation* evaluation) const {
+  if (evaluation->placed_) return true;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    TermBlock& block = evaluation->terms[i];
+    terms_[i].term->Place(&block);
+    for (int k = 0; k < block.windows; ++k) {
+      const int first = block.first_block[k];
+      if (first < 0 || first + terms_[i].term->shape().window > shape_.blocks) return false;
+    }
+  }
+  evaluation->placed_ = evaluation->hold_;
+  return true;
+}
+
+bool Problem::HeldConstant(const Entry& entry, const Evaluation& evaluation) const {
+  return evaluation.hold_ && !shape_.free_interval && entry.role == Role::kCost &&
+         entry.term->shape().quadratic;
+}
+
+void Problem::StartHessian(const Lagrangian& lagrangian, const TermInput& input,
+                           const TermSums& sums, Evaluation* evaluation) const {
+  std::fill(evaluation->row_gradient.begin(), evaluation->row_gradient.end(), 0.0);
+  if (!evaluation->hold_ || shape_.free_interval) {
+    evaluation->hessian.SetZero();
+    return;
+  }
+  if (evaluation->constant_factor_ != lagrangian.objective_factor) {
+    evaluation->constant_hessian_.SetZero();
+    TermSums constant = sums;  // the gradient that this adds to is cleared below
+    constant.hessian = &evaluation->constant_hessian_;
+    for (std::size_t i = 0; i < terms_.size(); ++i) {
+      if (!HeldConstant(terms_[i], *evaluation)) continue;
+      terms_[i].term->Evaluate(input,
+                               {.want = {.gradient = true, .hessian = true},
+                                .objective_factor = lagrangian.objective_factor,
+                                .jacobian_known = evaluation->constant_jacobian_},
+                               &evaluation->terms[i], constant);
+    }
+    std::fill(evaluation->gradient.begin(), evaluation->gradient.end(), 0.0);
+    evaluation->constant_factor_ = lagrangian.objective_factor;
+  }
+  evaluation->hessian = evaluation->constant_hessian_;
 }
 
 bool Problem::AddCost(std::size_t i, Evaluation* evaluation) const {
@@ -124,57 +163,6 @@ bool Problem::AddViolation(std::size_t i, Evaluation* evaluation) const {
     evaluation->max_violation = std::max(evaluation->max_violation, violation);
   }
   return true;
-}
-
-void Problem::AddGradient(const TermShape& t, const TermBlock& block, double factor,
-                          const double* weights, std::vector<double>* gradient) const {
-  const int v = t.window * t.block_size;
-  for (int k = 0; k < block.windows; ++k) {
-    double* g = &(*gradient)[block.first_block[k] * t.block_size];
-    for (int c = k * t.outputs; c < (k + 1) * t.outputs; ++c) {
-      const double weight = factor * weights[c];
-      if (weight == 0.0) continue;
-      const double* du = &block.du[c * v];
-      for (int i = 0; i < v; ++i) g[i] += weight * du[i];
-      if (shape_.free_interval) gradient->back() += weight * block.du_dh[c];
-    }
-  }
-}
-
-void Problem::AddHessian(const Entry& entry, const TermBlock& block, double factor,
-                         Evaluation* evaluation) const {
-  const TermShape& t = entry.term->shape();
-  const int d = t.block_size;
-  const int v = t.window * d;
-  const bool cost = entry.role == Role::kCost;
-  BorderedBandMatrix& hessian = evaluation->hessian;
-  for (int k = 0; k < block.windows; ++k) {
-    const int first = block.first_block[k];
-    const double* curvature = &block.curvature[k * (v + 1) * (v + 1)];
-    const auto element = [&](int i, int j) {
-      double sum = curvature[i * (v + 1) + j];
-      if (cost) {
-        for (int c = k * t.outputs; c < (k + 1) * t.outputs; ++c) {
-          const double left = i < v ? block.du[c * v + i] : block.du_dh[c];
-          const double right = j < v ? block.du[c * v + j] : block.du_dh[c];
-          sum += block.d2rho[c] * left * right;
-        }
-      }
-      return factor * sum;
-    };
-    for (int a = 0; a < t.window; ++a) {
-      for (int b = a; b < t.window; ++b) {
-        double* out = hessian.block(first + a, b - a);
-        for (int i = 0; i < d; ++i) {
-          for (int j = 0; j < d; ++j) out[i * d + j] += element(a * d + i, b * d + j);
-        }
-      }
-    }
-    if (shape_.free_interval) {
-      for (int i = 0; i < v; ++i) hessian.border()[first * d + i] += element(i, v);
-      hessian.corner() += element(v, v);
-    }
-  }
 }
 
 }  // namespace touchdown::solvers

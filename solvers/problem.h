@@ -9,9 +9,6 @@
 
 namespace touchdown::solvers {
 
-/// Whether a term is part of the objective or a set of constraint rows.
-enum class Role { kCost, kConstraint };
-
 /// Size of a problem's variables: N blocks of d scalars and, if free, the knot interval h.
 struct ProblemShape {
   int blocks = 0;              ///< N >= 1
@@ -21,23 +18,36 @@ struct ProblemShape {
   double interval_max = 1e3;
 };
 
-/// Weights of the Lagrangian whose Hessian is wanted: factor x objective + sum of multiplier x row.
+/// The function whose Hessian is wanted: objective_factor x objective + the rows' shares.
 struct Lagrangian {
   double objective_factor = 1.0;
-  /// [term] -> [window][output], null where the term is a cost; the whole may be null: no rows.
-  const double* const* multipliers = nullptr;
+  const RowWeights* rows = nullptr;  ///< [term], read where the term is a constraint; null: no rows
+  bool nominal_curvature = false;    ///< see TermRequest
 };
 
 /// Result storage of one evaluation; one per thread. Sized by Problem::Resize.
 struct Evaluation {
-  bool ok = false;                          ///< false: a term returned NaN or threw
-  double value = 0.0;                       ///< sum of the cost terms
-  double max_violation = 0.0;               ///< worst violation of a constraint row
-  std::vector<double> gradient;             ///< of the objective: blocks x d, then h if free
-  BorderedBandMatrix hessian;               ///< of the Lagrangian
-  std::vector<double> lagrangian_gradient;  ///< of the Lagrangian, filled with the Hessian
-  std::vector<double> cost_by_term;         ///< [term]; 0 for constraints
-  std::vector<TermBlock> terms;             ///< [term]
+  bool ok = false;                   ///< false: a term returned NaN or threw
+  double value = 0.0;                ///< sum of the cost terms
+  double max_violation = 0.0;        ///< worst violation of a constraint row
+  std::vector<double> gradient;      ///< of the objective: blocks x d, then h if free
+  std::vector<double> row_gradient;  ///< sum of multiplier x row, filled with the Hessian
+  BorderedBandMatrix hessian;        ///< of the Lagrangian
+  std::vector<double> cost_by_term;  ///< [term]; 0 for constraints
+  std::vector<TermBlock> terms;      ///< [term]
+
+  /// Tells that parameters stay what they are from here on, so that what does not depend on x is
+  /// computed once: windows, Jacobians of affine maps, the Hessian of quadratic terms. Without it
+  /// everything is computed at every call.
+  void HoldParameters();
+
+ private:
+  friend class Problem;
+  bool hold_ = false;
+  bool placed_ = false;
+  bool constant_jacobian_ = false;  // du of the quadratic terms is in the blocks
+  double constant_factor_ = 0.0;    // objective factor of constant_hessian_; NaN: not there
+  BorderedBandMatrix constant_hessian_;
 };
 
 /// An optimisation problem over blocks with windowed terms. Its structure is fixed at construction
@@ -82,14 +92,12 @@ class Problem {
     std::shared_ptr<const Term> term;
     Role role;
   };
+  bool Place(Evaluation* evaluation) const;
+  void StartHessian(const Lagrangian& lagrangian, const TermInput& input, const TermSums& sums,
+                    Evaluation* evaluation) const;
+  bool HeldConstant(const Entry& entry, const Evaluation& evaluation) const;
   bool AddCost(std::size_t i, Evaluation* evaluation) const;
   bool AddViolation(std::size_t i, Evaluation* evaluation) const;
-  bool WindowsFit(const TermShape& shape, const TermBlock& block) const;
-  /// Adds sum of weight(c) du_c to `gradient`, a full-size array.
-  void AddGradient(const TermShape& shape, const TermBlock& block, double factor,
-                   const double* weights, std::vector<double>* gradient) const;
-  void AddHessian(const Entry& entry, const TermBlock& block, double factor,
-                  Evaluation* evaluation) const;
 
   ProblemShape shape_;
   std::vector<Entry> terms_;

@@ -117,6 +117,9 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     result->cost_by_term[i].name = view.problem().term(static_cast<int>(i)).info().name;
     result->cost_by_term[i].cost = evaluator_.best_cost_by_term()[i];
   }
+  evaluator_.SwitchShare(Share::kAdapter);  // charges the time since the last switch
+  result->shares = evaluator_.shares();
+  if (stop.trace) result->trace = evaluator_.TakeTrace();
   result->iterations = evaluator_.iterations();
   result->evaluations = evaluator_.evaluations();
   result->wall_s = evaluator_.elapsed_s();

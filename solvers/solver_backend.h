@@ -53,9 +53,9 @@ class SolverBackend {
 
  private:
   virtual void DoPrepare(const View& view) = 0;
-  /// Runs the solver from `warm`, evaluating only through `evaluator`. Sets status, native_status
-  /// and message, the trace if stop.trace, multipliers if it has them; the base fills in the rest
-  /// from the evaluator.
+  /// Runs the solver from `warm`, evaluating only through `evaluator`, and tells it of every finished
+  /// iteration. Sets status, native_status and message, multipliers if it has them; charges the time
+  /// inside its library to Share::kNative. The base fills in the rest from the evaluator.
   virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 

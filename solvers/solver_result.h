@@ -21,13 +21,24 @@ enum class SolveStatus {
 };
 const char* ToString(SolveStatus status);
 
-/// One iteration of a solve, as every backend can report it.
+/// One iteration of a solve, as every backend can report it. Cost and violation are those of the
+/// best point so far.
 struct IterationRecord {
   int iteration = 0;
   double cost = 0.0;
-  double step_norm = 0.0;
-  double gradient_max_norm = 0.0;
-  double time_s = 0.0;  ///< wall time since the start of the solve
+  std::vector<double> cost_by_term;  ///< in the order of the problem's terms
+  double max_violation = 0.0;
+  double step_norm = 0.0;          ///< in the view's variables; NaN where the backend hides it
+  double gradient_max_norm = 0.0;  ///< as the backend measures it; NaN where it hides it
+  double time_s = 0.0;             ///< wall time since the start of the solve
+};
+
+/// Where the wall time of a solve went. Exclusive: the parts add up to the whole.
+struct SolveShares {
+  double evaluation_s = 0.0;  ///< View::Evaluate
+  double whitening_s = 0.0;   ///< factor and triangular solves of the whitening
+  double native_s = 0.0;      ///< the solver library, or the backend's own algorithm
+  double adapter_s = 0.0;     ///< all else: copies, set-up, checks, bookkeeping
 };
 
 /// Cost of one term at the returned point.
@@ -62,6 +73,7 @@ struct SolverResult {
   int native_status = 0;               ///< the backend's own code
   std::string message;                 ///< the backend's own words
   std::vector<IterationRecord> trace;  ///< filled if Stop::trace asks for it
+  SolveShares shares;                  ///< filled if Stop::shares asks for it
 
   /// The point may be used: it was evaluated, whether or not the solve converged.
   bool usable() const {

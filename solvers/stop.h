@@ -9,7 +9,9 @@ namespace touchdown::solvers {
 
 /// What a stop callback is shown at each evaluation.
 struct StopQuery {
-  std::span<const double> y;             ///< variables of the view
+  std::span<const double> y;  ///< variables of the view
+  double cost = 0.0;
+  double max_violation = 0.0;            ///< of the constraint rows
   std::span<const double> cost_by_term;  ///< in the order of the problem's terms
   int evaluations = 0;
 };
@@ -21,7 +23,8 @@ struct Stop {
   int max_iterations = 100;
   int max_evaluations = std::numeric_limits<int>::max();
   std::function<bool(const StopQuery&)> callback;  ///< true: stop now
-  bool trace = false;  ///< record every iteration in the result (allocates)
+  bool trace = false;   ///< record every iteration in the result (allocates)
+  bool shares = false;  ///< time the solve's parts in the result (reads the clock often)
 };
 
 }  // namespace touchdown::solvers

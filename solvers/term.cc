@@ -13,7 +13,6 @@ void TermBlock::Resize(const TermShape& shape) {
   first_block.assign(windows_max, 0);
   for (auto* array : {&u, &du_dh, &rho, &drho, &d2rho, &r, &dr}) array->assign(outputs, 0.0);
   du.assign(outputs * v, 0.0);
-  curvature.assign(windows_max * (v + 1) * (v + 1), 0.0);
 }
 
 }  // namespace touchdown::solvers

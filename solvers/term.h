@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "touchdown/solvers/bordered_band_matrix.h"
 #include "touchdown/solvers/loss.h"
 
 namespace touchdown::solvers {
@@ -23,6 +24,9 @@ struct TermInfo {
 /// Longest window a term may have, in blocks.
 inline constexpr int kMaxWindow = 6;
 
+/// Whether a term is part of the objective or a set of constraint rows.
+enum class Role { kCost, kConstraint };
+
 /// A term of the objective or a set of constraint rows: sum over windows k and components c of
 /// rho(u_c(q_k .. q_{k+w-1}, h, t_k)), t_k = t0 + k h. Or, as rows: lo <= u_c <= hi.
 struct TermShape {
@@ -31,6 +35,7 @@ struct TermShape {
   int outputs = 1;            ///< components of u, m
   int max_windows = 0;        ///< most windows it can ever have at this problem size
   bool uses_interval = true;  ///< u depends on h
+  bool quadratic = false;     ///< u affine in the blocks and rho quadratic: one Hessian for all x
 };
 
 /// Where a term is evaluated.
@@ -45,7 +50,37 @@ struct TermInput {
 /// gradients).
 struct Want {
   bool gradient = false;
-  bool hessian = false;
+  bool hessian = false;   ///< of the Lagrangian; only if gradient is wanted too
+  bool residual = false;  ///< r and dr of the cost terms, for least-squares backends
+};
+
+/// What the rows of one constraint term count for in a Lagrangian: sum of multiplier x u + weight x
+/// u^2 / 2 with the square's curvature weight x du du^T alone. Arrays over [window][output]; null:
+/// zero.
+struct RowWeights {
+  const double* multiplier = nullptr;
+  const double* weight = nullptr;
+};
+
+/// How a term is to be evaluated and added up.
+struct TermRequest {
+  Want want;
+  Role role = Role::kCost;
+  double objective_factor = 1.0;  ///< of a cost in the Hessian
+  RowWeights rows;                ///< of a constraint
+  /// Instead of its own second derivative every loss adds its nominal one, and no inner map its
+  /// curvature: the metric of whitening.h.
+  bool nominal_curvature = false;
+  bool jacobian_known = false;  ///< du in the block is still right: u is affine, h the same
+  bool hessian_known = false;   ///< its Hessian is in the sum already
+};
+
+/// Sums over all terms, in the problem's variables: blocks x d, then h where it is free.
+struct TermSums {
+  double* gradient = nullptr;      ///< += sum of drho du over costs
+  double* row_gradient = nullptr;  ///< += sum of multiplier du over rows
+  int interval_index = 0;          ///< place of h in both
+  BorderedBandMatrix* hessian = nullptr;
 };
 
 /// What one term hands to adapters and views: plain arrays over its active windows, sized once.
@@ -56,11 +91,8 @@ struct TermBlock {
   std::vector<double> u;                 ///< [window][output]
   std::vector<double> du;                ///< [window][output][v]
   std::vector<double> du_dh;             ///< [window][output], t_k's share included
-  std::vector<double> rho, drho, d2rho;  ///< [window][output]
-  std::vector<double> r, dr;             ///< [window][output], residual and dr/du
-  /// [window][v + 1][v + 1], symmetric, h last: sum_c m_c d2u_c with m = drho for a cost and the
-  /// given multiplier for a row.
-  std::vector<double> curvature;
+  std::vector<double> rho, drho, d2rho;  ///< [window][output], of a cost
+  std::vector<double> r, dr;             ///< [window][output], residual and dr/du of a cost
 
   /// Sizes every array for `shape`. The only call that allocates.
   void Resize(const TermShape& shape);
@@ -76,11 +108,15 @@ class Term {
   virtual const TermShape& shape() const = 0;
   /// Feasible interval of every u_c where the term is made hard.
   virtual LossBounds bounds() const = 0;
+  /// Weight of its rows in the metric of whitening.h where they are equalities.
+  virtual double nominal_row_weight() const = 0;
 
-  /// Fills `block`. `multipliers` ([window][output]) is null for a cost. Where the term cannot be
+  /// Sets block->windows and first_block.
+  virtual void Place(TermBlock* block) const = 0;
+  /// Fills the rest of a placed `block` and adds to `sums` what is wanted. Where the term cannot be
   /// evaluated it leaves NaN in u. Must not allocate. An exception is caught by the Problem.
-  virtual void Evaluate(const TermInput& input, Want want, const double* multipliers,
-                        TermBlock* block) const = 0;
+  virtual void Evaluate(const TermInput& input, const TermRequest& request, TermBlock* block,
+                        const TermSums& sums) const = 0;
 };
 
 /// An entry of a term registry: what the term is, and how to make one with random parameters that

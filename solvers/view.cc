@@ -3,7 +3,7 @@
 //   g_y = E^T g,             g_h = dJ/dh + l' . g
 //   H_yy = E^T H E,          H_yh = E^T (H l' + H_xh)
 //   H_hh = d2J/dh2 + 2 l' . H_xh + l'^T H l' + l'' . g,
-// in the last line with g of the Lagrangian, as H is.
+// in the last line with g of the Lagrangian, as H is. Rows go through the same lift.
 
 #include "touchdown/solvers/view.h"
 
@@ -41,120 +41,195 @@ View::View(const Problem& problem, AffineLift lift) : problem_(&problem), lift_(
     }
     last = b;
   }
+  plain_.assign(blocks, true);
+  const int half = problem.half_bandwidth();
+  for (int i = 0; i < static_cast<int>(blocks); ++i) {
+    for (int k = 0; k <= half && i + k < static_cast<int>(blocks); ++k) {
+      plain_[i] = plain_[i] && lift_.block[i] >= 0 && lift_.coefficient[i + k] == 1.0 &&
+                  lift_.block[i + k] == lift_.block[i] + k;
+    }
+  }
   if (last + 1 != lift_.reduced_blocks) {
     throw std::invalid_argument("View: the lift uses " + std::to_string(last + 1) + " of " +
                                 std::to_string(lift_.reduced_blocks) + " reduced blocks");
   }
 }
 
+void ViewEvaluation::HoldParameters() {
+  full.HoldParameters();
+  hold_ = true;
+  offset_known_ = false;
+}
+
 void View::Resize(ViewEvaluation* evaluation) const {
   problem_->Resize(&evaluation->full);
   const auto n = static_cast<std::size_t>(problem_->shape().blocks * block_size());
-  evaluation->x.assign(n, 0.0);
-  evaluation->dl.assign(n, 0.0);
-  evaluation->d2l.assign(n, 0.0);
+  for (auto* array : {&evaluation->x, &evaluation->dl, &evaluation->d2l, &evaluation->offset_}) {
+    array->assign(n, 0.0);
+  }
+  evaluation->scratch_.assign(2 * (n + 1), 0.0);
   evaluation->gradient.assign(static_cast<std::size_t>(num_variables()), 0.0);
   evaluation->hessian.Resize(blocks(), block_size(), problem_->half_bandwidth(), free_interval());
+  evaluation->hold_ = evaluation->offset_known_ = false;
 }
 
-namespace {
-
-void AddReducedBlocks(const double* y, const AffineLift& lift, int d, double* x) {
-  for (std::size_t i = 0; i < lift.block.size(); ++i) {
-    if (lift.block[i] < 0) continue;
+void View::AddReducedBlocks(const double* y, double* x) const {
+  const int d = block_size();
+  for (std::size_t i = 0; i < lift_.block.size(); ++i) {
+    if (lift_.block[i] < 0) continue;
     for (int c = 0; c < d; ++c) {
-      x[static_cast<int>(i) * d + c] += lift.coefficient[i] * y[lift.block[i] * d + c];
+      x[static_cast<int>(i) * d + c] += lift_.coefficient[i] * y[lift_.block[i] * d + c];
     }
   }
 }
 
-}  // namespace
+void View::ComputeOffset(Want want, ViewEvaluation* e) const {
+  if (!lift_.offset) {
+    std::fill(e->x.begin(), e->x.end(), 0.0);
+  } else if (free_interval()) {
+    const bool hessian = want.hessian;
+    lift_.offset->At(e->h, e->x.data(), e->dl.data(), hessian ? e->d2l.data() : nullptr);
+  } else {
+    if (!e->offset_known_) lift_.offset->At(e->h, e->offset_.data(), nullptr, nullptr);
+    e->offset_known_ = e->hold_;
+    e->x = e->offset_;
+  }
+}
 
 bool View::Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                     ViewEvaluation* e) const noexcept {
   e->h = free_interval() ? y[num_variables() - 1] : problem_->interval();
-  if (lift_.offset) {
-    lift_.offset->At(e->h, e->x.data(), free_interval() ? e->dl.data() : nullptr,
-                     free_interval() && want.hessian ? e->d2l.data() : nullptr);
-  } else {
-    std::fill(e->x.begin(), e->x.end(), 0.0);
-  }
-  AddReducedBlocks(y, lift_, block_size(), e->x.data());
+  ComputeOffset(want, e);
+  AddReducedBlocks(y, e->x.data());
   if (!problem_->Evaluate(e->x.data(), e->h, want, lagrangian, &e->full)) return false;
-  if (want.gradient) ReduceGradient(e);
-  if (want.hessian) ReduceHessian(e);
+  if (want.gradient || want.hessian) ReduceVector(e->full.gradient.data(), *e, e->gradient.data());
+  if (want.hessian) ReduceHessian(lagrangian, e);
   return true;
 }
 
-void View::ReduceGradient(ViewEvaluation* e) const {
+void View::ReduceVector(const double* full, const ViewEvaluation& e, double* out) const {
   const int d = block_size();
-  const std::vector<double>& g = e->full.gradient;
-  std::fill(e->gradient.begin(), e->gradient.end(), 0.0);
+  std::fill(out, out + num_variables(), 0.0);
   for (std::size_t i = 0; i < lift_.block.size(); ++i) {
     if (lift_.block[i] < 0) continue;
     for (int c = 0; c < d; ++c) {
-      e->gradient[lift_.block[i] * d + c] += lift_.coefficient[i] * g[static_cast<int>(i) * d + c];
+      out[lift_.block[i] * d + c] += lift_.coefficient[i] * full[static_cast<int>(i) * d + c];
     }
   }
   if (!free_interval()) return;
-  double sum = g.back();
-  for (std::size_t i = 0; i < e->dl.size(); ++i) sum += e->dl[i] * g[i];
-  e->gradient.back() = sum;
+  double sum = full[e.dl.size()];
+  for (std::size_t i = 0; i < e.dl.size(); ++i) sum += e.dl[i] * full[i];
+  out[num_variables() - 1] = sum;
 }
 
-void View::ReduceHessian(ViewEvaluation* e) const {
+void View::ReduceHessian(const Lagrangian& lagrangian, ViewEvaluation* e) const {
   const int d = block_size();
   const int n = problem_->shape().blocks;
   const int half = problem_->half_bandwidth();
   const BorderedBandMatrix& H = e->full.hessian;
   e->hessian.SetZero();
-  double corner = free_interval() ? H.corner() : 0.0;
   for (int i = 0; i < n; ++i) {
     const int bi = lift_.block[i];
-    const double ci = lift_.coefficient[i];
-    for (int k = 0; k <= half && i + k < n; ++k) {
-      const int j = i + k;
-      const int bj = lift_.block[j];
-      const double cj = lift_.coefficient[j];
+    if (bi < 0) continue;
+    const int last = std::min(half, n - 1 - i);
+    if (plain_[i]) {
+      const double* in = H.block(i, 0);
+      double* out = e->hessian.block(bi, 0);
+      for (int j = 0; j < (last + 1) * d * d; ++j) out[j] += in[j];
+      continue;
+    }
+    for (int k = 0; k <= last; ++k) {
+      const int bj = lift_.block[i + k];
+      if (bj < 0) continue;
+      const double scale = lift_.coefficient[i] * lift_.coefficient[i + k];
       const double* in = H.block(i, k);
-      if (bi >= 0 && bj >= 0) {
-        double* out = e->hessian.block(bi, bj - bi);
-        // Two full blocks on one reduced block: both triangles of the pair fall on its diagonal.
-        const bool folded = bi == bj && k > 0;
-        for (int r = 0; r < d; ++r) {
-          for (int s = 0; s < d; ++s) {
-            out[r * d + s] += ci * cj * (in[r * d + s] + (folded ? in[s * d + r] : 0.0));
-          }
-        }
-      }
-      if (!free_interval()) continue;
+      double* out = e->hessian.block(bi, bj - bi);
+      // Two full blocks on one reduced block: both triangles of the pair fall on its diagonal.
+      const bool folded = bi == bj && k > 0;
       for (int r = 0; r < d; ++r) {
         for (int s = 0; s < d; ++s) {
-          const double h_rs = in[r * d + s];
-          const double li = e->dl[i * d + r];
-          const double lj = e->dl[j * d + s];
-          if (bi >= 0) e->hessian.border()[bi * d + r] += ci * h_rs * lj;
-          if (k > 0 && bj >= 0) e->hessian.border()[bj * d + s] += cj * h_rs * li;
-          corner += (k > 0 ? 2.0 : 1.0) * li * h_rs * lj;
+          out[r * d + s] += scale * (in[r * d + s] + (folded ? in[s * d + r] : 0.0));
         }
       }
     }
-    if (!free_interval()) continue;
+  }
+  if (!free_interval()) return;
+
+  // v = H (l', 1): its blocks are H l' + H_xh, its last element l' . H_xh + d2J/dh2.
+  const std::size_t full = e->dl.size() + 1;
+  double* direction = e->scratch_.data();
+  double* v = e->scratch_.data() + full;
+  std::copy(e->dl.begin(), e->dl.end(), direction);
+  direction[full - 1] = 1.0;
+  H.Multiply(direction, v);
+  double corner = v[full - 1];
+  for (std::size_t i = 0; i + 1 < full; ++i) {
+    const double slope =
+        lagrangian.objective_factor * e->full.gradient[i] + e->full.row_gradient[i];
+    corner += e->dl[i] * v[i] + (lagrangian.nominal_curvature ? 0.0 : e->d2l[i] * slope);
+  }
+  for (int i = 0; i < n; ++i) {
+    if (lift_.block[i] < 0) continue;
     for (int r = 0; r < d; ++r) {
-      const double cross = H.border()[i * d + r];
-      if (bi >= 0) e->hessian.border()[bi * d + r] += ci * cross;
-      corner += 2.0 * e->dl[i * d + r] * cross +
-                e->d2l[i * d + r] * e->full.lagrangian_gradient[i * d + r];
+      e->hessian.border()[lift_.block[i] * d + r] += lift_.coefficient[i] * v[i * d + r];
     }
   }
   e->hessian.corner() = corner;
+}
+
+void View::MultiplyRowsTransposed(const double* const* weights, ViewEvaluation* e,
+                                  double* out) const {
+  const int d = block_size();
+  const auto full = e->x.size();
+  double* sum = e->scratch_.data();
+  std::fill(sum, sum + full + 1, 0.0);
+  for (int i = 0; i < problem_->num_terms(); ++i) {
+    if (problem_->role(i) != Role::kConstraint) continue;
+    const TermBlock& block = e->full.terms[i];
+    const TermShape& shape = problem_->term(i).shape();
+    const int v = shape.window * d;
+    for (int k = 0; k < block.windows; ++k) {
+      double* window = sum + block.first_block[k] * d;
+      for (int j = k * shape.outputs; j < (k + 1) * shape.outputs; ++j) {
+        const double weight = weights[i][j];
+        const double* du = &block.du[j * v];
+        for (int c = 0; c < v; ++c) window[c] += weight * du[c];
+        sum[full] += weight * block.du_dh[j];
+      }
+    }
+  }
+  ReduceVector(sum, *e, out);
+}
+
+void View::MultiplyRows(const double* dy, ViewEvaluation* e, double* const* out) const {
+  const int d = block_size();
+  const auto full = e->x.size();
+  double* dx = e->scratch_.data();
+  const double dh = free_interval() ? dy[num_variables() - 1] : 0.0;
+  for (std::size_t i = 0; i < full; ++i) dx[i] = free_interval() ? dh * e->dl[i] : 0.0;
+  AddReducedBlocks(dy, dx);
+  for (int i = 0; i < problem_->num_terms(); ++i) {
+    if (problem_->role(i) != Role::kConstraint) continue;
+    const TermBlock& block = e->full.terms[i];
+    const TermShape& shape = problem_->term(i).shape();
+    const int v = shape.window * d;
+    for (int k = 0; k < block.windows; ++k) {
+      const double* window = dx + block.first_block[k] * d;
+      for (int j = k * shape.outputs; j < (k + 1) * shape.outputs; ++j) {
+        const double* du = &block.du[j * v];
+        double product = block.du_dh[j] * dh;
+        for (int c = 0; c < v; ++c) product += du[c] * window[c];
+        out[i][j] = product;
+      }
+    }
+  }
 }
 
 void View::Lift(const double* y, std::vector<double>* x, double* h) const {
   *h = free_interval() ? y[num_variables() - 1] : problem_->interval();
   x->assign(static_cast<std::size_t>(problem_->shape().blocks * block_size()), 0.0);
   if (lift_.offset) lift_.offset->At(*h, x->data(), nullptr, nullptr);
-  AddReducedBlocks(y, lift_, block_size(), x->data());
+  AddReducedBlocks(y, x->data());
 }
 
 Eigen::VectorXd View::Restrict(const double* x, double h) const {

@@ -18,6 +18,16 @@ struct ViewEvaluation {
   double h = 1.0;                ///< interval of this evaluation
   std::vector<double> gradient;  ///< of the objective: reduced blocks x d, then h if free
   BorderedBandMatrix hessian;    ///< of the Lagrangian
+
+  /// See Evaluation::HoldParameters; the lift's offset at a fixed interval is held too.
+  void HoldParameters();
+
+ private:
+  friend class View;
+  bool hold_ = false;
+  bool offset_known_ = false;
+  std::vector<double> offset_;   // at a fixed interval
+  std::vector<double> scratch_;  // full size
 };
 
 /// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is
@@ -43,6 +53,13 @@ class View {
   bool Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                 ViewEvaluation* evaluation) const noexcept;
 
+  /// out = J^T w over all constraint rows at the last evaluation (with gradients): what multipliers
+  /// or right-hand sides `weights[term]` ([window][output]) are worth in the view's variables.
+  void MultiplyRowsTransposed(const double* const* weights, ViewEvaluation* evaluation,
+                              double* out) const;
+  /// out[term][window][output] = J dy over all constraint rows, at the last evaluation.
+  void MultiplyRows(const double* dy, ViewEvaluation* evaluation, double* const* out) const;
+
   /// The problem's blocks at y, and the interval there.
   void Lift(const double* y, std::vector<double>* x, double* h) const;
   /// The reduced variables of a point: the inverse of Lift where x lies in its range, else the
@@ -60,11 +77,14 @@ class View {
                             const ViewEvaluation& evaluation) const;
 
  private:
-  void ReduceGradient(ViewEvaluation* evaluation) const;
-  void ReduceHessian(ViewEvaluation* evaluation) const;
+  void ComputeOffset(Want want, ViewEvaluation* evaluation) const;
+  void AddReducedBlocks(const double* y, double* x) const;
+  void ReduceVector(const double* full, const ViewEvaluation& evaluation, double* out) const;
+  void ReduceHessian(const Lagrangian& lagrangian, ViewEvaluation* evaluation) const;
 
   const Problem* problem_;
   AffineLift lift_;
+  std::vector<bool> plain_;  // [block]: it and the band after it map one to one
 };
 
 }  // namespace touchdown::solvers

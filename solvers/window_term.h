@@ -17,8 +17,14 @@
 //     void Jacobian(int k, const double* q, double h, double t,
 //                   double* u, double* du, double* du_dh) const;
 //
-// is differentiated by hand instead (du_dh with t_k's share); second derivatives stay automatic.
-// Instantiate WindowTerm in one .cc only.
+// is differentiated by hand instead (du_dh with t_k's share), and with
+//
+//     void Curvature(int k, const double* q, double h, double t, bool free_interval,
+//                    const double* m, double* d2) const;
+//
+// twice: it adds sum_c m_c d2u_c to d2, a row-major (v + 1) x (v + 1) matrix with h last, of which
+// the upper triangle is read, and the row and column of h only if the interval is free. Without it
+// nested duals do the same, some ten times slower. Instantiate WindowTerm in one .cc only.
 #pragma once
 
 #include <stdexcept>
@@ -35,10 +41,17 @@ concept HasJacobian = requires(const Inner& inner, const double* q, double* out)
   inner.Jacobian(0, q, 1.0, 0.0, out, out, out);
 };
 
+template <class Inner>
+concept HasCurvature = requires(const Inner& inner, const double* q, double* out) {
+  inner.Curvature(0, q, 1.0, 0.0, true, q, out);
+};
+
 template <class Inner, class Loss>
 class WindowTerm : public Term {
  public:
-  static constexpr int kV = Inner::kWindow * Inner::kBlockSize;
+  static constexpr int kD = Inner::kBlockSize;
+  static constexpr int kW = Inner::kWindow;
+  static constexpr int kV = kW * kD;
   static constexpr int kM = Inner::kOutputs;
 
   WindowTerm(TermInfo info, Inner inner, Loss loss, int max_windows)
@@ -47,60 +60,75 @@ class WindowTerm : public Term {
       throw std::invalid_argument("term " + info_.name + ": max_windows is " +
                                   std::to_string(max_windows) + ", it must be >= 0");
     }
-    shape_ = {Inner::kBlockSize, Inner::kWindow, kM, max_windows, Inner::kUsesInterval};
+    shape_ = {
+        kD, kW, kM, max_windows, Inner::kUsesInterval, Inner::kLinearInBlocks && Loss::kQuadratic};
   }
 
   const TermInfo& info() const override { return info_; }
   const TermShape& shape() const override { return shape_; }
   LossBounds bounds() const override { return loss_.bounds(); }
+  double nominal_row_weight() const override { return loss_.NominalCurvature(0.0); }
 
   /// The inner map, to change its parameters between solves.
   Inner& inner() { return inner_; }
   const Inner& inner() const { return inner_; }
   void set_loss(const Loss& loss) { loss_ = loss; }
 
-  void Evaluate(const TermInput& input, Want want, const double* multipliers,
-                TermBlock* block) const override {
+  void Place(TermBlock* block) const override {
     const int windows = inner_.windows();
     if (windows > shape_.max_windows) {
       throw std::length_error("term " + info_.name + ": more windows than it was sized for");
     }
     block->windows = windows;
-    for (int k = 0; k < windows; ++k) {
-      const int first = inner_.first_block(k);
-      block->first_block[k] = first;
-      const double* q = input.x + first * Inner::kBlockSize;
-      const double t = input.t0 + first * input.h;
-      EvaluateMap(k, q, input.h, t, first, want.gradient || want.hessian, block);
-      EvaluateLoss(k, block);
-      if (want.hessian) {
-        const double* m = multipliers ? multipliers + k * kM : &block->drho[k * kM];
-        EvaluateCurvature(k, q, input, t, first, m, block);
+    for (int k = 0; k < windows; ++k) block->first_block[k] = inner_.first_block(k);
+  }
+
+  void Evaluate(const TermInput& input, const TermRequest& request, TermBlock* block,
+                const TermSums& sums) const override {
+    const bool bends = !Inner::kLinearInBlocks || (Inner::kUsesInterval && input.free_interval);
+    for (int k = 0; k < block->windows; ++k) {
+      const int first = block->first_block[k];
+      const Window w{
+          k, first, input.x + first * kD, input.h, input.t0 + first * input.h, input.free_interval};
+      EvaluateMap(w, request, block);
+      if (request.role == Role::kCost) EvaluateLoss(k, request, block);
+      if (request.want.gradient) AddGradient(w, request, *block, sums);
+      if (request.want.hessian && !request.hessian_known) {
+        AddHessian(w, request, bends, *block, sums.hessian);
       }
     }
   }
 
  private:
-  void EvaluateMap(int k, const double* q, double h, double t, int first, bool derivatives,
-                   TermBlock* block) const {
-    double* u = &block->u[k * kM];
-    if (!derivatives) {
-      inner_(k, q, h, t, u);
+  struct Window {
+    int k;
+    int first;
+    const double* q;
+    double h;
+    double t;
+    bool free_interval;
+  };
+
+  void EvaluateMap(const Window& w, const TermRequest& request, TermBlock* block) const {
+    double* u = &block->u[w.k * kM];
+    const bool derivatives = request.want.gradient || request.want.residual;
+    if (!derivatives || request.jacobian_known) {
+      inner_(w.k, w.q, w.h, w.t, u);
       return;
     }
-    double* du = &block->du[k * kM * kV];
-    double* du_dh = &block->du_dh[k * kM];
+    double* du = &block->du[w.k * kM * kV];
+    double* du_dh = &block->du_dh[w.k * kM];
     if constexpr (HasJacobian<Inner>) {
-      inner_.Jacobian(k, q, h, t, u, du, du_dh);
+      inner_.Jacobian(w.k, w.q, w.h, w.t, u, du, du_dh);
     } else {
       using D = Dual<double, kV + 1>;
       std::array<D, kV> q_dual;
-      for (int i = 0; i < kV; ++i) q_dual[i] = D(q[i], i);
-      const D h_dual(h, kV);
-      D t_dual(t);
-      t_dual.d[kV] = first;  // t_k = t0 + k h moves with the interval
+      for (int i = 0; i < kV; ++i) q_dual[i] = D(w.q[i], i);
+      const D h_dual(w.h, kV);
+      D t_dual(w.t);
+      t_dual.d[kV] = w.first;  // t_k = t0 + k h moves with the interval
       std::array<D, kM> u_dual;
-      inner_(k, q_dual.data(), h_dual, t_dual, u_dual.data());
+      inner_(w.k, q_dual.data(), h_dual, t_dual, u_dual.data());
       for (int c = 0; c < kM; ++c) {
         u[c] = u_dual[c].v;
         for (int i = 0; i < kV; ++i) du[c * kV + i] = u_dual[c].d[i];
@@ -109,48 +137,116 @@ class WindowTerm : public Term {
     }
   }
 
-  void EvaluateLoss(int k, TermBlock* block) const {
+  void EvaluateLoss(int k, const TermRequest& request, TermBlock* block) const {
     for (int i = k * kM; i < (k + 1) * kM; ++i) {
       const LossValue value = loss_.Value(block->u[i]);
       block->rho[i] = value.rho;
       block->drho[i] = value.drho;
-      block->d2rho[i] = value.d2rho;
+      block->d2rho[i] =
+          request.nominal_curvature ? loss_.NominalCurvature(block->u[i]) : value.d2rho;
+      if (!request.want.residual) continue;
       const LossResidual residual = loss_.Residual(block->u[i]);
       block->r[i] = residual.r;
       block->dr[i] = residual.dr;
     }
   }
 
-  void EvaluateCurvature(int k, const double* q, const TermInput& input, double t, int first,
-                         const double* multipliers, TermBlock* block) const {
+  void AddGradient(const Window& w, const TermRequest& request, const TermBlock& block,
+                   const TermSums& sums) const {
+    const bool cost = request.role == Role::kCost;
+    const double* weights = cost ? &block.drho[w.k * kM] : nullptr;
+    if (!cost && request.rows.multiplier) weights = request.rows.multiplier + w.k * kM;
+    if (!weights) return;
+    double* out = cost ? sums.gradient : sums.row_gradient;
+    double* h_out = out + sums.interval_index;
+    out += w.first * kD;
+    for (int c = 0; c < kM; ++c) {
+      if (weights[c] == 0.0) continue;
+      const double* du = &block.du[(w.k * kM + c) * kV];
+      for (int i = 0; i < kV; ++i) out[i] += weights[c] * du[i];
+      if (w.free_interval) *h_out += weights[c] * block.du_dh[w.k * kM + c];
+    }
+  }
+
+  /// Adds sum_c (weight_c du_c du_c^T + slope_c d2u_c) of one window.
+  void AddHessian(const Window& w, const TermRequest& request, bool bends, const TermBlock& block,
+                  BorderedBandMatrix* hessian) const {
     constexpr int n = kV + 1;
-    double* out = &block->curvature[k * n * n];
-    for (int i = 0; i < n * n; ++i) out[i] = 0.0;
-    const bool bends_with_interval = Inner::kUsesInterval && input.free_interval;
-    bool any = false;
-    for (int c = 0; c < kM; ++c) any = any || multipliers[c] != 0.0;
-    // Affine maps and inactive hinges bend nothing.
-    if ((Inner::kLinearInBlocks && !bends_with_interval) || !any) return;
-    if constexpr (!Inner::kLinearInBlocks || Inner::kUsesInterval) {
+    std::array<double, kM> weight{}, slope{};
+    bool any_weight = false, any_slope = false;
+    for (int c = 0; c < kM; ++c) {
+      const int i = w.k * kM + c;
+      if (request.role == Role::kCost) {
+        weight[c] = request.objective_factor * block.d2rho[i];
+        slope[c] = request.objective_factor * block.drho[i];
+      } else {
+        if (request.rows.weight) weight[c] = request.rows.weight[i];
+        if (request.rows.multiplier) slope[c] = request.rows.multiplier[i];
+      }
+      any_weight = any_weight || weight[c] != 0.0;
+      any_slope = any_slope || slope[c] != 0.0;
+    }
+    any_slope = any_slope && bends && !request.nominal_curvature;
+    if (!any_weight && !any_slope) return;
+
+    std::array<double, n * n> sum{};
+    for (int c = 0; c < kM; ++c) {
+      if (weight[c] == 0.0) continue;
+      const double* du = &block.du[(w.k * kM + c) * kV];
+      for (int i = 0; i < kV; ++i) {
+        const double left = weight[c] * du[i];
+        // From the row's own block on: the block diagonal is stored whole.
+        for (int j = i / kD * kD; j < kV; ++j) sum[i * n + j] += left * du[j];
+      }
+      if (w.free_interval) {
+        const double left = weight[c] * block.du_dh[w.k * kM + c];
+        for (int i = 0; i < kV; ++i) sum[i * n + kV] += left * du[i];
+        sum[n * n - 1] += left * block.du_dh[w.k * kM + c];
+      }
+    }
+    if (any_slope) AddCurvature(w, slope.data(), sum.data());
+    Scatter(w, sum.data(), hessian);
+  }
+
+  void AddCurvature(const Window& w, const double* slope, double* sum) const {
+    constexpr int n = kV + 1;
+    if constexpr (HasCurvature<Inner>) {
+      inner_.Curvature(w.k, w.q, w.h, w.t, w.free_interval, slope, sum);
+    } else if constexpr (!Inner::kLinearInBlocks || Inner::kUsesInterval) {
       using Inside = Dual<double, n>;
       using Outside = Dual<Inside, n>;
       std::array<Outside, kV> q_dual;
-      for (int i = 0; i < kV; ++i) q_dual[i] = Outside(Inside(q[i], i), i);
-      const Outside h_dual(Inside(input.h, kV), kV);
-      Inside t_inside(t);
-      t_inside.d[kV] = first;
+      for (int i = 0; i < kV; ++i) q_dual[i] = Outside(Inside(w.q[i], i), i);
+      const Outside h_dual(Inside(w.h, kV), kV);
+      Inside t_inside(w.t);
+      t_inside.d[kV] = w.first;
       Outside t_dual;
       t_dual.v = t_inside;
-      t_dual.d[kV] = Inside(static_cast<double>(first));
+      t_dual.d[kV] = Inside(static_cast<double>(w.first));
       std::array<Outside, kM> u;
-      inner_(k, q_dual.data(), h_dual, t_dual, u.data());
+      inner_(w.k, q_dual.data(), h_dual, t_dual, u.data());
       for (int c = 0; c < kM; ++c) {
-        if (multipliers[c] == 0.0) continue;
+        if (slope[c] == 0.0) continue;
         for (int i = 0; i < n; ++i) {
-          for (int j = 0; j < n; ++j) out[i * n + j] += multipliers[c] * u[c].d[i].d[j];
+          for (int j = 0; j < n; ++j) sum[i * n + j] += slope[c] * u[c].d[i].d[j];
         }
       }
     }
+  }
+
+  void Scatter(const Window& w, const double* sum, BorderedBandMatrix* hessian) const {
+    constexpr int n = kV + 1;
+    for (int a = 0; a < kW; ++a) {
+      for (int b = a; b < kW; ++b) {
+        double* out = hessian->block(w.first + a, b - a);
+        for (int i = 0; i < kD; ++i) {
+          for (int j = 0; j < kD; ++j) out[i * kD + j] += sum[(a * kD + i) * n + b * kD + j];
+        }
+      }
+    }
+    if (!w.free_interval) return;
+    for (int i = 0; i < kV; ++i) hessian->border()[w.first * kD + i] += sum[i * n + kV];
+    hessian->corner() += sum[n * n - 1];
   }
 
   TermInfo info_;

@@ -79,9 +79,11 @@ class ObstaclePairTerm : public ObstaclePairs {
   const solvers::TermInfo& info() const override { return term_.info(); }
   const solvers::TermShape& shape() const override { return term_.shape(); }
   solvers::LossBounds bounds() const override { return term_.bounds(); }
-  void Evaluate(const solvers::TermInput& input, solvers::Want want, const double* multipliers,
-                solvers::TermBlock* block) const override {
-    term_.Evaluate(input, want, multipliers, block);
+  double nominal_row_weight() const override { return term_.nominal_row_weight(); }
+  void Place(solvers::TermBlock* block) const override { term_.Place(block); }
+  void Evaluate(const solvers::TermInput& input, const solvers::TermRequest& request,
+                solvers::TermBlock* block, const solvers::TermSums& sums) const override {
+    term_.Evaluate(input, request, block, sums);
   }
   void SetPairs(std::span<const ObstaclePair> pairs) override { term_.inner().Set(pairs); }
   void SetWeightScale(double scale) override {

@@ -70,9 +70,8 @@ TEST(Evaluator, TheLagrangiansHessianDoesNotReplaceTheObjectives) {
   const Stop stop;
   Evaluator evaluator = b.Begin(stop);
   const double x = 0.25, multiplier = 3.0;
-  const double* multipliers[] = {nullptr, &multiplier};
-  ASSERT_TRUE(
-      evaluator.EvaluateLagrangian(&x, {.objective_factor = 0.5, .multipliers = multipliers}));
+  const RowWeights rows[] = {{}, {.multiplier = &multiplier}};
+  ASSERT_TRUE(evaluator.EvaluateLagrangian(&x, {.objective_factor = 0.5, .rows = rows}));
   EXPECT_DOUBLE_EQ(evaluator.last().hessian.At(0, 0), 1.0);  // half of 2; the row is linear
   EXPECT_DOUBLE_EQ(evaluator.last().gradient[0], 2.0 * (0.25 - 3.0));
   ASSERT_TRUE(evaluator.Evaluate(&x, {.hessian = true}));

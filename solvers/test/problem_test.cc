@@ -50,9 +50,8 @@ TEST(Problem, ConstraintRowsReportTheirViolationAndCurvature) {
   Evaluation e;
   problem.Resize(&e);
   const double x = 3.0, multiplier = 3.0;
-  const double* multipliers[] = {&multiplier};
-  ASSERT_TRUE(problem.Evaluate(&x, 1.0, {.gradient = true, .hessian = true},
-                               {.multipliers = multipliers}, &e));
+  const RowWeights rows[] = {{.multiplier = &multiplier}};
+  ASSERT_TRUE(problem.Evaluate(&x, 1.0, {.gradient = true, .hessian = true}, {.rows = rows}, &e));
   EXPECT_EQ(e.value, 0.0);
   EXPECT_DOUBLE_EQ(e.max_violation, 5.0);
   EXPECT_DOUBLE_EQ(e.terms[0].du[0], 6.0);

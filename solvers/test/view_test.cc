@@ -83,12 +83,12 @@ TEST(View, TheLagrangiansHessianMatchesDifferences) {
     problem.AddTerm(wavy(6), Role::kConstraint);
     std::vector<double> row_multipliers(12);
     for (double& m : row_multipliers) m = normal(random);
-    const double* multipliers[] = {nullptr, row_multipliers.data()};
+    const RowWeights rows[] = {{}, {.multiplier = row_multipliers.data()}};
     for (const View& view : {View(problem, AffineLift::Identity(9)), FoldedView(problem)}) {
       Eigen::VectorXd y(view.num_variables());
       for (int i = 0; i < y.size(); ++i) y[i] = 0.7 * normal(random);
       if (free_interval) y[y.size() - 1] = 0.8;
-      const Lagrangian lagrangian{.objective_factor = 0.4, .multipliers = multipliers};
+      const Lagrangian lagrangian{.objective_factor = 0.4, .rows = rows};
       const DerivativeErrors errors = CheckDerivatives(view, y, lagrangian);
       EXPECT_LT(errors.worst(), 1e-5);
     }

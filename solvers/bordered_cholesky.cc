@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Right-looking Cholesky of a block band, then the border by one triangular solve. The factor is
+// stored column by column as panels: scalar column c of block column j holds the rows of blocks
+// j .. j + half one after another, padded with zeros, so that every update of the trailing matrix is
+// a run of whole vector registers and needs no tail. Diagonal elements are stored inverted.
+
+#include "touchdown/solvers/bordered_cholesky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace touchdown::solvers {
+
+namespace {
+
+constexpr int kWidestScalarBand = 31;
+
+constexpr int RoundUp(int n) { return (n + 3) / 4 * 4; }
+
+/// Kernels for d scalars in a block and a compile-time half bandwidth.
+template <int d, int half>
+struct Panels {
+  static constexpr int kRows = d * (half + 1);
+  /// A run that starts in row d b and is rounded up ends before this.
+  static constexpr int kStride = RoundUp(kRows) + 4;
+  static constexpr int kPad = RoundUp(kRows) + 4;
+
+  static double* Column(double* band, int j, int c) { return band + (j * d + c) * kStride; }
+  static const double* Column(const double* band, int j, int c) {
+    return band + (j * d + c) * kStride;
+  }
+
+  static void Load(const BorderedBandMatrix& A, double shift, double* band) {
+    const int size = A.block_size();  // d, or any for a band of scalars
+    const int n = A.blocks();
+    for (int j = 0; j < n; ++j) {
+      const int last = std::min(A.half_bandwidth(), n - 1 - j);
+      for (int c = 0; c < size; ++c) {
+        // A scalar band's column starts at its own diagonal element.
+        const int above = d == 1 ? c : 0;
+        double* column = band + (j * size + c) * kStride;
+        int row = 0;
+        for (int k = 0; k <= last; ++k) {
+          const double* block = A.block(j, k) + c * size;
+          for (int r = k == 0 ? above : 0; r < size; ++r) column[row++] = block[r];
+        }
+        for (; row < kStride; ++row) column[row] = 0.0;
+        column[c - above] += shift;
+      }
+    }
+  }
+
+  template <int b>
+  static void UpdateTrailing(double* band, int j) {
+    if constexpr (b <= half) {
+      constexpr int lanes = RoundUp(kRows - b * d);
+      for (int c = 0; c < d; ++c) {
+        double* __restrict out = Column(band, j + b, c);
+        for (int m = 0; m < d; ++m) {
+          const double* __restrict panel = Column(band, j, m) + b * d;
+          const double factor = panel[c];
+#pragma GCC ivdep
+          for (int r = 0; r < lanes; ++r) out[r] -= factor * panel[r];
+        }
+      }
+      UpdateTrailing<b + 1>(band, j);
+    }
+  }
+
+  /// False where a pivot is not positive.
+  static bool Factor(int n, double* band) {
+    for (int j = 0; j < n; ++j) {
+      for (int c = 0; c < d; ++c) {
+        double* __restrict column = Column(band, j, c);
+        for (int m = 0; m < c; ++m) {
+          const double* __restrict earlier = Column(band, j, m);
+          const double factor = earlier[c];
+#pragma GCC ivdep
+          for (int r = 0; r < kStride - 4; ++r) column[r] -= factor * earlier[r];
+        }
+        const double pivot = column[c];
+        if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+        const double inverse = 1.0 / std::sqrt(pivot);
+#pragma GCC ivdep
+        for (int r = 0; r < kStride - 4; ++r) column[r] *= inverse;
+        column[c] = inverse;
+      }
+      // Rows above the diagonal hold what the loads and updates left there: not part of L.
+      for (int c = 1; c < d; ++c) {
+        for (int r = 0; r < c; ++r) Column(band, j, c)[r] = 0.0;
+      }
+      UpdateTrailing<1>(band, j);
+    }
+    return true;
+  }
+
+  /// `x` has kPad numbers of room behind its end.
+  static void SolveLower(int n, const double* band, double* __restrict x) {
+    for (int j = 0; j < n; ++j) {
+      double* at = x + j * d;
+      for (int c = 0; c < d; ++c) {
+        const double* __restrict column = Column(band, j, c);
+        const double value = at[c] * column[c];
+#pragma GCC ivdep
+        for (int r = 0; r < kStride - 4; ++r) at[r] -= value * column[r];
+        at[c] = value;
+      }
+    }
+  }
+
+  static void SolveUpper(int n, const double* band, double* __restrict x) {
+    for (int j = n - 1; j >= 0; --j) {
+      double* at = x + j * d;
+      double sums[d];
+      for (int c = 0; c < d; ++c) {
+        const double* __restrict column = Column(band, j, c);
+        double sum = 0.0;
+        for (int r = d; r < kRows; ++r) sum += column[r] * at[r];
+        sums[c] = sum;
+      }
+      for (int c = d - 1; c >= 0; --c) {
+        const double* column = Column(band, j, c);
+        double sum = sums[c];
+        for (int r = c + 1; r < d; ++r) sum += column[r] * at[r];
+        at[c] = (at[c] - sum) * column[c];
+      }
+    }
+  }
+
+  static void MultiplyUpper(int n, const double* band, const double* x, double* out) {
+    for (int j = 0; j < n; ++j) {
+      for (int c = 0; c < d; ++c) {
+        const double* column = Column(band, j, c);
+        double sum = x[j * d + c] / column[c];
+        const int rows = std::min(kRows, (n - j) * d);
+        for (int r = c + 1; r < rows; ++r) sum += column[r] * x[j * d + r];
+        out[j * d + c] = sum;
+      }
+    }
+  }
+};
+
+/// Calls `visit(Panels<d, half>())` for the sizes that there are: blocks of three, or any other size
+/// as a band of scalars, whose half bandwidth is rounded up to one that is compiled.
+template <class Visit>
+auto Dispatch(int d, int half, Visit&& visit) {
+  if (d == 3) {
+    switch (half) {
+      case 0:
+      case 1:
+        return visit(Panels<3, 1>());
+      case 2:
+        return visit(Panels<3, 2>());
+      case 3:
+        return visit(Panels<3, 3>());
+      case 4:
+        return visit(Panels<3, 4>());
+      default:
+        return visit(Panels<3, 5>());
+    }
+  }
+  if (half <= 7) return visit(Panels<1, 7>());
+  if (half <= 15) return visit(Panels<1, 15>());
+  return visit(Panels<1, kWidestScalarBand>());
+}
+
+}  // namespace
+
+void BorderedCholesky::Prepare(const BorderedBandMatrix& shape) {
+  const int size = shape.block_size();
+  d_ = size == 3 ? 3 : 1;
+  half_ = size == 3 ? shape.half_bandwidth() : size * (shape.half_bandwidth() + 1) - 1;
+  if (half_ > (d_ == 3 ? 5 : kWidestScalarBand)) {
+    throw std::invalid_argument("BorderedCholesky: a band of " + std::to_string(half_) +
+                                " beside the diagonal, it must be at most " +
+                                std::to_string(d_ == 3 ? 5 : kWidestScalarBand));
+  }
+  n_ = shape.blocks() * size;
+  blocks_ = n_ / d_;
+  bordered_ = shape.bordered();
+  const auto n = static_cast<std::size_t>(n_);
+  Dispatch(d_, half_, [&](auto panels) {
+    using P = decltype(panels);
+    band_.assign((n + P::kPad) * P::kStride, 0.0);
+    scratch_.assign(n + P::kPad, 0.0);
+  });
+  border_.assign(n, 0.0);
+  corner_ = 1.0;
+}
+
+BorderedCholesky::Status BorderedCholesky::Factor(const BorderedBandMatrix& A, double shift,
+                                                  double border_shift) {
+  const bool definite = Dispatch(d_, half_, [&](auto panels) {
+    using P = decltype(panels);
+    P::Load(A, shift, band_.data());
+    return P::Factor(blocks_, band_.data());
+  });
+  if (!definite) return Status::kIndefinite;
+  corner_ = 1.0;
+  if (!bordered_) return Status::kDefinite;
+  std::copy(A.border(), A.border() + n_, border_.begin());
+  SolveBandLower(border_.data());
+  double schur = A.corner() + border_shift;
+  for (const double w : border_) schur -= w * w;
+  corner_ = std::sqrt(std::abs(schur));
+  return schur > 0.0 ? Status::kDefinite : Status::kBorderIndefinite;
+}
+
+void BorderedCholesky::SolveBandLower(double* x) const {
+  std::copy(x, x + n_, scratch_.begin());
+  Dispatch(d_, half_, [&](auto panels) {
+    decltype(panels)::SolveLower(blocks_, band_.data(), scratch_.data());
+  });
+  std::copy(scratch_.begin(), scratch_.begin() + n_, x);
+}
+
+void BorderedCholesky::SolveLower(double* x) const {
+  SolveBandLower(x);
+  if (!bordered_) return;
+  double sum = x[n_];
+  for (int i = 0; i < n_; ++i) sum -= border_[i] * x[i];
+  x[n_] = sum / corner_;
+}
+
+void BorderedCholesky::SolveUpper(double* x) const {
+  if (bordered_) {
+    x[n_] /= corner_;
+    for (int i = 0; i < n_; ++i) x[i] -= border_[i] * x[n_];
+  }
+  std::copy(x, x + n_, scratch_.begin());
+  Dispatch(d_, half_, [&](auto panels) {
+    using P = decltype(panels);
+    std::fill(scratch_.begin() + n_, scratch_.end(), 0.0);
+    P::SolveUpper(blocks_, band_.data(), scratch_.data());
+  });
+  std::copy(scratch_.begin(), scratch_.begin() + n_, x);
+}
+
+void BorderedCholesky::MultiplyUpper(const double* x, double* out) const {
+  Dispatch(d_, half_,
+           [&](auto panels) { decltype(panels)::MultiplyUpper(blocks_, band_.data(), x, out); });
+  if (!bordered_) return;
+  for (int i = 0; i < n_; ++i) out[i] += border_[i] * x[n_];
+  out[n_] = corner_ * x[n_];
+}
+
+}  // namespace touchdown::solvers

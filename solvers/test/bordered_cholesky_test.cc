@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The factor of random arrowheads against Eigen's dense one, for blocks of three and of other sizes.
+
+#include "touchdown/solvers/bordered_cholesky.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <random>
+
+namespace touchdown::solvers {
+namespace {
+
+struct Shape {
+  int blocks, block_size, half;
+  bool bordered;
+};
+
+BorderedBandMatrix RandomDefinite(const Shape& shape, std::mt19937_64* random) {
+  std::normal_distribution<double> normal;
+  BorderedBandMatrix A;
+  A.Resize(shape.blocks, shape.block_size, shape.half, shape.bordered);
+  const int d = shape.block_size;
+  for (int i = 0; i < shape.blocks; ++i) {
+    for (int k = 0; k <= shape.half && i + k < shape.blocks; ++k) {
+      for (int r = 0; r < d; ++r) {
+        for (int c = 0; c < d; ++c) A.block(i, k)[r * d + c] = normal(*random);
+      }
+    }
+    for (int r = 0; r < d; ++r) {
+      for (int c = 0; c < r; ++c) A.block(i, 0)[r * d + c] = A.block(i, 0)[c * d + r];
+      A.block(i, 0)[r * d + r] += 8.0 * d * (shape.half + 1);
+    }
+  }
+  if (shape.bordered) {
+    for (int i = 0; i < shape.blocks * d; ++i) A.border()[i] = normal(*random);
+    A.corner() = 20.0;
+  }
+  return A;
+}
+
+Eigen::MatrixXd Dense(const BorderedBandMatrix& A) {
+  Eigen::MatrixXd dense(A.size(), A.size());
+  for (int i = 0; i < A.size(); ++i) {
+    for (int j = 0; j < A.size(); ++j) dense(i, j) = A.At(i, j);
+  }
+  return dense;
+}
+
+TEST(BorderedCholesky, MatchesTheDenseFactor) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const Shape shape :
+       {Shape{15, 3, 3, false}, Shape{15, 3, 3, true}, Shape{2, 3, 3, true}, Shape{9, 3, 1, false},
+        Shape{9, 3, 2, true}, Shape{9, 3, 5, true}, Shape{6, 1, 3, false}, Shape{8, 2, 4, true},
+        Shape{7, 4, 3, true}, Shape{1, 1, 0, true}, Shape{5, 5, 5, false}}) {
+    const BorderedBandMatrix A = RandomDefinite(shape, &random);
+    const Eigen::MatrixXd dense = Dense(A);
+    BorderedCholesky factor;
+    factor.Prepare(A);
+    ASSERT_EQ(factor.Factor(A), BorderedCholesky::Status::kDefinite);
+    const Eigen::VectorXd b =
+        Eigen::VectorXd::NullaryExpr(A.size(), [&](Eigen::Index) { return normal(random); });
+
+    Eigen::VectorXd x = b;
+    factor.Solve(x.data());
+    EXPECT_LT((dense * x - b).norm(), 1e-12 * b.norm() * dense.norm());
+
+    const Eigen::MatrixXd L = dense.llt().matrixL();
+    Eigen::VectorXd lower = b, upper = b, product(A.size());
+    factor.SolveLower(lower.data());
+    factor.SolveUpper(upper.data());
+    factor.MultiplyUpper(b.data(), product.data());
+    EXPECT_LT((L * lower - b).norm(), 1e-12 * b.norm() * L.norm());
+    EXPECT_LT((L.transpose() * upper - b).norm(), 1e-12 * b.norm() * L.norm());
+    EXPECT_LT((L.transpose() * b - product).norm(), 1e-12 * b.norm() * L.norm());
+
+    ASSERT_EQ(factor.Factor(A, 2.0, 3.0), BorderedCholesky::Status::kDefinite);
+    Eigen::MatrixXd shifted = dense;
+    shifted.diagonal().array() += 2.0;
+    if (shape.bordered) shifted(A.size() - 1, A.size() - 1) += 1.0;
+    x = b;
+    factor.Solve(x.data());
+    EXPECT_LT((shifted * x - b).norm(), 1e-12 * b.norm() * dense.norm());
+  }
+}
+
+TEST(BorderedCholesky, SaysWhatIsIndefinite) {
+  std::mt19937_64 random(4);
+  BorderedBandMatrix A = RandomDefinite({6, 3, 3, true}, &random);
+  BorderedCholesky factor;
+  factor.Prepare(A);
+  A.corner() = -5.0;
+  EXPECT_EQ(factor.Factor(A), BorderedCholesky::Status::kBorderIndefinite);
+  EXPECT_GT(factor.corner(), 0.0);
+  A.block(4, 0)[4] = -100.0;
+  EXPECT_EQ(factor.Factor(A), BorderedCholesky::Status::kIndefinite);
+  A.block(4, 0)[4] = std::nan("");
+  EXPECT_EQ(factor.Factor(A), BorderedCholesky::Status::kIndefinite);
+}
+
+TEST(BorderedCholesky, RefusesABandItHasNoKernelFor) {
+  BorderedBandMatrix wide;
+  wide.Resize(9, 8, 5, false);
+  BorderedCholesky factor;
+  EXPECT_THROW(factor.Prepare(wide), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchdown::solvers
