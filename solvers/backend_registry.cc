@@ -5,12 +5,15 @@
 
 #include <stdexcept>
 
+#include "touchdown/solvers/banded_solver.h"
 #include "touchdown/solvers/ceres_solver.h"
 
 namespace touchdown::solvers {
 
 BackendRegistry StandardBackends() {
   return {
+      {"banded", "own Newton and interior point on the arrowhead band; soft and hard limits",
+       MakeBandedSolver},
       {"ceres", "Ceres Levenberg-Marquardt, sparse normal equations; soft limits", MakeCeresSolver},
   };
 }

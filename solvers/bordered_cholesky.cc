@@ -224,18 +224,27 @@ void BorderedCholesky::SolveLower(double* x) const {
   x[n_] = sum / corner_;
 }
 
+void BorderedCholesky::SolveBandUpper(double* x) const {
+  std::copy(x, x + n_, scratch_.begin());
+  std::fill(scratch_.begin() + n_, scratch_.end(), 0.0);
+  Dispatch(d_, half_, [&](auto panels) {
+    decltype(panels)::SolveUpper(blocks_, band_.data(), scratch_.data());
+  });
+  std::copy(scratch_.begin(), scratch_.begin() + n_, x);
+}
+
 void BorderedCholesky::SolveUpper(double* x) const {
   if (bordered_) {
     x[n_] /= corner_;
     for (int i = 0; i < n_; ++i) x[i] -= border_[i] * x[n_];
   }
-  std::copy(x, x + n_, scratch_.begin());
-  Dispatch(d_, half_, [&](auto panels) {
-    using P = decltype(panels);
-    std::fill(scratch_.begin() + n_, scratch_.end(), 0.0);
-    P::SolveUpper(blocks_, band_.data(), scratch_.data());
-  });
-  std::copy(scratch_.begin(), scratch_.begin() + n_, x);
+  SolveBandUpper(x);
+}
+
+void BorderedCholesky::SolveWithBorder(double* x) const {
+  SolveBandLower(x);
+  for (int i = 0; i < n_; ++i) x[i] -= border_[i] * x[n_];
+  SolveBandUpper(x);
 }
 
 void BorderedCholesky::MultiplyUpper(const double* x, double* out) const {

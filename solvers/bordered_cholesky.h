@@ -34,6 +34,8 @@ class BorderedCholesky {
     SolveLower(x);
     SolveUpper(x);
   }
+  /// In place, with the last number of x given: the rest becomes B^-1 (x - last b). Needs a border.
+  void SolveWithBorder(double* x) const;
   void MultiplyUpper(const double* x, double* out) const;
 
   int size() const { return n_ + (bordered_ ? 1 : 0); }
@@ -42,6 +44,7 @@ class BorderedCholesky {
 
  private:
   void SolveBandLower(double* x) const;
+  void SolveBandUpper(double* x) const;
 
   // Scalars of B, in blocks of `d_`: 3, or 1 with the band widened.
   int d_ = 3;

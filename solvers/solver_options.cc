@@ -11,15 +11,16 @@ namespace touchdown::solvers {
 
 namespace {
 
-[[noreturn]] void ThrowUnknown(const std::string& name, const std::vector<OptionSpec>& specs) {
+[[noreturn]] void ThrowUnknown(std::string_view name, const std::vector<OptionSpec>& specs) {
   std::string known;
   for (const OptionSpec& spec : specs) known += (known.empty() ? "" : ", ") + spec.name;
-  throw std::invalid_argument("solver option " + name + " is unknown; known: " + known);
+  throw std::invalid_argument("solver option " + std::string(name) +
+                              " is unknown; known: " + known);
 }
 
 }  // namespace
 
-void SolverOptions::Set(const std::string& name, double value) {
+void SolverOptions::Set(std::string_view name, double value) {
   for (OptionSpec& spec : specs_) {
     if (spec.name != name) continue;
     const bool whole = !spec.integer || value == std::floor(value);
@@ -36,7 +37,7 @@ void SolverOptions::Set(const std::string& name, double value) {
   ThrowUnknown(name, specs_);
 }
 
-double SolverOptions::Get(const std::string& name) const {
+double SolverOptions::Get(std::string_view name) const {
   for (const OptionSpec& spec : specs_) {
     if (spec.name == name) return spec.value;
   }

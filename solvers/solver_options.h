@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchdown::solvers {
@@ -25,9 +26,9 @@ class SolverOptions {
 
   const std::vector<OptionSpec>& specs() const { return specs_; }
   /// Throws std::invalid_argument naming the option, the value and the allowed range or names.
-  void Set(const std::string& name, double value);
+  void Set(std::string_view name, double value);
   /// Throws std::invalid_argument if there is no such option.
-  double Get(const std::string& name) const;
+  double Get(std::string_view name) const;
 
  private:
   std::vector<OptionSpec> specs_;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "touchdown/solvers/bordered_cholesky.h"
+#include "touchdown/solvers/evaluator.h"
+
+namespace touchdown::solvers {
+
+/// A primal-dual interior point on a problem with inequality rows lo <= u <= hi.
+class BandedInteriorPoint {
+ public:
+  struct Tolerances {
+    double gap = 1e-8;        ///< complementarity and dual error, relative to the cost
+    double violation = 1e-8;  ///< of a row
+  };
+
+  void Prepare(const View& view);
+  /// `multipliers` ([term][row], positive at an upper bound, negative at a lower one) may hold an
+  /// earlier solve's. Does not allocate.
+  SolveStatus Run(const View& view, const double* start,
+                  const std::vector<std::vector<double>>& multipliers, const Tolerances& tolerances,
+                  Evaluator* evaluator);
+  /// The multiplier of every row at the last point, [term] -> [row]; empty for costs.
+  const std::vector<double>& multipliers(int term) const { return multiplier_[term]; }
+
+ private:
+  /// One bound of all rows of a term: g = sign (u - bound) <= 0.
+  struct Side {
+    int term = 0;
+    int outputs = 0;
+    double sign = 1.0;
+    double bound = 0.0;
+    int first = 0;  ///< place in the flat arrays
+    int rows = 0;   ///< active in this solve
+  };
+  /// Slack, multiplier, elastic part and the elastic part's multiplier, all > 0, of g + s = e.
+  struct Rows {
+    std::vector<double> s, z, e, w;
+  };
+  struct StepLengths {
+    double primal = 1.0;
+    double dual = 1.0;
+  };
+
+  SolveStatus Iterate(const View& view, const Tolerances& tolerances, Evaluator* evaluator);
+  void PlaceRows(const ViewEvaluation& at);
+  void StartRows(const ViewEvaluation& at, const std::vector<std::vector<double>>& multipliers);
+  void ReadRows(const ViewEvaluation& at);
+  /// Evaluates at y with the Hessian H + G^T W G of these rows.
+  bool EvaluateAt(const double* y, const Rows& rows, Evaluator* evaluator);
+  void DualResidual(const View& view, Evaluator* evaluator);
+  /// The step to complementarity `mu`, with the second-order terms `correction` counted in.
+  void Direction(const View& view, double mu, Evaluator* evaluator);
+  void Correct();
+  StepLengths LongestStep() const;
+  double Complementarity(const StepLengths& length) const;
+  void Move(const StepLengths& length);
+  double Merit(double cost, double mu, double penalty, const Rows& rows) const;
+  double LargestRow() const;
+
+  bool elastic_ = false;
+  double price_ = 0.0;  // of a unit of e
+  int active_ = 0;      // rows in all sides
+  std::vector<Side> sides_;
+  Rows now_, next_;
+  std::vector<double> g_, k_, ds_, dz_, de_, correction_s_, correction_e_;
+  std::vector<std::vector<double>> multiplier_, weight_, product_;  // [term][row]
+  std::vector<RowWeights> row_weights_;
+  std::vector<const double*> products_in_;
+  std::vector<double*> products_out_;
+  std::vector<double> y_, trial_, step_, right_;
+  BorderedCholesky factor_;
+};
+
+}  // namespace touchdown::solvers

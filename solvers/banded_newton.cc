@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Newton's method on an arrowhead Hessian. Full steps almost always: value, gradient and Hessian of
+// a trial point come out of one pass, so that an accepted step needs no second evaluation. Where the
+// Hessian is indefinite (a nonconvex term, a free interval) it is shifted until it is not; a border
+// that alone is indefinite takes its absolute value, which keeps the fast directions as they are.
+// Source: J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., sections 3.4 and 3.5.
+
+#include "touchdown/solvers/banded_newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "touchdown/solvers/newton_step.h"
+
+namespace touchdown::solvers {
+
+namespace {
+
+constexpr double kSufficientDecrease = 1e-4;
+constexpr double kShortestStep = 1e-10;
+/// Below this share of the cost a decrease is rounding.
+constexpr double kRounding = 1e-15;
+
+double Dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+double Largest(const std::vector<double>& a) {
+  double largest = 0.0;
+  for (const double value : a) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+}  // namespace
+
+void BandedNewton::Prepare(const View& view) {
+  BorderedBandMatrix shape;
+  shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
+               view.free_interval());
+  factor_.Prepare(shape);
+  for (auto* vector : {&y_, &gradient_, &step_, &trial_}) {
+    vector->assign(static_cast<std::size_t>(view.num_variables()), 0.0);
+  }
+}
+
+SolveStatus BandedNewton::Run(const View& view, const double* start, const Tolerances& tolerances,
+                              Evaluator* evaluator) {
+  std::copy(start, start + y_.size(), y_.begin());
+  if (!evaluator->EvaluateLagrangian(y_.data(), {})) return SolveStatus::kEvaluationFailed;
+  while (!evaluator->must_stop()) {
+    const ViewEvaluation& at = evaluator->last();
+    gradient_ = at.gradient;
+    const double value = at.full.value;
+    if (!FactorDefinite(at.hessian, &factor_)) return SolveStatus::kNumericalFailure;
+    NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
+    const double slope = Dot(gradient_, step_);
+    if (-0.5 * slope <= tolerances.gap * std::abs(value)) return SolveStatus::kConverged;
+    const double length = LineSearch(value, slope, evaluator);
+    if (length == 0.0) {
+      // Nothing along a descent direction is lower: what is left is rounding, or the step is wrong.
+      return -slope <= 1e-9 * std::abs(value) ? SolveStatus::kConverged
+                                              : SolveStatus::kNumericalFailure;
+    }
+    evaluator->FinishIteration(length * std::sqrt(Dot(step_, step_)), Largest(gradient_));
+    evaluator->CheckStop();
+  }
+  return evaluator->stop_status();
+}
+
+/// Halves the step until it decreases the value enough; y_ becomes the accepted point, which is the
+/// evaluator's last. Returns the accepted share of the step, 0 if there is none.
+double BandedNewton::LineSearch(double value, double slope, Evaluator* evaluator) {
+  for (double t = 1.0; t > kShortestStep; t *= 0.5) {
+    for (std::size_t i = 0; i < y_.size(); ++i) trial_[i] = y_[i] + t * step_[i];
+    const bool ok = evaluator->EvaluateLagrangian(trial_.data(), {});
+    const double decrease = value - evaluator->last().full.value;
+    const double wanted = -kSufficientDecrease * t * slope - kRounding * std::abs(value);
+    if (ok && decrease >= wanted) {
+      y_.swap(trial_);
+      return t;
+    }
+    if (evaluator->must_stop()) return t;
+  }
+  return 0.0;
+}
+
+}  // namespace touchdown::solvers

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "touchdown/solvers/bordered_cholesky.h"
+#include "touchdown/solvers/evaluator.h"
+
+namespace touchdown::solvers {
+
+/// Newton's method with a line search on a problem without constraint rows.
+class BandedNewton {
+ public:
+  /// `gap`: ends when half the Newton decrement, the expected distance to the optimum, falls below
+  /// this share of the cost.
+  struct Tolerances {
+    double gap = 1e-9;
+  };
+
+  void Prepare(const View& view);
+  /// Does not allocate.
+  SolveStatus Run(const View& view, const double* start, const Tolerances& tolerances,
+                  Evaluator* evaluator);
+
+ private:
+  double LineSearch(double value, double slope, Evaluator* evaluator);
+
+  BorderedCholesky factor_;
+  std::vector<double> y_, gradient_, step_, trial_;
+};
+
+}  // namespace touchdown::solvers

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The backend `banded`: Newton's method or the interior point, whichever the problem asks for.
+
+#include "touchdown/solvers/banded_solver.h"
+
+#include "touchdown/solvers/banded_interior_point.h"
+#include "touchdown/solvers/banded_newton.h"
+
+namespace touchdown::solvers {
+
+namespace {
+
+bool HasRows(const View& view) {
+  for (int i = 0; i < view.problem().num_terms(); ++i) {
+    if (view.problem().role(i) == Role::kConstraint) return true;
+  }
+  return false;
+}
+
+class BandedSolver : public SolverBackend {
+ public:
+  BandedSolver()
+      : SolverBackend("banded",
+                      SolverOptions({
+                          {"gap_tolerance", 1e-7, 1e-15, 1.0, false,
+                           "expected distance to the optimum that ends a solve, share of the cost"},
+                          {"violation_tolerance", 1e-8, 1e-14, 1e-3, false,
+                           "violation of a hard row at which a solve may end"},
+                      })) {}
+
+  Capabilities capabilities() const override { return {.hard_rows = true}; }
+
+ private:
+  void DoPrepare(const View& view) override {
+    has_rows_ = HasRows(view);
+    if (has_rows_) {
+      interior_point_.Prepare(view);
+    } else {
+      newton_.Prepare(view);
+    }
+  }
+
+  void DoSolve(const View& view, const WarmStart& warm, const Stop& /*stop*/, Evaluator* evaluator,
+               SolverResult* result) override {
+    const ShareScope scope(evaluator, Share::kNative);
+    const double gap = options().Get("gap_tolerance");
+    if (!has_rows_) {
+      result->status = newton_.Run(view, warm.y.data(), {gap}, evaluator);
+      return;
+    }
+    result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
+                                         {gap, options().Get("violation_tolerance")}, evaluator);
+    result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
+    for (int i = 0; i < view.problem().num_terms(); ++i) {
+      result->multipliers[i] = interior_point_.multipliers(i);
+    }
+  }
+
+  bool has_rows_ = false;
+  BandedNewton newton_;
+  BandedInteriorPoint interior_point_;
+};
+
+}  // namespace
+
+std::unique_ptr<SolverBackend> MakeBandedSolver() { return std::make_unique<BandedSolver>(); }
+
+}  // namespace touchdown::solvers

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The linear algebra that Newton's method and the interior point share.
+
+#include "touchdown/solvers/newton_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::solvers {
+
+namespace {
+
+constexpr double kFirstShift = 1e-6;  // of the largest diagonal element
+constexpr double kShiftGrowth = 10.0;
+constexpr int kMostShifts = 12;
+
+double LargestDiagonal(const BorderedBandMatrix& H) {
+  const int d = H.block_size();
+  double largest = 1e-300;
+  for (int i = 0; i < H.blocks(); ++i) {
+    for (int r = 0; r < d; ++r) largest = std::max(largest, std::abs(H.block(i, 0)[r * d + r]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor) {
+  using Status = BorderedCholesky::Status;
+  double shift = 0.0;
+  for (int i = 0; i < kMostShifts; ++i) {
+    const Status status = factor->Factor(H, shift, shift);
+    if (status != Status::kIndefinite && factor->corner() > 0.0) return true;
+    shift = shift == 0.0 ? kFirstShift * LargestDiagonal(H) : kShiftGrowth * shift;
+  }
+  return false;
+}
+
+void NewtonStep(const View& view, const double* y, const double* gradient,
+                const BorderedCholesky& factor, double* step) {
+  const int n = view.num_variables();
+  for (int i = 0; i < n; ++i) step[i] = -gradient[i];
+  factor.Solve(step);
+  if (!view.free_interval()) return;
+  const ProblemShape& shape = view.problem().shape();
+  const double h = y[n - 1];
+  const double inside = std::clamp(h + step[n - 1], shape.interval_min, shape.interval_max);
+  if (inside == h + step[n - 1]) return;
+  for (int i = 0; i < n - 1; ++i) step[i] = -gradient[i];
+  step[n - 1] = inside - h;
+  factor.SolveWithBorder(step);
+}
+
+}  // namespace touchdown::solvers
