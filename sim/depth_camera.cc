@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/ray_intersection.h"
@@ -83,7 +84,10 @@ DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& o
                            (row + 0.5 - intrinsics_.cy) / intrinsics_.focal, 1.0);
     }
   }
-  for (const Obstacle& obstacle : obstacles.obstacles()) scene_.push_back(MakeShape(obstacle));
+  for (const Obstacle& obstacle : obstacles.obstacles()) {
+    CheckGeom(obstacle, "obstacle " + std::to_string(scene_.size()), "the depth camera");
+    scene_.push_back(MakeShape(obstacle));
+  }
   near_.reserve(scene_.size() + 2);
 }
 

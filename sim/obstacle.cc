@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances and rays for boxes and cylinders, each in the obstacle's own frame, where a box is
+// Distances and rays for boxes and cylinders (compound_shapes.cc has the others), each in the obstacle's own frame, where a box is
 // axis-aligned and a cylinder is a rectangle in (radius, z). The signed distance to a rectangle or
 // box of half extents h at a point p is |max(q, 0)| + min(max_i q_i, 0) with q = |p| - h.
 
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/ray_intersection.h"
@@ -42,6 +43,29 @@ void ValidateOne(const Cylinder& cylinder, const std::string& name) {
   ValidateCenter(cylinder.center, name);
   CheckAbove(name + ": radius", cylinder.radius, 0.0, kMaxSize);
   CheckAbove(name + ": height", cylinder.height, 0.0, kMaxSize);
+}
+
+void ValidateOne(const VoxelColumns& columns, const std::string& name) {
+  ValidateCenter(columns.corner, name);
+  CheckAbove(name + ": cell", columns.cell, 0.0, kMaxSize);
+  CheckWithin(name + ": count_x", columns.count_x, 1, 1000);
+  CheckWithin(name + ": count_y", columns.count_y, 1, 1000);
+  const double wanted = static_cast<double>(columns.count_x) * columns.count_y;
+  CheckWithin(name + ": number of heights", static_cast<double>(columns.heights.size()), wanted,
+              wanted);
+  for (const double height : columns.heights) {
+    CheckWithin(name + ": height", height, 0.0, kMaxSize);
+  }
+  CheckAbove(name + ": greatest height",
+             *std::max_element(columns.heights.begin(), columns.heights.end()), 0.0, kMaxSize);
+}
+
+void ValidateOne(const Ring& ring, const std::string& name) {
+  ValidateCenter(ring.center, name);
+  CheckAbove(name + ": half_width", ring.half_width, 0.0, kMaxSize);
+  CheckAbove(name + ": half_height", ring.half_height, 0.0, kMaxSize);
+  CheckAbove(name + ": tube_radius", ring.tube_radius, 0.0, kMaxSize);
+  CheckWithin(name + ": yaw", ring.yaw, -1.0e3, 1.0e3);
 }
 
 double DistanceTo(const Box& box, const Eigen::Vector3d& p_W) {
@@ -81,10 +105,45 @@ Bounds BoundsOfOne(const Cylinder& cylinder) {
   return {cylinder.center - reach, cylinder.center + reach};
 }
 
+Bounds BoundsOfOne(const VoxelColumns& columns) {
+  Eigen::Array2i low(columns.count_x, columns.count_y);
+  Eigen::Array2i high(0, 0);
+  double top = 0.0;
+  for (int y = 0; y < columns.count_y; ++y) {
+    for (int x = 0; x < columns.count_x; ++x) {
+      const double height = columns.heights[static_cast<std::size_t>(y * columns.count_x + x)];
+      if (height <= 0.0) continue;
+      low = low.min(Eigen::Array2i(x, y));
+      high = high.max(Eigen::Array2i(x + 1, y + 1));
+      top = std::max(top, height);
+    }
+  }
+  return {columns.corner + columns.cell * Eigen::Vector3d(low.x(), low.y(), 0.0),
+          columns.corner + Eigen::Vector3d(columns.cell * high.x(), columns.cell * high.y(), top)};
+}
+
+Bounds BoundsOfOne(const Ring& ring) {
+  Bounds bounds{ring.Corner(0), ring.Corner(0)};
+  for (int i = 1; i < Ring::kSides; ++i) {
+    bounds.min = bounds.min.cwiseMin(ring.Corner(i));
+    bounds.max = bounds.max.cwiseMax(ring.Corner(i));
+  }
+  bounds.min.array() -= ring.tube_radius;
+  bounds.max.array() += ring.tube_radius;
+  return bounds;
+}
+
 }  // namespace
 
 void Validate(const Obstacle& obstacle, const std::string& name) {
   std::visit([&](const auto& shape) { ValidateOne(shape, name); }, obstacle);
+}
+
+void CheckGeom(const Obstacle& obstacle, const std::string& name, const std::string& user) {
+  const bool columns = std::holds_alternative<VoxelColumns>(obstacle);
+  if (!columns && !std::holds_alternative<Ring>(obstacle)) return;
+  throw std::invalid_argument(name + " is " + (columns ? "a group of voxel columns" : "a ring") +
+                              ": " + user + " takes boxes and cylinders only");
 }
 
 double SignedDistance(const Obstacle& obstacle, const Eigen::Vector3d& p_W) {

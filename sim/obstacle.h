@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/sim/compound_shapes.h"
+
 namespace touchdown::sim {
 
 /// Box that stands upright: its z axis is the world's, its x axis has the heading `yaw`.
@@ -23,7 +25,7 @@ struct Cylinder {
 };
 
 /// One solid thing that does not move.
-using Obstacle = std::variant<Box, Cylinder>;
+using Obstacle = std::variant<Box, Cylinder, VoxelColumns, Ring>;
 
 /// Axis-aligned bounds in W [m].
 struct Bounds {
@@ -35,11 +37,18 @@ struct Bounds {
 /// a size is not in (0, 1000] m or a number is not finite.
 void Validate(const Obstacle& obstacle, const std::string& name);
 
-/// Distance from the point `p_W` to the surface [m], negative inside. Exact. Does not allocate.
+/// Throws std::invalid_argument, naming the obstacle as `name` and what needs it as `user`, unless it
+/// is a box or a cylinder: voxel columns and rings are no geoms of a MuJoCo world, nor of the
+/// checkers and cameras that work beside one.
+void CheckGeom(const Obstacle& obstacle, const std::string& name, const std::string& user);
+
+/// Distance from the point `p_W` to the surface [m], negative inside. Exact, but for the inside of
+/// voxel columns and rings (see there). Does not allocate.
 double SignedDistance(const Obstacle& obstacle, const Eigen::Vector3d& p_W);
 
 /// Smallest s >= 0 at which origin + s * direction crosses the surface, +infinity if it never does.
-/// `direction` has any length > 0; s is in units of it. A ray from inside returns where it leaves.
+/// `direction` has any length > 0; s is in units of it. A ray from inside returns where it leaves
+/// the shape, or the piece of it that it leaves first.
 /// Does not allocate.
 double RayDistance(const Obstacle& obstacle, const Eigen::Vector3d& origin_W,
                    const Eigen::Vector3d& direction_W);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ray against box and cylinder. Both are intersections of convex pieces (three slabs; one slab and
 // an infinite cylinder), so the ray is inside for one interval [enter, leave] of its parameter: the
-// intersection of the pieces' intervals (the slab method, Kay and Kajiya, SIGGRAPH 1986).
+// intersection of the pieces' intervals (the slab method, Kay and Kajiya, SIGGRAPH 1986). A capsule
+// is the convex union of a cylinder and two balls: its interval spans theirs.
 
 #include "touchdown/sim/ray_intersection.h"
 
@@ -37,6 +38,15 @@ void CutBySlab(double half_extent, double origin, double direction, Interval* in
   interval->leave = std::min(interval->leave, far);
 }
 
+// Interval where a s^2 + 2 b s + c <= 0; for a = 0 (the ray does not move) all of it or nothing.
+Interval WhereNegative(double a, double b, double c) {
+  if (a == 0.0) return c > 0.0 ? Interval{kInfinity, -kInfinity} : Interval{};
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0.0) return {kInfinity, -kInfinity};
+  const double root = std::sqrt(discriminant);
+  return {(-b - root) / a, (-b + root) / a};
+}
+
 }  // namespace
 
 double RayBox(const Eigen::Vector3d& half_extents, const Eigen::Vector3d& origin,
@@ -52,19 +62,36 @@ double RayCylinder(double radius, double half_height, const Eigen::Vector3d& ori
                    const Eigen::Vector3d& direction) {
   Interval inside;
   CutBySlab(half_height, origin.z(), direction.z(), &inside);
-  // a s^2 + 2 b s + c <= 0 where the ray is within the infinite cylinder.
-  const double a = direction.head<2>().squaredNorm();
-  const double b = origin.head<2>().dot(direction.head<2>());
-  const double c = origin.head<2>().squaredNorm() - radius * radius;
-  if (a == 0.0) {
-    if (c > 0.0) return kInfinity;
-  } else {
-    const double discriminant = b * b - a * c;
-    if (discriminant < 0.0) return kInfinity;
-    const double root = std::sqrt(discriminant);
-    inside.enter = std::max(inside.enter, (-b - root) / a);
-    inside.leave = std::min(inside.leave, (-b + root) / a);
+  const Interval round =
+      WhereNegative(direction.head<2>().squaredNorm(), origin.head<2>().dot(direction.head<2>()),
+                    origin.head<2>().squaredNorm() - radius * radius);
+  inside.enter = std::max(inside.enter, round.enter);
+  inside.leave = std::min(inside.leave, round.leave);
+  return inside.FirstCrossing();
+}
+
+double RayCapsule(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
+                  const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  Interval inside{kInfinity, -kInfinity};
+  const auto join = [&inside](const Interval& piece) {
+    if (!(piece.enter <= piece.leave)) return;
+    inside.enter = std::min(inside.enter, piece.enter);
+    inside.leave = std::max(inside.leave, piece.leave);
+  };
+  for (const Eigen::Vector3d& end : {a, b}) {
+    const Eigen::Vector3d m = origin - end;
+    join(WhereNegative(direction.squaredNorm(), m.dot(direction),
+                       m.squaredNorm() - radius * radius));
   }
+  // The cylinder between the ends, from the middle: across its axis a circle, along it a slab.
+  const Eigen::Vector3d axis = (b - a).normalized();
+  const Eigen::Vector3d m = origin - 0.5 * (a + b);
+  const Eigen::Vector3d across = m - m.dot(axis) * axis;
+  const Eigen::Vector3d sideways = direction - direction.dot(axis) * axis;
+  Interval tube = WhereNegative(sideways.squaredNorm(), across.dot(sideways),
+                                across.squaredNorm() - radius * radius);
+  CutBySlab(0.5 * (b - a).norm(), m.dot(axis), direction.dot(axis), &tube);
+  join(tube);
   return inside.FirstCrossing();
 }
 

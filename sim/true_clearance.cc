@@ -23,6 +23,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "touchdown/sim/argument_check.h"
@@ -46,6 +47,9 @@ struct MakeObject {
         std::make_shared<fcl::Cylinderd>(cylinder.radius, cylinder.height),
         Eigen::Matrix3d::Identity(), cylinder.center);
   }
+  // Refused by CheckGeom before.
+  std::unique_ptr<Object> operator()(const VoxelColumns&) const { return nullptr; }
+  std::unique_ptr<Object> operator()(const Ring&) const { return nullptr; }
 };
 
 int IndexOf(const Object& object) { return *static_cast<const int*>(object.getUserData()); }
@@ -101,6 +105,7 @@ class TrueClearance::Impl {
                                                model.hull_top + model.foot_depth)) {
     indices_.reserve(obstacles.size());
     for (const Obstacle& obstacle : obstacles.obstacles()) {
+      CheckGeom(obstacle, "obstacle " + std::to_string(indices_.size()), "the clearance check");
       indices_.push_back(static_cast<int>(indices_.size()));
       objects_.push_back(std::visit(MakeObject(), obstacle));
       objects_.back()->setUserData(&indices_.back());

@@ -42,6 +42,10 @@ std::string ObstacleGeom(const Cylinder& cylinder) {
          NumberText(0.5 * cylinder.height) + "' pos='" + Text(cylinder.center) + "' quat='1 0 0 0'";
 }
 
+// Refused by CheckGeom before.
+std::string ObstacleGeom(const VoxelColumns&) { return ""; }
+std::string ObstacleGeom(const Ring&) { return ""; }
+
 void WritePad(const WorldConfig& config, std::ostream& xml) {
   const double height = config.pad_motion.p_start.z();
   // The body's frame is the pad's: origin at the centre of the deck's upper face.
@@ -84,6 +88,7 @@ std::string WorldMjcf(const WorldConfig& config) {
       << "<geom name='ground' type='plane' size='0 0 1' pos='0 0 0' condim='3' " << kEnvironment
       << "/>\n";
   for (std::size_t i = 0; i < config.obstacles.size(); ++i) {
+    CheckGeom(config.obstacles.obstacles()[i], "obstacle " + std::to_string(i), "a MuJoCo world");
     xml << "<geom name='obstacle" << i << "' condim='3' " << kEnvironment
         << std::visit([](const auto& shape) { return ObstacleGeom(shape); },
                       config.obstacles.obstacles()[i])

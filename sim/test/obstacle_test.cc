@@ -86,9 +86,49 @@ TEST(Obstacle, RayCountsInUnitsOfItsDirectionAndLeavesFromInside) {
   EXPECT_DOUBLE_EQ(RayDistance(cylinder, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}), 1.0);
 }
 
+// The same two computations for the shapes made of pieces.
+TEST(Obstacle, RaysAtCompoundShapesAgreeWithSphereTracing) {
+  VoxelColumns columns;
+  columns.corner = {-0.4, -0.3, 0.1};
+  columns.cell = 0.25;
+  columns.count_x = 3;
+  columns.count_y = 2;
+  columns.heights = {1.0, 0.4, 0.0, 0.7, 1.3, 0.9};
+  const Ring ring{{0.1, 0.2, 0.3}, 0.6, 0.9, 0.08, 0.4};
+  RandomStream random(9, "compound rays");
+  int hits = 0;
+  for (const Obstacle& obstacle : {Obstacle(columns), Obstacle(ring)}) {
+    for (int i = 0; i < 3000; ++i) {
+      const Eigen::Vector3d origin = test::RandomPoint({-3, -3, -3}, {3, 3, 3}, &random);
+      const Eigen::Vector3d aim = test::RandomPoint({-1, -1, -1}, {1, 1, 1}, &random);
+      const Eigen::Vector3d direction = (aim - origin).normalized();
+      if (SignedDistance(obstacle, origin) <= 0.0) continue;
+      const double s = RayDistance(obstacle, origin, direction);
+      double traced = 0.0;
+      for (int step = 0; step < 2000 && traced < 20.0; ++step) {
+        const double clear = SignedDistance(obstacle, origin + traced * direction);
+        if (clear < 1e-9) break;
+        traced += clear;
+      }
+      EXPECT_EQ(s > 20.0, traced >= 20.0) << i;
+      if (s > 20.0) continue;
+      ++hits;
+      EXPECT_NEAR(traced, s, 1e-4);
+      EXPECT_NEAR(SignedDistance(obstacle, origin + s * direction), 0.0, 1e-9);
+    }
+  }
+  EXPECT_GT(hits, 300);
+}
+
 TEST(Obstacle, BoundsAreTight) {
   RandomStream random(4, "obstacle bounds");
-  const ObstacleField field = test::RandomField(20, 4.0, &random);
+  std::vector<Obstacle> obstacles = test::RandomField(20, 4.0, &random).obstacles();
+  VoxelColumns columns;
+  columns.count_x = 4;
+  columns.count_y = 3;
+  columns.heights = {0, 0, 0, 0, 0, 0.2, 0.3, 0, 0, 0, 0, 0};  // only its middle stands
+  obstacles.push_back(columns);
+  const ObstacleField field(obstacles);
   for (const Obstacle& obstacle : field.obstacles()) {
     const Bounds bounds = BoundsOf(obstacle);
     Eigen::Vector3d low = Eigen::Vector3d::Constant(kInfinity);
@@ -119,6 +159,18 @@ TEST(ObstacleField, EmptyFieldIsInfinitelyFar) {
 }
 
 TEST(ObstacleField, RefusesByNameValueAndRange) {
+  EXPECT_THAT(MessageOf<std::invalid_argument>([] {
+                VoxelColumns columns;
+                columns.count_x = 2;
+                ObstacleField({columns});
+              }),
+              AllOf(HasSubstr("obstacle 0: number of heights is 1"), HasSubstr("[2, 2]")));
+  EXPECT_THAT(MessageOf<std::invalid_argument>([] {
+                Ring ring;
+                ring.half_width = 0.0;
+                ObstacleField({ring});
+              }),
+              HasSubstr("obstacle 0: half_width is 0"));
   EXPECT_THAT(MessageOf<std::invalid_argument>([] {
                 ObstacleField({Box{}, Box{{0, 0, 0}, {1.0, -0.5, 1.0}, 0.0}});
               }),
