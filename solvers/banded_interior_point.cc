@@ -23,9 +23,11 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kToBoundary = 0.995;  // share of the way to s = 0 or z = 0 that a step may go
-constexpr double kFirstSlack = 0.1;    // least slack of the first point, share of the largest row
-constexpr double kFirstMu = 0.1;       // complementarity of the first point, share of the cost
+/// Share of the way to s = 0 or z = 0 that a step may go, at least; it nears 1 with the gap, so that
+/// the last steps converge quadratically.
+constexpr double kToBoundary = 0.995;
+constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
+constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortestStep = 1e-8;
 /// So many steps in a row that hardly move: the rows cannot be met from here.
@@ -95,6 +97,7 @@ SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
   StartRows(evaluator->last(), {});
   const SolveStatus relaxed = Iterate(view, tolerances, evaluator);
   if (relaxed != SolveStatus::kConverged) return relaxed;
+  evaluator->PreferLast();
   return LargestRow() <= Evaluator::kFeasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
 }
 
@@ -110,7 +113,8 @@ SolveStatus BandedInteriorPoint::Iterate(const View& view, const Tolerances& tol
     const double dual_error = Largest(right_);
     const double dual_scale =
         std::max(1.0, Largest(evaluator->last().gradient)) * std::sqrt(tolerances.gap);
-    if (gap <= tolerances.gap * std::max(std::abs(cost), 1e-12) && dual_error <= dual_scale &&
+    const double relative_gap = gap / std::max(std::abs(cost), 1e-12);
+    if (relative_gap <= tolerances.gap && dual_error <= dual_scale &&
         (elastic_ || LargestRow() <= tolerances.violation)) {
       return SolveStatus::kConverged;
     }
@@ -120,14 +124,14 @@ SolveStatus BandedInteriorPoint::Iterate(const View& view, const Tolerances& tol
     std::fill(correction_s_.begin(), correction_s_.end(), 0.0);
     std::fill(correction_e_.begin(), correction_e_.end(), 0.0);
     Direction(view, 0.0, evaluator);
-    const double ratio = Complementarity(LongestStep()) / mu;
+    const double ratio = Complementarity(LongestStep(relative_gap)) / mu;
     const double target = mu * std::clamp(ratio * ratio * ratio, 1e-6, 1.0);
     Correct();
     Direction(view, target, evaluator);
 
     const double penalty = 2.0 * std::max(Largest(now_.z), 1e-12);
     const double merit = Merit(cost, target, penalty, now_);
-    StepLengths length = LongestStep();
+    StepLengths length = LongestStep(relative_gap);
     for (;;) {
       Move(length);
       if (!EvaluateAt(trial_.data(), next_, evaluator)) {
@@ -268,10 +272,11 @@ void BandedInteriorPoint::Correct() {
   for (int i = 0; i < active_; ++i) correction_e_[i] = -de_[i] * dz_[i];
 }
 
-BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep() const {
+BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) const {
   double primal = 1.0, dual = 1.0;
-  const auto limit = [](double from, double step, double* length) {
-    if (step < 0.0) *length = std::min(*length, -kToBoundary * from / step);
+  const double share = std::max(kToBoundary, 1.0 - gap);
+  const auto limit = [share](double from, double step, double* length) {
+    if (step < 0.0) *length = std::min(*length, -share * from / step);
   };
   for (int i = 0; i < active_; ++i) {
     limit(now_.s[i], ds_[i], &primal);

@@ -54,7 +54,8 @@ class BandedInteriorPoint {
   /// The step to complementarity `mu`, with the second-order terms `correction` counted in.
   void Direction(const View& view, double mu, Evaluator* evaluator);
   void Correct();
-  StepLengths LongestStep() const;
+  /// `gap`: relative to the cost.
+  StepLengths LongestStep(double gap) const;
   double Complementarity(const StepLengths& length) const;
   void Move(const StepLengths& length);
   double Merit(double cost, double mu, double penalty, const Rows& rows) const;

@@ -26,22 +26,42 @@ void BorderedBandMatrix::SetZero() {
   corner_ = 0.0;
 }
 
+namespace {
+
+/// out += the symmetric band times in; kSize 0 stands for any block size.
+template <int kSize>
+void AddBandProduct(const BorderedBandMatrix& A, const double* in, double* out) {
+  const int d = kSize > 0 ? kSize : A.block_size();
+  for (int i = 0; i < A.blocks(); ++i) {
+    const double* in_i = in + i * d;
+    double* out_i = out + i * d;
+    for (int r = 0; r < d; ++r) {
+      for (int s = 0; s < d; ++s) out_i[r] += A.block(i, 0)[r * d + s] * in_i[s];
+    }
+    const int last = std::min(A.half_bandwidth(), A.blocks() - 1 - i);
+    for (int k = 1; k <= last; ++k) {
+      const double* a = A.block(i, k);
+      const double* in_j = in_i + k * d;
+      double* out_j = out_i + k * d;
+      for (int r = 0; r < d; ++r) {
+        for (int s = 0; s < d; ++s) {
+          out_i[r] += a[r * d + s] * in_j[s];
+          out_j[s] += a[r * d + s] * in_i[r];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
 void BorderedBandMatrix::Multiply(const double* in, double* out) const {
   std::fill(out, out + size(), 0.0);
   const int d = d_;
-  for (int i = 0; i < blocks_; ++i) {
-    for (int k = 0; k <= half_ && i + k < blocks_; ++k) {
-      const double* a = block(i, k);
-      const double* in_j = in + (i + k) * d;
-      const double* in_i = in + i * d;
-      double* out_i = out + i * d;
-      double* out_j = out + (i + k) * d;
-      for (int r = 0; r < d; ++r) {
-        for (int s = 0; s < d; ++s) out_i[r] += a[r * d + s] * in_j[s];
-        if (k == 0) continue;
-        for (int s = 0; s < d; ++s) out_j[s] += a[r * d + s] * in_i[r];
-      }
-    }
+  if (d == 3) {
+    AddBandProduct<3>(*this, in, out);
+  } else {
+    AddBandProduct<0>(*this, in, out);
   }
   if (!bordered_) return;
   const int n = blocks_ * d;

@@ -58,11 +58,14 @@ struct Panels {
       constexpr int lanes = RoundUp(kRows - b * d);
       for (int c = 0; c < d; ++c) {
         double* __restrict out = Column(band, j + b, c);
-        for (int m = 0; m < d; ++m) {
-          const double* __restrict panel = Column(band, j, m) + b * d;
-          const double factor = panel[c];
+        const double* __restrict panel = Column(band, j, 0) + b * d;
+        double factor[d];
+        for (int m = 0; m < d; ++m) factor[m] = panel[m * kStride + c];
 #pragma GCC ivdep
-          for (int r = 0; r < lanes; ++r) out[r] -= factor * panel[r];
+        for (int r = 0; r < lanes; ++r) {
+          double sum = out[r];
+          for (int m = 0; m < d; ++m) sum -= factor[m] * panel[m * kStride + r];
+          out[r] = sum;
         }
       }
       UpdateTrailing<b + 1>(band, j);

@@ -72,7 +72,7 @@ bool Evaluator::Run(const double* y, bool new_point, Want want, const Lagrangian
     const ShareScope scope(this, Share::kEvaluation);
     cache_valid_ = view_->Evaluate(y, want, lagrangian, &storage_);
   }
-  if (cache_valid_ && new_point) Track(y);
+  if (cache_valid_ && new_point) Track();
   failed_ = failed_ || !cache_valid_;
   if (new_point) CheckStop();
   return cache_valid_;
@@ -128,16 +128,23 @@ bool Evaluator::CheckStop() {
   return must_stop();
 }
 
-void Evaluator::Track(const double* y) {
+void Evaluator::Track() {
   const double violation = std::max(storage_.full.max_violation, kFeasible);
   const double cost = storage_.full.value;
   const bool better = !has_best_ || violation < best_violation_ ||
                       (violation == best_violation_ && cost < best_cost_);
-  if (!better) return;
+  if (better) Keep();
+}
+
+void Evaluator::PreferLast() {
+  if (cache_valid_) Keep();
+}
+
+void Evaluator::Keep() {
   has_best_ = true;
-  best_violation_ = violation;
-  best_cost_ = cost;
-  best_ = Eigen::Map<const Eigen::VectorXd>(y, best_.size());
+  best_violation_ = std::max(storage_.full.max_violation, kFeasible);
+  best_cost_ = storage_.full.value;
+  best_ = cached_;
   best_cost_by_term_ = storage_.full.cost_by_term;
 }
 

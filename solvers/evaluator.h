@@ -39,6 +39,10 @@ class Evaluator {
   /// where the backend does not know.
   void FinishIteration(double step_norm, double gradient_max_norm);
 
+  /// Makes the last evaluated point the one to return, though another violated less: for a backend
+  /// that knows the better compromise between cost and rows that cannot be met.
+  void PreferLast();
+
   /// Charges the time from now on to `share`; returns what it was charged to before.
   Share SwitchShare(Share share);
 
@@ -66,7 +70,8 @@ class Evaluator {
   bool AtCachedPoint(const double* y) const;
   /// Evaluates and keeps the books. `new_point`: y is not the cached one.
   bool Run(const double* y, bool new_point, Want want, const Lagrangian& lagrangian);
-  void Track(const double* y);
+  void Track();
+  void Keep();
 
   const View* view_ = nullptr;
   const Stop* stop_ = nullptr;

@@ -24,7 +24,9 @@
 //
 // twice: it adds sum_c m_c d2u_c to d2, a row-major (v + 1) x (v + 1) matrix with h last, of which
 // the upper triangle is read, and the row and column of h only if the interval is free. Without it
-// nested duals do the same, some ten times slower. Instantiate WindowTerm in one .cc only.
+// nested duals do the same, some ten times slower. A map whose output c depends on coordinate c % d
+// of the blocks alone says so with kSeparable = true and has its Hessian summed coordinate by
+// coordinate. Instantiate WindowTerm in one .cc only.
 #pragma once
 
 #include <stdexcept>
@@ -44,6 +46,11 @@ concept HasJacobian = requires(const Inner& inner, const double* q, double* out)
 template <class Inner>
 concept HasCurvature = requires(const Inner& inner, const double* q, double* out) {
   inner.Curvature(0, q, 1.0, 0.0, true, q, out);
+};
+
+template <class Inner>
+concept IsSeparable = requires {
+  requires Inner::kSeparable;
 };
 
 template <class Inner, class Loss>
@@ -159,13 +166,16 @@ class WindowTerm : public Term {
     if (!weights) return;
     double* out = cost ? sums.gradient : sums.row_gradient;
     double* h_out = out + sums.interval_index;
-    out += w.first * kD;
+    std::array<double, kV> sum{};
+    double h_sum = 0.0;
     for (int c = 0; c < kM; ++c) {
       if (weights[c] == 0.0) continue;
       const double* du = &block.du[(w.k * kM + c) * kV];
-      for (int i = 0; i < kV; ++i) out[i] += weights[c] * du[i];
-      if (w.free_interval) *h_out += weights[c] * block.du_dh[w.k * kM + c];
+      for (int i = 0; i < kV; ++i) sum[i] += weights[c] * du[i];
+      h_sum += weights[c] * block.du_dh[w.k * kM + c];
     }
+    for (int i = 0; i < kV; ++i) out[w.first * kD + i] += sum[i];
+    if (w.free_interval) *h_out += h_sum;
   }
 
   /// Adds sum_c (weight_c du_c du_c^T + slope_c d2u_c) of one window.
@@ -189,7 +199,20 @@ class WindowTerm : public Term {
     any_slope = any_slope && bends && !request.nominal_curvature;
     if (!any_weight && !any_slope) return;
 
+    if constexpr (IsSeparable<Inner>) {
+      AddSeparable(w, weight.data(), block, hessian);
+      if (!any_slope) return;
+    }
     std::array<double, n * n> sum{};
+    if constexpr (!IsSeparable<Inner>) AddOuterProducts(w, weight.data(), block, sum.data());
+    if (any_slope) AddCurvature(w, slope.data(), sum.data());
+    if (!IsSeparable<Inner> || !Inner::kLinearInBlocks) ScatterBlocks(w, sum.data(), hessian);
+    if (w.free_interval) ScatterBorder(w, sum.data(), hessian);
+  }
+
+  void AddOuterProducts(const Window& w, const double* weight, const TermBlock& block,
+                        double* sum) const {
+    constexpr int n = kV + 1;
     for (int c = 0; c < kM; ++c) {
       if (weight[c] == 0.0) continue;
       const double* du = &block.du[(w.k * kM + c) * kV];
@@ -204,8 +227,30 @@ class WindowTerm : public Term {
         sum[n * n - 1] += left * block.du_dh[w.k * kM + c];
       }
     }
-    if (any_slope) AddCurvature(w, slope.data(), sum.data());
-    Scatter(w, sum.data(), hessian);
+  }
+
+  void AddSeparable(const Window& w, const double* weight, const TermBlock& block,
+                    BorderedBandMatrix* hessian) const {
+    for (int x = 0; x < kD; ++x) {
+      std::array<double, kW * kW> sum{};
+      std::array<double, kW> border{};
+      for (int c = x; c < kM; c += kD) {
+        const double* du = &block.du[(w.k * kM + c) * kV + x];
+        const double du_dh = block.du_dh[w.k * kM + c];
+        for (int a = 0; a < kW; ++a) {
+          const double left = weight[c] * du[a * kD];
+          for (int b = a; b < kW; ++b) sum[a * kW + b] += left * du[b * kD];
+          border[a] += left * du_dh;
+        }
+        if (w.free_interval) hessian->corner() += weight[c] * du_dh * du_dh;
+      }
+      for (int a = 0; a < kW; ++a) {
+        for (int b = a; b < kW; ++b) {
+          hessian->block(w.first + a, b - a)[x * kD + x] += sum[a * kW + b];
+        }
+        if (w.free_interval) hessian->border()[(w.first + a) * kD + x] += border[a];
+      }
+    }
   }
 
   void AddCurvature(const Window& w, const double* slope, double* sum) const {
@@ -234,7 +279,7 @@ class WindowTerm : public Term {
     }
   }
 
-  void Scatter(const Window& w, const double* sum, BorderedBandMatrix* hessian) const {
+  void ScatterBlocks(const Window& w, const double* sum, BorderedBandMatrix* hessian) const {
     constexpr int n = kV + 1;
     for (int a = 0; a < kW; ++a) {
       for (int b = a; b < kW; ++b) {
@@ -244,7 +289,10 @@ class WindowTerm : public Term {
         }
       }
     }
-    if (!w.free_interval) return;
+  }
+
+  void ScatterBorder(const Window& w, const double* sum, BorderedBandMatrix* hessian) const {
+    constexpr int n = kV + 1;
     for (int i = 0; i < kV; ++i) hessian->border()[w.first * kD + i] += sum[i * n + kV];
     hessian->corner() += sum[n * n - 1];
   }
