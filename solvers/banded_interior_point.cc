@@ -97,7 +97,6 @@ SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
   StartRows(evaluator->last(), {});
   const SolveStatus relaxed = Iterate(view, tolerances, evaluator);
   if (relaxed != SolveStatus::kConverged) return relaxed;
-  evaluator->PreferLast();
   return LargestRow() <= Evaluator::kFeasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
 }
 
@@ -116,6 +115,8 @@ SolveStatus BandedInteriorPoint::Iterate(const View& view, const Tolerances& tol
     const double relative_gap = gap / std::max(std::abs(cost), 1e-12);
     if (relative_gap <= tolerances.gap && dual_error <= dual_scale &&
         (elastic_ || LargestRow() <= tolerances.violation)) {
+      // An earlier point may cost less by what it violates within the tolerance.
+      evaluator->PreferLast();
       return SolveStatus::kConverged;
     }
 

@@ -39,8 +39,8 @@ class Evaluator {
   /// where the backend does not know.
   void FinishIteration(double step_norm, double gradient_max_norm);
 
-  /// Makes the last evaluated point the one to return, though another violated less: for a backend
-  /// that knows the better compromise between cost and rows that cannot be met.
+  /// Makes the last evaluated point the one to return, though another violated less, or cost less
+  /// within the tolerance: for a backend that knows it to be the optimum.
   void PreferLast();
 
   /// Charges the time from now on to `share`; returns what it was charged to before.

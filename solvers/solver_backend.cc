@@ -101,7 +101,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   evaluator_.Begin(view, stop);
   result->trace.clear();
   result->message.clear();
-  result->multipliers.clear();
+  for (auto& rows : result->multipliers) rows.clear();  // keeps its storage
   result->interval_multiplier = 0.0;
   result->native_status = 0;
   DoSolve(view, warm, stop, &evaluator_, result);

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `banded` promises beyond the conformance suite: Newton's one step on a quadratic problem, the
+// optimality conditions of the interior point with its multipliers, the elastic answer where rows
+// cannot be met, and no allocation in a solve.
+
+#include "touchdown/solvers/banded_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "touchdown/solvers/test/allocation_count.h"
+#include "touchdown/solvers/window_term.h"
+
+namespace touchdown::solvers {
+namespace {
+
+/// Second differences of a chain of points, pulled towards targets.
+class Chain {
+ public:
+  static constexpr int kBlockSize = 3, kWindow = 3, kOutputs = 6;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = true;
+  Chain(int blocks, std::mt19937_64* random) : blocks_(blocks) {
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 3 * blocks; ++i) targets_.push_back(normal(*random));
+  }
+  int windows() const { return blocks_ - 2; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int k, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    for (int c = 0; c < 3; ++c) {
+      u[c] = 3.0 * (q[c] - 2.0 * q[3 + c] + q[6 + c]);
+      u[3 + c] = q[3 + c] - targets_[static_cast<std::size_t>(3 * k + c)];
+    }
+  }
+
+ private:
+  int blocks_;
+  std::vector<double> targets_;
+};
+
+/// |q|^2 <= r^2 for every block: the norm rows of a landing in small.
+class Ball {
+ public:
+  static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  Ball(int blocks, double radius) : blocks_(blocks), radius_(radius) {}
+  int windows() const { return blocks_; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - radius_ * radius_) * (0.5 / radius_);
+  }
+
+ private:
+  int blocks_;
+  double radius_;
+};
+
+/// x >= level for the first coordinate of every block.
+class Wall {
+ public:
+  static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = true;
+  Wall(int blocks, double level) : blocks_(blocks), level_(level) {}
+  int windows() const { return blocks_; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = level_ - q[0];
+  }
+
+ private:
+  int blocks_;
+  double level_;
+};
+
+constexpr int kBlocks = 12;
+
+Problem ChainProblem() {
+  std::mt19937_64 random(11);
+  Problem problem({.blocks = kBlocks, .block_size = 3});
+  problem.AddTerm(
+      std::make_shared<WindowTerm<Chain, SquareLoss>>(
+          TermInfo{"chain", "", "", "", true}, Chain(kBlocks, &random), SquareLoss(2.0), kBlocks),
+      Role::kCost);
+  return problem;
+}
+
+template <class Inner>
+void AddRows(const Inner& inner, Problem* problem) {
+  problem->AddTerm(std::make_shared<WindowTerm<Inner, HingeLoss>>(
+                       TermInfo{"rows", "", "", "", true}, inner, HingeLoss(1.0, 0.1), kBlocks),
+                   Role::kConstraint);
+}
+
+SolverResult Solve(const View& view, double gap = 1e-7) {
+  auto solver = MakeBandedSolver();
+  solver->options().Set("gap_tolerance", gap);
+  solver->Prepare(view);
+  SolverResult result;
+  solver->Solve(view, WarmStart(Eigen::VectorXd::Constant(view.num_variables(), 0.3)), {}, &result);
+  return result;
+}
+
+TEST(BandedSolver, SolvesAQuadraticInOneStep) {
+  const Problem problem = ChainProblem();
+  const View view(problem, AffineLift::Identity(kBlocks));
+  const SolverResult result = Solve(view);
+  EXPECT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_EQ(result.iterations, 1);
+}
+
+TEST(BandedSolver, MeetsTheOptimalityConditions) {
+  Problem problem = ChainProblem();
+  AddRows(Ball(kBlocks, 0.5), &problem);
+  const View view(problem, AffineLift::Identity(kBlocks));
+  const SolverResult result = Solve(view, 1e-12);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_EQ(result.max_violation, 0.0);
+
+  // grad f + G^T lambda = 0, lambda >= 0, lambda u = 0.
+  ViewEvaluation e;
+  view.Resize(&e);
+  ASSERT_TRUE(view.Evaluate(result.x.data(), {.gradient = true}, {}, &e));
+  ASSERT_EQ(result.multipliers.size(), 2u);
+  const std::vector<double>& lambda = result.multipliers[1];
+  Eigen::VectorXd rows(view.num_variables());
+  const double* weights[] = {nullptr, lambda.data()};
+  view.MultiplyRowsTransposed(weights, &e, rows.data());
+  const Eigen::Map<const Eigen::VectorXd> gradient(e.gradient.data(), view.num_variables());
+  EXPECT_LT((gradient + rows).cwiseAbs().maxCoeff(), 1e-6 * gradient.cwiseAbs().maxCoeff());
+  int active = 0;
+  for (int k = 0; k < kBlocks; ++k) {
+    EXPECT_GE(lambda[k], 0.0);
+    EXPECT_LT(std::abs(lambda[k] * e.full.terms[1].u[k]), 1e-8);
+    active += lambda[k] > 1e-3;
+  }
+  EXPECT_GT(active, 0);
+}
+
+TEST(BandedSolver, SaysInfeasibleAndGivesTheElasticCompromise) {
+  Problem problem = ChainProblem();
+  AddRows(Ball(kBlocks, 0.5), &problem);
+  AddRows(Wall(kBlocks, 0.7), &problem);  // 0.2 beyond the ball
+  const View view(problem, AffineLift::Identity(kBlocks));
+  const SolverResult result = Solve(view);
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible);
+  EXPECT_TRUE(result.x.allFinite());
+  // Neither kind of row is given up for the other.
+  EXPECT_GT(result.max_violation, 0.05);
+  EXPECT_LT(result.max_violation, 0.3);
+}
+
+TEST(BandedSolver, DoesNotAllocateInASolve) {
+  if (AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  for (const bool hard : {false, true}) {
+    Problem problem = ChainProblem();
+    if (hard) AddRows(Ball(kBlocks, 0.5), &problem);
+    const View view(problem, AffineLift::Identity(kBlocks));
+    auto solver = MakeBandedSolver();
+    solver->Prepare(view);
+    const WarmStart warm(Eigen::VectorXd::Constant(view.num_variables(), 0.3));
+    SolverResult result;
+    solver->Solve(view, warm, {}, &result);  // sizes the result
+    const long before = AllocationCount();
+    solver->Solve(view, warm, {}, &result);
+    EXPECT_EQ(AllocationCount() - before, 0) << (hard ? "hard" : "soft");
+    EXPECT_EQ(result.status, SolveStatus::kConverged);
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::solvers
