@@ -21,6 +21,7 @@ inline constexpr int kBadInput = 2;
 /// Adds a sub-command to `app`; when it is chosen, sets `run` to what returns the exit status.
 using CommandRun = std::function<int()>;
 void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run);
+void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 

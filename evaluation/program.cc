@@ -82,6 +82,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   app.require_subcommand(1);
   CommandRun run;
   AddLandCommand(app, registries, &run);
+  AddCompareCommand(app, registries, &run);
   AddSweepCommand(app, registries, &run);
   AddListCommand(app, registries, &run);
   try {

@@ -244,6 +244,13 @@ void OccupancyMap::MarkOwnVolume(const Eigen::Vector3d& p_W, double radius) {
   });
 }
 
+void OccupancyMap::MarkRestFree() {
+  flips_.clear();
+  for (std::int8_t& stored : log_odds_) {
+    if (stored < occupied_) stored = min_;
+  }
+}
+
 void OccupancyMap::Clear(const ExcludedVolume& excluded) {
   flips_.clear();
   if (!(excluded.radius > 0.0)) return;

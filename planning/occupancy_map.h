@@ -70,6 +70,10 @@ class OccupancyMap {
   /// there itself.
   void MarkOwnVolume(const Eigen::Vector3d& p_W, double radius);
 
+  /// Takes every cell of the window that is not occupied as observed free: all of the map is known
+  /// beforehand.
+  void MarkRestFree();
+
   /// Frees what stands inside the volume: cells that were seen before the pad was known to be
   /// there.
   void Clear(const ExcludedVolume& excluded);

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown compare: solver backends on the same random landing problems.
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/compare.h"
+#include "touchdown/evaluation/compare_report.h"
+#include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/output_path.h"
+#include "touchdown/sim/forest.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+struct CompareArguments {
+  CompareOptions options;
+  std::string start = "cold";
+  std::string arrival = "fixed";
+  std::optional<int> pin;
+  bool json = false;
+  bool allow_debug = false;
+
+  CompareArguments() {
+    // The limits that the published figures of the backends were measured with.
+    options.cases.problem.limits = {4.0, 6.0};
+  }
+};
+
+// Reports about every two seconds.
+class Progress {
+ public:
+  void operator()(int done, int all) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(2) && done < all) return;
+    last_ = now;
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    spdlog::info("{} of {} problems, {:.0f} s left", done, all, elapsed / done * (all - done));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
+int Compare(CompareArguments arguments, const Registries& registries) {
+  if (!TimingsMeanSomething() && !arguments.allow_debug) {
+    throw BadInput(
+        "This build is not optimised, so its timings mean nothing: use the preset release or "
+        "native, or give --allow-debug.");
+  }
+  CompareOptions& options = arguments.options;
+  std::sort(options.points.begin(), options.points.end());
+  options.points.erase(std::unique(options.points.begin(), options.points.end()),
+                       options.points.end());
+  options.cases.warm = arguments.start == "warm";
+  options.cases.problem.arrival =
+      arguments.arrival == "free" ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+  MachineState machine;
+  machine.pinned = arguments.pin;
+  if (arguments.pin) PinToCpu(*arguments.pin);
+  machine.load_before = LoadAverage();
+  const CompareResult result = RunCompare(options, registries.backends, Progress());
+  machine.load_after = LoadAverage();
+  if (arguments.json) {
+    std::cout << CompareJson(options, result, machine).dump(2) << std::endl;
+  } else {
+    std::cout << CompareText(options, result) << std::flush;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare solver backends on random landing problems");
+  const auto arguments = std::make_shared<CompareArguments>();
+  CompareOptions& options = arguments->options;
+  CaseOptions& cases = options.cases;
+  const auto one_of = [](std::vector<std::string> words) {
+    return CLI::IsMember(std::move(words));
+  };
+  command->add_option("--problems", options.problems, "Number of problems of each size")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--points", options.points, "Control points: one size or several")
+      ->delimiter(',')
+      ->type_name("N,N,...")
+      ->check(CLI::Range(9, 1000))
+      ->capture_default_str();
+  command
+      ->add_option("--start", arguments->start, "From a Hermite guess, or shifted from 0.1 s ago")
+      ->check(one_of({"cold", "warm"}))
+      ->capture_default_str();
+  command->add_option("--arrival", arguments->arrival, "Arrival time")
+      ->check(one_of({"fixed", "free"}))
+      ->capture_default_str();
+  command->add_option("--backends", options.backends, "Which ones; default: all that can solve it")
+      ->delimiter(',')
+      ->type_name("NAME,NAME,...");
+  command->add_option("--seed", cases.seed, "Seed of the problems")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      ->capture_default_str();
+  command->add_option("--gap", options.gap, "Relative gap to the best known cost: solved")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--repeats", options.repeats, "Timed solves of each problem; the median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--deadline-ms", options.deadline_ms, "Also stop solves after this wall time")
+      ->check(CLI::Range(1e-3, 1e5));
+  command->add_option("--forest", cases.forest, "Kind of forest")
+      ->check(one_of(sim::ForestKinds()))
+      ->capture_default_str();
+  command->add_option("--inflation", cases.inflation, "Obstacles are grown by this [m]")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--speed-limit", cases.problem.limits.speed, "[m/s]")
+      ->check(CLI::Range(1.0, 30.0))
+      ->capture_default_str();
+  command->add_option("--acceleration-limit", cases.problem.limits.acceleration, "[m/s^2]")
+      ->check(CLI::Range(1.0, 50.0))
+      ->capture_default_str();
+  command
+      ->add_option("--backend-seconds", options.backend_seconds,
+                   "A backend that used this much wall time at one size sits out the rest [s]")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
+  command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
+  command->callback([arguments, &registries, run] {
+    *run = [arguments, &registries] { return Compare(*arguments, registries); };
+  });
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Failures stay in the sample as infinite times: a backend that solves only the easy problems must
+// not look fast.
+#include "touchdown/evaluation/compare_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAgreement = 1e-4;
+
+// Statistics' quantile interpolates; next to an infinite value there is nothing to interpolate.
+std::optional<double> QuantileWithFailures(const std::vector<double>& values, double q) {
+  std::vector<double> capped = values;
+  const double huge = 1e300;
+  for (double& value : capped) {
+    if (!std::isfinite(value)) value = huge;
+  }
+  const std::optional<double> quantile = Quantile(capped, q);
+  return quantile && *quantile > 1e290 ? kInfinity : quantile;
+}
+
+double Median(const std::vector<double>& values) { return *QuantileWithFailures(values, 0.5); }
+
+using ProblemKey = std::pair<int, int>;  // points, problem
+
+struct Timed {
+  std::vector<double> cpu, wall, iterations, evaluations;
+};
+
+ShareSummary Mean(const std::vector<solvers::SolveShares>& all) {
+  ShareSummary sum;
+  for (const solvers::SolveShares& s : all) {
+    sum.evaluation += s.evaluation_s;
+    sum.whitening += s.whitening_s;
+    sum.native += s.native_s;
+    sum.adapter += s.adapter_s;
+  }
+  const double whole = sum.evaluation + sum.whitening + sum.native + sum.adapter;
+  if (whole > 0.0) {
+    for (double* part : {&sum.evaluation, &sum.whitening, &sum.native, &sum.adapter}) {
+      *part /= whole;
+    }
+  }
+  return sum;
+}
+
+BackendSummary SummariseOne(const std::vector<const SolveRow*>& solves,
+                            const std::string& backend) {
+  BackendSummary summary;
+  summary.backend = backend;
+  std::map<ProblemKey, Timed> timed;
+  std::vector<double> tight_gaps, tight_cpu, per_iteration, deadline_wall, deadline_gaps;
+  std::vector<solvers::SolveShares> shares;
+  DeadlineSummary deadline;
+  for (const SolveRow* row : solves) {
+    const bool feasible = row->max_violation <= solvers::Evaluator::kFeasible;
+    const double gap = feasible && std::isfinite(row->gap) ? row->gap : kInfinity;
+    summary.end_position_max = std::max(summary.end_position_max, row->end_position_m);
+    summary.end_velocity_max = std::max(summary.end_velocity_max, row->end_velocity_mps);
+    if (row->reached) summary.violation_max = std::max(summary.violation_max, row->max_violation);
+    switch (row->phase) {
+      case SolvePhase::kTight:
+        tight_gaps.push_back(gap);
+        tight_cpu.push_back(row->cpu_ms);
+        if (row->iterations > 0) per_iteration.push_back(row->cpu_ms / row->iterations);
+        if (row->status == solvers::SolveStatus::kConverged) {
+          ++summary.reported_success;
+          summary.agreeing += gap <= kAgreement;
+        }
+        break;
+      case SolvePhase::kGap: {
+        Timed& of_problem = timed[{row->points, row->problem}];
+        of_problem.cpu.push_back(row->reached ? row->cpu_ms : kInfinity);
+        of_problem.wall.push_back(row->reached ? row->wall_ms : kInfinity);
+        of_problem.iterations.push_back(row->iterations);
+        of_problem.evaluations.push_back(row->evaluations);
+        break;
+      }
+      case SolvePhase::kShares:
+        shares.push_back(row->shares);
+        break;
+      case SolvePhase::kDeadline:
+        ++deadline.solves;
+        deadline.best_returned += row->best_returned;
+        deadline_wall.push_back(row->wall_ms);
+        deadline_gaps.push_back(gap);
+        break;
+    }
+  }
+  std::vector<double> cpu, wall, iterations, evaluations;
+  for (const auto& [key, of_problem] : timed) {
+    cpu.push_back(Median(of_problem.cpu));
+    wall.push_back(Median(of_problem.wall));
+    if (!std::isfinite(cpu.back())) continue;
+    ++summary.solved;
+    iterations.push_back(Median(of_problem.iterations));
+    evaluations.push_back(Median(of_problem.evaluations));
+  }
+  summary.problems = static_cast<int>(timed.size());
+  if (summary.problems > 0) {
+    summary.solved_interval = ClopperPearson(summary.solved, summary.problems);
+  }
+  summary.cpu_ms = QuantilesOf(cpu);
+  summary.wall_ms = QuantilesOf(wall);
+  summary.iterations = QuantilesOf(iterations);
+  summary.evaluations = QuantilesOf(evaluations);
+  summary.tight_gap = QuantilesOf(tight_gaps);
+  summary.tight_cpu_ms = QuantilesOf(tight_cpu);
+  summary.ms_per_iteration = Quantile(per_iteration, 0.5);
+  if (!shares.empty()) summary.shares = Mean(shares);
+  if (deadline.solves > 0) {
+    deadline.wall_ms = QuantilesOf(deadline_wall);
+    deadline.gap = QuantilesOf(deadline_gaps);
+    summary.deadline = deadline;
+  }
+  return summary;
+}
+
+}  // namespace
+
+Quantiles QuantilesOf(const std::vector<double>& values) {
+  return {QuantileWithFailures(values, 0.5), QuantileWithFailures(values, 0.95),
+          QuantileWithFailures(values, 0.99), QuantileWithFailures(values, 1.0)};
+}
+
+std::vector<BackendSummary> Summarise(const CompareResult& result, int points) {
+  // Without a reference a tight solve has nothing to be compared with.
+  std::set<ProblemKey> rated;
+  for (const ProblemRow& row : result.problems) {
+    if (std::isfinite(row.reference_cost)) rated.insert({row.points, row.made.index});
+  }
+  std::vector<BackendSummary> summaries;
+  for (const std::string& backend : result.backends) {
+    std::vector<const SolveRow*> solves;
+    for (const SolveRow& row : result.solves) {
+      const bool wanted = points == 0 || row.points == points;
+      if (wanted && row.backend == backend && rated.contains({row.points, row.problem})) {
+        solves.push_back(&row);
+      }
+    }
+    summaries.push_back(SummariseOne(solves, backend));
+  }
+  return summaries;
+}
+
+std::optional<double> ScalingSlope(const CompareResult& result, const std::string& backend) {
+  std::map<int, std::vector<double>> per_iteration;
+  for (const SolveRow& row : result.solves) {
+    if (row.backend != backend || row.phase != SolvePhase::kTight || row.iterations == 0) continue;
+    per_iteration[row.points].push_back(row.cpu_ms / row.iterations);
+  }
+  if (per_iteration.size() < 2) return std::nullopt;
+  double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
+  for (const auto& [points, times] : per_iteration) {
+    const double x = std::log(static_cast<double>(points));
+    const double y = std::log(Median(times));
+    n += 1.0;
+    sum_x += x;
+    sum_y += y;
+    sum_xx += x * x;
+    sum_xy += x * y;
+  }
+  return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+}
+
+}  // namespace touchdown::evaluation

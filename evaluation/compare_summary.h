@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/compare.h"
+#include "touchdown/evaluation/statistics.h"
+
+namespace touchdown::evaluation {
+
+/// Four figures of a sample. A value that is infinite (a failure's time) makes the quantiles that
+/// reach it infinite; a sample without values has none.
+struct Quantiles {
+  std::optional<double> median, p95, p99, max;
+};
+Quantiles QuantilesOf(const std::vector<double>& values);
+
+/// Parts of the wall time of a solve; they add up to 1.
+struct ShareSummary {
+  double evaluation = 0.0;
+  double whitening = 0.0;
+  double native = 0.0;
+  double adapter = 0.0;
+};
+
+/// What the solves under a deadline came to.
+struct DeadlineSummary {
+  Quantiles wall_ms;  ///< until the call returned
+  Quantiles gap;      ///< of the returned point; infinite where it is not feasible
+  int solves = 0;
+  int best_returned = 0;  ///< solves that returned the best feasible point they evaluated
+};
+
+/// One backend over the problems of one size, or of all sizes.
+struct BackendSummary {
+  std::string backend;
+  int problems = 0;  ///< run, and with a reference
+  int solved = 0;    ///< within the gap, feasible, in the median of the repeats
+  Interval solved_interval;
+  Quantiles cpu_ms;  ///< to the gap, a failure's time infinite
+  Quantiles wall_ms;
+  Quantiles iterations;      ///< of the solved ones, to the gap
+  Quantiles evaluations;     ///< of the solved ones, to the gap
+  int reported_success = 0;  ///< tight solves that called themselves converged
+  int agreeing = 0;          ///< of these, within 1e-4 of the reference
+  Quantiles tight_gap;       ///< of the tight solves; infinite where the point is not feasible
+  Quantiles tight_cpu_ms;
+  double end_position_max = 0.0;  ///< [m], over all returned points
+  double end_velocity_max = 0.0;  ///< [m/s]
+  double violation_max = 0.0;     ///< of the points that counted as solved
+  std::optional<ShareSummary> shares;
+  std::optional<double> ms_per_iteration;  ///< median over the tight solves, CPU time
+  std::optional<DeadlineSummary> deadline;
+};
+
+/// All backends of the result, in its order; `points` 0: over all sizes.
+std::vector<BackendSummary> Summarise(const CompareResult& result, int points);
+
+/// Slope of log(ms per iteration) over log(points), least squares; none for fewer than two sizes.
+std::optional<double> ScalingSlope(const CompareResult& result, const std::string& backend);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Random landing problems: what the solver backends are compared on.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "touchdown/estimation/pad_predictor.h"
+#include "touchdown/planning/grid_search.h"
+#include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/sim/obstacle_field.h"
+#include "touchdown/solvers/backend_registry.h"
+
+namespace touchdown::evaluation {
+
+/// How the problems are drawn.
+struct CaseOptions {
+  std::uint64_t seed = 1;
+  std::string forest = "B";  ///< kind, see sim::ForestOfKind
+  double inflation = 0.3;    ///< of the map [m]
+  bool warm = false;         ///< the problem 0.1 s later, with the shifted previous solution
+  planning::LandingProblemOptions problem;
+};
+
+/// One landing problem, complete: what SetBoundary, SetDuration and SetPairs are given.
+struct LandingCase {
+  int index = 0;
+  planning::SplineState start;
+  double t0 = 0.0;  ///< [s]
+  std::shared_ptr<const estimation::PadPrediction> pad;
+  planning::EndpointTarget target;
+  double duration = 0.0;  ///< T, or the first guess of a free one [s]
+  std::vector<planning::ObstaclePair> pairs;
+  double pair_scale = 1.0;  ///< weight of the pairs, as the rounds raised it
+  std::optional<planning::UniformBspline>
+      warm;                ///< where the solve starts; none: the Hermite guess
+  double pad_speed = 0.0;  ///< [m/s]
+  double pad_rate = 0.0;   ///< [rad/s]
+  int draws = 1;           ///< scenes drawn until one could be made clear
+  int rounds = 0;          ///< of binding pairs
+
+  /// Sets the problem's parameters to this case. The case must outlive the solves.
+  void Apply(planning::LandingProblem* problem) const;
+  /// Where a solve of `problem`, to which the case was applied, starts.
+  Eigen::VectorXd StartPoint(const planning::LandingProblem& problem) const;
+};
+
+/// Draws landing problems: a forest, a start and a moving, turning pad; then pairs by the planner's
+/// own loop (solve, check the whole curve, search around what blocks it, bind, solve again) until
+/// the curve is clear. The pairs are made with soft limits and an eliminated endpoint, whatever the
+/// comparison solves later: the problem does not depend on who solves it. The same (seed, index)
+/// gives the same scene for any number of points.
+class CaseMaker {
+ public:
+  /// Throws std::invalid_argument if an option is out of range or no backend can make pairs.
+  CaseMaker(const CaseOptions& options, int points, const solvers::BackendRegistry& backends);
+
+  /// Throws std::runtime_error if a hundred scenes in a row could not be made clear.
+  LandingCase Make(int index);
+
+  const std::string& backend() const { return backend_->name(); }
+
+ private:
+  struct Scene;
+  Scene DrawScene(int index, int draw) const;
+  bool BindUntilClear(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
+  LandingCase Later(const Scene& scene, const LandingCase& first,
+                    const planning::UniformBspline& solution, int draw) const;
+
+  CaseOptions options_;
+  planning::LandingProblem problem_;
+  std::unique_ptr<solvers::SolverBackend> backend_;
+  planning::GridSearch search_;
+};
+
+}  // namespace touchdown::evaluation

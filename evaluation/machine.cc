@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Linux: getloadavg(3), sched_setaffinity(2).
+#include "touchdown/evaluation/machine.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include "touchdown/evaluation/bad_input.h"
+
+namespace touchdown::evaluation {
+
+double LoadAverage() {
+  double load = 0.0;
+  return getloadavg(&load, 1) == 1 ? load : std::numeric_limits<double>::quiet_NaN();
+}
+
+void PinToCpu(int cpu) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(cpu, &set);
+  if (sched_setaffinity(0, sizeof(set), &set) != 0) {
+    throw BadInput(fmt::format("--pin {}: the thread cannot be bound to this CPU ({}).", cpu,
+                               std::strerror(errno)));
+  }
+}
+
+bool TimingsMeanSomething() {
+#if defined(NDEBUG) && defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+  return true;
+#else
+  return false;
+#endif
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+namespace touchdown::evaluation {
+
+/// What else a timing depends on, besides build and CPU: where it ran and who ran beside it.
+struct MachineState {
+  std::optional<int> pinned;  ///< the CPU that the thread was bound to
+  double load_before = 0.0;   ///< load average over one minute
+  double load_after = 0.0;
+};
+
+/// Load average over the last minute; NaN where the system does not tell.
+double LoadAverage();
+
+/// Binds the calling thread to one CPU. @throws BadInput naming --pin if there is no such CPU or it
+/// may not be used.
+void PinToCpu(int cpu);
+
+/// The compiler optimised this build and no assertion or sanitizer slows it: its timings mean
+/// something.
+bool TimingsMeanSomething();
+
+}  // namespace touchdown::evaluation
