@@ -7,6 +7,7 @@
 
 #include "touchdown/solvers/banded_solver.h"
 #include "touchdown/solvers/ceres_solver.h"
+#include "touchdown/solvers/nlopt_solver.h"
 
 namespace touchdown::solvers {
 
@@ -15,6 +16,13 @@ BackendRegistry StandardBackends() {
       {"banded", "own Newton and interior point on the arrowhead band; soft and hard limits",
        MakeBandedSolver},
       {"ceres", "Ceres Levenberg-Marquardt, sparse normal equations; soft limits", MakeCeresSolver},
+      {"nlopt-lbfgs", "NLopt limited-memory BFGS, whitened; soft limits", MakeNloptLbfgs},
+      {"nlopt-tnewton", "NLopt truncated Newton, whitened; soft limits", MakeNloptTnewton},
+      {"nlopt-ccsaq", "NLopt conservative convex separable approximation, whitened; soft limits",
+       MakeNloptCcsaq},
+      {"nlopt-slsqp",
+       "NLopt sequential quadratic programming, dense, whitened; small hard problems",
+       MakeNloptSlsqp},
   };
 }
 

@@ -121,7 +121,7 @@ class CeresSolver : public SolverBackend {
                 {"initial_trust_region_radius", 1e8, 1e-3, 1e16, false, "1e8: nearly Gauss-Newton"},
             })) {}
 
-  Capabilities capabilities() const override { return {}; }
+  Capabilities capabilities() const override { return {.needs_residuals = true}; }
 
  private:
   void DoPrepare(const View& view) override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Square and cubic-quadratic hinge losses. The hinge is the collision penalty of X. Zhou et al.,
+// Square, cubic-quadratic hinge and linear losses. The hinge is the collision penalty of X. Zhou et al.,
 // "EGO-Planner: An ESDF-free gradient-based local planner for quadrotors", RA-L 2020, eq. 5.
 
 #include "touchdown/solvers/loss.h"
@@ -41,6 +41,13 @@ LossResidual HingeLoss::Residual(double u) const {
   if (value.rho == 0.0) return {};
   const double r = std::sqrt(2.0 * value.rho);
   return {r, value.drho / r};
+}
+
+LinearLoss::LinearLoss(double weight) : w_(weight) {
+  if (!std::isfinite(weight)) {
+    throw std::invalid_argument("LinearLoss: weight is " + std::to_string(weight) +
+                                ", it must be finite");
+  }
 }
 
 }  // namespace touchdown::solvers

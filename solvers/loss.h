@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scalar losses rho(u): what a term's inner map is measured by. Each knows its first two
-// derivatives, the residual r(u) with r^2 = 2 rho that least-squares backends want, and the
-// interval that it stands for where the term is made a hard constraint, and a nominal curvature: one
-// number that stands for rho'' near a solution. All are plain values; none allocates.
+// derivatives, the residual r(u) with r^2 = 2 rho that least-squares backends want (unless rho can
+// be negative), the interval that it stands for where the term is made a hard constraint, and a
+// nominal curvature: one number that stands for rho'' near a solution. All are plain values; none
+// allocates.
 #pragma once
 
 #include <limits>
@@ -66,6 +67,22 @@ class HingeLoss {
  private:
   double w_;
   double s_;
+};
+
+/// rho(u) = w u: a cost that is its inner map. It may be negative, so it has no residual.
+class LinearLoss {
+ public:
+  static constexpr bool kQuadratic = true;
+
+  /// Throws std::invalid_argument unless weight is finite.
+  explicit LinearLoss(double weight);
+
+  LossValue Value(double u) const { return {w_ * u, w_, 0.0}; }
+  double NominalCurvature(double /*u*/) const { return 0.0; }
+  LossBounds bounds() const { return {}; }
+
+ private:
+  double w_;
 };
 
 }  // namespace touchdown::solvers

@@ -22,7 +22,13 @@ std::string SolverBackend::Refusal(const View& view) const {
   }
   const Problem& problem = view.problem();
   for (int i = 0; i < problem.num_terms(); ++i) {
-    if (problem.role(i) != Role::kConstraint) continue;
+    if (problem.role(i) == Role::kCost) {
+      if (can.needs_residuals && !problem.term(i).shape().has_residual) {
+        return "backend " + name_ + " minimises sums of squares, and the cost term " +
+               problem.term(i).info().name + " is none";
+      }
+      continue;
+    }
     const LossBounds bounds = problem.term(i).bounds();
     const bool equality = bounds.lo == bounds.hi;
     if (equality ? !can.equality_rows : !can.hard_rows) {
@@ -51,6 +57,7 @@ void ForEachStructureNumber(const View& view, Visit&& visit) {
     visit(shape.window);
     visit(shape.outputs);
     visit(shape.max_windows);
+    visit(shape.has_residual);
     visit(problem.role(i) == Role::kConstraint);
     visit(problem.term(i).bounds().lo);
     visit(problem.term(i).bounds().hi);

@@ -17,9 +17,10 @@ namespace touchdown::solvers {
 /// What a backend can take. `compiled` false: it was left out at configure time.
 struct Capabilities {
   bool compiled = true;
-  bool hard_rows = false;      ///< inequality constraint rows
-  bool equality_rows = false;  ///< equality constraint rows
-  bool free_interval = true;   ///< a free knot interval
+  bool hard_rows = false;        ///< inequality constraint rows
+  bool equality_rows = false;    ///< equality constraint rows
+  bool free_interval = true;     ///< a free knot interval
+  bool needs_residuals = false;  ///< takes only costs that are sums of squares
 };
 
 /// A solver behind one interface. Everything that does not differ between backends happens once,

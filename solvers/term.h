@@ -36,6 +36,7 @@ struct TermShape {
   int max_windows = 0;        ///< most windows it can ever have at this problem size
   bool uses_interval = true;  ///< u depends on h
   bool quadratic = false;     ///< u affine in the blocks and rho quadratic: one Hessian for all x
+  bool has_residual = true;   ///< its cost is a sum of squares r^2 / 2
 };
 
 /// Where a term is evaluated.

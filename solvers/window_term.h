@@ -53,6 +53,11 @@ concept IsSeparable = requires {
   requires Inner::kSeparable;
 };
 
+template <class Loss>
+concept HasResidual = requires(const Loss& loss) {
+  loss.Residual(0.0);
+};
+
 template <class Inner, class Loss>
 class WindowTerm : public Term {
  public:
@@ -67,8 +72,13 @@ class WindowTerm : public Term {
       throw std::invalid_argument("term " + info_.name + ": max_windows is " +
                                   std::to_string(max_windows) + ", it must be >= 0");
     }
-    shape_ = {
-        kD, kW, kM, max_windows, Inner::kUsesInterval, Inner::kLinearInBlocks && Loss::kQuadratic};
+    shape_ = {kD,
+              kW,
+              kM,
+              max_windows,
+              Inner::kUsesInterval,
+              Inner::kLinearInBlocks && Loss::kQuadratic,
+              HasResidual<Loss>};
   }
 
   const TermInfo& info() const override { return info_; }
@@ -151,10 +161,12 @@ class WindowTerm : public Term {
       block->drho[i] = value.drho;
       block->d2rho[i] =
           request.nominal_curvature ? loss_.NominalCurvature(block->u[i]) : value.d2rho;
-      if (!request.want.residual) continue;
-      const LossResidual residual = loss_.Residual(block->u[i]);
-      block->r[i] = residual.r;
-      block->dr[i] = residual.dr;
+      if constexpr (HasResidual<Loss>) {
+        if (!request.want.residual) continue;
+        const LossResidual residual = loss_.Residual(block->u[i]);
+        block->r[i] = residual.r;
+        block->dr[i] = residual.dr;
+      }
     }
   }
 

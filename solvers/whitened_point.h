@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "touchdown/solvers/evaluator.h"
+#include "touchdown/solvers/whitening.h"
+
+namespace touchdown::solvers {
+
+/// The evaluator as a backend sees it that works on whitened variables z (whitening.h): one point at
+/// a time, its objective, gradient and rows in z. Without whitening z is the view's y.
+class WhitenedPoint {
+ public:
+  /// Allocates for views of this structure.
+  void Prepare(const View& view);
+
+  /// Starts a solve: evaluates at y, with gradients, and takes the metric there. False if a term
+  /// cannot be evaluated. All arguments outlive the solve. Does not allocate.
+  bool Begin(const View& view, const double* y, bool whiten, Evaluator* evaluator);
+
+  int size() const { return static_cast<int>(z_.size()); }
+  /// The last point; after Begin the first.
+  const double* z() const { return z_.data(); }
+  /// A free interval is z's last number divided by this.
+  double interval_scale() const { return whiten_ ? whitening_.interval_scale() : 1.0; }
+
+  /// Moves to z; false if a term cannot be evaluated there.
+  bool Evaluate(const double* z, bool gradient);
+  const ViewEvaluation& last() const { return evaluator_->last(); }
+  double value() const { return last().full.value; }
+  /// The objective's gradient in z, at a point evaluated with it.
+  void Gradient(double* out) const;
+  /// In place: a dense row in y becomes one in z.
+  void RowToWhite(double* row) const;
+
+  /// The best point so far changed since the last call, or since Begin. `step` receives how far it
+  /// moved in the view's variables.
+  bool Improved(double* step);
+
+ private:
+  Whitening whitening_;
+  ViewEvaluation metric_;  // where the metric is taken
+  Evaluator* evaluator_ = nullptr;
+  bool whiten_ = false;
+  double interval_min_ = 0.0, interval_max_ = 0.0;
+  bool free_interval_ = false;
+  std::vector<double> z_, y_;
+  Eigen::VectorXd best_;
+  double best_cost_ = 0.0, best_violation_ = 0.0;
+};
+
+}  // namespace touchdown::solvers
