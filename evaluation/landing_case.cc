@@ -214,7 +214,12 @@ LandingCase CaseMaker::Later(const Scene& scene, const LandingCase& first,
   later.duration = solution.t_end() - later.t0;
   later.pairs.clear();
   later.pair_scale = 1.0;
-  later.warm = planning::ShiftedSpline(solution, later.t0, later.duration, problem_.segments());
+  const planning::UniformBspline rest =
+      planning::ShiftedSpline(solution, later.t0, later.duration, problem_.segments());
+  planning::SplineState end =
+      planning::EndStateAt(*later.pad, later.target, later.t0 + later.duration).state;
+  end.a = rest.AtKnot(rest.segments()).a;  // it is free
+  later.warm = planning::WithEnds(rest, later.start, end);
   return later;
 }
 

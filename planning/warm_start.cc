@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "touchdown/planning/boundary_lift.h"
+
 namespace touchdown::planning {
 
 UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double duration,
@@ -33,6 +35,23 @@ UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double d
   q.col(0) = q.col(2) - 2.0 * h * v_start;
   q.col(segments + 2) = q.col(segments) + 2.0 * h * v_end;
   return UniformBspline(q, h, t0);
+}
+
+namespace {
+
+SplineState Difference(const SplineState& a, const SplineState& b) {
+  return {a.p - b.p, a.v - b.v, a.a - b.a};
+}
+
+}  // namespace
+
+UniformBspline WithEnds(const UniformBspline& curve, const SplineState& start,
+                        const SplineState& end) {
+  const int segments = curve.segments();
+  const ControlPoints missing =
+      HermiteControlPoints(Difference(start, curve.AtKnot(0)),
+                           Difference(end, curve.AtKnot(segments)), segments, curve.duration());
+  return UniformBspline(curve.control_points() + missing, curve.interval(), curve.t0());
 }
 
 }  // namespace touchdown::planning

@@ -13,4 +13,9 @@ namespace touchdown::planning {
 UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double duration,
                              int segments);
 
+/// The curve moved so that it starts and ends in the given states: what is missing at the ends is
+/// spread over it as a quintic, so that a small step at an end makes no jolt beside it. Allocates.
+UniformBspline WithEnds(const UniformBspline& curve, const SplineState& start,
+                        const SplineState& end);
+
 }  // namespace touchdown::planning

@@ -71,6 +71,29 @@ TEST(WarmStart, OtherKnotsFollowASmoothPath) {
   EXPECT_LT((curve.Evaluate(0.137).v_WB - shifted.Evaluate(0.137).v_WB).norm(), 1e-12);
 }
 
+// The new ends are met exactly, and a small step there stays small everywhere.
+TEST(WarmStart, NewEndsAreMetWithoutAJolt) {
+  Draw draw(5);
+  for (int trial = 0; trial < 20; ++trial) {
+    const UniformBspline curve = RandomSpline(20, 0.2, &draw);
+    SplineState start = curve.AtKnot(0);
+    SplineState end = curve.AtKnot(curve.segments());
+    start.p += draw.Vector(0.03);
+    start.v += draw.Vector(0.05);
+    end.p += draw.Vector(0.03);
+    const UniformBspline moved = WithEnds(curve, start, end);
+    EXPECT_LT((moved.AtKnot(0).p - start.p).norm(), 1e-12);
+    EXPECT_LT((moved.AtKnot(0).v - start.v).norm(), 1e-11);
+    EXPECT_LT((moved.AtKnot(0).a - start.a).norm(), 1e-10);
+    EXPECT_LT((moved.AtKnot(moved.segments()).p - end.p).norm(), 1e-12);
+    EXPECT_LT((moved.AtKnot(moved.segments()).v - end.v).norm(), 1e-11);
+    for (int k = 0; k <= curve.segments(); ++k) {
+      EXPECT_LT((moved.AtKnot(k).p - curve.AtKnot(k).p).norm(), 0.3);
+      EXPECT_LT((moved.AtKnot(k).a - curve.AtKnot(k).a).norm(), 1.0);
+    }
+  }
+}
+
 TEST(WarmStart, PastTheEndItStandsThereAndNonsenseIsRefused) {
   Draw draw(4);
   const UniformBspline curve = RandomSpline(12, 0.3, &draw);
