@@ -7,7 +7,8 @@
 //   dz = W (G dy + k),
 // with H the Lagrangian's Hessian, curvature of the rows included. Every row is a window, so that
 // G^T W G fills nothing: the matrix stays an arrowhead of the band, and one factor serves Mehrotra's
-// predictor and corrector. A merit function guards the step where rows are curved or not convex.
+// predictor and corrector. A merit function guards the step where rows are curved or not convex;
+// where these fast steps stall, the barrier method's careful ones take over.
 // Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical Optimization,
 // 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev. 47 (2005) 99.
 
@@ -28,12 +29,23 @@ namespace {
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
 constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
-constexpr double kSufficientDecrease = 1e-4;
+constexpr double kFastSlack = 1e-4;  // of the merit that a fast step may lose
 constexpr double kShortestStep = 1e-8;
-/// So many steps in a row that hardly move: the rows cannot be met from here.
-constexpr int kMostStalls = 5;
-constexpr double kStall = 1e-3;
-constexpr double kElasticPrice = 100.0;  // times the largest multiplier so far
+/// So many steps in a row that hardly move: this mode leads nowhere.
+constexpr int kMostStalls = 3;
+constexpr double kStall = 1e-2;
+constexpr int kMostFastSteps = 30;  // they converge in 5 to 15 where they do
+constexpr int kMostCarefulSteps = 200;
+constexpr double kRounding = 1e-8;
+constexpr double kLeastTarget = 0.1;  // of the gap asked for
+constexpr double kBarrierDecrease = 0.2;
+constexpr double kBarrierSolved =
+    1e-2;  // errors at which the barrier's own problem counts as solved
+constexpr double kElasticPrice = 100.0;  // of a unit of violation, times the cost it starts from
+
+double Dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
 
 double Largest(const std::vector<double>& a) {
   double largest = 0.0;
@@ -83,80 +95,119 @@ SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
                                      const std::vector<std::vector<double>>& multipliers,
                                      const Tolerances& tolerances, Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
-  elastic_ = false;
-  if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
-  StartRows(evaluator->last(), multipliers);
-  const SolveStatus status = Iterate(view, tolerances, evaluator);
-  if (status != SolveStatus::kInfeasible && status != SolveStatus::kNumericalFailure) return status;
-
-  // Rows that cannot be met: the least costly violation instead, from the least violating point.
-  elastic_ = true;
-  price_ = kElasticPrice * std::max(Largest(now_.z), 1.0);
-  std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
-  if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
-  StartRows(evaluator->last(), {});
-  const SolveStatus relaxed = Iterate(view, tolerances, evaluator);
-  if (relaxed != SolveStatus::kConverged) return relaxed;
-  return LargestRow() <= Evaluator::kFeasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
+  SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
+  // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by the
+  // fast steps, then by the careful ones.
+  for (const bool careful : {false, true}) {
+    if (status != SolveStatus::kNumericalFailure) return status;
+    const Mode mode{.elastic = true, .careful = careful};
+    std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
+    status = Attempt(view, mode, {}, tolerances, evaluator);
+  }
+  return status;
 }
 
-SolveStatus BandedInteriorPoint::Iterate(const View& view, const Tolerances& tolerances,
-                                         Evaluator* evaluator) {
+SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
+                                         const std::vector<std::vector<double>>& multipliers,
+                                         const Tolerances& tolerances, Evaluator* evaluator) {
+  mode_ = mode;
+  if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
+  price_ = kElasticPrice * std::max(std::abs(evaluator->last().full.value), 1.0);
+  StartRows(evaluator->last(), multipliers);
   if (!EvaluateAt(y_.data(), now_, evaluator)) return SolveStatus::kEvaluationFailed;
+  double barrier = Complementarity({0.0, 0.0});
   int stalls = 0;
-  while (!evaluator->must_stop()) {
+  const int most_steps = mode.careful ? kMostCarefulSteps : kMostFastSteps;
+  for (int step = 0; step < most_steps && !evaluator->must_stop(); ++step) {
     ReadRows(evaluator->last());
-    const double cost = evaluator->last().full.value;
-    const double gap = Complementarity({0.0, 0.0}) * (elastic_ ? 2 * active_ : active_);
-    DualResidual(view, evaluator);
-    const double dual_error = Largest(right_);
-    const double dual_scale =
-        std::max(1.0, Largest(evaluator->last().gradient)) * std::sqrt(tolerances.gap);
-    const double relative_gap = gap / std::max(std::abs(cost), 1e-12);
-    if (relative_gap <= tolerances.gap && dual_error <= dual_scale &&
-        (elastic_ || LargestRow() <= tolerances.violation)) {
+    if (!FactorDefinite(evaluator->last().hessian, &factor_)) break;
+    const Errors errors = MeasureErrors(view, evaluator);
+    if (errors.gap <= tolerances.gap && errors.dual <= tolerances.gap &&
+        (errors.row <= tolerances.violation || (mode.elastic && Largest(now_.z) > 0.5 * price_))) {
       // An earlier point may cost less by what it violates within the tolerance.
       evaluator->PreferLast();
-      return SolveStatus::kConverged;
+      return errors.row <= Evaluator::kFeasible ? SolveStatus::kConverged
+                                                : SolveStatus::kInfeasible;
     }
-
-    if (!FactorDefinite(evaluator->last().hessian, &factor_)) return SolveStatus::kNumericalFailure;
-    const double mu = Complementarity({0.0, 0.0});
-    std::fill(correction_s_.begin(), correction_s_.end(), 0.0);
-    std::fill(correction_e_.begin(), correction_e_.end(), 0.0);
-    Direction(view, 0.0, evaluator);
-    const double ratio = Complementarity(LongestStep(relative_gap)) / mu;
-    const double target = mu * std::clamp(ratio * ratio * ratio, 1e-6, 1.0);
-    Correct();
-    Direction(view, target, evaluator);
-
-    const double penalty = 2.0 * std::max(Largest(now_.z), 1e-12);
-    const double merit = Merit(cost, target, penalty, now_);
-    StepLengths length = LongestStep(relative_gap);
-    for (;;) {
-      Move(length);
-      if (!EvaluateAt(trial_.data(), next_, evaluator)) {
-        length.primal *= 0.5;
-      } else {
-        ReadRows(evaluator->last());
-        const double after = Merit(evaluator->last().full.value, target, penalty, next_);
-        if (after <= merit + kSufficientDecrease * std::abs(merit) || length.primal < kShortestStep)
-          break;
-        length.primal *= 0.5;
-      }
-      if (evaluator->must_stop()) return evaluator->stop_status();
-      if (length.primal < kShortestStep) return SolveStatus::kInfeasible;
+    const double least =
+        kLeastTarget * tolerances.gap / std::max(errors.gap, 1e-300) * Complementarity({0.0, 0.0});
+    const double target = mode.careful ? CarefulDirection(view, errors, least, &barrier, evaluator)
+                                       : FastDirection(view, errors, least, evaluator);
+    const StepLengths length = LineSearch(target, LongestStep(errors.gap), evaluator);
+    if (evaluator->must_stop()) break;
+    if (length.primal < kShortestStep) {
+      // Tolerances below rounding end here.
+      if (errors.gap > kRounding || errors.dual > kRounding || errors.row > kRounding) break;
+      return SolveStatus::kConverged;
     }
     y_.swap(trial_);
     std::swap(now_, next_);
-    evaluator->FinishIteration(length.primal * std::sqrt(std::inner_product(
-                                                   step_.begin(), step_.end(), step_.begin(), 0.0)),
-                               dual_error);
+    evaluator->FinishIteration(length.primal * std::sqrt(Dot(step_, step_)), errors.dual);
     evaluator->CheckStop();
     stalls = length.primal < kStall ? stalls + 1 : 0;
-    if (stalls >= kMostStalls) return SolveStatus::kInfeasible;
+    if (stalls >= kMostStalls) break;
   }
-  return evaluator->stop_status();
+  return evaluator->must_stop() ? evaluator->stop_status() : SolveStatus::kNumericalFailure;
+}
+
+/// Mehrotra's predictor and corrector. Returns the complementarity aimed at, `least` or more: far
+/// below what is asked for there is only rounding.
+double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors, double least,
+                                          Evaluator* evaluator) {
+  const double mu = Complementarity({0.0, 0.0});
+  SetCorrection(false);
+  Direction(view, 0.0, evaluator);
+  const double ratio = Complementarity(LongestStep(errors.gap)) / mu;
+  const double target = std::max(mu * std::clamp(ratio * ratio * ratio, 1e-6, 1.0), least);
+  SetCorrection(true);
+  Direction(view, target, evaluator);
+  return target;
+}
+
+/// The barrier method of Fiacco and McCormick: the target falls only where its own problem is solved.
+double BandedInteriorPoint::CarefulDirection(const View& view, const Errors& errors, double least,
+                                             double* barrier, Evaluator* evaluator) {
+  const double mu = Complementarity({0.0, 0.0});
+  if (mu <= 2.0 * *barrier && errors.dual <= kBarrierSolved && errors.primal <= kBarrierSolved) {
+    *barrier = std::max(kBarrierDecrease * *barrier, least);
+  }
+  SetCorrection(false);
+  Direction(view, *barrier, evaluator);
+  return *barrier;
+}
+
+/// Halves the primal step until the merit function takes it; trial_ and next_ are the point then,
+/// and the evaluator's last.
+BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, StepLengths length,
+                                                                 Evaluator* evaluator) {
+  const double penalty = 2.0 * std::max(Largest(now_.z), 1e-12);
+  const double merit = Merit(evaluator->last().full.value, target, penalty, now_);
+  // Fast steps may go uphill a little: their target differs from step to step.
+  const double slack = (mode_.careful ? 1e-12 : kFastSlack) * std::abs(merit);
+  for (; length.primal >= kShortestStep; length.primal *= 0.5) {
+    Move(length);
+    if (!EvaluateAt(trial_.data(), next_, evaluator)) continue;
+    if (evaluator->must_stop()) break;
+    ReadRows(evaluator->last());
+    if (Merit(evaluator->last().full.value, target, penalty, next_) <= merit + slack) break;
+  }
+  return length;
+}
+
+BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
+                                                               Evaluator* evaluator) {
+  Errors errors;
+  const double cost = std::max(std::abs(evaluator->last().full.value), 1e-12);
+  errors.gap = Complementarity({0.0, 0.0}) * (mode_.elastic ? 2 : 1) * active_ / cost;
+  for (int i = 0; i < active_; ++i) {
+    errors.row = std::max(errors.row, g_[i]);
+    errors.primal =
+        std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (mode_.elastic ? now_.e[i] : 0.0)));
+  }
+  DualResidual(view, evaluator);
+  NewtonStep(view, y_.data(), right_.data(), factor_, step_.data());
+  errors.dual = -0.5 * Dot(right_, step_) / cost;
+  return errors;
 }
 
 void BandedInteriorPoint::PlaceRows(const ViewEvaluation& at) {
@@ -184,7 +235,7 @@ void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
       now_.s[i] = std::max(-g_[i], kFirstSlack * size);
       now_.z[i] = mu / now_.s[i];
       if (known) now_.z[i] = std::max(now_.z[i], side.sign * multipliers[side.term][j]);
-      if (!elastic_) continue;
+      if (!mode_.elastic) continue;
       now_.z[i] = std::min(now_.z[i], 0.5 * price_);
       now_.w[i] = price_ - now_.z[i];
       now_.e[i] = std::max(g_[i] + now_.s[i], mu / now_.w[i]);
@@ -199,12 +250,6 @@ void BandedInteriorPoint::ReadRows(const ViewEvaluation& at) {
   }
 }
 
-double BandedInteriorPoint::LargestRow() const {
-  double largest = 0.0;
-  for (int i = 0; i < active_; ++i) largest = std::max(largest, g_[i]);
-  return largest;
-}
-
 bool BandedInteriorPoint::EvaluateAt(const double* y, const Rows& rows, Evaluator* evaluator) {
   for (auto* arrays : {&multiplier_, &weight_}) {
     for (auto& array : *arrays) std::fill(array.begin(), array.end(), 0.0);
@@ -213,7 +258,7 @@ bool BandedInteriorPoint::EvaluateAt(const double* y, const Rows& rows, Evaluato
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
       multiplier_[side.term][j] += side.sign * rows.z[i];
-      const double give = rows.s[i] / rows.z[i] + (elastic_ ? rows.e[i] / rows.w[i] : 0.0);
+      const double give = rows.s[i] / rows.z[i] + (mode_.elastic ? rows.e[i] / rows.w[i] : 0.0);
       weight_[side.term][j] += 1.0 / give;
     }
   }
@@ -240,7 +285,7 @@ void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* eval
       const int i = side.first + j;
       double give = now_.s[i] / now_.z[i];
       k_[i] = g_[i] + (mu - correction_s_[i]) / now_.z[i];
-      if (elastic_) {
+      if (mode_.elastic) {
         give += now_.e[i] / now_.w[i];
         k_[i] -= (mu - correction_e_[i]) / now_.w[i];
       }
@@ -256,21 +301,22 @@ void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* eval
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
       const double s = now_.s[i], z = now_.z[i];
-      const double give = s / z + (elastic_ ? now_.e[i] / now_.w[i] : 0.0);
+      const double give = s / z + (mode_.elastic ? now_.e[i] / now_.w[i] : 0.0);
       dz_[i] = (side.sign * product_[side.term][j] + k_[i]) / give;
       ds_[i] = (mu - correction_s_[i] - s * dz_[i]) / z - s;
-      if (!elastic_) continue;
+      if (!mode_.elastic) continue;
       const double e = now_.e[i], w = now_.w[i];
       de_[i] = (mu - correction_e_[i] + e * dz_[i]) / w - e;
     }
   }
 }
 
-/// The second-order terms that the predictor's full step would leave in s z and e w.
-void BandedInteriorPoint::Correct() {
-  for (int i = 0; i < active_; ++i) correction_s_[i] = ds_[i] * dz_[i];
-  if (!elastic_) return;
-  for (int i = 0; i < active_; ++i) correction_e_[i] = -de_[i] * dz_[i];
+/// The second-order terms that the predictor's full step would leave in s z and e w, or none.
+void BandedInteriorPoint::SetCorrection(bool predicted) {
+  for (int i = 0; i < active_; ++i) {
+    correction_s_[i] = predicted ? ds_[i] * dz_[i] : 0.0;
+    correction_e_[i] = predicted && mode_.elastic ? -de_[i] * dz_[i] : 0.0;
+  }
 }
 
 BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) const {
@@ -282,7 +328,7 @@ BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) co
   for (int i = 0; i < active_; ++i) {
     limit(now_.s[i], ds_[i], &primal);
     limit(now_.z[i], dz_[i], &dual);
-    if (!elastic_) continue;
+    if (!mode_.elastic) continue;
     limit(now_.e[i], de_[i], &primal);
     limit(now_.w[i], -dz_[i], &dual);
   }
@@ -295,9 +341,10 @@ double BandedInteriorPoint::Complementarity(const StepLengths& length) const {
   for (int i = 0; i < active_; ++i) {
     const double z = now_.z[i] + length.dual * dz_[i];
     sum += (now_.s[i] + length.primal * ds_[i]) * z;
-    if (elastic_) sum += (now_.e[i] + length.primal * de_[i]) * (now_.w[i] - length.dual * dz_[i]);
+    if (mode_.elastic)
+      sum += (now_.e[i] + length.primal * de_[i]) * (now_.w[i] - length.dual * dz_[i]);
   }
-  return sum / std::max(elastic_ ? 2 * active_ : active_, 1);
+  return sum / std::max(mode_.elastic ? 2 * active_ : active_, 1);
 }
 
 void BandedInteriorPoint::Move(const StepLengths& length) {
@@ -305,9 +352,9 @@ void BandedInteriorPoint::Move(const StepLengths& length) {
   for (int i = 0; i < active_; ++i) {
     next_.s[i] = now_.s[i] + length.primal * ds_[i];
     next_.z[i] = now_.z[i] + length.dual * dz_[i];
-    if (!elastic_) continue;
+    if (!mode_.elastic) continue;
     next_.e[i] = now_.e[i] + length.primal * de_[i];
-    next_.w[i] = price_ - next_.z[i];
+    next_.w[i] = now_.w[i] - length.dual * dz_[i];  // price - z without its cancellation
   }
 }
 
@@ -315,9 +362,9 @@ void BandedInteriorPoint::Move(const StepLengths& length) {
 double BandedInteriorPoint::Merit(double cost, double mu, double penalty, const Rows& rows) const {
   double merit = cost;
   for (int i = 0; i < active_; ++i) {
-    const double e = elastic_ ? rows.e[i] : 0.0;
+    const double e = mode_.elastic ? rows.e[i] : 0.0;
     merit += penalty * std::abs(g_[i] + rows.s[i] - e) - mu * std::log(rows.s[i]);
-    if (elastic_) merit += price_ * e - mu * std::log(e);
+    if (mode_.elastic) merit += price_ * e - mu * std::log(e);
   }
   return merit;
 }

@@ -44,7 +44,25 @@ class BandedInteriorPoint {
     double dual = 1.0;
   };
 
-  SolveStatus Iterate(const View& view, const Tolerances& tolerances, Evaluator* evaluator);
+  struct Mode {
+    bool elastic = false;
+    bool careful = false;
+  };
+  struct Errors {
+    double gap = 0.0;     ///< sum of s z and e w, share of the cost
+    double dual = 0.0;    ///< what a step to grad f + G^T z = 0 would gain, share of the cost
+    double primal = 0.0;  ///< of g + s = e
+    double row = 0.0;     ///< largest g
+  };
+
+  SolveStatus Attempt(const View& view, const Mode& mode,
+                      const std::vector<std::vector<double>>& multipliers,
+                      const Tolerances& tolerances, Evaluator* evaluator);
+  double FastDirection(const View& view, const Errors& errors, double least, Evaluator* evaluator);
+  double CarefulDirection(const View& view, const Errors& errors, double least, double* barrier,
+                          Evaluator* evaluator);
+  StepLengths LineSearch(double target, StepLengths length, Evaluator* evaluator);
+  Errors MeasureErrors(const View& view, Evaluator* evaluator);
   void PlaceRows(const ViewEvaluation& at);
   void StartRows(const ViewEvaluation& at, const std::vector<std::vector<double>>& multipliers);
   void ReadRows(const ViewEvaluation& at);
@@ -53,15 +71,14 @@ class BandedInteriorPoint {
   void DualResidual(const View& view, Evaluator* evaluator);
   /// The step to complementarity `mu`, with the second-order terms `correction` counted in.
   void Direction(const View& view, double mu, Evaluator* evaluator);
-  void Correct();
+  void SetCorrection(bool predicted);
   /// `gap`: relative to the cost.
   StepLengths LongestStep(double gap) const;
   double Complementarity(const StepLengths& length) const;
   void Move(const StepLengths& length);
   double Merit(double cost, double mu, double penalty, const Rows& rows) const;
-  double LargestRow() const;
 
-  bool elastic_ = false;
+  Mode mode_;
   double price_ = 0.0;  // of a unit of e
   int active_ = 0;      // rows in all sides
   std::vector<Side> sides_;
