@@ -4,6 +4,9 @@
 #   One GoogleTest executable per folder; every TEST becomes a CTest entry with the label unit, or
 #   closed_loop where the filter takes it: whole flights, which sanitizers make too slow.
 
+# touchdown_add_bench(<folder> SOURCES ... LINK ...)
+#   One Google Benchmark executable per folder, <folder>_bench; a test runs each for a moment.
+
 # Headers are included as "touchdown/<folder>/<file>.h", in the tree through this link and after
 # installation through the include directory.
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/include")
@@ -62,4 +65,19 @@ function(touchdown_add_test folder)
   endif()
   gtest_discover_tests(${target} ${unit_filter} PROPERTIES LABELS "unit;${folder}"
                        DISCOVERY_TIMEOUT 60)
+endfunction()
+
+function(touchdown_add_bench folder)
+  if(NOT TOUCHDOWN_BUILD_BENCHMARKS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  set(target ${folder}_bench)
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE ${ARG_LINK} benchmark::benchmark_main)
+  touchdown_compile_options(${target})
+  if(TOUCHDOWN_BUILD_TESTS)
+    add_test(NAME ${target} COMMAND ${target} --benchmark_min_time=0.0001)
+    set_tests_properties(${target} PROPERTIES LABELS "unit;${folder}")
+  endif()
 endfunction()
