@@ -30,13 +30,14 @@ Json ListPlanners() {
 
 Json ListTerms(const Registries& registries) {
   Json list = Json::array();
-  for (const solvers::TermFactory& factory : registries.terms) {
-    const solvers::TermInfo& info = factory.info;
+  for (const planning::TermEntry& entry : registries.terms) {
+    const solvers::TermInfo& info = entry.info;
     list.push_back({{"name", info.name},
                     {"formula", info.formula},
                     {"unit", info.unit},
                     {"source", info.source},
-                    {"convex", info.convex}});
+                    {"convex", info.convex},
+                    {"default_weight", entry.default_weight}});
   }
   return list;
 }

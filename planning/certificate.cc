@@ -17,10 +17,6 @@ namespace {
 // Rounding of sums of control points; limits are met by construction with equality at times.
 constexpr double kRounding = 1e-9;
 
-// A recovery may take this long to build up its deceleration: the start's acceleration is given
-// [s].
-constexpr double kRecoveryLag = 0.3;
-
 /// Every segment's hull stays below what is left of a start beyond the limits.
 bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
   const ControlPoints& q = curve.control_points();
@@ -28,10 +24,12 @@ bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
   const double v0 = curve.AtKnot(0).v.norm(), a0 = curve.AtKnot(0).a.norm();
   for (int i = 0; i < curve.segments(); ++i) {
     const double t = i * h;  // the profile falls: the start of a segment is its loosest instant
-    const double recovered = 0.5 * limits.acceleration * std::max(0.0, t - kRecoveryLag);
+    const double recovered = RecoveryProfile::kSpeedShare * limits.acceleration *
+                             std::max(0.0, t - RecoveryProfile::kLag);
     const double v_allowed = std::max(limits.speed, v0 - recovered);
     // The acceleration may fade over the time that the recovery of the speed takes.
-    const double a_allowed = std::max(limits.acceleration, a0 * (1.0 - 2.0 * t));
+    const double a_allowed =
+        std::max(limits.acceleration, a0 * (1.0 - RecoveryProfile::kAccelerationDecay * t));
     const SplineState from = curve.AtKnot(i), to = curve.AtKnot(i + 1);
     const double speed =
         std::max({from.v.norm(), to.v.norm(), (q.col(i + 2) - q.col(i + 1)).norm() / h});

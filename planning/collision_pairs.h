@@ -5,7 +5,7 @@
 
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/free_space.h"
-#include "touchdown/planning/terms/obstacle_pair.h"
+#include "touchdown/planning/landing_term.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {

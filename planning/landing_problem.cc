@@ -1,34 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Assembles the landing problem from its terms. With these terms, a fixed interval and fixed pairs
-// it is convex: every backend must find the one optimum.
+// Assembles the landing problem from the terms of a registry. With the terms that are on by
+// default, a fixed interval and fixed pairs it is convex: every backend must find the one optimum.
 
 #include "touchdown/planning/landing_problem.h"
 
 #include <stdexcept>
 #include <string>
 
-#include "touchdown/planning/terms/arrival_time.h"
-#include "touchdown/planning/terms/norm_limit.h"
-#include "touchdown/planning/terms/smoothness.h"
-
 namespace touchdown::planning {
 
 namespace {
 
-// Where the hinges turn from cubic to quadratic.
-constexpr double kSpeedHingeWidth = 0.3;         // [m/s]
-constexpr double kAccelerationHingeWidth = 1.0;  // [m/s^2]
+void Require(bool ok, const char* name, double value, const char* range) {
+  if (ok) return;
+  throw std::invalid_argument(std::string("LandingProblem: ") + name + " is " +
+                              std::to_string(value) + ", it must be " + range);
+}
 
 solvers::ProblemShape Shape(int segments, const LandingProblemOptions& options) {
-  if (segments < 6) {
-    throw std::invalid_argument("LandingProblem: " + std::to_string(segments) +
-                                " segments, it needs at least 6");
-  }
-  if (!(options.limits.speed > 0.0 && options.limits.acceleration > 0.0)) {
-    throw std::invalid_argument(
-        "LandingProblem: limits are " + std::to_string(options.limits.speed) + " m/s and " +
-        std::to_string(options.limits.acceleration) + " m/s^2, both must be > 0");
-  }
+  Require(segments >= 6, "number of segments", segments, ">= 6");
+  Require(options.limits.speed > 0.0, "limits.speed", options.limits.speed, "> 0 m/s");
+  Require(options.limits.acceleration > 0.0, "limits.acceleration", options.limits.acceleration,
+          "> 0 m/s^2");
+  Require(options.max_pairs_per_point >= 0, "max_pairs_per_point", options.max_pairs_per_point,
+          ">= 0");
+  Require(options.max_obstacles >= 0, "max_obstacles", options.max_obstacles, ">= 0");
   solvers::ProblemShape shape;
   shape.blocks = segments + 3;
   shape.free_interval = options.arrival == ArrivalMode::kFree;
@@ -42,41 +38,127 @@ solvers::ProblemShape Shape(int segments, const LandingProblemOptions& options) 
 LandingProblem::LandingProblem(int segments, const LandingProblemOptions& options)
     : segments_(segments),
       max_pairs_(options.max_pairs_per_point * (segments + 3)),
+      max_obstacles_(options.max_obstacles),
       lift_(std::make_shared<BoundaryLift>(segments, options.free_end_acceleration)),
       problem_(Shape(segments, options)) {
-  const int n = segments + 3;
-  const double margin = options.soft_limit_margin;
-  pairs_ = MakeObstaclePairs(n, max_pairs_, options.pair_weight, options.pair_clearance);
-  problem_.AddTerm(MakeSmoothness(n, options.smoothness_weight, options.jerk_weight),
-                   solvers::Role::kCost);
-  problem_.AddTerm(pairs_, solvers::Role::kCost);
-  problem_.AddTerm(
-      MakeSpeedLimit(n, margin * options.limits.speed, options.speed_weight, kSpeedHingeWidth),
-      solvers::Role::kCost);
-  problem_.AddTerm(MakeAccelerationLimit(n, margin * options.limits.acceleration,
-                                         options.acceleration_weight, kAccelerationHingeWidth),
-                   solvers::Role::kCost);
-  if (options.arrival == ArrivalMode::kFree) {
-    problem_.AddTerm(MakeArrivalTime(n, options.time_weight), solvers::Role::kCost);
+  context_.segments = segments;
+  context_.limits = options.limits;
+  pairs_.reserve(static_cast<std::size_t>(max_pairs_));
+  obstacles_.reserve(static_cast<std::size_t>(max_obstacles_));
+  AddTerms(options);
+  solvers::AffineLift structure = solvers::AffineLift::Identity(segments + 3);
+  if (options.endpoint == EndpointMode::kEliminated) {
+    structure = lift_->Structure();
+    structure.offset = lift_;
   }
-  solvers::AffineLift structure = lift_->Structure();
-  structure.offset = lift_;
   view_ = std::make_unique<solvers::View>(problem_, std::move(structure));
+}
+
+void LandingProblem::AddTerms(const LandingProblemOptions& options) {
+  for (const TermSettings& settings : options.settings) FindTerm(options.terms, settings.name);
+  for (const TermEntry& entry : options.terms) AddTerm(entry, options);
+}
+
+void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions& options) {
+  TermSetup setup = DefaultSetup(entry, segments_ + 3);
+  setup.weight = entry.default_weight;
+  setup.free_end_acceleration = options.free_end_acceleration;
+  setup.limits = options.limits;
+  setup.vehicle = options.vehicle;
+  setup.max_pairs = max_pairs_;
+  setup.max_obstacles = options.max_obstacles;
+  const bool explicit_end = options.endpoint == EndpointMode::kExplicit;
+  if (entry.use == TermUse::kFreeArrival && options.arrival != ArrivalMode::kFree) return;
+  if (entry.use == TermUse::kExplicitEndpoint && !explicit_end) return;
+  setup.hard = entry.use == TermUse::kExplicitEndpoint ||
+               (entry.is_limit && options.limits_mode == LimitsMode::kHard);
+  bool asked_for = setup.weight > 0.0;
+  for (const TermSettings& settings : options.settings) {
+    if (settings.name != entry.info.name) continue;
+    ApplySettings(entry, settings, &setup);
+    asked_for = setup.weight > 0.0 || settings.hard.value_or(false);
+  }
+  if (!asked_for) return;
+  const std::shared_ptr<solvers::Term> term = entry.make(setup);
+  problem_.AddTerm(term, setup.hard ? solvers::Role::kConstraint : solvers::Role::kCost);
+  if (auto* user = dynamic_cast<ContextUser*>(term.get())) context_users_.push_back(user);
+}
+
+void LandingProblem::Update() {
+  if (context_.pad == nullptr) return;  // the boundary comes first
+  for (ContextUser* user : context_users_) user->Update(context_);
 }
 
 void LandingProblem::SetBoundary(const SplineState& start, double t0,
                                  const estimation::PadPrediction& pad,
                                  const EndpointTarget& target) {
-  t0_ = t0;
+  context_.start = start;
+  context_.t0 = t0;
+  context_.pad = &pad;
+  context_.target = target;
   problem_.set_t0(t0);
   lift_->Set(start, t0, pad, target);
+  Update();
 }
 
-void LandingProblem::SetDuration(double T) { problem_.set_interval(T / segments_); }
+void LandingProblem::SetDuration(double T) {
+  context_.interval = T / segments_;
+  problem_.set_interval(context_.interval);
+  Update();
+}
+
+void LandingProblem::SetPairs(std::span<const ObstaclePair> pairs) {
+  if (pairs.size() > static_cast<std::size_t>(max_pairs_)) {
+    throw std::invalid_argument("LandingProblem: " + std::to_string(pairs.size()) +
+                                " pairs, there is room for " + std::to_string(max_pairs_));
+  }
+  for (const ObstaclePair& pair : pairs) {
+    Require(pair.control_point >= 0 && pair.control_point < segments_ + 3,
+            "control point of a pair", pair.control_point, "one of the spline's");
+  }
+  pairs_.assign(pairs.begin(), pairs.end());
+  context_.pairs = pairs_;
+  Update();
+}
+
+void LandingProblem::SetPairWeightScale(double scale) {
+  context_.pair_weight_scale = scale;
+  Update();
+}
+
+void LandingProblem::SetObstacles(std::span<const MovingObstacle> obstacles) {
+  if (obstacles.size() > static_cast<std::size_t>(max_obstacles_)) {
+    throw std::invalid_argument("LandingProblem: " + std::to_string(obstacles.size()) +
+                                " moving obstacles, there is room for " +
+                                std::to_string(max_obstacles_));
+  }
+  obstacles_.assign(obstacles.begin(), obstacles.end());
+  context_.obstacles = obstacles_;
+  Update();
+}
+
+void LandingProblem::SetPrevious(const UniformBspline* previous) {
+  context_.previous = previous;
+  Update();
+}
+
+BoundaryFacts LandingProblem::boundary_facts() const {
+  const double h = context_.interval;
+  BoundaryFacts facts;
+  facts.start_speed = context_.start.v.norm();
+  facts.start_acceleration = context_.start.a.norm();
+  facts.first_hull_speed = (context_.start.v + 0.5 * h * context_.start.a).norm();
+  facts.end_speed = context_.End(h).state.v.norm();
+  facts.recovering = facts.start_speed > context_.limits.speed ||
+                     facts.start_acceleration > context_.limits.acceleration;
+  facts.end_too_fast = facts.end_speed > kFastestEndShare * context_.limits.speed;
+  return facts;
+}
 
 Eigen::VectorXd LandingProblem::Guess() const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(view_->num_variables());
-  if (view_->free_interval()) y[y.size() - 1] = problem_.interval();
+  if (!view_->lift().offset) lift_->At(context_.interval, y.data(), nullptr, nullptr);
+  if (view_->free_interval()) y[y.size() - 1] = context_.interval;
   return y;
 }
 
@@ -84,7 +166,8 @@ UniformBspline LandingProblem::Curve(const Eigen::VectorXd& y) const {
   std::vector<double> x;
   double h = 0.0;
   view_->Lift(y.data(), &x, &h);
-  return UniformBspline(Eigen::Map<const ControlPoints>(x.data(), 3, segments_ + 3), h, t0_);
+  return UniformBspline(Eigen::Map<const ControlPoints>(x.data(), 3, segments_ + 3), h,
+                        context_.t0);
 }
 
 }  // namespace touchdown::planning

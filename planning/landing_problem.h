@@ -7,67 +7,97 @@
 
 #include "touchdown/planning/boundary_lift.h"
 #include "touchdown/planning/limits.h"
-#include "touchdown/planning/terms/obstacle_pair.h"
+#include "touchdown/planning/term_registry.h"
 #include "touchdown/planning/uniform_bspline.h"
 #include "touchdown/solvers/problem.h"
 #include "touchdown/solvers/view.h"
 
 namespace touchdown::planning {
 
+/// The arrival time is chosen before the solve, or a variable of it.
 enum class ArrivalMode { kFixed, kFree };
+/// Both ends are eliminated exactly, or equality rows of the term endpoint_state.
+enum class EndpointMode { kEliminated, kExplicit };
+/// Terms that are limits are costs that act from a margin on, or rows u <= 0 at the full limit.
+enum class LimitsMode { kSoft, kHard };
 
 struct LandingProblemOptions {
   ArrivalMode arrival = ArrivalMode::kFixed;
+  EndpointMode endpoint = EndpointMode::kEliminated;
+  LimitsMode limits_mode = LimitsMode::kSoft;
   bool free_end_acceleration = true;  ///< else the pad's own acceleration at arrival
   Limits limits;
-  double soft_limit_margin = 0.93;  ///< soft limits act from this share of the hard ones
-  double smoothness_weight = 1.0;   ///< on int |a|^2 dt
-  double jerk_weight = 0.1;         ///< on int |j|^2 dt, relative to the acceleration [s^2]
-  double pair_weight = 3000.0;
-  double pair_clearance = 0.30;  ///< s_f, beyond the inflation radius [m]
-  double speed_weight = 300.0;
-  double acceleration_weight = 30.0;
-  double time_weight = 30.0;   ///< price of a second, free arrival only
-  double max_duration = 30.0;  ///< upper bound of a free arrival [s]
-  double min_duration = 0.5;   ///< lower bound of a free arrival [s]
+  VehicleFacts vehicle;
+  TermRegistry terms = StandardTerms();  ///< what the objective is built from ...
+  std::vector<TermSettings> settings;    ///< ... where it shall differ from the entries' defaults
+  double max_duration = 30.0;            ///< upper bound of a free arrival [s]
+  double min_duration = 0.5;             ///< lower bound of a free arrival [s]
   int max_pairs_per_point = 6;
+  int max_obstacles = 8;  ///< moving ones
 };
 
-/// The landing problem (docs/formulation.md): smoothness, {p, v} pairs and norm limits over a uniform
-/// cubic B-spline whose start is fixed and whose end is the predicted pad at arrival, both
-/// eliminated exactly. One instance per number of segments; its parameters change at every replan
-/// without allocation.
+/// What the boundary fixes whatever the solver does: no rows, but facts to look at first.
+struct BoundaryFacts {
+  double start_speed = 0.0;         ///< |v0| [m/s]
+  double start_acceleration = 0.0;  ///< |a0| = |A_0| [m/s^2]
+  double first_hull_speed = 0.0;    ///< |V_1|, which the start fixes [m/s]
+  double end_speed = 0.0;           ///< wanted at the (first guess of the) arrival [m/s]
+  bool recovering = false;  ///< the start is beyond a limit: rows follow the RecoveryProfile
+  /// The end moves at more than kFastestEndShare of the speed limit: hard limits leave no interior
+  /// or next to none.
+  bool end_too_fast = false;
+};
+
+/// The landing problem (docs/formulation.md): terms over a uniform cubic B-spline whose start is
+/// fixed and whose end is the predicted pad at arrival. One instance per number of segments; its
+/// parameters change at every replan without allocation.
 class LandingProblem {
  public:
-  /// Throws std::invalid_argument if segments < 6 or an option is out of range.
+  /// Throws std::invalid_argument if segments < 6, an option is out of range, or a setting names
+  /// what the registry does not know.
   LandingProblem(int segments, const LandingProblemOptions& options);
+  LandingProblem(const LandingProblem&) = delete;
+  LandingProblem& operator=(const LandingProblem&) = delete;
 
   /// Start state at the absolute time t0 and the moving end. The prediction must outlive the solve.
   void SetBoundary(const SplineState& start, double t0, const estimation::PadPrediction& pad,
                    const EndpointTarget& target);
   /// Duration, or the first guess of a free one [s].
   void SetDuration(double T);
-  /// Throws std::invalid_argument if there are more than max_pairs().
-  void SetPairs(std::span<const ObstaclePair> pairs) { pairs_->SetPairs(pairs); }
+  /// Throws std::invalid_argument if there are more than max_pairs() or one is out of range.
+  void SetPairs(std::span<const ObstaclePair> pairs);
   /// Multiplies the weight of every pair.
-  void SetPairWeightScale(double scale) { pairs_->SetWeightScale(scale); }
+  void SetPairWeightScale(double scale);
   int max_pairs() const { return max_pairs_; }
+  /// Throws std::invalid_argument if there are more than the option says.
+  void SetObstacles(std::span<const MovingObstacle> obstacles);
+  /// The plan that the term `consistency` stays near to; null: none. Must outlive the solve.
+  void SetPrevious(const UniformBspline* previous);
 
   int segments() const { return segments_; }
-  /// The Reduced view, which backends solve.
+  /// What backends solve: the Reduced view, or with an explicit endpoint the Full one.
   const solvers::View& view() const { return *view_; }
+  /// Of the present boundary and duration.
+  BoundaryFacts boundary_facts() const;
 
-  /// Reduced variables of the Hermite guess: zero, and the interval if it is free.
+  /// The view's variables at the quintic Hermite guess, and the interval if it is free.
   Eigen::VectorXd Guess() const;
-  /// The spline at reduced variables y. Allocates its control points.
+  /// The spline at the view's variables y. Allocates its control points.
   UniformBspline Curve(const Eigen::VectorXd& y) const;
 
  private:
+  void AddTerms(const LandingProblemOptions& options);
+  void AddTerm(const TermEntry& entry, const LandingProblemOptions& options);
+  void Update();
+
   int segments_;
   int max_pairs_;
-  double t0_ = 0.0;
+  int max_obstacles_;
   std::shared_ptr<BoundaryLift> lift_;
-  std::shared_ptr<ObstaclePairs> pairs_;
+  LandingContext context_;
+  std::vector<ObstaclePair> pairs_;          // what context_ points to
+  std::vector<MovingObstacle> obstacles_;    // alike
+  std::vector<ContextUser*> context_users_;  // among the problem's terms
   solvers::Problem problem_;
   std::unique_ptr<solvers::View> view_;
 };

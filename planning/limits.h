@@ -9,4 +9,25 @@ struct Limits {
   double acceleration = 6.0;  ///< [m/s^2]
 };
 
+/// How fast a start beyond a limit must come back to it: the speed may be
+/// |v0| - kSpeedShare amax (t - kLag), because a deceleration takes time to build up, and the
+/// acceleration |a0| (1 - kAccelerationDecay t). What of this is below the limit is the limit.
+struct RecoveryProfile {
+  static constexpr double kLag = 0.3;  ///< [s]
+  static constexpr double kSpeedShare = 0.5;
+  static constexpr double kAccelerationDecay = 2.0;  ///< [1/s]
+};
+
+/// A plan's end may move at this share of the speed limit: beyond, the interior of hard limits is
+/// empty or nearly so.
+inline constexpr double kFastestEndShare = 0.9;
+
+/// What thrust, tilt and visibility terms know of the vehicle.
+struct VehicleFacts {
+  double thrust_min = 2.0;           ///< least thrust over mass [m/s^2]
+  double thrust_max = 23.0;          ///< greatest thrust over mass [m/s^2]
+  double tilt_max = 0.611;           ///< of the thrust axis from the vertical [rad]
+  double camera_half_angle = 0.785;  ///< of the downward camera's cone [rad]
+};
+
 }  // namespace touchdown::planning

@@ -57,6 +57,9 @@ void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
   Prepared& prepared = prepared_[{segments, arrival}];
   prepared.problem = std::make_unique<LandingProblem>(segments, problem);
   prepared.backend = solvers::MakeBackend(backends_, options_.backend);
+  for (const auto& [name, value] : options_.solver_options) {
+    prepared.backend->options().Set(name, value);
+  }
   prepared.backend->Prepare(prepared.problem->view());
 }
 
@@ -65,6 +68,9 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   LandingProblem& problem = *prepared.problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
   problem.SetDuration(request.duration);
+  problem.SetPrevious(request.previous);
+  const bool hard = options_.problem.limits_mode == LimitsMode::kHard;
+  if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
   pairs_.clear();
   expansions_left_ = options_.max_expansions;
   previous_clear_ = request.previous &&

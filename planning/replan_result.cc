@@ -45,6 +45,8 @@ const char* ToString(ReplanReason reason) {
       return "collision_remains";
     case ReplanReason::kUnobserved:
       return "unobserved";
+    case ReplanReason::kEndTooFast:
+      return "end_too_fast";
     case ReplanReason::kLimitsExceeded:
       return "limits_exceeded";
   }
@@ -72,6 +74,9 @@ const char* Explain(ReplanReason reason) {
       return "The curve is still blocked after every re-binding round.";
     case ReplanReason::kUnobserved:
       return "The plan is too fast to stop before space that was never observed.";
+    case ReplanReason::kEndTooFast:
+      return "The pad moves at more than nine tenths of the speed limit: hard limits leave no "
+             "interior.";
     case ReplanReason::kLimitsExceeded:
       return "The curve still exceeds a limit after every re-timing.";
   }

@@ -20,9 +20,11 @@ namespace touchdown::planning {
 
 struct ReplannerOptions {
   std::string backend = "ceres";
+  std::vector<std::pair<std::string, double>> solver_options;  ///< of the backend, by name
   ArrivalMode arrival = ArrivalMode::kFixed;
   Limits limits;
-  LandingProblemOptions problem;    ///< weights; its limits, arrival and durations follow from here
+  LandingProblemOptions problem;    ///< terms, their settings and the formulation; its limits,
+                                    ///< arrival and durations follow from here
   double floor_height = 0.45;       ///< body origin stays above this away from the pad [m]
   double ceiling_height = 10.0;     ///< and below this everywhere [m]
   double pad_radius = 1.2;          ///< half width of the strip over the pad without a floor [m]
@@ -67,6 +69,7 @@ enum class ReplanReason {
   kSolverFailed,      ///< the backend returned no usable point
   kCollisionRemains,  ///< still blocked after every re-binding round
   kUnobserved,        ///< too fast to stop before space that was never observed
+  kEndTooFast,        ///< hard limits leave no interior: the pad moves near the speed limit
   kLimitsExceeded,    ///< still beyond a limit after every re-timing round
 };
 

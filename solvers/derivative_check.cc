@@ -70,7 +70,7 @@ VectorXd LagrangianGradient(const View& view, const ViewEvaluation& e,
   for (int i = 0; i < view.problem().num_terms(); ++i) {
     const int count = e.full.terms[i].windows * view.problem().term(i).shape().outputs;
     for (int j = 0; j < count; ++j, ++row) {
-      if (!lagrangian.rows[i].multiplier) continue;
+      if (view.problem().role(i) != Role::kConstraint || !lagrangian.rows[i].multiplier) continue;
       gradient += lagrangian.rows[i].multiplier[j] * rows.row(row).transpose();
     }
   }
@@ -84,6 +84,54 @@ double RelativeError(const MatrixXd& mine, const MatrixXd& difference) {
   return std::isfinite(error) ? error : HUGE_VAL;
 }
 
+/// Evaluations on both sides of the point along one variable.
+struct Sides {
+  ViewEvaluation at, plus, minus;
+  double dz = 0.0;
+};
+
+/// Differences of all residuals. A hinge's residual grows like u^1.5: where its u changes sign
+/// between the sides no central difference is any good, and as r is convex in u there the
+/// derivative must lie between the two one-sided ones; the nearer of them, or `mine` itself, is
+/// returned.
+VectorXd ResidualDifference(const View& view, const Sides& s, const VectorXd& mine) {
+  const VectorXd at = Stack(view, s.at, true), plus = Stack(view, s.plus, true),
+                 minus = Stack(view, s.minus, true);
+  const VectorXd u_plus = Stack(view, s.plus, false), u_minus = Stack(view, s.minus, false);
+  VectorXd difference = (plus - minus) / (2.0 * s.dz);
+  for (Eigen::Index i = 0; i < difference.size(); ++i) {
+    if (u_plus[i] * u_minus[i] > 0.0) continue;
+    const double right = (plus[i] - at[i]) / s.dz, left = (at[i] - minus[i]) / s.dz;
+    difference[i] = std::clamp(mine[i], std::min(left, right), std::max(left, right));
+  }
+  return difference;
+}
+
+/// The change of variables y = y0 + W z that the check runs in, and what it makes of derivatives.
+class Coordinates {
+ public:
+  Coordinates(int n, const Whitening* whitening)
+      : whitening_(whitening), directions_(MatrixXd::Identity(n, n)) {
+    if (!whitening) return;
+    const MatrixXd unit = directions_;
+    for (int j = 0; j < n; ++j) whitening->FromWhite(unit.col(j).data(), directions_.col(j).data());
+  }
+  auto direction(int j) const { return directions_.col(j); }
+  VectorXd Gradient(VectorXd g) const {
+    if (whitening_) whitening_->GradientToWhite(g.data());
+    return g;
+  }
+  /// Every row of `rows` as a gradient.
+  MatrixXd Rows(MatrixXd rows) const {
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) rows.row(i) = Gradient(rows.row(i)).transpose();
+    return rows;
+  }
+
+ private:
+  const Whitening* whitening_;
+  MatrixXd directions_;
+};
+
 }  // namespace
 
 double DerivativeErrors::worst() const {
@@ -92,48 +140,52 @@ double DerivativeErrors::worst() const {
 }
 
 DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lagrangian& lagrangian,
-                                  double step) {
+                                  double step, const Whitening* whitening) {
+  constexpr Want kAll{.gradient = true, .hessian = true, .residual = true};
   DerivativeErrors errors;
-  ViewEvaluation at, plus, minus;
-  for (ViewEvaluation* e : {&at, &plus, &minus}) view.Resize(e);
-  if (!view.Evaluate(y.data(), {.gradient = true, .hessian = true, .residual = true}, lagrangian,
-                     &at))
-    return errors;
+  Sides s;
+  for (ViewEvaluation* e : {&s.at, &s.plus, &s.minus}) view.Resize(e);
+  if (!view.Evaluate(y.data(), kAll, lagrangian, &s.at)) return errors;
 
   const int n = view.num_variables();
-  const MatrixXd u_jacobian = StackJacobian(view, at, false);
-  const MatrixXd r_jacobian = StackJacobian(view, at, true);
+  const Coordinates in(n, whitening);
+  const MatrixXd u_jacobian = in.Rows(StackJacobian(view, s.at, false));
+  const MatrixXd r_jacobian = in.Rows(StackJacobian(view, s.at, true));
   VectorXd gradient(n);
   MatrixXd hessian(n, n), u_difference(u_jacobian.rows(), n), r_difference(r_jacobian.rows(), n);
+  const auto evaluate_sides = [&](const VectorXd& direction, double dz) {
+    s.dz = dz;
+    const VectorXd ahead = y + dz * direction, behind = y - dz * direction;
+    return view.Evaluate(ahead.data(), kAll, lagrangian, &s.plus) &&
+           view.Evaluate(behind.data(), kAll, lagrangian, &s.minus);
+  };
+  const auto slope_difference = [&]() -> VectorXd {
+    return in.Gradient(LagrangianGradient(view, s.plus, lagrangian) -
+                       LagrangianGradient(view, s.minus, lagrangian)) /
+           (2.0 * s.dz);
+  };
   for (int j = 0; j < n; ++j) {
-    const double dy = step * std::max(1.0, std::abs(y[j]));
-    VectorXd moved = y;
-    moved[j] = y[j] + dy;
-    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true, .residual = true},
-                       lagrangian, &plus)) {
-      return errors;
-    }
-    moved[j] = y[j] - dy;
-    if (!view.Evaluate(moved.data(), {.gradient = true, .hessian = true, .residual = true},
-                       lagrangian, &minus)) {
-      return errors;
-    }
-    gradient[j] = (plus.full.value - minus.full.value) / (2.0 * dy);
-    const VectorXd plus_slope = LagrangianGradient(view, plus, lagrangian);
-    const VectorXd minus_slope = LagrangianGradient(view, minus, lagrangian);
-    for (int i = 0; i < n; ++i) {
-      hessian(i, j) = (plus_slope[i] - minus_slope[i]) / (2.0 * dy);
-    }
-    u_difference.col(j) = (Stack(view, plus, false) - Stack(view, minus, false)) / (2.0 * dy);
-    r_difference.col(j) = (Stack(view, plus, true) - Stack(view, minus, true)) / (2.0 * dy);
+    const VectorXd direction = in.direction(j);
+    const double dz = step / direction.cwiseAbs().maxCoeff();
+    // On the edge of a hinge the gradient grows like u^2 to one side, and the error of its central
+    // difference with the step: extrapolated away by half a step.
+    if (!evaluate_sides(direction, 0.5 * dz)) return errors;
+    hessian.col(j) = 2.0 * slope_difference();
+    if (!evaluate_sides(direction, dz)) return errors;
+    hessian.col(j) -= slope_difference();
+    gradient[j] = (s.plus.full.value - s.minus.full.value) / (2.0 * dz);
+    u_difference.col(j) = (Stack(view, s.plus, false) - Stack(view, s.minus, false)) / (2.0 * dz);
+    r_difference.col(j) = ResidualDifference(view, s, r_jacobian.col(j));
   }
 
   MatrixXd mine(n, n);
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) mine(i, j) = at.hessian.At(i, j);
+    for (int j = 0; j < n; ++j) mine(i, j) = s.at.hessian.At(i, j);
   }
+  mine = in.Rows(in.Rows(mine).transpose());
   errors.evaluated = true;
-  errors.gradient = RelativeError(Eigen::Map<const VectorXd>(at.gradient.data(), n), gradient);
+  errors.gradient =
+      RelativeError(in.Gradient(Eigen::Map<const VectorXd>(s.at.gradient.data(), n)), gradient);
   errors.hessian = RelativeError(mine, hessian);
   errors.residual_jacobian = RelativeError(r_jacobian, r_difference);
   errors.row_jacobian = RelativeError(u_jacobian, u_difference);

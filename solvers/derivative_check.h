@@ -4,11 +4,13 @@
 #include <Eigen/Core>
 
 #include "touchdown/solvers/view.h"
+#include "touchdown/solvers/whitening.h"
 
 namespace touchdown::solvers {
 
 /// Worst disagreement between derivatives and central differences, relative to the size of the
-/// compared array: max |a - b| / (1 + max |b|).
+/// compared array: max |a - b| / (1 + max |b|). A residual whose u changes sign between the two
+/// points is compared with the one-sided differences.
 struct DerivativeErrors {
   bool evaluated = false;          ///< false: the point could not be evaluated
   double gradient = 0.0;           ///< of the objective
@@ -18,9 +20,11 @@ struct DerivativeErrors {
   double worst() const;            ///< infinite where nothing was evaluated
 };
 
-/// Checks every derivative that `view` offers at y by central differences with the given relative
-/// step. Allocates.
+/// Checks every derivative that `view` offers at y by central differences that move no variable by
+/// more than `step`; with a `whitening` (set for this view) those of the Whitened view at
+/// z = L^T y. Allocates.
 DerivativeErrors CheckDerivatives(const View& view, const Eigen::VectorXd& y,
-                                  const Lagrangian& lagrangian = {}, double step = 1e-6);
+                                  const Lagrangian& lagrangian = {}, double step = 1e-6,
+                                  const Whitening* whitening = nullptr);
 
 }  // namespace touchdown::solvers

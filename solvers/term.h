@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
-#include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -118,13 +115,6 @@ class Term {
   /// evaluated it leaves NaN in u. Must not allocate. An exception is caught by the Problem.
   virtual void Evaluate(const TermInput& input, const TermRequest& request, TermBlock* block,
                         const TermSums& sums) const = 0;
-};
-
-/// An entry of a term registry: what the term is, and how to make one with random parameters that
-/// fits a spline of `blocks` control points, for derivative checks.
-struct TermFactory {
-  TermInfo info;
-  std::function<std::shared_ptr<Term>(int blocks, std::mt19937_64& random)> sample;
 };
 
 }  // namespace touchdown::solvers

@@ -1,76 +1,106 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every registered term, on every view and both arrival modes, against central differences. A new
-// term is covered by being registered.
+// Every registered term, on every view, as cost and as rows, against central differences. A new
+// term is covered by being registered. Maps with derivatives by hand are also compared with
+// automatic differentiation, to rounding.
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/term_registry.h"
-#include "touchdown/planning/test/planning_fixtures.h"
-#include "touchdown/solvers/derivative_check.h"
+#include "touchdown/planning/random_context.h"
+#include "touchdown/planning/term_check.h"
+#include "touchdown/planning/terms/norm_limit.h"
+#include "touchdown/planning/terms/smoothness.h"
 
 namespace touchdown::planning {
 namespace {
 
-constexpr int kSegments = 9;
-constexpr double kTolerance = 2e-5;
+TEST(TermDerivatives, EveryTermOnEveryView) {
+  for (const TermEntry& entry : StandardTerms()) {
+    SCOPED_TRACE(entry.info.name);
+    const std::vector<TermCheckRow> rows = CheckTerm(entry, {});
+    for (const TermCheckRow& row : rows) {
+      if (row.points == 0) {
+        EXPECT_NE(row.point, CheckedPoint::kRandom);
+        continue;
+      }
+      SCOPED_TRACE(testing::Message() << "view " << static_cast<int>(row.view) << " arrival "
+                                      << static_cast<int>(row.arrival) << " hard " << row.hard
+                                      << " point " << static_cast<int>(row.point));
+      EXPECT_TRUE(row.errors.evaluated);
+      EXPECT_LT(row.errors.gradient, kTermCheckTolerance);
+      EXPECT_LT(row.errors.hessian, kTermCheckTolerance);
+      EXPECT_LT(row.errors.residual_jacobian, kTermCheckTolerance);
+      EXPECT_LT(row.errors.row_jacobian, kTermCheckTolerance);
+    }
+  }
+}
 
-struct Case {
-  solvers::TermFactory factory;
-  bool reduced;
-  bool free_interval;
+/// A map without its derivatives by hand.
+template <class Inner>
+struct Plain {
+  static constexpr int kBlockSize = Inner::kBlockSize, kWindow = Inner::kWindow,
+                       kOutputs = Inner::kOutputs;
+  static constexpr bool kUsesInterval = Inner::kUsesInterval;
+  static constexpr bool kLinearInBlocks = Inner::kLinearInBlocks;
+  Inner inner;
+  int windows() const { return inner.windows(); }
+  int first_block(int k) const { return inner.first_block(k); }
+  template <class T>
+  void operator()(int k, const T* q, const T& h, const T& t, T* u) const {
+    inner(k, q, h, t, u);
+  }
 };
 
-void CheckAtRandomPoints(const Case& c, bool free_end_acceleration) {
-  Draw draw(17);
-  for (int trial = 0; trial < 8; ++trial) {
+template <class Inner, class Loss>
+void CompareWithDuals(Inner inner, const Loss& loss) {
+  using solvers::Role;
+  constexpr int kPoints = 12;
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> draw(-1.0, 1.0);
+  for (int trial = 0; trial < 40; ++trial) {
+    const RandomContext context(kPoints - 3, 0, 0, random);
+    inner.Update(context.get());
     solvers::ProblemShape shape;
-    shape.blocks = kSegments + 3;
-    shape.free_interval = c.free_interval;
-    solvers::Problem problem(shape);
-    problem.set_interval(draw.Uniform(0.2, 0.5));
-    problem.AddTerm(c.factory.sample(shape.blocks, draw.engine()), solvers::Role::kCost);
-
-    const ArcPad pad = draw.Pad();
-    auto lift = std::make_shared<BoundaryLift>(kSegments, free_end_acceleration);
-    lift->Set(draw.State(3.0, 2.0, 2.0), 1.5, pad, {1.5, 2.0, 0.1, 0.5});
-    solvers::AffineLift structure = solvers::AffineLift::Identity(shape.blocks);
-    if (c.reduced) {
-      structure = lift->Structure();
-      structure.offset = lift;
+    shape.blocks = kPoints;
+    shape.free_interval = trial % 2 == 1;
+    const Role role = trial % 4 < 2 ? Role::kCost : Role::kConstraint;
+    solvers::Problem by_hand(shape), by_duals(shape);
+    by_hand.AddTerm(MakeLandingTerm({"by_hand"}, inner, loss, inner.windows()), role);
+    by_duals.AddTerm(MakeLandingTerm({"by_duals"}, Plain<Inner>{inner}, loss, inner.windows()),
+                     role);
+    std::vector<double> x(3 * kPoints), multipliers(6 * kPoints);
+    for (double& number : x) number = draw(random);
+    for (double& number : multipliers) number = draw(random);
+    const solvers::RowWeights rows{.multiplier = multipliers.data()};
+    // Every third evaluation is away from the interval that the map was told of.
+    const double h = context.get().interval * (trial % 3 == 0 ? 1.3 : 1.0);
+    solvers::Evaluation a, b;
+    for (auto [problem, e] : {std::pair{&by_hand, &a}, {&by_duals, &b}}) {
+      problem->set_t0(context.get().t0);
+      problem->Resize(e);
+      ASSERT_TRUE(
+          problem->Evaluate(x.data(), h, {.gradient = true, .hessian = true}, {.rows = &rows}, e));
     }
-    const solvers::View view(problem, structure);
-    Eigen::VectorXd y(view.num_variables());
-    for (int i = 0; i < y.size(); ++i) y[i] = draw.Uniform(-1.0, 1.0);
-    if (c.free_interval) y[y.size() - 1] = problem.interval();
-
-    const solvers::DerivativeErrors errors = solvers::CheckDerivatives(view, y);
-    ASSERT_TRUE(errors.evaluated);
-    EXPECT_LT(errors.gradient, kTolerance);
-    EXPECT_LT(errors.residual_jacobian, kTolerance);
-    EXPECT_LT(errors.row_jacobian, kTolerance);
-    EXPECT_LT(errors.hessian, kTolerance);
-  }
-}
-
-TEST(TermDerivatives, EveryTermOnEveryView) {
-  for (const solvers::TermFactory& factory : StandardTerms()) {
-    for (const bool reduced : {false, true}) {
-      for (const bool free_interval : {false, true}) {
-        SCOPED_TRACE(factory.info.name + (reduced ? " reduced" : " full") +
-                     (free_interval ? " free" : " fixed"));
-        CheckAtRandomPoints({factory, reduced, free_interval}, true);
-      }
+    const auto expect_same = [](double mine, double dual) {
+      EXPECT_NEAR(mine, dual, 1e-12 * (1.0 + std::abs(dual)));
+    };
+    const int n = 3 * kPoints + (shape.free_interval ? 1 : 0);
+    expect_same(a.value, b.value);
+    for (int i = 0; i < n; ++i) {
+      expect_same(a.gradient[i], b.gradient[i]);
+      expect_same(a.row_gradient[i], b.row_gradient[i]);
+      for (int j = 0; j < n; ++j) expect_same(a.hessian.At(i, j), b.hessian.At(i, j));
+    }
+    for (std::size_t i = 0; i < a.terms[0].du.size(); ++i) {
+      expect_same(a.terms[0].du[i], b.terms[0].du[i]);
     }
   }
 }
 
-TEST(TermDerivatives, FixedEndAccelerationKeepsTheGradientExact) {
-  // The pad's snap is not predicted, so only the first derivatives are exact here, and the Hessian
-  // where the interval is fixed.
-  for (const solvers::TermFactory& factory : StandardTerms()) {
-    SCOPED_TRACE(factory.info.name);
-    CheckAtRandomPoints({factory, true, false}, false);
+TEST(TermDerivatives, ByHandAsByDuals) {
+  CompareWithDuals(SegmentDerivatives(9, 0.1), solvers::SquareLoss(2.0));
+  for (const bool may_recover : {false, true}) {
+    CompareWithDuals(DerivativeNorm<1>(8, 0.7, may_recover), solvers::HingeLoss(10.0, 0.3));
+    CompareWithDuals(DerivativeNorm<2>(9, 2.0, may_recover), solvers::HingeLoss(10.0, 0.3));
   }
 }
 

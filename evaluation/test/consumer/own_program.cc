@@ -2,30 +2,33 @@
 // The program `touchdown` with a term that the library does not know: an inner map, one line of
 // registration, and every sub-command.
 #include "touchdown/evaluation/program.h"
-#include "touchdown/solvers/window_term.h"
 
 namespace {
 
-/// Height above a soft floor of 1 m.
+/// Height above a soft floor of 1 m, for the control points that are free to move.
 struct FloorMap {
   static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
   static constexpr bool kUsesInterval = false, kLinearInBlocks = true;
   int points;
-  int windows() const { return points; }
-  int first_block(int k) const { return k; }
+  int windows() const { return points - 6; }
+  int first_block(int k) const { return k + 3; }
   template <class T>
   void operator()(int, const T* q, const T&, const T&, T* u) const {
     u[0] = 1.0 - q[2];
   }
 };
 
-touchdown::solvers::TermFactory SoftFloor() {
-  namespace solvers = touchdown::solvers;
-  const solvers::TermInfo info{"soft_floor", "w sum hinge(1 m - z)", "m", "this file", true};
-  return {info, [info](int blocks, std::mt19937_64&) {
-            return std::make_shared<solvers::WindowTerm<FloorMap, solvers::HingeLoss>>(
-                info, FloorMap{blocks}, solvers::HingeLoss(10.0, 0.5), blocks);
-          }};
+touchdown::planning::TermEntry SoftFloor() {
+  namespace planning = touchdown::planning;
+  planning::TermEntry entry;
+  entry.info = {"soft_floor", "w sum hinge(1 m - z)", "m", "this file", true};
+  entry.default_weight = 10.0;
+  entry.parameters = {planning::HingeWidth(0.5, "m")};
+  entry.make = [info = entry.info](const planning::TermSetup& setup) {
+    const FloorMap map{setup.control_points};
+    return planning::MakeLandingTerm(info, map, setup.Hinge(), map.windows());
+  };
+  return entry;
 }
 
 }  // namespace

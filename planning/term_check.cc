@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Derivatives of one term in random landings. The points of a hinge's edge are found by Newton steps
+// along the gradient of one u, drawn at random.
+
+#include "touchdown/planning/term_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "touchdown/planning/random_context.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+using Eigen::VectorXd;
+using solvers::View;
+using solvers::ViewEvaluation;
+
+constexpr double kNoise = 0.3;      // of the points about the boundary lift [m]
+constexpr double kBeyond = 1e-3;    // u of CheckedPoint::kActive
+constexpr double kReached = 1e-12;  // of a wanted u
+constexpr int kNewtonSteps = 40;
+constexpr int kDraws = 6;  // of a u that can be brought to 0
+constexpr int kMaxObstacles = 2;
+
+/// One term in one random landing, on one view.
+class Bench {
+ public:
+  Bench(const TermEntry& entry, const TermCheckRow& kind, int control_points,
+        std::mt19937_64& random)
+      : random_(random),
+        context_(control_points - 3, control_points, kMaxObstacles, random),
+        lift_(std::make_shared<BoundaryLift>(control_points - 3, true)),
+        problem_(Shape(control_points, kind.arrival)) {
+    const LandingContext& context = context_.get();
+    lift_->Set(context.start, context.t0, *context.pad, context.target);
+    problem_.set_t0(context.t0);
+    problem_.set_interval(context.interval);
+    Add(entry, kind.hard, control_points);
+    // The metric of a term alone may be singular, and what is singular whitens badly.
+    if (kind.view == CheckedView::kWhitened) {
+      Add(FindTerm(StandardTerms(), "smoothness"), false, control_points);
+    }
+    solvers::AffineLift structure = solvers::AffineLift::Identity(control_points);
+    if (kind.view != CheckedView::kFull) {
+      structure = lift_->Structure();
+      structure.offset = lift_;
+    }
+    view_ = std::make_unique<View>(problem_, std::move(structure));
+    view_->Resize(&at_);
+    if (kind.view == CheckedView::kWhitened) whitening_.Prepare(*view_);
+    whitened_ = kind.view == CheckedView::kWhitened;
+  }
+
+  VectorXd RandomPoint() {
+    VectorXd y = VectorXd::Zero(view_->num_variables());
+    if (!view_->lift().offset) lift_->At(context_.get().interval, y.data(), nullptr, nullptr);
+    std::uniform_real_distribution<double> noise(-kNoise, kNoise);
+    for (double& number : y) number += noise(random_);
+    if (view_->free_interval()) y[y.size() - 1] = context_.get().interval;
+    return y;
+  }
+
+  /// Moves y until one u, drawn at random, is `wanted`; false if none can be.
+  bool MoveTo(double wanted, VectorXd* y) {
+    for (int draw = 0; draw < kDraws; ++draw) {
+      if (!view_->Evaluate(y->data(), {.gradient = true}, {}, &at_)) return false;
+      const int rows = at_.full.terms[0].windows * view_->problem().term(0).shape().outputs;
+      if (rows == 0) return false;
+      const int row = std::uniform_int_distribution<int>(0, rows - 1)(random_);
+      VectorXd moved = *y;
+      if (!MoveRow(row, wanted, &moved)) continue;
+      *y = moved;
+      return true;
+    }
+    return false;
+  }
+
+  solvers::DerivativeErrors Check(const VectorXd& y) {
+    if (whitened_ && !whitening_.Set(*view_, y.data(), &at_)) return {};
+    const solvers::TermShape& shape = view_->problem().term(0).shape();
+    std::vector<double> multipliers(static_cast<std::size_t>(shape.max_windows * shape.outputs));
+    std::uniform_real_distribution<double> draw(-1.0, 1.0);
+    for (double& multiplier : multipliers) multiplier = draw(random_);
+    std::vector<solvers::RowWeights> rows(static_cast<std::size_t>(problem_.num_terms()));
+    rows[0].multiplier = multipliers.data();
+    return solvers::CheckDerivatives(*view_, y, {.rows = rows.data()}, 1e-6,
+                                     whitened_ ? &whitening_ : nullptr);
+  }
+
+ private:
+  static solvers::ProblemShape Shape(int control_points, ArrivalMode arrival) {
+    solvers::ProblemShape shape;
+    shape.blocks = control_points;
+    shape.free_interval = arrival == ArrivalMode::kFree;
+    return shape;
+  }
+
+  void Add(const TermEntry& entry, bool hard, int control_points) {
+    TermSetup setup = DefaultSetup(entry, control_points);
+    setup.weight = 1.0;
+    setup.hard = hard;
+    setup.max_pairs = control_points;
+    setup.max_obstacles = kMaxObstacles;
+    const std::shared_ptr<solvers::Term> term = entry.make(setup);
+    if (auto* user = dynamic_cast<ContextUser*>(term.get())) user->Update(context_.get());
+    problem_.AddTerm(term, hard ? solvers::Role::kConstraint : solvers::Role::kCost);
+  }
+
+  bool MoveRow(int row, double wanted, VectorXd* y) {
+    const solvers::TermShape& shape = view_->problem().term(0).shape();
+    const int d = view_->block_size(), v = shape.window * d;
+    for (int step = 0; step < kNewtonSteps; ++step) {
+      if (!view_->Evaluate(y->data(), {.gradient = true}, {}, &at_)) return false;
+      const solvers::TermBlock& block = at_.full.terms[0];
+      const double miss = block.u[row] - wanted;
+      if (std::abs(miss) <= kReached) return true;
+      const int first = block.first_block[row / shape.outputs];
+      VectorXd gradient = VectorXd::Zero(y->size());
+      std::vector<int> reduced(static_cast<std::size_t>(shape.window));
+      const int count = view_->WindowBlocks(first, shape.window, reduced.data());
+      for (int b = 0; b < count; ++b) {
+        view_->WindowJacobian(&block.du[row * v], first, shape.window, reduced[b],
+                              gradient.data() + reduced[b] * d);
+      }
+      if (gradient.norm() < 1e-6) return false;  // the boundary fixes it
+      *y -= miss / gradient.squaredNorm() * gradient;
+    }
+    return false;
+  }
+
+  std::mt19937_64& random_;
+  RandomContext context_;
+  std::shared_ptr<BoundaryLift> lift_;
+  solvers::Problem problem_;
+  std::unique_ptr<View> view_;
+  solvers::Whitening whitening_;
+  bool whitened_ = false;
+  ViewEvaluation at_;
+};
+
+void KeepWorst(const solvers::DerivativeErrors& errors, TermCheckRow* row) {
+  solvers::DerivativeErrors& worst = row->errors;
+  worst.evaluated = errors.evaluated && (row->points == 0 || worst.evaluated);
+  worst.gradient = std::max(worst.gradient, errors.gradient);
+  worst.hessian = std::max(worst.hessian, errors.hessian);
+  worst.residual_jacobian = std::max(worst.residual_jacobian, errors.residual_jacobian);
+  worst.row_jacobian = std::max(worst.row_jacobian, errors.row_jacobian);
+  ++row->points;
+}
+
+TermCheckRow CheckKind(const TermEntry& entry, TermCheckRow row, const TermCheckOptions& options) {
+  std::mt19937_64 random(options.seed);
+  for (int trial = 0; trial < options.trials; ++trial) {
+    Bench bench(entry, row, options.control_points, random);
+    VectorXd y = bench.RandomPoint();
+    const bool random_point = row.point == CheckedPoint::kRandom;
+    const double wanted = row.point == CheckedPoint::kZero ? 0.0 : kBeyond;
+    if (!random_point && !bench.MoveTo(wanted, &y)) continue;
+    KeepWorst(bench.Check(y), &row);
+  }
+  return row;
+}
+
+}  // namespace
+
+std::vector<TermCheckRow> CheckTerm(const TermEntry& entry, const TermCheckOptions& options) {
+  if (options.control_points < 9 || options.trials < 1) {
+    throw std::invalid_argument("CheckTerm: " + std::to_string(options.control_points) +
+                                " control points and " + std::to_string(options.trials) +
+                                " trials, it must be at least 9 and 1");
+  }
+  std::vector<TermCheckRow> rows;
+  for (const CheckedView view :
+       {CheckedView::kFull, CheckedView::kReduced, CheckedView::kWhitened}) {
+    for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+      for (const bool hard : {false, true}) {
+        if (hard && !entry.can_be_hard) continue;
+        for (const CheckedPoint point :
+             {CheckedPoint::kRandom, CheckedPoint::kZero, CheckedPoint::kActive}) {
+          rows.push_back(CheckKind(entry, {view, arrival, hard, point}, options));
+        }
+      }
+    }
+  }
+  return rows;
+}
+
+bool Passed(const std::vector<TermCheckRow>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const TermCheckRow& row) {
+    return row.points == 0 || row.errors.worst() <= kTermCheckTolerance;
+  });
+}
+
+}  // namespace touchdown::planning
