@@ -7,6 +7,7 @@
 
 #include "touchdown/solvers/banded_solver.h"
 #include "touchdown/solvers/ceres_solver.h"
+#include "touchdown/solvers/ipopt_solver.h"
 #include "touchdown/solvers/nlopt_solver.h"
 
 namespace touchdown::solvers {
@@ -23,6 +24,10 @@ BackendRegistry StandardBackends() {
       {"nlopt-slsqp",
        "NLopt sequential quadratic programming, dense, whitened; small hard problems",
        MakeNloptSlsqp},
+      {"ipopt", "Ipopt interior point, exact sparse Hessian; the oracle for soft and hard problems",
+       MakeIpopt},
+      {"ipopt-lm", "Ipopt with a limited-memory Hessian, whitened; what others default to",
+       MakeIpoptLm},
   };
 }
 
