@@ -19,8 +19,10 @@ using Eigen::VectorXd;
 using solvers::View;
 using solvers::ViewEvaluation;
 
+constexpr double kStep = 1e-6;      // of differences
+constexpr double kEdgeStep = 1e-7;  // and on the edge of a hinge, whose u may be steep
 constexpr double kNoise = 0.3;      // of the points about the boundary lift [m]
-constexpr double kBeyond = 1e-3;    // u of CheckedPoint::kActive
+constexpr double kBeyond = 0.03;    // u of CheckedPoint::kActive
 constexpr double kReached = 1e-12;  // of a wanted u
 constexpr int kNewtonSteps = 40;
 constexpr int kDraws = 6;  // of a u that can be brought to 0
@@ -79,7 +81,7 @@ class Bench {
     return false;
   }
 
-  solvers::DerivativeErrors Check(const VectorXd& y) {
+  solvers::DerivativeErrors Check(const VectorXd& y, double step) {
     if (whitened_ && !whitening_.Set(*view_, y.data(), &at_)) return {};
     const solvers::TermShape& shape = view_->problem().term(0).shape();
     std::vector<double> multipliers(static_cast<std::size_t>(shape.max_windows * shape.outputs));
@@ -87,7 +89,7 @@ class Bench {
     for (double& multiplier : multipliers) multiplier = draw(random_);
     std::vector<solvers::RowWeights> rows(static_cast<std::size_t>(problem_.num_terms()));
     rows[0].multiplier = multipliers.data();
-    return solvers::CheckDerivatives(*view_, y, {.rows = rows.data()}, 1e-6,
+    return solvers::CheckDerivatives(*view_, y, {.rows = rows.data()}, step,
                                      whitened_ ? &whitening_ : nullptr);
   }
 
@@ -160,7 +162,8 @@ TermCheckRow CheckKind(const TermEntry& entry, TermCheckRow row, const TermCheck
     const bool random_point = row.point == CheckedPoint::kRandom;
     const double wanted = row.point == CheckedPoint::kZero ? 0.0 : kBeyond;
     if (!random_point && !bench.MoveTo(wanted, &y)) continue;
-    KeepWorst(bench.Check(y), &row);
+    const double step = row.point == CheckedPoint::kZero ? kEdgeStep : kStep;
+    KeepWorst(bench.Check(y, step), &row);
   }
   return row;
 }

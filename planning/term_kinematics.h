@@ -3,11 +3,13 @@
 // things that move with time in a form that automatic differentiation follows.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <Eigen/Core>
 
+#include "touchdown/planning/landing_term.h"
 #include "touchdown/solvers/dual.h"
 
 namespace touchdown::planning {
@@ -64,5 +66,25 @@ Triple<T> AtTime(const T& t, const Eigen::Vector3d& x, const Eigen::Vector3d& dx
   for (int c = 0; c < 3; ++c) out[c] = x[c] + dx[c] * dt + (0.5 * d2x[c]) * (dt * dt);
   return out;
 }
+
+/// The pad's position at time t.
+template <class T>
+Triple<T> PadPosition(const estimation::PadPrediction& pad, const T& t) {
+  const estimation::PadState at = pad.At(ValueOf(t));
+  return AtTime(t, at.p_WP, at.v_WP, at.a_WP);
+}
+
+/// The inner knots k = 1..M-1 that lie in the last `span` seconds before arrival, by the interval
+/// of the guess: which knots these are does not change during a solve. Windows of three blocks.
+struct LastKnots {
+  int first = 1;
+  int count = 0;
+
+  void Update(const LandingContext& context, double span) {
+    const double from = std::ceil(context.segments - span / context.interval);
+    first = static_cast<int>(std::clamp(from, 1.0, static_cast<double>(context.segments)));
+    count = context.segments - first;
+  }
+};
 
 }  // namespace touchdown::planning
