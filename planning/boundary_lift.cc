@@ -4,8 +4,9 @@
 //   Q_{i+2})/h^2,
 // which is inverted at the first and the last knot. Between them the control points follow
 //   c - (h^2/6) c'',  c the quintic Hermite polynomial between the ends:
-// the quasi-interpolant that reproduces cubics. Its weights on (p0, T v0, T^2 a0, P, T V, T^2 A)
-// are constants of the control point's index, so that derivatives with respect to T are plain.
+// the quasi-interpolant that reproduces cubics. Its weights on (p0, h v0, h^2 a0, P, h V, h^2 A)
+// are constants of the control point's index: computed once, and derivatives with respect to h are
+// plain.
 // Without this lift the interior points stay put while free arrival moves the ends, which is stiff.
 
 #include "touchdown/planning/boundary_lift.h"
@@ -19,13 +20,6 @@ namespace touchdown::planning {
 namespace {
 
 using Eigen::Vector3d;
-
-/// A quantity with its first two derivatives with respect to T.
-struct Moving {
-  Vector3d value = Vector3d::Zero();
-  Vector3d first = Vector3d::Zero();
-  Vector3d second = Vector3d::Zero();
-};
 
 /// Weights of the six end values in control point i of M + 3.
 std::array<double, 6> HermiteWeights(int i, int segments) {
@@ -41,70 +35,55 @@ std::array<double, 6> HermiteWeights(int i, int segments) {
       1.0 - 9.0 * s + 18.0 * s2 - 10.0 * s3, 60.0 * s - 180.0 * s2 + 120.0 * s3,
       -24.0 * s + 84.0 * s2 - 60.0 * s3,     3.0 * s - 12.0 * s2 + 10.0 * s3,
   };
+  // From (p0, T v0, T^2 a0, ...) to (p0, h v0, h^2 a0, ...).
+  const double m = segments, power[6] = {1.0, m, m * m, 1.0, m, m * m};
   std::array<double, 6> weights;
-  for (int j = 0; j < 6; ++j) {
-    weights[j] = value[j] - curvature[j] / (6.0 * segments * segments);
-  }
+  for (int j = 0; j < 6; ++j) weights[j] = power[j] * (value[j] - curvature[j] / (6.0 * m * m));
   return weights;
 }
 
-/// T^n x and its derivatives.
-Moving Scaled(const Moving& x, double T, int n) {
-  if (n == 0) return x;
-  if (n == 1) return {T * x.value, x.value + T * x.first, 2.0 * x.first + T * x.second};
-  return {T * T * x.value, 2.0 * T * x.value + T * T * x.first,
-          2.0 * x.value + 4.0 * T * x.first + T * T * x.second};
+/// A column of end values (p0, h v0, h^2 a0, P, h V, h^2 A): what every control point's offset is a
+/// fixed combination of.
+using EndColumn = BoundaryWeights::Column;
+
+EndColumn Column(const SplineState& start, const SplineState& end, double h) {
+  return {start.p, h * start.v, h * h * start.a, end.p, h * end.v, h * h * end.a};
 }
 
-struct Ends {
-  Moving p0, v0, a0, p, v, a;
-};
+/// out_i = sum_j w_ij column_j.
+void Combine(const std::vector<BoundaryWeights>& weights, const EndColumn& column, double* out) {
+  for (const BoundaryWeights& w : weights) {
+    for (int c = 0; c < 3; ++c) {
+      double sum = w.of[0] * column[0][c];
+      for (int j = 1; j < 6; ++j) sum += w.of[j] * column[j][c];
+      out[c] = sum;
+    }
+    out += 3;
+  }
+}
 
-/// Every control point's offset as a function of T.
-Moving ControlPoint(int i, int segments, double T, const Ends& e) {
+std::vector<BoundaryWeights> AllWeights(int segments) {
+  std::vector<BoundaryWeights> all;
   const int n = segments + 3;
-  const double m = segments;
-  const auto combine = [&](double cp, const Moving& p, double cv, const Moving& v, double ca,
-                           const Moving& a) {
-    const Moving tv = Scaled(v, T, 1);
-    const Moving ta = Scaled(a, T, 2);
-    // h v = T v / M, h^2 a = T^2 a / M^2.
-    return Moving{cp * p.value + cv / m * tv.value + ca / (m * m) * ta.value,
-                  cp * p.first + cv / m * tv.first + ca / (m * m) * ta.first,
-                  cp * p.second + cv / m * tv.second + ca / (m * m) * ta.second};
-  };
-  if (i < 3) return combine(1.0, e.p0, i - 1.0, e.v0, i == 1 ? -1.0 / 6.0 : 1.0 / 3.0, e.a0);
-  if (i >= n - 3) {
-    const double j = i - (n - 2);  // -1, 0, 1; delta = -h^2 a / 6 enters with -2, 1, -2
-    return combine(1.0, e.p, j, e.v, j == 0.0 ? -1.0 / 6.0 : 1.0 / 3.0, e.a);
+  for (int i = 0; i < n; ++i) {
+    const double second = i == 1 || i == n - 2 ? -1.0 / 6.0 : 1.0 / 3.0;
+    if (i < 3) {
+      all.push_back({{1.0, i - 1.0, second, 0.0, 0.0, 0.0}});
+    } else if (i >= n - 3) {
+      all.push_back({{0.0, 0.0, 0.0, 1.0, i - (n - 2.0), second}});
+    } else {
+      all.push_back({HermiteWeights(i, segments)});
+    }
   }
-  const std::array<double, 6> w = HermiteWeights(i, segments);
-  const std::array<Moving, 6> terms = {Scaled(e.p0, T, 0), Scaled(e.v0, T, 1), Scaled(e.a0, T, 2),
-                                       Scaled(e.p, T, 0),  Scaled(e.v, T, 1),  Scaled(e.a, T, 2)};
-  Moving out;
-  for (int k = 0; k < 6; ++k) {
-    out.value += w[k] * terms[k].value;
-    out.first += w[k] * terms[k].first;
-    out.second += w[k] * terms[k].second;
-  }
-  return out;
+  return all;
 }
 
 }  // namespace
 
 ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
                                    double duration) {
-  Ends ends;
-  ends.p0.value = start.p;
-  ends.v0.value = start.v;
-  ends.a0.value = start.a;
-  ends.p.value = end.p;
-  ends.v.value = end.v;
-  ends.a.value = end.a;
   ControlPoints points(3, segments + 3);
-  for (int i = 0; i < segments + 3; ++i) {
-    points.col(i) = ControlPoint(i, segments, duration, ends).value;
-  }
+  Combine(AllWeights(segments), Column(start, end, duration / segments), points.data());
   return points;
 }
 
@@ -114,6 +93,7 @@ BoundaryLift::BoundaryLift(int segments, bool free_end_acceleration)
     throw std::invalid_argument("BoundaryLift: " + std::to_string(segments) +
                                 " segments, it needs at least 4");
   }
+  weights_ = AllWeights(segments);
 }
 
 void BoundaryLift::Set(const SplineState& start, double t0, const estimation::PadPrediction& pad,
@@ -147,26 +127,32 @@ solvers::AffineLift BoundaryLift::Structure() const {
 }
 
 void BoundaryLift::At(double h, double* l, double* dl, double* d2l) const noexcept {
-  const double T = segments_ * h;
-  const EndState end = EndStateAt(*pad_, target_, t0_ + T);
-  Ends ends;
-  ends.p0.value = start_.p;
-  ends.v0.value = start_.v;
-  ends.a0.value = start_.a;
-  ends.p = {end.state.p, end.derivative.p, end.second_derivative.p};
-  ends.v = {end.state.v, end.derivative.v, end.second_derivative.v};
+  const double m = segments_;  // dT/dh
+  EndState end = EndStateAt(*pad_, target_, t0_ + m * h);
   // A free end acceleration is measured from zero: its reduced block holds delta itself.
   if (!free_end_acceleration_) {
-    ends.a = {end.state.a, end.derivative.a, end.second_derivative.a};
+    end.derivative.a *= m;
+    end.second_derivative.a *= m * m;
+  } else {
+    end.state.a.setZero();
+    end.derivative.a.setZero();
+    end.second_derivative.a.setZero();
   }
-  const double m = segments_;
-  for (int i = 0; i < segments_ + 3; ++i) {
-    const Moving q = ControlPoint(i, segments_, T, ends);
-    for (int c = 0; c < 3; ++c) {
-      l[3 * i + c] = q.value[c];
-      if (dl) dl[3 * i + c] = m * q.first[c];  // dT/dh = M
-      if (d2l) d2l[3 * i + c] = m * m * q.second[c];
-    }
+  const SplineState& at = end.state;
+  const Vector3d dP = m * end.derivative.p, dV = m * end.derivative.v, &dA = end.derivative.a;
+  const Vector3d d2P = m * m * end.second_derivative.p, d2V = m * m * end.second_derivative.v;
+  const Vector3d zero = Vector3d::Zero();
+  Combine(weights_, Column(start_, at, h), l);
+  if (dl) {
+    Combine(weights_,
+            {zero, start_.v, 2.0 * h * start_.a, dP, at.v + h * dV, 2.0 * h * at.a + h * h * dA},
+            dl);
+  }
+  if (d2l) {
+    Combine(weights_,
+            {zero, zero, 2.0 * start_.a, d2P, 2.0 * dV + h * d2V,
+             2.0 * at.a + 4.0 * h * dA + h * h * end.second_derivative.a},
+            d2l);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "touchdown/planning/endpoint.h"
@@ -14,6 +15,12 @@ namespace touchdown::planning {
 /// braking and climbing trajectories.
 ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
                                    double duration);
+
+/// What one control point takes of the end values (p0, h v0, h^2 a0, P, h V, h^2 A).
+struct BoundaryWeights {
+  using Column = std::array<Eigen::Vector3d, 6>;
+  std::array<double, 6> of;
+};
 
 /// Exact elimination of both ends, with the boundary lift (docs/formulation.md):
 ///   Q_0..Q_2 from (p0, v0, a0),  Q_i = quintic_i + y_i between,  Q_{N-3}..Q_{N-1} from (P, V,
@@ -40,6 +47,7 @@ class BoundaryLift : public solvers::LiftOffset {
  private:
   int segments_;
   bool free_end_acceleration_;
+  std::vector<BoundaryWeights> weights_;  // [control point]
   SplineState start_;
   double t0_ = 0.0;
   const estimation::PadPrediction* pad_ = nullptr;
