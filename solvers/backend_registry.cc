@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "touchdown/solvers/banded_solver.h"
+#include "touchdown/solvers/ceres_lbfgs.h"
 #include "touchdown/solvers/ceres_solver.h"
 #include "touchdown/solvers/ipopt_solver.h"
 #include "touchdown/solvers/nlopt_solver.h"
@@ -17,6 +18,7 @@ BackendRegistry StandardBackends() {
       {"banded", "own Newton and interior point on the arrowhead band; soft and hard limits",
        MakeBandedSolver},
       {"ceres", "Ceres Levenberg-Marquardt, sparse normal equations; soft limits", MakeCeresSolver},
+      {"ceres-lbfgs", "Ceres limited-memory BFGS, whitened; soft limits", MakeCeresLbfgs},
       {"nlopt-lbfgs", "NLopt limited-memory BFGS, whitened; soft limits", MakeNloptLbfgs},
       {"nlopt-tnewton", "NLopt truncated Newton, whitened; soft limits", MakeNloptTnewton},
       {"nlopt-ccsaq", "NLopt conservative convex separable approximation, whitened; soft limits",

@@ -11,6 +11,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 namespace touchdown::solvers {
@@ -22,9 +23,12 @@ class PointEvaluation : public ceres::EvaluationCallback {
  public:
   PointEvaluation(const double* y, Evaluator* evaluator) : y_(y), evaluator_(evaluator) {}
 
-  void PrepareForEvaluation(bool evaluate_jacobians, bool /*new_evaluation_point*/) override {
+  /// Gradients come with every point: almost every trial step is accepted, and a second pass for
+  /// them would cost more than they do. Past a budget no new point is evaluated any more.
+  void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_evaluation_point) override {
     const ShareScope scope(evaluator_, Share::kAdapter);
-    ok_ = evaluator_->Evaluate(y_, {.gradient = evaluate_jacobians, .residual = true});
+    ok_ = !(new_evaluation_point && evaluator_->must_stop()) &&
+          evaluator_->Evaluate(y_, {.gradient = true, .residual = true});
   }
   bool ok() const { return ok_; }
   const ViewEvaluation& last() const { return evaluator_->last(); }
@@ -93,19 +97,34 @@ class WindowResidual : public ceres::CostFunction {
 /// Hands every iteration to the evaluator.
 class IterationWatch : public ceres::IterationCallback {
  public:
-  explicit IterationWatch(Evaluator* evaluator) : evaluator_(evaluator) {}
+  explicit IterationWatch(Evaluator* evaluator)
+      : evaluator_(evaluator), told_cost_(evaluator->best_cost()) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     const ShareScope scope(evaluator_, Share::kAdapter);
-    if (summary.iteration > 0) {
-      evaluator_->FinishIteration(summary.step_norm, summary.gradient_max_norm);
-    }
+    if (summary.iteration > 0) Tell(summary.step_norm, summary.gradient_max_norm);
     return evaluator_->CheckStop() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
+  /// After a solve: Ceres does not call back after the step that meets its stop test.
+  void Finish() {
+    if (evaluator_->must_stop() || evaluator_->best_cost() == told_cost_) return;
+    const double hidden = std::numeric_limits<double>::quiet_NaN();
+    Tell(hidden, hidden);
+  }
+
  private:
+  void Tell(double step_norm, double gradient_max_norm) {
+    evaluator_->FinishIteration(step_norm, gradient_max_norm);
+    told_cost_ = evaluator_->best_cost();
+  }
+
   Evaluator* evaluator_;
+  double told_cost_;
 };
+
+/// How often a free interval may be held at a bound or let go.
+constexpr int kMostRounds = 4;
 
 class CeresSolver : public SolverBackend {
  public:
@@ -136,6 +155,10 @@ class CeresSolver : public SolverBackend {
       result->status = SolveStatus::kEvaluationFailed;
       return;
     }
+    if (evaluator->must_stop()) {
+      result->status = evaluator->stop_status();
+      return;
+    }
     PointEvaluation point(y_.data(), evaluator);
     ceres::Problem::Options problem_options;
     problem_options.evaluation_callback = &point;
@@ -146,13 +169,42 @@ class CeresSolver : public SolverBackend {
     IterationWatch watch(evaluator);
     solver.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
-    {
-      const ShareScope scope(evaluator, Share::kNative);
-      ceres::Solve(solver, &problem, &summary);
+    bool held = false;
+    for (int round = 0; round < kMostRounds; ++round) {
+      {
+        const ShareScope scope(evaluator, Share::kNative);
+        ceres::Solve(solver, &problem, &summary);
+      }
+      watch.Finish();
+      if (!ChangeHold(view, evaluator, &held, &problem)) break;
     }
     result->native_status = summary.termination_type;
     result->message = summary.message;
     result->status = Status(summary.termination_type, *evaluator);
+  }
+
+  /// Ceres projects its steps onto bounds, but computes them as if there were none: with the
+  /// interval at a bound it stops beside the optimum. So the interval is held there and the rest
+  /// solved again, and let go where the objective falls inwards. True if there is more to solve.
+  bool ChangeHold(const View& view, Evaluator* evaluator, bool* held, ceres::Problem* problem) {
+    double* h = &y_.back();
+    if (!view.free_interval() || evaluator->must_stop() || !problem->HasParameterBlock(h)) {
+      return false;
+    }
+    const ProblemShape& shape = view.problem().shape();
+    const bool at_min = *h <= shape.interval_min, at_max = *h >= shape.interval_max;
+    if (!at_min && !at_max) return false;
+    if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return false;
+    const double slope = evaluator->last().gradient.back();
+    const bool outwards = at_min ? slope > 0.0 : slope < 0.0;
+    if (outwards == *held) return false;
+    *held = outwards;
+    if (*held) {
+      problem->SetParameterBlockConstant(h);
+    } else {
+      problem->SetParameterBlockVariable(h);
+    }
+    return true;
   }
 
   void AddResiduals(const View& view, const ViewEvaluation& now, const PointEvaluation& point,
@@ -193,13 +245,12 @@ class CeresSolver : public SolverBackend {
   }
 
   static SolveStatus Status(ceres::TerminationType type, const Evaluator& evaluator) {
+    if (evaluator.must_stop()) return evaluator.stop_status();
     switch (type) {
       case ceres::CONVERGENCE:
         return SolveStatus::kConverged;
       case ceres::NO_CONVERGENCE:
         return SolveStatus::kIterationLimit;
-      case ceres::USER_SUCCESS:
-        return evaluator.stop_status();
       default:
         return evaluator.evaluation_failed() ? SolveStatus::kEvaluationFailed
                                              : SolveStatus::kNumericalFailure;

@@ -65,7 +65,7 @@ bool IpoptNlp::Begin(const View& view, const WarmStart& warm, Evaluator* evaluat
 }
 
 int IpoptNlp::JacobianNonzeros() const {
-  if (exact_hessian_) return rows_.nonzeros();
+  if (!point_.whitened()) return rows_.nonzeros();
   int sum = 0;
   for (int r = 0; r < rows_.size(); ++r) sum += point_.size() - rows_.column(rows_.start(r));
   return sum;
@@ -141,16 +141,16 @@ bool IpoptNlp::eval_jac_g(Index n, const Number* x, bool /*new_x*/, Index m, Ind
   if (!values) {
     for (int r = 0; r < m; ++r) {
       const int first = rows_.start(r), end = rows_.start(r + 1);
-      const int count = exact_hessian_ ? end - first : n - rows_.column(first);
+      const int count = point_.whitened() ? n - rows_.column(first) : end - first;
       for (int k = 0; k < count; ++k) {
         *row++ = r;
-        *column++ = exact_hessian_ ? rows_.column(first + k) : rows_.column(first) + k;
+        *column++ = point_.whitened() ? rows_.column(first) + k : rows_.column(first + k);
       }
     }
     return true;
   }
   if (!MoveTo(x)) return false;
-  if (exact_hessian_) {
+  if (!point_.whitened()) {
     rows_.Jacobian(point_.last(), values);
     return true;
   }
@@ -181,7 +181,7 @@ bool IpoptNlp::eval_h(Index /*n*/, const Number* x, bool /*new_x*/, Number objec
   if (evaluator_->must_stop() && !ending_) throw Ended{};
   if (rows_.size() > 0) rows_.Spread(lambda, &multipliers_);
   const Lagrangian lagrangian{.objective_factor = objective_factor, .rows = row_weights_.data()};
-  if (!evaluator_->EvaluateLagrangian(x, lagrangian)) return false;
+  if (!point_.EvaluateLagrangian(x, lagrangian)) return false;
   ForEachLower(evaluator_->last().hessian, [&](int, int, double value) { *values++ = value; });
   return true;
 }

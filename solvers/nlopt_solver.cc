@@ -44,7 +44,8 @@ SolverOptions OptionsOf(const Method& method) {
   std::vector<OptionSpec> specs = {
       {"function_tolerance", 1e-8, 0.0, 1.0, false, "relative decrease that ends a solve"},
       {"parameter_tolerance", 0.0, 0.0, 1.0, false, "relative step that ends a solve; 0: none"},
-      {"whiten", 1.0, 0.0, 1.0, true, "1: solve in whitened variables"},
+      {"whiten", 1.0, 0.0, 1.0, true,
+       "1: solve in whitened variables, where their metric is regular"},
   };
   if (method.stores_vectors) {
     specs.push_back({"vector_storage", 10.0, 1.0, 1000.0, true, "gradients remembered"});
@@ -85,9 +86,10 @@ class NloptSolver : public SolverBackend {
     nlopt_set_min_objective(opt_, &NloptSolver::Objective, this);
   }
 
-  void DoSolve(const View& view, const WarmStart& warm, const Stop& /*stop*/, Evaluator* evaluator,
+  void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
                SolverResult* result) override {
     evaluator_ = evaluator;
+    max_iterations_ = stop.max_iterations;
     failures_ = repeats_ = 0;
     improvement_ = HUGE_VAL;
     error_ = nullptr;
@@ -168,8 +170,13 @@ class NloptSolver : public SolverBackend {
     solver->EvaluateSides(solver->inequalities_, z, values, gradient);
   }
 
-  /// Moves to z; no exception may pass through NLopt, which is C.
+  /// Moves to z; no exception may pass through NLopt, which is C. Some methods ask once more after
+  /// they were stopped: past a budget nothing is evaluated.
   bool MoveTo(const double* z, bool gradient) {
+    if (error_ || evaluator_->must_stop()) {
+      nlopt_force_stop(opt_);
+      return false;
+    }
     bool ok = false;
     try {
       ok = point_.Evaluate(z, gradient);
@@ -199,7 +206,10 @@ class NloptSolver : public SolverBackend {
     double step = 0.0;
     if (ok && point_.Improved(&step)) {
       improvement_ = std::abs(evaluator_->best_cost() - best_before);
-      if (!evaluator_->must_stop()) evaluator_->FinishIteration(step, norm);
+      evaluator_->FinishIteration(step, norm);
+      if (evaluator_->iterations() >= max_iterations_ && evaluator_->CheckStop()) {
+        nlopt_force_stop(opt_);
+      }
     }
     return ok ? point_.value() : HUGE_VAL;
   }
@@ -256,6 +266,7 @@ class NloptSolver : public SolverBackend {
   Evaluator* evaluator_ = nullptr;
   std::vector<double> z_, bound_, u_, jacobian_;
   std::vector<Side> equalities_, inequalities_;
+  int max_iterations_ = 0;
   int failures_ = 0;
   int repeats_ = 0;
   double first_cost_ = 0.0;

@@ -32,23 +32,32 @@ bool WhitenedPoint::Begin(const View& view, const double* y, bool whiten, Evalua
   if (!whiten) return true;
   const ShareScope scope(evaluator, Share::kWhitening);
   if (!whitening_.Set(view, y, &metric_)) return false;
-  whitening_.ToWhite(y, z_.data());
+  whiten_ = whitening_.regular();
+  if (whiten_) whitening_.ToWhite(y, z_.data());
   return true;
 }
 
-bool WhitenedPoint::Evaluate(const double* z, bool gradient) {
-  if (std::memcmp(z, z_.data(), z_.size() * sizeof(double)) != 0) {
-    std::copy(z, z + z_.size(), z_.begin());
-    if (whiten_) {
-      const ShareScope scope(evaluator_, Share::kWhitening);
-      whitening_.FromWhite(z, y_.data());
-    } else {
-      y_ = z_;
-    }
-    // Bounds were kept in z; dividing by the scale may have lost the last bit.
-    if (free_interval_) y_.back() = std::clamp(y_.back(), interval_min_, interval_max_);
+void WhitenedPoint::MoveTo(const double* z) {
+  if (std::memcmp(z, z_.data(), z_.size() * sizeof(double)) == 0) return;
+  std::copy(z, z + z_.size(), z_.begin());
+  if (whiten_) {
+    const ShareScope scope(evaluator_, Share::kWhitening);
+    whitening_.FromWhite(z, y_.data());
+  } else {
+    y_ = z_;
   }
+  // Bounds were kept in z; dividing by the scale may have lost the last bit, and Ipopt relaxes them.
+  if (free_interval_) y_.back() = std::clamp(y_.back(), interval_min_, interval_max_);
+}
+
+bool WhitenedPoint::Evaluate(const double* z, bool gradient) {
+  MoveTo(z);
   return evaluator_->Evaluate(y_.data(), {.gradient = gradient});
+}
+
+bool WhitenedPoint::EvaluateLagrangian(const double* z, const Lagrangian& lagrangian) {
+  MoveTo(z);
+  return evaluator_->EvaluateLagrangian(y_.data(), lagrangian);
 }
 
 void WhitenedPoint::Gradient(double* out) const {

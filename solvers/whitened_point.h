@@ -10,7 +10,8 @@
 namespace touchdown::solvers {
 
 /// The evaluator as a backend sees it that works on whitened variables z (whitening.h): one point at
-/// a time, its objective, gradient and rows in z. Without whitening z is the view's y.
+/// a time, its objective, gradient and rows in z. Without whitening z is the view's y; so it is where
+/// the costs' nominal curvature is singular, as that of a linear cost: such a metric means nothing.
 class WhitenedPoint {
  public:
   /// Allocates for views of this structure.
@@ -21,6 +22,7 @@ class WhitenedPoint {
   bool Begin(const View& view, const double* y, bool whiten, Evaluator* evaluator);
 
   int size() const { return static_cast<int>(z_.size()); }
+  bool whitened() const { return whiten_; }
   /// The last point; after Begin the first.
   const double* z() const { return z_.data(); }
   /// A free interval is z's last number divided by this.
@@ -28,6 +30,8 @@ class WhitenedPoint {
 
   /// Moves to z; false if a term cannot be evaluated there.
   bool Evaluate(const double* z, bool gradient);
+  /// As Evaluator::EvaluateLagrangian, at z; only without whitening.
+  bool EvaluateLagrangian(const double* z, const Lagrangian& lagrangian);
   const ViewEvaluation& last() const { return evaluator_->last(); }
   double value() const { return last().full.value; }
   /// The objective's gradient in z, at a point evaluated with it.
@@ -40,6 +44,8 @@ class WhitenedPoint {
   bool Improved(double* step);
 
  private:
+  void MoveTo(const double* z);
+
   Whitening whitening_;
   ViewEvaluation metric_;  // where the metric is taken
   Evaluator* evaluator_ = nullptr;

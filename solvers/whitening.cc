@@ -54,6 +54,7 @@ bool Whitening::Set(const View& view, const double* y, ViewEvaluation* evaluatio
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const BorderedCholesky::Status status = factor_.Factor(evaluation->hessian, shift, shift);
     if (status != BorderedCholesky::Status::kIndefinite && factor_.corner() > 1e-9 * unit) {
+      regular_ = shift == 0.0;
       return true;
     }
     shift = shift == 0.0 ? kFirstShift * unit : kShiftGrowth * shift;

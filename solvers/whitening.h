@@ -22,6 +22,8 @@ class Whitening {
   /// held or not). False if the view cannot be evaluated there. Does not allocate.
   bool Set(const View& view, const double* y, ViewEvaluation* evaluation);
 
+  /// The nominal Hessian is definite by itself; else a shift stands in for what it leaves free.
+  bool regular() const { return regular_; }
   int size() const { return factor_.size(); }
   /// z = L^T y and y = L^-T z; in and out must differ.
   void ToWhite(const double* y, double* z) const;
@@ -33,6 +35,7 @@ class Whitening {
 
  private:
   BorderedCholesky factor_;
+  bool regular_ = false;
   std::vector<std::vector<double>> weights_;  // of equality rows, [term]
   std::vector<RowWeights> rows_;
 };

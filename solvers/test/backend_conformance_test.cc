@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "touchdown/solvers/backend_registry.h"
-#include "touchdown/solvers/test/test_terms.h"
+#include "touchdown/solvers/test/standard_problems.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -78,6 +78,23 @@ TEST_P(EveryBackend, ConvexQuadraticWithKnownSolution) {
   EXPECT_LT((result.x - expected).norm(), 1e-6);
 }
 
+TEST_P(EveryBackend, ConstrainedProblemsHaveTheirKnownOptima) {
+  for (const StandardProblem& standard : ConstrainedProblems()) {
+    SCOPED_TRACE(standard.name);
+    const View view(*standard.problem, AffineLift::Identity(standard.problem->shape().blocks));
+    auto backend = Make();
+    if (!backend->Refusal(view).empty()) continue;
+    backend->Prepare(view);
+    SolverResult result;
+    backend->Solve(view, standard.start, {.max_iterations = 10000}, &result);
+    EXPECT_EQ(result.status, SolveStatus::kConverged)
+        << ToString(result.status) << ": " << result.message;
+    EXPECT_NEAR(result.cost, standard.cost, 1e-6 * std::max(1.0, std::abs(standard.cost)));
+    EXPECT_LE(result.max_violation, 1e-6);
+    EXPECT_LT((result.x - standard.optimum).norm(), 1e-3);
+  }
+}
+
 TEST_P(EveryBackend, NanIsAStatusAndTheBestPointSurvives) {
   // Defined only for x > 0; the unconstrained minimum lies beyond.
   Problem problem = Scalars(1);
@@ -103,6 +120,179 @@ TEST_P(EveryBackend, ATermThatThrowsIsAStatus) {
           "throws", [](const auto*, auto*) { throw std::runtime_error("term"); }, false),
       Role::kCost);
   EXPECT_EQ(Solve(problem, Eigen::VectorXd::Zero(1)).status, SolveStatus::kEvaluationFailed);
+}
+
+/// x^2 with x <= -1 and x >= 1.
+StandardProblem Infeasible() {
+  StandardProblem p = Standard("Infeasible", {0.5}, {0.0}, 0.0);
+  p.problem->AddTerm(
+      Whole<1, 1>("square", SquareLoss(2.0), [](const auto* x, auto* u) { u[0] = x[0]; }),
+      Role::kCost);
+  p.problem->AddTerm(AtMostZero<1, 2>("apart",
+                                      [](const auto* x, auto* u) {
+                                        u[0] = x[0] + 1.0;
+                                        u[1] = 1.0 - x[0];
+                                      }),
+                     Role::kConstraint);
+  return p;
+}
+
+TEST_P(EveryBackend, InfeasibleIsAStatus) {
+  const StandardProblem p = Infeasible();
+  const View view(*p.problem, AffineLift::Identity(1));
+  if (!Make()->Refusal(view).empty()) GTEST_SKIP() << Make()->Refusal(view);
+  const SolverResult result = Solve(*p.problem, p.start, {.max_iterations = 1000});
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible)
+      << ToString(result.status) << ": " << result.message;
+  EXPECT_TRUE(result.x.allFinite());
+  EXPECT_GT(result.max_violation, 0.9);
+}
+
+TEST_P(EveryBackend, ARowThatCannotBeEvaluatedIsAStatus) {
+  // sqrt(x) >= 1 from x < 0, and from x > 0 where a long step leaves the domain.
+  StandardProblem p = Standard("Root", {-1.0}, {1.0}, 1.0);
+  p.problem->AddTerm(
+      Whole<1, 1>("square", SquareLoss(2.0), [](const auto* x, auto* u) { u[0] = x[0]; }),
+      Role::kCost);
+  p.problem->AddTerm(AtMostZero<1, 1>("root",
+                                      [](const auto* x, auto* u) {
+                                        using std::sqrt;
+                                        u[0] = 1.0 - sqrt(x[0]);
+                                      }),
+                     Role::kConstraint);
+  const View view(*p.problem, AffineLift::Identity(1));
+  if (!Make()->Refusal(view).empty()) GTEST_SKIP() << Make()->Refusal(view);
+  EXPECT_EQ(Solve(*p.problem, p.start).status, SolveStatus::kEvaluationFailed);
+  const SolverResult good = Solve(*p.problem, Eigen::VectorXd::Constant(1, 9.0));
+  EXPECT_NEAR(good.cost, 1.0, 1e-5) << ToString(good.status) << ": " << good.message;
+}
+
+TEST_P(EveryBackend, MultipliersSatisfyStationarity) {
+  const StandardProblem p = Projection();
+  const View view(*p.problem, AffineLift::Identity(6));
+  if (!Make()->Refusal(view).empty()) GTEST_SKIP() << Make()->Refusal(view);
+  const SolverResult result = Solve(*p.problem, p.start);
+  if (result.multipliers.empty()) GTEST_SKIP() << "no multipliers";
+  ASSERT_EQ(result.multipliers.size(), 2u);
+  ASSERT_EQ(result.multipliers[1].size(), 7u);
+  const double expected[] = {2.5, 0.5, 0.0, 0.0, 0.0, 0.0, 4.5};
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(result.multipliers[1][i], expected[i], 1e-4);
+
+  // Point and multipliers together are a start that is hard to improve.
+  auto backend = Make();
+  backend->Prepare(view);
+  SolverResult again;
+  backend->Solve(view, WarmStart(result.x, result.multipliers), {}, &again);
+  EXPECT_EQ(again.status, SolveStatus::kConverged) << again.message;
+  EXPECT_LE(again.iterations, result.iterations);
+  EXPECT_NEAR(again.cost, result.cost, 1e-6 * result.cost);
+}
+
+/// (h - target)^2 + (x - h)^2: a free interval alone decides.
+struct IntervalMap {
+  static constexpr int kBlockSize = 1, kWindow = 1, kOutputs = 2;
+  static constexpr bool kUsesInterval = true, kLinearInBlocks = true;
+  double target;
+  int windows() const { return 1; }
+  int first_block(int /*k*/) const { return 0; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& h, const T& /*t*/, T* u) const {
+    u[0] = h - target;
+    u[1] = q[0] - h;
+  }
+};
+
+TEST_P(EveryBackend, AFreeIntervalStaysInItsBounds) {
+  if (!Make()->capabilities().free_interval) GTEST_SKIP() << "no free interval";
+  // Inside, beyond either bound, and started at a bound.
+  for (const auto& [target, start, h] :
+       {std::array{0.3, 0.5, 0.3}, {0.01, 0.5, 0.1}, {5.0, 0.5, 2.0}, {0.3, 2.0, 0.3}}) {
+    Problem problem({.blocks = 1,
+                     .block_size = 1,
+                     .free_interval = true,
+                     .interval_min = 0.1,
+                     .interval_max = 2.0});
+    problem.AddTerm(
+        std::make_shared<WindowTerm<IntervalMap, SquareLoss>>(
+            TermInfo{"interval", "", "", "", false}, IntervalMap{target}, SquareLoss(2.0), 1),
+        Role::kCost);
+    Stop stop;
+    stop.callback = [](const StopQuery& query) {
+      EXPECT_GE(query.y[1], 0.1 * (1.0 - 1e-12));
+      EXPECT_LE(query.y[1], 2.0 * (1.0 + 1e-12));
+      return false;
+    };
+    const SolverResult result = Solve(problem, Eigen::Vector2d(1.0, start), stop);
+    EXPECT_EQ(result.status, SolveStatus::kConverged)
+        << ToString(result.status) << ": " << result.message << " target " << target;
+    EXPECT_NEAR(result.x[1], h, 1e-4);
+    EXPECT_NEAR(result.x[0], h, 1e-4);
+    if (result.interval_multiplier != 0.0) {
+      EXPECT_NEAR(result.interval_multiplier, -2.0 * (h - target), 1e-4);
+    }
+  }
+}
+
+TEST_P(EveryBackend, TellsEveryIterationAndWhereTheTimeWent) {
+  Problem problem = Scalars(2);
+  problem.AddTerm(Rosenbrock(), Role::kCost);
+  Stop stop;
+  stop.trace = stop.shares = true;
+  const SolverResult result = Solve(problem, Eigen::Vector2d(-1.2, 1.0), stop);
+  ASSERT_EQ(static_cast<int>(result.trace.size()), result.iterations);
+  for (std::size_t i = 0; i < result.trace.size(); ++i) {
+    EXPECT_EQ(result.trace[i].iteration, static_cast<int>(i) + 1);
+    EXPECT_LE(result.trace[i].cost, result.trace[i > 0 ? i - 1 : 0].cost);
+    EXPECT_FALSE(result.trace[i].step_norm < 0.0);
+  }
+  EXPECT_EQ(result.trace.back().cost, result.cost);
+  const SolveShares& s = result.shares;
+  EXPECT_NEAR(s.evaluation_s + s.whitening_s + s.native_s + s.adapter_s, result.wall_s,
+              1e-3 * result.wall_s + 1e-4);
+  EXPECT_GT(s.evaluation_s, 0.0);
+  EXPECT_GT(s.native_s, 0.0);
+}
+
+TEST_P(EveryBackend, PrintsNothing) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Problem problem = Scalars(2);
+  problem.AddTerm(Rosenbrock(), Role::kCost);
+  for (const int budget : {1, 2, 3, 5, 8, 1000}) {
+    Solve(problem, Eigen::Vector2d(-1.2, 1.0), {.max_iterations = budget});
+    Solve(problem, Eigen::Vector2d(-1.2, 1.0), {.max_evaluations = budget});
+  }
+  Problem broken = Scalars(1);
+  broken.AddTerm(SumOfSquares<1, 1>(
+                     "log",
+                     [](const auto* x, auto* u) {
+                       using std::log;
+                       u[0] = log(x[0]) + 30.0;
+                     },
+                     false),
+                 Role::kCost);
+  for (const double start : {-1.0, 1.0}) Solve(broken, Eigen::VectorXd::Constant(1, start));
+  const StandardProblem infeasible = Infeasible();
+  const View view(*infeasible.problem, AffineLift::Identity(1));
+  if (Make()->Refusal(view).empty()) Solve(*infeasible.problem, infeasible.start);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_P(EveryBackend, AnExceptionOfTheCallbackReachesTheCaller) {
+  Problem problem = Scalars(2);
+  problem.AddTerm(Rosenbrock(), Role::kCost);
+  for (const int when : {1, 4}) {
+    Stop stop;
+    int asked = 0;
+    stop.callback = [&](const StopQuery&) {
+      if (++asked == when) throw std::runtime_error("caller");
+      return false;
+    };
+    EXPECT_THROW(Solve(problem, Eigen::Vector2d(-1.2, 1.0), stop), std::runtime_error);
+  }
+  EXPECT_EQ(Solve(problem, Eigen::Vector2d(-1.2, 1.0)).status != SolveStatus::kEvaluationFailed,
+            true);
 }
 
 TEST_P(EveryBackend, StopsOnBudgetCallbackAndClock) {
@@ -171,7 +361,11 @@ TEST_P(EveryBackend, RefusesMisuse) {
 }
 
 TEST_P(EveryBackend, TwoThreadsGiveTheBitsOfOne) {
-  const auto run = [this] {
+  const StandardProblem constrained = Projection();
+  const View view(*constrained.problem, AffineLift::Identity(6));
+  const bool rows = Make()->Refusal(view).empty();
+  const auto run = [&]() -> Eigen::VectorXd {
+    if (rows) return Solve(*constrained.problem, constrained.start).x;
     Problem problem = Scalars(2);
     problem.AddTerm(Rosenbrock(), Role::kCost);
     return Solve(problem, Eigen::Vector2d(-1.2, 1.0)).x;
