@@ -27,11 +27,11 @@ constexpr double kSampleRate = 50.0;    // of metrics and record [Hz]
 
 class Trial {
  public:
-  Trial(const Scenario& scenario, std::uint64_t seed, const solvers::BackendRegistry& backends,
+  Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
         TrialRecord* record)
       : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
         perception_(scenario, world_, seed, record != nullptr),
-        pilot_(scenario, world_.model(), world_.pad_motion(), backends, world_.vehicle()),
+        pilot_(scenario, world_.model(), world_.pad_motion(), registries, world_.vehicle()),
         clearance_(world_.config().obstacles, world_.model()),
         judge_(LandingRule{}, scenario.timeout),
         mission_clock_(kMissionRate),
@@ -250,10 +250,10 @@ class Trial {
 };
 
 // What the simulator or a backend refuses before the flight is the user's to mend.
-Trial SetUp(const Scenario& scenario, std::uint64_t seed, const solvers::BackendRegistry& backends,
+Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
             TrialRecord* record) {
   try {
-    return Trial(scenario, seed, backends, record);
+    return Trial(scenario, seed, registries, record);
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: it cannot be set up with seed {}: {}.", scenario.name, seed,
                                error.what()));
@@ -262,11 +262,11 @@ Trial SetUp(const Scenario& scenario, std::uint64_t seed, const solvers::Backend
 
 }  // namespace
 
-TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed,
-                     const solvers::BackendRegistry& backends, TrialRecord* record) {
+TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
+                     TrialRecord* record) {
   const auto wall = std::chrono::steady_clock::now();
   const double cpu = solvers::ThreadCpuSeconds();
-  TrialResult result = SetUp(scenario, seed, backends, record).Run();
+  TrialResult result = SetUp(scenario, seed, registries, record).Run();
   result.timing.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   result.timing.cpu_s = solvers::ThreadCpuSeconds() - cpu;

@@ -6,7 +6,6 @@
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/trial_record.h"
 #include "touchdown/evaluation/trial_result.h"
-#include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::evaluation {
 
@@ -17,7 +16,7 @@ namespace touchdown::evaluation {
 /// Physics that fails is an outcome, `unstable`.
 /// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
 /// a part of the program fails.
-TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed,
-                     const solvers::BackendRegistry& backends, TrialRecord* record = nullptr);
+TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
+                     TrialRecord* record = nullptr);
 
 }  // namespace touchdown::evaluation

@@ -90,12 +90,12 @@ void Draw(const LandArguments& arguments, const Scenario& scenario, const TrialR
 // The result is printed first: a file or picture that fails does not take it along.
 int Land(const LandArguments& arguments, const Registries& registries) {
   const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
-                                         arguments.scenario.Overrides(), BackendNames(registries));
+                                         arguments.scenario.Overrides(), registries);
   CheckOutputs(arguments);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
   const TrialResult result =
-      RunTrial(scenario, scenario.seed, registries.backends, recorded ? &record : nullptr);
+      RunTrial(scenario, scenario.seed, registries, recorded ? &record : nullptr);
   if (arguments.json) {
     std::cout << LandJson(scenario, result).dump(2) << std::endl;
   } else {

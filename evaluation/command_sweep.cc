@@ -67,7 +67,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
     options.variations.push_back(Variation::Parse(text));
   options.trials = arguments.trials;
   options.seed = arguments.seed;
-  const std::vector<SweepTrial> trials = PlanSweep(options, BackendNames(registries));
+  const std::vector<SweepTrial> trials = PlanSweep(options, registries);
   for (const SweepTrial& trial : trials) {
     if (trial.scenario.planning.latency.measured && arguments.jobs > 1) {
       throw BadInput(
@@ -76,7 +76,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   }
   if (!arguments.db.empty()) CheckOutput(arguments.db);
   const std::vector<SweepRow> rows =
-      RunSweep(trials, arguments.jobs, registries.backends, Progress(options.trials));
+      RunSweep(trials, arguments.jobs, registries, Progress(options.trials));
   if (arguments.json) {
     std::cout << SweepJson(options, rows).dump(2) << std::endl;
   } else {

@@ -2,6 +2,5 @@
 #include "touchdown/evaluation/program.h"
 
 int main(int argc, char** argv) {
-  return touchdown::evaluation::RunProgram(
-      argc, argv, {touchdown::solvers::StandardBackends(), touchdown::planning::StandardTerms()});
+  return touchdown::evaluation::RunProgram(argc, argv, touchdown::evaluation::StandardRegistries());
 }

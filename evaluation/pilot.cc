@@ -50,12 +50,12 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
 }  // namespace
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
-             const sim::PadMotion& truth, const solvers::BackendRegistry& backends,
+             const sim::PadMotion& truth, const Registries& registries,
              const estimation::VehicleState& start)
     : scenario_(scenario),
       model_(model),
       oracle_(truth),
-      replanner_(PlannerOptions(scenario, model), backends),
+      replanner_(PlannerOptions(scenario, model, registries.terms), registries.backends),
       controller_(control::MakeController(
           scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
           TrackingOptions(scenario))),

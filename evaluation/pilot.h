@@ -14,7 +14,6 @@
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/replanner.h"
 #include "touchdown/sim/pad_motion.h"
-#include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::evaluation {
 
@@ -31,7 +30,7 @@ class Pilot {
  public:
   /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
   Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
-        const sim::PadMotion& truth, const solvers::BackendRegistry& backends,
+        const sim::PadMotion& truth, const Registries& registries,
         const estimation::VehicleState& start);
 
   /// Mission and heading. Call at a fixed rate.

@@ -15,10 +15,45 @@ constexpr double kFeetAboveGround = 0.3;  // away from the pad [m]
 
 }  // namespace
 
+planning::TermSettings TermSettingsOf(const std::string& name,
+                                      const std::map<std::string, double>& keys) {
+  planning::TermSettings settings;
+  settings.name = name;
+  for (const auto& [key, value] : keys) {
+    if (key == "weight") {
+      settings.weight = value;
+    } else if (key == "hard") {
+      settings.hard = value != 0.0;
+    } else {
+      settings.parameters.emplace_back(key, value);
+    }
+  }
+  return settings;
+}
+
+double LowestPlan(const estimation::VehicleModel& model) {
+  return std::max(planning::ReplannerOptions{}.floor_height, model.foot_depth + kFeetAboveGround);
+}
+
 planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
-                                          const estimation::VehicleModel& model) {
+                                          const estimation::VehicleModel& model,
+                                          const planning::TermRegistry& terms) {
   planning::ReplannerOptions options;
   options.backend = scenario.solver.backend;
+  options.solver_options.assign(scenario.solver.options.begin(), scenario.solver.options.end());
+  planning::LandingProblemOptions& problem = options.problem;
+  problem.terms = terms;
+  for (const auto& [name, keys] : scenario.terms) {
+    problem.settings.push_back(TermSettingsOf(name, keys));
+  }
+  problem.endpoint = scenario.solver.endpoint == EndpointKind::kExplicit
+                         ? planning::EndpointMode::kExplicit
+                         : planning::EndpointMode::kEliminated;
+  problem.limits_mode = scenario.solver.limits == LimitsKind::kHard ? planning::LimitsMode::kHard
+                                                                    : planning::LimitsMode::kSoft;
+  problem.vehicle.thrust_max = model.MaxThrust() / model.mass_kg;
+  problem.vehicle.thrust_min = 4.0 * model.rotor_thrust_min / model.mass_kg;
+  problem.vehicle.tilt_max = scenario.limits.tilt_deg * kRadPerDeg;
   options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
                                                                   : planning::ArrivalMode::kFixed;
   const double of_tilt = estimation::kGravity * std::tan(scenario.limits.tilt_deg * kRadPerDeg);
@@ -28,7 +63,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   const double period = 1.0 / scenario.planning.rate;
   options.reaction =
       period + (scenario.planning.latency.measured ? period : 1e-3 * scenario.planning.latency.ms);
-  options.floor_height = std::max(options.floor_height, model.foot_depth + kFeetAboveGround);
+  options.floor_height = LowestPlan(model);
   return options;
 }
 

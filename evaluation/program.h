@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "touchdown/planning/term_registry.h"
-#include "touchdown/solvers/backend_registry.h"
+#include "touchdown/evaluation/registries.h"
 
 namespace touchdown::evaluation {
-
-/// What the program offers: an out-of-tree project adds its own entries and has every sub-command.
-struct Registries {
-  solvers::BackendRegistry backends;
-  planning::TermRegistry terms;
-};
 
 /// The program `touchdown`. Results go to stdout, logs to stderr. Returns the exit status:
 /// 0 done; for `land`: landed, and all that was asked for is written; for `sweep`: every trial was

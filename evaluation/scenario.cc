@@ -47,7 +47,7 @@ class Reader {
   }
 
   void ReadEntry(const std::string& name, const YAML::Node& value, const Where& where) {
-    if (const SchemaKey<Scenario>* key = FindScenarioKey(name)) {
+    if (const auto key = FindScenarioKey(name)) {
       key->set(source_->scenario, value, where);
       source_->where[name] = where;
     } else if (name == "obstacles.boxes") {
@@ -73,7 +73,7 @@ class Reader {
   }
 
   static bool IsGroup(const std::string& name) {
-    if (name == kObstacles) return true;
+    if (name == kObstacles || IsOpenGroup(name)) return true;
     return std::any_of(ScenarioKeys().begin(), ScenarioKeys().end(),
                        [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
   }
@@ -88,7 +88,7 @@ class Reader {
       const std::string word = key.name.substr(0, key.name.find('.', group.size()));
       if (words.empty() || words.back() != word) words.push_back(word);
     }
-    if (group.empty()) words.emplace_back(kObstacles);
+    if (group.empty()) words.insert(words.end(), {"terms", kObstacles});
     if (group == std::string(kObstacles) + ".") words = {"obstacles.boxes", "obstacles.cylinders"};
     if (words.empty()) return "`docs/scenario.md` lists the keys";
     return "allowed here: " + Enumerate(words);
@@ -180,13 +180,13 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
 Scenario::Scenario() = default;
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
-                      const std::vector<std::string>& backends) {
+                      const Registries& registries) {
   ScenarioSource source;
   source.scenario.name = std::filesystem::path(path).stem().string();
   source.file = path;
   Reader(&source, path, true).Read(ParseFile(path));
   for (const std::string& text : overrides) ApplyOverride(text, &source);
-  CheckScenario(source, backends);
+  CheckScenario(source, registries);
   return source.scenario;
 }
 
@@ -201,6 +201,7 @@ std::string DumpScenario(const Scenario& scenario) {
     const std::string name = group.empty() ? key.name : "  " + key.name.substr(dot + 1);
     text += name + ": " + key.get(scenario) + "\n";
   }
+  text += DumpOpenKeys(scenario);
   if (scenario.boxes.empty() && scenario.cylinders.empty()) return text;
   text += std::string(kObstacles) + ":\n";
   const auto list = [&text](const std::string& name, const auto& elements, const auto& keys) {

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "touchdown/evaluation/registries.h"
 
 namespace touchdown::evaluation {
 
@@ -19,7 +22,8 @@ enum class PlannerKind { kLanding };
 enum class SensingKind { kFast };
 enum class OwnStateKind { kTrue };
 enum class ArrivalKind { kFixed, kFree };
-enum class LimitsKind { kSoft };
+enum class EndpointKind { kEliminated, kExplicit };
+enum class LimitsKind { kSoft, kHard };
 
 /// A box on the ground, its edges along the world's axes.
 struct BoxObstacle {
@@ -93,8 +97,12 @@ struct Scenario {
   struct Solver {
     std::string backend = "ceres";
     ArrivalKind arrival = ArrivalKind::kFixed;
+    EndpointKind endpoint = EndpointKind::kEliminated;
     LimitsKind limits = LimitsKind::kSoft;
+    std::map<std::string, double> options;  ///< of the backend, by its own names
   } solver;
+  /// terms.<term>.<key>: weight, hard (0 or 1) or a parameter of the term.
+  std::map<std::string, std::map<std::string, double>> terms;
 
   struct Limits {
     double speed = 3.0;         ///< [m/s]
@@ -122,9 +130,9 @@ std::string FindScenario(const std::string& name_or_path);
 std::vector<std::string> ListScenarios();
 
 /// Reads `path` through the schema, then applies `overrides` ("pad.speed=1.2") in order, then
-/// checks the whole. `backends` are the names solver.backend may have. @throws BadInput.
+/// checks the whole against what `registries` know. @throws BadInput.
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
-                      const std::vector<std::string>& backends);
+                      const Registries& registries);
 
 /// The effective scenario as YAML that LoadScenario reads back to the same values.
 std::string DumpScenario(const Scenario& scenario);

@@ -15,13 +15,15 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/planning/plan_attempt.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/vehicle_file.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kPathStep = 0.1;  // [s], and [m] along the drawn phase
+constexpr int kProbeSegments = 12;  // of the problem that a backend is asked about
+constexpr double kPathStep = 0.1;   // [s], and [m] along the drawn phase
 
 estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
   try {
@@ -57,7 +59,7 @@ void CheckCeiling(const ScenarioSource& source, const estimation::VehicleModel& 
   const double followed =
       s.pad.deck_height + control::MissionParameters{}.follow_height + model.foot_depth;
   const std::pair<double, const char*> lowest =
-      std::max({std::pair{PlannerOptions(s, model).floor_height, "the floor of plans"},
+      std::max({std::pair{LowestPlan(model), "the floor of plans"},
                 std::pair{s.start.position.z() + s.start.position_spread.z(),
                           "start.position with its spread"},
                 std::pair{followed, "the height at which the pad is followed"}});
@@ -115,6 +117,58 @@ void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
                       source.WhereOf(named.key).ToString(), named.key, model.hull_radius, gap));
     }
   }
+}
+
+// Each key alone, so that the sentence names the place it came from.
+void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& terms) {
+  for (const auto& [name, keys] : source.scenario.terms) {
+    for (const auto& [key, value] : keys) {
+      try {
+        const planning::TermEntry& entry = planning::FindTerm(terms, name);
+        planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
+        planning::ApplySettings(entry, TermSettingsOf(name, {{key, value}}), &setup);
+      } catch (const std::invalid_argument& error) {
+        throw BadInput(fmt::format(
+            "{}: {}.", source.WhereOf("terms." + name + "." + key).ToString(), error.what()));
+      }
+    }
+  }
+}
+
+// The backend is asked about the problem that it will be given.
+void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& model,
+                 const Registries& registries) {
+  const Scenario& s = source.scenario;
+  const auto known = [&](const solvers::BackendEntry& entry) {
+    return entry.name == s.solver.backend;
+  };
+  if (std::none_of(registries.backends.begin(), registries.backends.end(), known)) {
+    std::vector<std::string> names;
+    for (const solvers::BackendEntry& entry : registries.backends) names.push_back(entry.name);
+    throw BadInput(fmt::format("{}: solver.backend must be {}, not '{}'.",
+                               source.WhereOf("solver.backend").ToString(), Enumerate(names),
+                               s.solver.backend));
+  }
+  const auto backend = solvers::MakeBackend(registries.backends, s.solver.backend);
+  for (const auto& [name, value] : s.solver.options) {
+    try {
+      backend->options().Set(name, value);
+    } catch (const std::invalid_argument& error) {
+      throw BadInput(fmt::format("{}: {} (backend {}).",
+                                 source.WhereOf("solver.options." + name).ToString(), error.what(),
+                                 s.solver.backend));
+    }
+  }
+  const planning::ReplannerOptions options = PlannerOptions(s, model, registries.terms);
+  const planning::LandingProblem problem(kProbeSegments,
+                                         planning::ProblemOptions(options, options.arrival));
+  const std::string refusal = backend->Refusal(problem.view());
+  if (refusal.empty()) return;
+  std::string key = "solver.backend";
+  for (const char* other : {"solver.limits", "solver.endpoint", "solver.arrival"}) {
+    if (source.where.count(key) == 0) key = other;
+  }
+  throw BadInput(fmt::format("{}: {}.", source.WhereOf(key).ToString(), refusal));
 }
 
 // The motion's own limits, at the key they come from.
@@ -186,13 +240,8 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
   return whole;
 }
 
-void CheckScenario(const ScenarioSource& source, const std::vector<std::string>& backends) {
+void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
-  if (std::find(backends.begin(), backends.end(), s.solver.backend) == backends.end()) {
-    throw BadInput(fmt::format("{}: solver.backend must be {}, not '{}'.",
-                               source.WhereOf("solver.backend").ToString(), Enumerate(backends),
-                               s.solver.backend));
-  }
   // A pad at the vehicle's own speed cannot be caught, and leaves a plan's interior empty.
   if (s.pad.motion != PadMotionKind::kStatic && s.pad.speed > 0.9 * s.limits.speed) {
     throw BadInput(fmt::format("{}: pad.speed must be in [0, {}] m/s (0.9 limits.speed), not '{}'.",
@@ -202,6 +251,8 @@ void CheckScenario(const ScenarioSource& source, const std::vector<std::string>&
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
   CheckPlanning(source, model);
+  CheckTerms(source, registries.terms);
+  CheckSolver(source, model, registries);
   CheckPadMotion(source);
   CheckStart(source, obstacles, model);
   CheckStartBesidePad(source, model);

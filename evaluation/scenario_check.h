@@ -22,7 +22,9 @@ struct ScenarioSource {
 
 /// What no single key shows: obstacles or the pad on the start, obstacles on the pad's way, a pad
 /// faster than the vehicle, a latency beyond the replanning period, a clearance below the hull, a
-/// ceiling below what is flown, an unknown backend, an unreadable vehicle file. @throws BadInput
-void CheckScenario(const ScenarioSource& source, const std::vector<std::string>& backends);
+/// ceiling below what is flown, an unreadable vehicle file; a backend, one of its options, a term or one
+/// of its parameters that the registries do not know or allow; a formulation that the backend
+/// refuses. @throws BadInput
+void CheckScenario(const ScenarioSource& source, const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -3,6 +3,7 @@
 // defaults are those of a default-constructed Scenario and stand nowhere else.
 #include "touchdown/evaluation/scenario_schema.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include <fmt/format.h>
@@ -180,7 +181,12 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Choice("solver.arrival", {"fixed", "free"},
                         "arrival time chosen before the solve or optimised in it",
                         AT(solver.arrival)));
-  keys.push_back(Choice("solver.limits", {"soft"}, "limits as penalties", AT(solver.limits)));
+  keys.push_back(Choice("solver.endpoint", {"eliminated", "explicit"},
+                        "both ends of a plan eliminated exactly, or equality constraints",
+                        AT(solver.endpoint)));
+  keys.push_back(Choice("solver.limits", {"soft", "hard"},
+                        "limits as penalties, or as constraints at the full limit",
+                        AT(solver.limits)));
   keys.push_back(Number<Scenario>("limits.speed", In(0.5, 20, "m/s"), "norm of the velocity",
                                   AT(limits.speed)));
   keys.push_back(Number<Scenario>("limits.acceleration", In(0.5, 20, "m/s^2"),
@@ -237,11 +243,67 @@ const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys() {
 
 #undef AT
 
-const SchemaKey<Scenario>* FindScenarioKey(const std::string& name) {
-  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
-    if (key.name == name) return &key;
+namespace {
+
+/// `name` behind `prefix`, split at its dots.
+std::vector<std::string> Behind(const std::string& prefix, const std::string& name) {
+  std::vector<std::string> words;
+  if (name.rfind(prefix, 0) != 0) return words;
+  for (std::size_t begin = prefix.size(); begin <= name.size();) {
+    const std::size_t dot = std::min(name.find('.', begin), name.size());
+    words.push_back(name.substr(begin, dot - begin));
+    begin = dot + 1;
   }
-  return nullptr;
+  return words;
+}
+
+// Their ranges are the registries': scenario_check asks them.
+const ValueRange kAnyNumber = {-1e300, 1e300, false, ""};
+
+std::optional<SchemaKey<Scenario>> FindOpenKey(const std::string& name) {
+  SchemaKey<Scenario> key;
+  key.name = name;
+  if (const auto words = Behind("solver.options.", name); words.size() == 1) {
+    key.set = [=](Scenario& s, const YAML::Node& n, const Where& w) {
+      s.solver.options[words[0]] = ReadNumber(n, w, name, kAnyNumber);
+    };
+    return key;
+  }
+  const auto words = Behind("terms.", name);
+  if (words.size() != 2) return std::nullopt;
+  key.set = [=](Scenario& s, const YAML::Node& n, const Where& w) {
+    s.terms[words[0]][words[1]] =
+        words[1] == "hard" ? ReadBool(n, w, name) : ReadNumber(n, w, name, kAnyNumber);
+  };
+  return key;
+}
+
+}  // namespace
+
+std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name) {
+  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
+    if (key.name == name) return key;
+  }
+  return FindOpenKey(name);
+}
+
+bool IsOpenGroup(const std::string& name) {
+  return name == "solver.options" || name == "terms" || Behind("terms.", name).size() == 1;
+}
+
+std::string DumpOpenKeys(const Scenario& scenario) {
+  std::string text;
+  for (const auto& [name, value] : scenario.solver.options) {
+    text += "solver.options." + name + ": " + WriteNumber(value) + "\n";
+  }
+  for (const auto& [term, keys] : scenario.terms) {
+    for (const auto& [key, value] : keys) {
+      const std::string written =
+          key != "hard" ? WriteNumber(value) : (value != 0.0 ? "true" : "false");
+      text += "terms." + term + "." + key + ": " + written + "\n";
+    }
+  }
+  return text;
 }
 
 std::string ScenarioKeysMarkdown() {
@@ -252,6 +314,16 @@ std::string ScenarioKeysMarkdown() {
     text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", key.name, key.type, key.unit,
                         key.range, key.get(defaults), key.doc);
   }
+  text +=
+      "| `solver.options.<name>` | number |  | as `touchdown list backends` says | the backend's | "
+      "an option of the backend |\n"
+      "| `terms.<term>.weight` | number |  | [0, 1e9] | as `touchdown list terms` says | 0 "
+      "switches "
+      "the term off, a positive weight on |\n"
+      "| `terms.<term>.hard` | true or false |  | true or false | by solver.limits | the term as "
+      "constraints instead of a cost |\n"
+      "| `terms.<term>.<parameter>` | number |  | as `touchdown list terms --json` says | the "
+      "term's | a parameter of the term |\n";
   const auto rows = [&text](const std::string& list, const auto& keys) {
     for (const auto& key : keys) {
       text += fmt::format("| `{}[].{}` | {} | {} | {} | required | {} |\n", list, key.name,

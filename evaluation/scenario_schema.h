@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,14 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys();
 const std::vector<SchemaKey<BoxObstacle>>& BoxKeys();
 const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys();
 
-/// The key called `name`, or nullptr.
-const SchemaKey<Scenario>* FindScenarioKey(const std::string& name);
+/// The key called `name`: of the list above, or open: solver.options.<name> and terms.<term>.<key>,
+/// whose names and ranges the registries know (CheckScenario asks them). Open keys have no `get`.
+std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name);
+
+/// `name` groups open keys.
+bool IsOpenGroup(const std::string& name);
+/// The open keys that are set, as lines of YAML.
+std::string DumpOpenKeys(const Scenario& scenario);
 
 /// The schema as a Markdown table: docs/scenario.md is this text, a test compares.
 std::string ScenarioKeysMarkdown();

@@ -34,7 +34,7 @@ double RangeEnd(const std::string& text, const std::string& variation) {
 // Every value that a variation can take must be allowed, whatever a seed draws: the ends of a range
 // stand for all of it. @throws BadInput
 void CheckValues(const Variation& variation) {
-  const SchemaKey<Scenario>* key = FindScenarioKey(variation.key);
+  const auto key = FindScenarioKey(variation.key);
   std::vector<std::string> values = variation.values;
   if (values.empty()) values = {WriteNumber(variation.lo), WriteNumber(variation.hi)};
   for (const std::string& value : values) {
@@ -49,10 +49,10 @@ std::size_t Combinations(const std::vector<Variation>& variations) {
   return count;
 }
 
-SweepRow RunOne(const SweepTrial& trial, const solvers::BackendRegistry& backends) {
+SweepRow RunOne(const SweepTrial& trial, const Registries& registries) {
   SweepRow row{trial, {}};
   try {
-    row.result = RunTrial(trial.scenario, trial.seed, backends);
+    row.result = RunTrial(trial.scenario, trial.seed, registries);
   } catch (const std::exception& error) {
     row.result.seed = trial.seed;
     row.result.outcome = Outcome::kError;
@@ -72,7 +72,7 @@ Variation Variation::Parse(const std::string& text) {
   variation.text = text;
   variation.key = text.substr(0, equals);
   const std::string rest = text.substr(equals + 1);
-  if (FindScenarioKey(variation.key) == nullptr || variation.key == "seed") {
+  if (!FindScenarioKey(variation.key) || variation.key == "seed") {
     throw BadInput(fmt::format("--vary {}: {} is no key that can be varied.", text, variation.key));
   }
   if (const std::size_t dots = rest.find(".."); dots != std::string::npos) {
@@ -103,8 +103,7 @@ std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index) {
   return (z ^ (z >> 31)) >> 11;
 }
 
-std::vector<SweepTrial> PlanSweep(const SweepOptions& options,
-                                  const std::vector<std::string>& backends) {
+std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries& registries) {
   std::vector<SweepTrial> trials;
   for (int i = 0; i < options.trials; ++i) {
     SweepTrial trial;
@@ -126,14 +125,14 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options,
     }
     const bool same = options.variations.empty() && !trials.empty();
     trial.scenario =
-        same ? trials.front().scenario : LoadScenario(options.scenario_path, overrides, backends);
+        same ? trials.front().scenario : LoadScenario(options.scenario_path, overrides, registries);
     trials.push_back(std::move(trial));
   }
   return trials;
 }
 
 std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
-                               const solvers::BackendRegistry& backends,
+                               const Registries& registries,
                                const std::function<void(int done)>& progress) {
   std::vector<SweepRow> rows(trials.size());
   std::atomic<std::size_t> next{0};
@@ -141,7 +140,7 @@ std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
   int done = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < trials.size(); i = next++) {
-      rows[i] = RunOne(trials[i], backends);
+      rows[i] = RunOne(trials[i], registries);
       const std::lock_guard lock(mutex);
       progress(++done);
     }

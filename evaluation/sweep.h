@@ -9,7 +9,6 @@
 
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/trial_result.h"
-#include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::evaluation {
 
@@ -53,14 +52,13 @@ std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index);
 /// The trials of a sweep, each scenario checked. Trial i takes combination i modulo the number of
 /// combinations of all listed values; ranges are drawn from a stream of the trial's seed.
 /// @throws BadInput
-std::vector<SweepTrial> PlanSweep(const SweepOptions& options,
-                                  const std::vector<std::string>& backends);
+std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries& registries);
 
 /// Runs the trials on `jobs` threads. Rows come back in the order of the trials and do not depend
 /// on `jobs`. A trial that throws becomes a row with outcome `error`. `progress` is called after
 /// each trial with the number done, never from two threads at a time.
 std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
-                               const solvers::BackendRegistry& backends,
+                               const Registries& registries,
                                const std::function<void(int done)>& progress);
 
 }  // namespace touchdown::evaluation

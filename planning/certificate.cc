@@ -14,8 +14,9 @@ namespace touchdown::planning {
 
 namespace {
 
-// Rounding of sums of control points; limits are met by construction with equality at times.
-constexpr double kRounding = 1e-9;
+// Limits are met with equality at times: up to the rounding of sums of control points, and where
+// they were hard rows up to what backends count as feasible (Evaluator::kFeasible) [m/s, m/s^2].
+constexpr double kLimitSlack = 2e-6;
 
 /// Every segment's hull stays below what is left of a start beyond the limits.
 bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
@@ -34,7 +35,7 @@ bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
     const double speed =
         std::max({from.v.norm(), to.v.norm(), (q.col(i + 2) - q.col(i + 1)).norm() / h});
     const double acceleration = std::max(from.a.norm(), to.a.norm());
-    if (speed > v_allowed + kRounding || acceleration > a_allowed + kRounding) return false;
+    if (speed > v_allowed + kLimitSlack || acceleration > a_allowed + kLimitSlack) return false;
   }
   return true;
 }
@@ -122,11 +123,11 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   const DerivativeBounds bounds = BoundDerivatives(curve);
   c.speed_bound = bounds.speed;
   c.acceleration_bound = bounds.acceleration;
-  c.limits_kept = bounds.speed <= limits.speed + kRounding &&
-                  bounds.acceleration <= limits.acceleration + kRounding;
+  c.limits_kept = bounds.speed <= limits.speed + kLimitSlack &&
+                  bounds.acceleration <= limits.acceleration + kLimitSlack;
   const SplineState start = curve.AtKnot(0);
-  c.recovering = !c.limits_kept && (start.v.norm() > limits.speed + kRounding ||
-                                    start.a.norm() > limits.acceleration + kRounding);
+  c.recovering = !c.limits_kept && (start.v.norm() > limits.speed + kLimitSlack ||
+                                    start.a.norm() > limits.acceleration + kLimitSlack);
   if (c.recovering) c.limits_kept = RecoveryProfileKept(curve, limits);
 
   const double hit = FirstBlockedTime(curve, t_from, space);

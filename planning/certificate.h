@@ -11,6 +11,7 @@ namespace touchdown::planning {
 /// resort that ReplanStatus::kUnsafe names.
 struct Certificate {
   bool endpoint_required = true;            ///< false for braking and climbing: they end at rest
+  double endpoint_tolerance = 1e-9;         ///< on both residuals [m, m/s]
   double endpoint_position_residual = 0.0;  ///< |p(T) - wanted| [m]
   double endpoint_velocity_residual = 0.0;  ///< |v(T) - wanted| [m/s]
   double speed_bound = 0.0;                 ///< hull bound over the curve [m/s]
@@ -28,8 +29,8 @@ struct Certificate {
   double first_hit_t = 0.0;             ///< absolute time of the first blocked cell if !clear [s]
 
   bool endpoint_met() const {
-    return !endpoint_required ||
-           (endpoint_position_residual <= 1e-9 && endpoint_velocity_residual <= 1e-9);
+    return !endpoint_required || (endpoint_position_residual <= endpoint_tolerance &&
+                                  endpoint_velocity_residual <= endpoint_tolerance);
   }
   bool passed() const {
     return endpoint_met() && limits_kept && (clear || escaping) && stops_in_observed_space;

@@ -18,9 +18,10 @@ namespace {
 constexpr double kSegmentDuration = 0.20;  // [s], aimed at
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = 64;
-constexpr int kSegmentStep = 4;      // keeps the number of prepared problems small
-constexpr double kPressure = 1.6;    // weight of the pairs grows by this every round
-constexpr double kGuideStep = 0.05;  // sampling of the committed curve as a guide [s]
+constexpr int kSegmentStep = 4;         // keeps the number of prepared problems small
+constexpr double kPressure = 1.6;       // weight of the pairs grows by this every round
+constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
+constexpr double kGuideStep = 0.05;     // sampling of the committed curve as a guide [s]
 
 int SegmentsFor(double duration) {
   const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
@@ -38,6 +39,15 @@ void SampleGuide(const UniformBspline& curve, double t_from, GuidePath* guide) {
 
 }  // namespace
 
+LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival) {
+  LandingProblemOptions problem = options.problem;
+  problem.arrival = arrival;
+  problem.limits = options.limits;
+  problem.min_duration = options.min_duration;
+  problem.max_duration = options.max_duration;
+  return problem;
+}
+
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options), backends_(backends), search_(options.vertical_cost) {
   // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
@@ -49,13 +59,8 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
 }
 
 void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
-  LandingProblemOptions problem = options_.problem;
-  problem.arrival = arrival;
-  problem.limits = options_.limits;
-  problem.min_duration = options_.min_duration;
-  problem.max_duration = options_.max_duration;
   Prepared& prepared = prepared_[{segments, arrival}];
-  prepared.problem = std::make_unique<LandingProblem>(segments, problem);
+  prepared.problem = std::make_unique<LandingProblem>(segments, ProblemOptions(options_, arrival));
   prepared.backend = solvers::MakeBackend(backends_, options_.backend);
   for (const auto& [name, value] : options_.solver_options) {
     prepared.backend->options().Set(name, value);
@@ -110,6 +115,9 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   const SplineState wanted = EndStateAt(*request.pad, request.target, result->curve.t_end()).state;
   result->certificate = Certify(result->curve, request.t0, &wanted, options_.limits,
                                 options_.reaction, *request.space);
+  if (options_.problem.endpoint == EndpointMode::kExplicit) {
+    result->certificate.endpoint_tolerance = kRowTolerance;
+  }
   if (result->certificate.passed()) return ReplanReason::kNone;
   if (!result->certificate.clear && !result->certificate.escaping) {
     return runs_.front().at_start ? ReplanReason::kStartBlocked : ReplanReason::kCollisionRemains;

@@ -14,6 +14,9 @@
 
 namespace touchdown::planning {
 
+/// The options of the landing problems that a replanner with these options solves.
+LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
+
 /// What one attempt is made with.
 struct AttemptRequest {
   SplineState start;

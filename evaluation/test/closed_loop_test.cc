@@ -15,7 +15,7 @@ namespace touchdown::evaluation {
 namespace {
 
 Scenario Shipped(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return LoadScenario(FindScenario(name), overrides, {"ceres"});
+  return LoadScenario(FindScenario(name), overrides, StandardRegistries());
 }
 
 std::string Deterministic(const Scenario& scenario, const TrialResult& result) {
@@ -27,7 +27,7 @@ std::string Deterministic(const Scenario& scenario, const TrialResult& result) {
 TEST(ClosedLoop, LandsInThePapersFirstCase) {
   const Scenario scenario = Shipped("straight_turn");
   TrialRecord record;
-  const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends(), &record);
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
   ASSERT_EQ(result.outcome, Outcome::kLanded) << result.detail;
   EXPECT_LE(result.touchdown->t, 15.0);
   EXPECT_LE(result.touchdown->error_m, 0.15);
@@ -42,7 +42,7 @@ TEST(ClosedLoop, NothingIsFlownWithoutItsCertificate) {
     const Scenario scenario =
         Shipped("straight_turn", {"start.position_spread=[1, 1, 0]", "start.yaw_random=true"});
     TrialRecord record;
-    RunTrial(scenario, seed, solvers::StandardBackends(), &record);
+    RunTrial(scenario, seed, StandardRegistries(), &record);
     int planned = 0;
     for (const RecordPlan& plan : record.plans) {
       using planning::ReplanStatus;
@@ -73,7 +73,7 @@ TEST(ClosedLoop, PhysicsThatFailsIsTheOutcomeUnstableAndIsRecorded) {
   std::ofstream(path) << mjcf;
   const Scenario scenario = Shipped("open", {"vehicle=" + path});
   TrialRecord record;
-  const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends(), &record);
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
   EXPECT_EQ(result.outcome, Outcome::kUnstable) << result.detail;
   EXPECT_NE(result.detail.find("Simulator: the simulation failed at t = "), std::string::npos);
   EXPECT_FALSE(record.samples.empty());
@@ -84,36 +84,37 @@ TEST(ClosedLoop, PhysicsThatFailsIsTheOutcomeUnstableAndIsRecorded) {
 
 TEST(ClosedLoop, AnExactGpsLandsToo) {
   const Scenario scenario = Shipped("open", {"gps.sigma=0"});
-  const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends());
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries());
   EXPECT_EQ(result.outcome, Outcome::kLanded) << result.detail;
 }
 
 TEST(ClosedLoop, AScenarioThatCannotBeSetUpIsBadInput) {
   Scenario scenario = Shipped("open");
   scenario.start.position << scenario.pad.start, scenario.pad.deck_height;
-  EXPECT_THROW(RunTrial(scenario, 1, solvers::StandardBackends()), BadInput);
+  EXPECT_THROW(RunTrial(scenario, 1, StandardRegistries()), BadInput);
 }
 
 TEST(ClosedLoop, PlansAccelerateNoMoreThanTheTiltAllows) {
   const Scenario scenario = Shipped("open", {"limits.tilt_deg=10"});
-  EXPECT_NEAR(PlannerOptions(scenario, {}).limits.acceleration, 9.81 * 0.17633, 1e-3);
-  EXPECT_EQ(PlannerOptions(Scenario{}, {}).limits.acceleration, 6.0);
+  EXPECT_NEAR(PlannerOptions(scenario, {}, planning::StandardTerms()).limits.acceleration,
+              9.81 * 0.17633, 1e-3);
+  EXPECT_EQ(PlannerOptions(Scenario{}, {}, planning::StandardTerms()).limits.acceleration, 6.0);
 }
 
 TEST(ClosedLoop, TheSameSeedGivesTheSameBitsRecordedOrNot) {
   const Scenario scenario = Shipped("straight_turn", {"timeout=4"});
   TrialRecord record;
-  const TrialResult a = RunTrial(scenario, 3, solvers::StandardBackends());
-  const TrialResult b = RunTrial(scenario, 3, solvers::StandardBackends(), &record);
+  const TrialResult a = RunTrial(scenario, 3, StandardRegistries());
+  const TrialResult b = RunTrial(scenario, 3, StandardRegistries(), &record);
   EXPECT_EQ(Deterministic(scenario, a), Deterministic(scenario, b));
-  const TrialResult other = RunTrial(scenario, 4, solvers::StandardBackends());
+  const TrialResult other = RunTrial(scenario, 4, StandardRegistries());
   EXPECT_NE(Deterministic(scenario, a), Deterministic(scenario, other));
 }
 
 TEST(ClosedLoop, DescentNoneFollowsAndNeverLands) {
   const Scenario scenario = Shipped("open", {"descent=none", "timeout=12"});
   TrialRecord record;
-  const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends(), &record);
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
   EXPECT_EQ(result.outcome, Outcome::kTimeout);
   const RecordSample& last = record.samples.back();
   EXPECT_LT((last.vehicle.p_WB - last.pad.p_WP).head<2>().norm(), 0.2);
@@ -124,7 +125,7 @@ TEST(ClosedLoop, AnOraclePredictionAndThePapersPartsLandToo) {
   for (const char* choice : {"pad.prediction=oracle", "pad.prediction=paper", "estimator.pad=paper",
                              "controller=paper"}) {
     const Scenario scenario = Shipped("open", {choice});
-    const TrialResult result = RunTrial(scenario, 1, solvers::StandardBackends());
+    const TrialResult result = RunTrial(scenario, 1, StandardRegistries());
     EXPECT_EQ(result.outcome, Outcome::kLanded) << choice << ": " << result.detail;
   }
 }

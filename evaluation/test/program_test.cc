@@ -35,7 +35,7 @@ struct Ran {
 };
 
 Ran Call(std::vector<const char*> arguments) {
-  Registries registries{solvers::StandardBackends(), planning::StandardTerms()};
+  Registries registries = StandardRegistries();
   registries.backends.push_back(
       {"broken", "throws", [] { return std::make_unique<BrokenSolver>(); }});
   arguments.insert(arguments.begin(), "touchdown");

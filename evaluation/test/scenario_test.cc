@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::vector<std::string> kBackends = {"ceres"};
+const Registries kRegistries = StandardRegistries();
 
 class ScenarioTest : public ::testing::Test {
  protected:
@@ -31,7 +31,7 @@ class ScenarioTest : public ::testing::Test {
 
   Scenario Load(const std::string& text, const std::vector<std::string>& overrides = {}) {
     std::ofstream(path_) << text;
-    return LoadScenario(path_, overrides, kBackends);
+    return LoadScenario(path_, overrides, kRegistries);
   }
 
   /// The sentence that the text is refused with.
@@ -81,17 +81,47 @@ TEST_F(ScenarioTest, EveryKeyRoundTrips) {
   ASSERT_EQ(Load(text).cylinders.size(), 1U);
 }
 
+TEST_F(ScenarioTest, KeysOfTermsAndBackendsAreTheRegistries) {
+  const Scenario s = Load(
+      "solver: {backend: banded, limits: hard, options: {gap_tolerance: 1e-5}}\n"
+      "terms: {tilt_limit: {weight: 3.5, hard: false}, smoothness: {jerk: 0.2}}\n",
+      {"terms.speed_limit.hard=false"});
+  EXPECT_EQ(s.terms.at("tilt_limit").at("weight"), 3.5);
+  EXPECT_EQ(s.terms.at("speed_limit").at("hard"), 0.0);
+  EXPECT_EQ(s.solver.options.at("gap_tolerance"), 1e-5);
+  EXPECT_EQ(DumpScenario(Load(DumpScenario(s))), DumpScenario(s));
+  EXPECT_THAT(Refusal("terms:\n  tilt: {weight: 1}\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("term tilt is unknown; known: smoothness")));
+  EXPECT_THAT(Refusal("terms: {smoothness: {jork: 1}}\n"),
+              HasSubstr("no parameter jork; known: weight, hard, jerk"));
+  EXPECT_THAT(Refusal("terms: {smoothness: {jerk: -1}}\n"), HasSubstr("must be in [0, 1000]"));
+  EXPECT_THAT(Refusal("terms: {consistency: {hard: true}}\n"), HasSubstr("a cost only"));
+  EXPECT_THAT(Refusal("terms: {speed_limit: {hard: 1}}\n"), HasSubstr("true or false"));
+  EXPECT_THAT(Refusal("terms: {speed_limit: 1}\n"), HasSubstr("a map of keys"));
+  EXPECT_THAT(Refusal("solver: {options: {foo: 1}}\n"),
+              HasSubstr("solver option foo is unknown; known:"));
+}
+
+TEST_F(ScenarioTest, AFormulationThatTheBackendRefusesIsRefused) {
+  EXPECT_THAT(Refusal("seed: 1\n", {"solver.limits=hard"}),
+              AllOf(HasSubstr("--set solver.limits=hard"),
+                    HasSubstr("backend ceres takes no inequality constraints")));
+  EXPECT_THAT(Refusal("solver: {endpoint: explicit}\n"),
+              AllOf(HasSubstr(path_ + ":1"), HasSubstr("takes no equality constraints")));
+  EXPECT_EQ(Load("solver: {backend: banded, limits: hard}\n").solver.limits, LimitsKind::kHard);
+}
+
 TEST_F(ScenarioTest, ShippedScenariosLoadAndRoundTrip) {
   EXPECT_THAT(ListScenarios(), ::testing::IsSupersetOf({"circle", "open", "straight_turn"}));
   for (const std::string& name : ListScenarios()) {
-    const Scenario scenario = LoadScenario(FindScenario(name), {}, kBackends);
+    const Scenario scenario = LoadScenario(FindScenario(name), {}, kRegistries);
     EXPECT_EQ(scenario.name, name);
     EXPECT_EQ(DumpScenario(Load(DumpScenario(scenario))), DumpScenario(scenario));
   }
 }
 
 TEST_F(ScenarioTest, CaseOneIsThePapers) {
-  const Scenario s = LoadScenario(FindScenario("straight_turn"), {}, kBackends);
+  const Scenario s = LoadScenario(FindScenario("straight_turn"), {}, kRegistries);
   EXPECT_EQ(s.pad.speed, 0.8);
   EXPECT_EQ(Eigen::Vector2d(s.pad.start - s.start.position.head<2>()), Eigen::Vector2d(7.0, 6.5));
   EXPECT_DOUBLE_EQ(s.start.position.z() - s.pad.deck_height, 2.0);
@@ -109,8 +139,8 @@ TEST_F(ScenarioTest, AnUnknownKeyNamesFileLineAndWhatIsAllowed) {
 
 TEST_F(ScenarioTest, AWrongTypeNamesTheRange) {
   EXPECT_THAT(Refusal("\npad:\n  speed: fast\n"),
-              AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.speed must be a number in [0.01, 3] m/s"),
-                    HasSubstr("'fast'")));
+              AllOf(HasSubstr(path_ + ":3"),
+                    HasSubstr("pad.speed must be a number in [0.01, 3] m/s"), HasSubstr("'fast'")));
   EXPECT_THAT(Refusal("pad: {start: [1, 2, 3]}\n"), HasSubstr("a list of 2 numbers"));
   EXPECT_THAT(Refusal("pad: {start: 3}\n"), HasSubstr("a list of 2 numbers"));
   EXPECT_THAT(Refusal("start: {yaw_random: yes}\n"), HasSubstr("true or false, not 'yes'"));
@@ -137,7 +167,8 @@ TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
   EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),
               HasSubstr("straight_turn, circle, line or static"));
   EXPECT_THAT(Refusal("solver: {backend: newton}\n"),
-              AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be ceres, not 'newton'")));
+              AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be banded, ceres, "),
+                    HasSubstr("not 'newton'")));
 }
 
 TEST_F(ScenarioTest, ASecondDocumentIsRefused) {

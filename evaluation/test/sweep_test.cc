@@ -11,7 +11,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-const std::vector<std::string> kBackends = {"ceres"};
+const Registries kRegistries = StandardRegistries();
 
 SweepOptions OpenSweep(int trials) {
   SweepOptions options;
@@ -53,7 +53,7 @@ TEST(PlanSweep, ListsAreTakenInAllCombinations) {
   options.variations = {Variation::Parse("controller=geometric,paper"),
                         Variation::Parse("pad.speed=0.2,0.4,0.6")};
   std::set<std::string> seen;
-  for (const SweepTrial& trial : PlanSweep(options, kBackends)) {
+  for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
     seen.insert(trial.varied[0].second + trial.varied[1].second);
   }
   EXPECT_EQ(seen.size(), 6U);
@@ -63,7 +63,7 @@ TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
   SweepOptions options = OpenSweep(20);
   options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
   std::set<double> speeds;
-  for (const SweepTrial& trial : PlanSweep(options, kBackends)) {
+  for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
     EXPECT_GE(trial.scenario.pad.speed, 0.2);
     EXPECT_LE(trial.scenario.pad.speed, 0.6);
     speeds.insert(trial.scenario.pad.speed);
@@ -77,9 +77,9 @@ TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
 
 TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
   SweepOptions options = OpenSweep(3);
-  std::vector<SweepTrial> trials = PlanSweep(options, kBackends);
+  std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
   trials[1].scenario.solver.backend = "none";
-  const std::vector<SweepRow> rows = RunSweep(trials, 2, solvers::StandardBackends(), [](int) {});
+  const std::vector<SweepRow> rows = RunSweep(trials, 2, StandardRegistries(), [](int) {});
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[1].result.outcome, Outcome::kError);
   EXPECT_FALSE(rows[1].result.detail.empty());
@@ -93,10 +93,10 @@ TEST(RunSweep, OneAndTwoThreadsGiveTheSameRows) {
   SweepOptions options = OpenSweep(4);
   options.scenario_path = FindScenario("straight_turn");
   options.overrides = {"start.position_spread=[1, 1, 0]", "start.yaw_random=true", "timeout=4"};
-  const std::vector<SweepTrial> trials = PlanSweep(options, kBackends);
+  const std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
   const auto rows = [&](int jobs) {
     nlohmann::ordered_json json =
-        SweepJson(options, RunSweep(trials, jobs, solvers::StandardBackends(), [](int) {}));
+        SweepJson(options, RunSweep(trials, jobs, StandardRegistries(), [](int) {}));
     json.erase("wall_clock");
     return json.dump();
   };
