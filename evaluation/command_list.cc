@@ -8,18 +8,93 @@
 
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/planning/landing_problem.h"
 
 namespace touchdown::evaluation {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int kSegments = 12;  // of the problem that every backend is asked about
+
+/// A problem of every formulation.
+struct Formulation {
+  const char* endpoint;
+  const char* arrival;
+  const char* limits;
+  std::unique_ptr<planning::LandingProblem> problem;
+};
+
+std::vector<Formulation> Formulations(const planning::TermRegistry& terms) {
+  using planning::ArrivalMode, planning::EndpointMode, planning::LimitsMode;
+  std::vector<Formulation> all;
+  for (const EndpointMode endpoint : {EndpointMode::kEliminated, EndpointMode::kExplicit}) {
+    for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+      for (const LimitsMode limits : {LimitsMode::kSoft, LimitsMode::kHard}) {
+        planning::LandingProblemOptions options;
+        options.endpoint = endpoint;
+        options.arrival = arrival;
+        options.limits_mode = limits;
+        options.terms = terms;
+        all.push_back({endpoint == EndpointMode::kExplicit ? "explicit" : "eliminated",
+                       arrival == ArrivalMode::kFree ? "free" : "fixed",
+                       limits == LimitsMode::kHard ? "hard" : "soft",
+                       std::make_unique<planning::LandingProblem>(kSegments, options)});
+      }
+    }
+  }
+  return all;
+}
+
 Json ListBackends(const Registries& registries) {
+  const std::vector<Formulation> formulations = Formulations(registries.terms);
   Json list = Json::array();
   for (const solvers::BackendEntry& entry : registries.backends) {
-    list.push_back({{"name", entry.name}, {"description", entry.description}});
+    const std::unique_ptr<solvers::SolverBackend> backend = entry.make();
+    Json asked = Json::array();
+    for (const Formulation& f : formulations) {
+      const std::string refusal = backend->Refusal(f.problem->view());
+      asked.push_back({{"endpoint", f.endpoint},
+                       {"arrival", f.arrival},
+                       {"limits", f.limits},
+                       {"solves", refusal.empty()},
+                       {"reason", refusal}});
+    }
+    Json options = Json::array();
+    for (const solvers::OptionSpec& spec : backend->options().specs()) {
+      options.push_back({{"name", spec.name},
+                         {"default", spec.value},
+                         {"lo", spec.lo},
+                         {"hi", spec.hi},
+                         {"help", spec.help}});
+    }
+    list.push_back({{"name", entry.name},
+                    {"description", entry.description},
+                    {"compiled", backend->capabilities().compiled},
+                    {"formulations", asked},
+                    {"options", options}});
   }
   return list;
+}
+
+void PrintBackends(const Json& list) {
+  for (const Json& entry : list) {
+    std::cout << fmt::format("{}  {}{}\n", entry["name"].get<std::string>(),
+                             entry["description"].get<std::string>(),
+                             entry["compiled"].get<bool>() ? "" : " (not compiled in)");
+    for (const Json& f : entry["formulations"]) {
+      std::cout << fmt::format("  endpoint {:<10}  arrival {:<5}  limits {:<4}  {}\n",
+                               f["endpoint"].get<std::string>(), f["arrival"].get<std::string>(),
+                               f["limits"].get<std::string>(),
+                               f["solves"].get<bool>() ? "ok" : f["reason"].get<std::string>());
+    }
+    for (const Json& option : entry["options"]) {
+      std::cout << fmt::format("  solver.options.{} = {:g} in [{:g}, {:g}]  {}\n",
+                               option["name"].get<std::string>(), option["default"].get<double>(),
+                               option["lo"].get<double>(), option["hi"].get<double>(),
+                               option["help"].get<std::string>());
+    }
+  }
 }
 
 Json ListPlanners() {
@@ -31,15 +106,42 @@ Json ListPlanners() {
 Json ListTerms(const Registries& registries) {
   Json list = Json::array();
   for (const planning::TermEntry& entry : registries.terms) {
-    const solvers::TermInfo& info = entry.info;
-    list.push_back({{"name", info.name},
-                    {"formula", info.formula},
-                    {"unit", info.unit},
-                    {"source", info.source},
-                    {"convex", info.convex},
-                    {"default_weight", entry.default_weight}});
+    Json parameters = Json::array();
+    for (const planning::TermParameter& parameter : entry.parameters) {
+      parameters.push_back({{"name", parameter.name},
+                            {"default", parameter.value},
+                            {"lo", parameter.lo},
+                            {"hi", parameter.hi},
+                            {"help", parameter.help}});
+    }
+    list.push_back({{"name", entry.info.name},
+                    {"formula", entry.info.formula},
+                    {"unit", entry.info.unit},
+                    {"source", entry.info.source},
+                    {"convex", entry.info.convex},
+                    {"can_be_hard", entry.can_be_hard},
+                    {"default_weight", entry.default_weight},
+                    {"parameters", parameters}});
   }
   return list;
+}
+
+void PrintTerms(const Json& list) {
+  for (const Json& entry : list) {
+    const double weight = entry["default_weight"].get<double>();
+    std::cout << fmt::format(
+        "{}  [{}]  {}, {}, {}; {}\n  {}\n", entry["name"].get<std::string>(),
+        entry["unit"].get<std::string>(), entry["convex"].get<bool>() ? "convex" : "not convex",
+        weight > 0.0 ? fmt::format("weight {:g}", weight) : "off by default",
+        entry["can_be_hard"].get<bool>() ? "cost or rows" : "cost only",
+        entry["source"].get<std::string>(), entry["formula"].get<std::string>());
+    for (const Json& parameter : entry["parameters"]) {
+      std::cout << fmt::format("  {} = {:g} in [{:g}, {:g}]  {}\n",
+                               parameter["name"].get<std::string>(),
+                               parameter["default"].get<double>(), parameter["lo"].get<double>(),
+                               parameter["hi"].get<double>(), parameter["help"].get<std::string>());
+    }
+  }
 }
 
 Json ListShippedScenarios() {
@@ -50,7 +152,7 @@ Json ListShippedScenarios() {
   return list;
 }
 
-void PrintText(const Json& list) {
+void PrintNames(const Json& list) {
   std::size_t width = 0;
   for (const Json& entry : list) {
     width = std::max(width, entry["name"].get_ref<const std::string&>().size());
@@ -58,15 +160,16 @@ void PrintText(const Json& list) {
   for (const Json& entry : list) {
     std::string line = fmt::format("{:<{}}", entry["name"].get<std::string>(), width);
     for (const auto& [key, value] : entry.items()) {
-      if (key == "name") continue;
-      if (value.is_string() && !value.get<std::string>().empty()) {
-        line += "  " + value.get<std::string>();
-      } else if (value.is_boolean() && value.get<bool>()) {
-        line += "  " + key;
-      }
+      if (key != "name") line += "  " + value.get<std::string>();
     }
     std::cout << line << "\n";
   }
+}
+
+void Print(const std::string& what, const Json& list) {
+  if (what == "backends") return PrintBackends(list);
+  if (what == "terms") return PrintTerms(list);
+  PrintNames(list);
 }
 
 }  // namespace
@@ -92,7 +195,7 @@ void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run
       if (arguments->json) {
         std::cout << list.dump(2) << "\n";
       } else {
-        PrintText(list);
+        Print(arguments->what, list);
       }
       return kDone;
     };

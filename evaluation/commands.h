@@ -23,6 +23,7 @@ using CommandRun = std::function<int()>;
 void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run);
+void AddCheckTermCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 
 /// The options that choose a scenario, shared by the commands that fly.

@@ -84,6 +84,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddLandCommand(app, registries, &run);
   AddCompareCommand(app, registries, &run);
   AddSweepCommand(app, registries, &run);
+  AddCheckTermCommand(app, registries, &run);
   AddListCommand(app, registries, &run);
   try {
     CheckCommand(app, argc, argv);
