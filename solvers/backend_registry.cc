@@ -17,7 +17,8 @@ BackendRegistry StandardBackends() {
   return {
       {"banded", "own Newton and interior point on the arrowhead band; soft and hard limits",
        MakeBandedSolver},
-      {"ceres", "Ceres Levenberg-Marquardt, sparse normal equations; soft limits", MakeCeresSolver},
+      {"ceres", "Ceres trust region on residuals, sparse normal equations; soft limits",
+       MakeCeresSolver},
       {"ceres-lbfgs", "Ceres limited-memory BFGS, whitened; soft limits", MakeCeresLbfgs},
       {"nlopt-lbfgs", "NLopt limited-memory BFGS, whitened; soft limits", MakeNloptLbfgs},
       {"nlopt-tnewton", "NLopt truncated Newton, whitened; soft limits", MakeNloptTnewton},

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Limited-memory BFGS by Ceres's GradientProblem, on whitened variables z. Ceres knows no bounds
-// here, so a free interval h in [lo, hi] is replaced by an angle:
-//   z_n = s h,   h = mid + half sin(v / c),   c = s half cos(angle at the start),
-// which has unit slope at the start and a stationary point at each bound: an active bound is found
-// like any other minimum (as in F. James, M. Roos, "Minuit", Comput. Phys. Commun. 10 (1975) 343).
-// A start at a bound is moved inside by a hair, or its slope would vanish.
+// here, so a free interval is replaced by an angle (whitened_point.cc).
 //
 // Statuses are Ceres's own: convergence, iteration limit; a line search that fails is convergence
 // only if the decrease |g|^2/2 that the metric still promises is negligible.
@@ -23,62 +19,27 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kNearestAngle = 1e-3;  // to a bound, at the start [rad]
-constexpr double kStationary = 1e-9;    // share of the cost, see nlopt_solver.cc
-
-/// The change of variable of a free interval; nothing if it is fixed.
-class IntervalAngle {
- public:
-  void Begin(const View& view, double scale, double z_last) {
-    free_ = view.free_interval();
-    if (!free_) return;
-    const ProblemShape& shape = view.problem().shape();
-    middle_ = 0.5 * scale * (shape.interval_max + shape.interval_min);
-    half_ = 0.5 * scale * (shape.interval_max - shape.interval_min);
-    const double most = 0.5 * M_PI - kNearestAngle;
-    start_ = half_ > 0.0 ? std::clamp(std::asin(std::clamp((z_last - middle_) / half_, -1.0, 1.0)),
-                                      -most, most)
-                         : 0.0;
-    unit_ = half_ > 0.0 ? half_ * std::cos(start_) : 1.0;
-  }
-
-  bool free() const { return free_; }
-  double start() const { return start_ * unit_; }
-  double Z(double v) const { return middle_ + half_ * std::sin(v / unit_); }
-  double Slope(double v) const { return half_ * std::cos(v / unit_) / unit_; }
-
- private:
-  bool free_ = false;
-  double middle_ = 0.0, half_ = 0.0, unit_ = 1.0, start_ = 0.0;
-};
+constexpr double kStationary = 1e-9;  // share of the cost, see nlopt_solver.cc
 
 /// The objective in Ceres's variables.
 class WhitenedObjective : public ceres::FirstOrderFunction {
  public:
-  WhitenedObjective(WhitenedPoint* point, const IntervalAngle& angle, double* z,
-                    Evaluator* evaluator)
-      : point_(point), angle_(angle), z_(z), evaluator_(evaluator) {}
+  WhitenedObjective(WhitenedPoint* point, Evaluator* evaluator)
+      : point_(point), evaluator_(evaluator) {}
 
   int NumParameters() const override { return point_->size(); }
 
-  bool Evaluate(const double* v, double* cost, double* gradient) const override {
+  bool Evaluate(const double* z, double* cost, double* gradient) const override {
     const ShareScope scope(evaluator_, Share::kAdapter);
     if (evaluator_->must_stop()) return false;  // ends the line search at once
-    const int n = point_->size();
-    std::copy(v, v + n, z_);
-    if (angle_.free()) z_[n - 1] = angle_.Z(v[n - 1]);
-    if (!point_->Evaluate(z_, gradient != nullptr)) return false;
+    if (!point_->Evaluate(z, gradient != nullptr)) return false;
     *cost = point_->value();
-    if (!gradient) return true;
-    point_->Gradient(gradient);
-    if (angle_.free()) gradient[n - 1] *= angle_.Slope(v[n - 1]);
+    if (gradient) point_->Gradient(gradient);
     return true;
   }
 
  private:
   WhitenedPoint* point_;
-  const IntervalAngle& angle_;
-  double* z_;
   Evaluator* evaluator_;
 };
 
@@ -109,7 +70,7 @@ class CeresLbfgs : public SolverBackend {
       : SolverBackend(
             "ceres-lbfgs",
             SolverOptions({
-                {"function_tolerance", 1e-8, 0.0, 1.0, false,
+                {"function_tolerance", 1e-7, 0.0, 1.0, false,
                  "relative decrease that ends a solve"},
                 {"gradient_tolerance", 1e-10, 0.0, 1.0, false,
                  "largest gradient that ends a solve"},
@@ -124,13 +85,14 @@ class CeresLbfgs : public SolverBackend {
  private:
   void DoPrepare(const View& view) override {
     point_.Prepare(view);
-    v_.assign(static_cast<std::size_t>(view.num_variables()), 0.0);
-    z_ = v_;
+    z_.assign(static_cast<std::size_t>(view.num_variables()), 0.0);
   }
 
   void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
                SolverResult* result) override {
-    if (!point_.Begin(view, warm.y.data(), options().Get("whiten") != 0.0, evaluator)) {
+    const WhitenedPoint::Settings settings{.whiten = options().Get("whiten") != 0.0,
+                                           .interval_as_angle = true};
+    if (!point_.Begin(view, warm.y.data(), settings, evaluator)) {
       result->status = SolveStatus::kEvaluationFailed;
       return;
     }
@@ -139,19 +101,16 @@ class CeresLbfgs : public SolverBackend {
       return;
     }
     first_cost_ = point_.value();
-    std::copy(point_.z(), point_.z() + point_.size(), v_.begin());
-    angle_.Begin(view, point_.interval_scale(), v_.back());
-    if (angle_.free()) v_.back() = angle_.start();
+    std::copy(point_.z(), point_.z() + point_.size(), z_.begin());
 
-    const ceres::GradientProblem problem(
-        new WhitenedObjective(&point_, angle_, z_.data(), evaluator));
+    const ceres::GradientProblem problem(new WhitenedObjective(&point_, evaluator));
     ceres::GradientProblemSolver::Options solver = Options(stop);
     IterationWatch watch(&point_, evaluator);
     solver.callbacks.push_back(&watch);
     ceres::GradientProblemSolver::Summary summary;
     {
       const ShareScope scope(evaluator, Share::kNative);
-      ceres::Solve(solver, problem, v_.data(), &summary);
+      ceres::Solve(solver, problem, z_.data(), &summary);
     }
     // Ceres does not call back after the step that meets its stop test.
     double step = 0.0;
@@ -192,18 +151,16 @@ class CeresLbfgs : public SolverBackend {
 
   bool Stationary(Evaluator* evaluator) {
     const double best = evaluator->best_cost();
+    const double scale = std::max(std::abs(best), std::abs(first_cost_ - best));
     if (!evaluator->Evaluate(evaluator->best().data(), {.gradient = true})) return false;
     point_.Gradient(z_.data());
-    // At an active bound of the interval its own gradient remains.
-    if (angle_.free()) z_.back() *= angle_.Slope(v_.back());
     double sum = 0.0;
     for (const double g : z_) sum += g * g;
-    return 0.5 * sum <= kStationary * std::max(std::abs(best), std::abs(first_cost_ - best));
+    return 0.5 * sum <= kStationary * scale;
   }
 
   WhitenedPoint point_;
-  IntervalAngle angle_;
-  std::vector<double> v_, z_;
+  std::vector<double> z_;
   double first_cost_ = 0.0;
 };
 

@@ -7,8 +7,9 @@
 
 namespace touchdown::solvers {
 
-/// `ceres`: Levenberg-Marquardt on the residuals of every window, sparse normal equations, one
-/// thread. Soft terms only. The same class, from no_ceres.cc, where Ceres was left out.
+/// `ceres`: a trust region (dogleg or Levenberg-Marquardt) on the residuals of every window, sparse
+/// normal equations, one thread. Soft terms only. The same class, from no_ceres.cc, where Ceres was
+/// left out.
 std::unique_ptr<SolverBackend> MakeCeresSolver();
 
 }  // namespace touchdown::solvers

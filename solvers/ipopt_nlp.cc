@@ -56,7 +56,7 @@ bool IpoptNlp::Begin(const View& view, const WarmStart& warm, Evaluator* evaluat
   evaluator_ = evaluator;
   ending_ = false;
   report_ = {};
-  if (!point_.Begin(view, warm.y.data(), !exact_hessian_, evaluator)) return false;
+  if (!point_.Begin(view, warm.y.data(), {.whiten = !exact_hessian_}, evaluator)) return false;
   rows_.Set(view, point_.last());
   lambda_.assign(static_cast<std::size_t>(rows_.size()), 0.0);
   jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,11 @@ namespace touchdown::solvers {
 /// What a backend can take. `compiled` false: it was left out at configure time.
 struct Capabilities {
   bool compiled = true;
-  bool hard_rows = false;        ///< inequality constraint rows
-  bool equality_rows = false;    ///< equality constraint rows
-  bool free_interval = true;     ///< a free knot interval
-  bool needs_residuals = false;  ///< takes only costs that are sums of squares
+  bool hard_rows = false;                          ///< inequality constraint rows
+  bool equality_rows = false;                      ///< equality constraint rows
+  bool free_interval = true;                       ///< a free knot interval
+  bool needs_residuals = false;                    ///< takes only costs that are sums of squares
+  int max_rows = std::numeric_limits<int>::max();  ///< most constraint rows it is of use with
 };
 
 /// A solver behind one interface. Everything that does not differ between backends happens once,

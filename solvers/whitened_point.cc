@@ -1,25 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whitened evaluation. The first point keeps the caller's own y, and a point that is asked for again
 // is not transformed again: the evaluator recognises repeated points by their bits.
+//
+// A free interval h in [lo, hi], of scale s in z, can be replaced by an angle:
+//   s h = s mid + s half sin(z_n / c),   c = s half cos(angle at the start),
+// of unit slope at the start, with a stationary point at each bound: an active bound is found like
+// any other minimum (as in F. James, M. Roos, "Minuit", Comput. Phys. Commun. 10 (1975) 343). A start
+// at a bound is moved inside by a hair, or its slope would vanish.
 
 #include "touchdown/solvers/whitened_point.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace touchdown::solvers {
+
+namespace {
+
+constexpr double kNearestAngle = 1e-3;  // to a bound, at the start [rad]
+
+}  // namespace
 
 void WhitenedPoint::Prepare(const View& view) {
   whitening_.Prepare(view);
   view.Resize(&metric_);
   z_.assign(static_cast<std::size_t>(view.num_variables()), 0.0);
-  y_ = z_;
+  y_ = plain_ = z_;
   best_.resize(view.num_variables());
 }
 
-bool WhitenedPoint::Begin(const View& view, const double* y, bool whiten, Evaluator* evaluator) {
+bool WhitenedPoint::Begin(const View& view, const double* y, const Settings& settings,
+                          Evaluator* evaluator) {
   evaluator_ = evaluator;
-  whiten_ = whiten;
+  whiten_ = settings.whiten;
+  angle_ = settings.interval_as_angle && view.free_interval();
+  slope_ = 1.0;
   free_interval_ = view.free_interval();
   interval_min_ = view.problem().shape().interval_min;
   interval_max_ = view.problem().shape().interval_max;
@@ -29,22 +45,45 @@ bool WhitenedPoint::Begin(const View& view, const double* y, bool whiten, Evalua
   best_ = evaluator->best();
   best_cost_ = evaluator->best_cost();
   best_violation_ = evaluator->best_violation();
-  if (!whiten) return true;
-  const ShareScope scope(evaluator, Share::kWhitening);
-  if (!whitening_.Set(view, y, &metric_)) return false;
-  whiten_ = whitening_.regular();
-  if (whiten_) whitening_.ToWhite(y, z_.data());
+  if (whiten_) {
+    const ShareScope scope(evaluator, Share::kWhitening);
+    if (!whitening_.Set(view, y, &metric_)) return false;
+    whiten_ = whitening_.regular();
+    if (whiten_) whitening_.ToWhite(y, z_.data());
+  }
+  if (angle_) StartAngle();
   return true;
+}
+
+void WhitenedPoint::StartAngle() {
+  middle_ = 0.5 * interval_scale() * (interval_max_ + interval_min_);
+  half_ = 0.5 * interval_scale() * (interval_max_ - interval_min_);
+  double angle = 0.0;
+  unit_ = 1.0;
+  if (half_ > 0.0) {
+    const double most = 0.5 * M_PI - kNearestAngle;
+    const double sine = std::clamp((z_.back() - middle_) / half_, -1.0, 1.0);
+    angle = std::clamp(std::asin(sine), -most, most);
+    unit_ = half_ * std::cos(angle);
+  }
+  z_.back() = angle * unit_;
+  slope_ = half_ * std::cos(angle) / unit_;
 }
 
 void WhitenedPoint::MoveTo(const double* z) {
   if (std::memcmp(z, z_.data(), z_.size() * sizeof(double)) == 0) return;
   std::copy(z, z + z_.size(), z_.begin());
+  plain_ = z_;
+  if (angle_) {
+    const double angle = z_.back() / unit_;
+    plain_.back() = middle_ + half_ * std::sin(angle);
+    slope_ = half_ * std::cos(angle) / unit_;
+  }
   if (whiten_) {
     const ShareScope scope(evaluator_, Share::kWhitening);
-    whitening_.FromWhite(z, y_.data());
+    whitening_.FromWhite(plain_.data(), y_.data());
   } else {
-    y_ = z_;
+    y_ = plain_;
   }
   // Bounds were kept in z; dividing by the scale may have lost the last bit, and Ipopt relaxes them.
   if (free_interval_) y_.back() = std::clamp(y_.back(), interval_min_, interval_max_);
@@ -66,9 +105,11 @@ void WhitenedPoint::Gradient(double* out) const {
 }
 
 void WhitenedPoint::RowToWhite(double* row) const {
-  if (!whiten_) return;
-  const ShareScope scope(evaluator_, Share::kWhitening);
-  whitening_.GradientToWhite(row);
+  if (whiten_) {
+    const ShareScope scope(evaluator_, Share::kWhitening);
+    whitening_.GradientToWhite(row);
+  }
+  if (angle_) row[size() - 1] *= slope_;
 }
 
 bool WhitenedPoint::Improved(double* step) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "touchdown/solvers/evaluator.h"
@@ -14,18 +13,25 @@ namespace touchdown::solvers {
 /// the costs' nominal curvature is singular, as that of a linear cost: such a metric means nothing.
 class WhitenedPoint {
  public:
+  struct Settings {
+    bool whiten = true;
+    /// For methods without bounds, or that take their step size from them: z's last number becomes
+    /// an angle (whitened_point.cc), for which every value is inside the bounds of a free interval.
+    bool interval_as_angle = false;
+  };
+
   /// Allocates for views of this structure.
   void Prepare(const View& view);
 
   /// Starts a solve: evaluates at y, with gradients, and takes the metric there. False if a term
   /// cannot be evaluated. All arguments outlive the solve. Does not allocate.
-  bool Begin(const View& view, const double* y, bool whiten, Evaluator* evaluator);
+  bool Begin(const View& view, const double* y, const Settings& settings, Evaluator* evaluator);
 
   int size() const { return static_cast<int>(z_.size()); }
   bool whitened() const { return whiten_; }
   /// The last point; after Begin the first.
   const double* z() const { return z_.data(); }
-  /// A free interval is z's last number divided by this.
+  /// A free interval is z's last number divided by this, unless it is an angle.
   double interval_scale() const { return whiten_ ? whitening_.interval_scale() : 1.0; }
 
   /// Moves to z; false if a term cannot be evaluated there.
@@ -45,14 +51,18 @@ class WhitenedPoint {
 
  private:
   void MoveTo(const double* z);
+  void StartAngle();
 
   Whitening whitening_;
   ViewEvaluation metric_;  // where the metric is taken
   Evaluator* evaluator_ = nullptr;
   bool whiten_ = false;
-  double interval_min_ = 0.0, interval_max_ = 0.0;
   bool free_interval_ = false;
-  std::vector<double> z_, y_;
+  bool angle_ = false;
+  double interval_min_ = 0.0, interval_max_ = 0.0;
+  double middle_ = 0.0, half_ = 0.0, unit_ = 1.0;  // of the angle
+  double slope_ = 1.0;                             // of the scaled interval in it
+  std::vector<double> z_, y_, plain_;              // plain_: z with the scaled interval, no angle
   Eigen::VectorXd best_;
   double best_cost_ = 0.0, best_violation_ = 0.0;
 };

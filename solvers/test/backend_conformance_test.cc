@@ -204,14 +204,17 @@ struct IntervalMap {
 
 TEST_P(EveryBackend, AFreeIntervalStaysInItsBounds) {
   if (!Make()->capabilities().free_interval) GTEST_SKIP() << "no free interval";
-  // Inside, beyond either bound, and started at a bound.
-  for (const auto& [target, start, h] :
-       {std::array{0.3, 0.5, 0.3}, {0.01, 0.5, 0.1}, {5.0, 0.5, 2.0}, {0.3, 2.0, 0.3}}) {
+  // Inside, beyond either bound, started at a bound, and with no choice.
+  for (const auto& [target, start, h, longest] : {std::array{0.3, 0.5, 0.3, 2.0},
+                                                  {0.01, 0.5, 0.1, 2.0},
+                                                  {5.0, 0.5, 2.0, 2.0},
+                                                  {0.3, 2.0, 0.3, 2.0},
+                                                  {0.3, 0.1, 0.1, 0.1}}) {
     Problem problem({.blocks = 1,
                      .block_size = 1,
                      .free_interval = true,
                      .interval_min = 0.1,
-                     .interval_max = 2.0});
+                     .interval_max = longest});
     problem.AddTerm(
         std::make_shared<WindowTerm<IntervalMap, SquareLoss>>(
             TermInfo{"interval", "", "", "", false}, IntervalMap{target}, SquareLoss(2.0), 1),
