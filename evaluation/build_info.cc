@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Facts about build and machine: compile-time constants from CMake, library versions from their
+// Facts about build and machine: compile-time constants from CMake and git, library versions from their
 // headers, the CPU from /proc/cpuinfo.
 #include "touchdown/evaluation/build_info.h"
 
@@ -13,6 +13,8 @@
 #include <Eigen/Core>
 #include <boost/uuid/name_generator_sha1.hpp>
 #include <boost/uuid/uuid_io.hpp>
+
+#include "touchdown_revision.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -50,12 +52,15 @@ std::string Hash(const Pairs& facts) {
 Pairs BuildManifest() {
   Pairs facts = {
       {"touchdown_version", TOUCHDOWN_VERSION},
+      {"revision", TOUCHDOWN_REVISION},
       {"build_type", TOUCHDOWN_BUILD_TYPE},
       {"compiler", __VERSION__},
       {"compiler_flags", TOUCHDOWN_CXX_FLAGS},
       {"eigen",
        fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"ceres", TOUCHDOWN_CERES_VERSION},
+      {"nlopt", TOUCHDOWN_NLOPT_VERSION},
+      {"ipopt", TOUCHDOWN_IPOPT_VERSION},
       {"mujoco", TOUCHDOWN_MUJOCO_VERSION},
       {"sqlite", sqlite3_libversion()},
       {"cpu", CpuInfo("model name")},

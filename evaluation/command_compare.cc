@@ -2,18 +2,22 @@
 // touchdown compare: solver backends on the same random landing problems.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/compare.h"
 #include "touchdown/evaluation/compare_report.h"
+#include "touchdown/evaluation/compare_table.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
+#include "touchdown/evaluation/report_program.h"
 #include "touchdown/sim/forest.h"
 
 namespace touchdown::evaluation {
@@ -23,6 +27,10 @@ struct CompareArguments {
   CompareOptions options;
   std::string start = "cold";
   std::string arrival = "fixed";
+  std::string limits = "soft";
+  std::string endpoint = "eliminated";
+  std::string db;
+  std::string picture;
   std::optional<int> pin;
   bool json = false;
   bool allow_debug = false;
@@ -50,6 +58,26 @@ class Progress {
   Clock::time_point last_ = begin_;
 };
 
+void CheckOutputs(const CompareArguments& arguments) {
+  if (!arguments.db.empty()) {
+    CheckOutputPath("--db", arguments.db);
+    if (std::filesystem::exists(arguments.db)) {
+      throw BadInput(
+          fmt::format("--db {}: the file exists; a study is never overwritten.", arguments.db));
+    }
+  }
+  if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
+}
+
+// The picture is drawn from a table; without --db that one is not kept.
+void Draw(const CompareArguments& arguments, const CompareResult& result,
+          const MachineState& machine) {
+  if (!arguments.db.empty()) return DrawComparison(arguments.db, arguments.picture);
+  const AtomicFile unkept(arguments.picture + ".db");
+  WriteCompareTable(unkept.working_path(), arguments.options, result, machine);
+  DrawComparison(unkept.working_path(), arguments.picture);
+}
+
 int Compare(CompareArguments arguments, const Registries& registries) {
   if (!TimingsMeanSomething() && !arguments.allow_debug) {
     throw BadInput(
@@ -61,8 +89,15 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   options.points.erase(std::unique(options.points.begin(), options.points.end()),
                        options.points.end());
   options.cases.warm = arguments.start == "warm";
-  options.cases.problem.arrival =
+  planning::LandingProblemOptions& problem = options.cases.problem;
+  problem.terms = registries.terms;
+  problem.arrival =
       arguments.arrival == "free" ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+  problem.limits_mode =
+      arguments.limits == "hard" ? planning::LimitsMode::kHard : planning::LimitsMode::kSoft;
+  problem.endpoint = arguments.endpoint == "explicit" ? planning::EndpointMode::kExplicit
+                                                      : planning::EndpointMode::kEliminated;
+  CheckOutputs(arguments);
   MachineState machine;
   machine.pinned = arguments.pin;
   if (arguments.pin) PinToCpu(*arguments.pin);
@@ -74,6 +109,8 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   } else {
     std::cout << CompareText(options, result) << std::flush;
   }
+  if (!arguments.db.empty()) WriteCompareTable(arguments.db, options, result, machine);
+  if (!arguments.picture.empty()) Draw(arguments, result, machine);
   return kDone;
 }
 
@@ -102,6 +139,12 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
       ->capture_default_str();
   command->add_option("--arrival", arguments->arrival, "Arrival time")
       ->check(one_of({"fixed", "free"}))
+      ->capture_default_str();
+  command->add_option("--limits", arguments->limits, "As a penalty, or as constraints")
+      ->check(one_of({"soft", "hard"}))
+      ->capture_default_str();
+  command->add_option("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
+      ->check(one_of({"eliminated", "explicit"}))
       ->capture_default_str();
   command->add_option("--backends", options.backends, "Which ones; default: all that can solve it")
       ->delimiter(',')
@@ -136,6 +179,9 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
   command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
+  AddOutputOption(*command, "--db", &arguments->db, "Write every solve, an SQLite file", "F.db");
+  AddOutputOption(*command, "--picture", &arguments->picture,
+                  "Draw performance profile, latency and scaling", "F.png");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
   command->callback([arguments, &registries, run] {

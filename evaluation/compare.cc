@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The measurement. The reference cost of a problem is the best feasible one over tight solves of
 // all backends, `banded` and `ipopt` always among them where they can solve it. A timed solve runs
-// with the same tight tolerances and is ended from outside by one test for all, at its evaluations:
+// with tolerances that never end it and is ended from outside by one test for all, at its evaluations:
 // cost within the gap of the reference, rows within Evaluator::kFeasible. No backend's own idea of
 // convergence decides. The point it returns is evaluated anew; what it says of itself counts for
 // nothing.
@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -26,28 +27,35 @@ namespace {
 using solvers::SolverBackend;
 using solvers::Stop;
 
-constexpr double kSolveLimit = 10.0;  // wall time of any one solve [s]
-constexpr int kIterations = 5000;     // of any one solve
-constexpr double kTightTolerance = 1e-12;
+constexpr double kSolveLimit = 5.0;  // wall time of any one solve [s]
+constexpr int kIterations = 3000;    // of any one solve
+// What tolerances are set to where a backend's own test is to mean something, and where it shall
+// not end a solve before the test from outside does.
+constexpr double kTight = 1e-10;
 constexpr double kTightViolation = 1e-9;
+constexpr double kNever = 1e-15;
+constexpr double kNeverViolation = 1e-12;
 const std::vector<std::string> kReferees = {"banded", "ipopt"};
 
 /// One backend at work on the problems of one size.
 struct Contestant {
   std::string name;
-  bool compared = false;  ///< else it only helps to find the reference
-  std::unique_ptr<SolverBackend> tight;
-  std::unique_ptr<SolverBackend> usual;  ///< with its default tolerances
-  double seconds = 0.0;                  ///< used so far
+  bool compared = false;                    ///< else it only helps to find the reference
+  std::unique_ptr<SolverBackend> tight;     ///< for SolvePhase::kTight
+  std::unique_ptr<SolverBackend> unending;  ///< for those that are ended from outside
+  std::unique_ptr<SolverBackend> usual;     ///< for SolvePhase::kDeadline, default tolerances
+  double seconds = 0.0;                     ///< used so far
   bool out = false;
 };
 
-void Tighten(solvers::SolverOptions* options) {
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void SetTolerances(double tolerance, double violation, solvers::SolverOptions* options) {
   for (const solvers::OptionSpec& spec : std::vector(options->specs())) {
     if (spec.name.find("tolerance") == std::string::npos) continue;
-    const bool violation = spec.name.find("violation") != std::string::npos ||
-                           spec.name.find("constraint") != std::string::npos;
-    const double wanted = violation ? kTightViolation : kTightTolerance;
+    const double wanted = spec.name.find("violation") == std::string::npos ? tolerance : violation;
     options->Set(spec.name, std::clamp(wanted, spec.lo, std::max(spec.lo, spec.value)));
   }
 }
@@ -66,27 +74,24 @@ struct Merit {
 /// All backends on all problems of one size.
 class Bench {
  public:
+  /// `slow`: backends that used up their time at a smaller size.
   Bench(const CompareOptions& options, int points, const solvers::BackendRegistry& registry,
-        CompareResult* result)
+        const std::set<std::string>& slow, CompareResult* result)
       : options_(options),
         points_(points),
         problem_(points - 3, options.cases.problem),
         maker_(options.cases, points, registry),
         result_(result) {
     problem_.view().Resize(&outside_);
-    for (const solvers::BackendEntry& entry : registry) Enter(entry);
+    for (const solvers::BackendEntry& entry : registry) {
+      if (slow.contains(entry.name)) continue;
+      Enter(entry);
+    }
   }
 
   void Run(int index);
 
-  /// Names of the backends that are compared.
-  std::vector<std::string> Compared() const {
-    std::vector<std::string> names;
-    for (const Contestant& who : contestants_) {
-      if (who.compared) names.push_back(who.name);
-    }
-    return names;
-  }
+  const std::vector<Contestant>& contestants() const { return contestants_; }
 
  private:
   void Enter(const solvers::BackendEntry& entry);
@@ -114,23 +119,23 @@ class Bench {
 };
 
 void Bench::Enter(const solvers::BackendEntry& entry) {
-  const auto listed = [&](const std::vector<std::string>& names) {
-    return std::find(names.begin(), names.end(), entry.name) != names.end();
-  };
   Contestant who;
   who.name = entry.name;
-  who.compared = options_.backends.empty() || listed(options_.backends);
-  if (!who.compared && !listed(kReferees)) return;
+  who.compared = options_.backends.empty() || Contains(options_.backends, entry.name);
+  if (!who.compared && !Contains(kReferees, entry.name)) return;
   who.tight = entry.make();
+  who.unending = entry.make();
   who.usual = entry.make();
   const std::string refusal = who.tight->Refusal(problem_.view());
   if (!refusal.empty()) {
     if (who.compared) result_->refusals.push_back({points_, who.name, refusal + "."});
     return;
   }
-  Tighten(&who.tight->options());
-  who.tight->Prepare(problem_.view());
-  who.usual->Prepare(problem_.view());
+  SetTolerances(kTight, kTightViolation, &who.tight->options());
+  SetTolerances(kNever, kNeverViolation, &who.unending->options());
+  for (const auto& backend : {&who.tight, &who.unending, &who.usual}) {
+    (*backend)->Prepare(problem_.view());
+  }
   contestants_.push_back(std::move(who));
 }
 
@@ -142,8 +147,9 @@ void Bench::WarmUp(const LandingCase& made) {
   stop.max_iterations = 50;
   stop.wall_limit_s = 1.0;
   for (Contestant& who : contestants_) {
-    who.tight->Solve(problem_.view(), start, stop, &solver_);
-    who.usual->Solve(problem_.view(), start, stop, &solver_);
+    for (const auto& backend : {&who.tight, &who.unending, &who.usual}) {
+      (*backend)->Solve(problem_.view(), start, stop, &solver_);
+    }
   }
 }
 
@@ -171,7 +177,9 @@ Merit Bench::Judge(const Eigen::VectorXd& y) {
 }
 
 SolveRow Bench::Solve(Contestant* who, SolvePhase phase, const Stop& stop, int index) {
-  SolverBackend& backend = phase == SolvePhase::kDeadline ? *who->usual : *who->tight;
+  SolverBackend& backend = phase == SolvePhase::kDeadline ? *who->usual
+                           : phase == SolvePhase::kTight  ? *who->tight
+                                                          : *who->unending;
   const double cpu = solvers::ThreadCpuSeconds();
   const auto wall = std::chrono::steady_clock::now();
   backend.Solve(problem_.view(), start_, stop, &solver_);
@@ -281,11 +289,9 @@ void Bench::Run(int index) {
   }
   result_->problems.push_back(std::move(row));
   for (Contestant& who : contestants_) {
-    if (who.out || who.seconds < options_.backend_seconds || index + 1 == options_.problems) {
-      continue;
-    }
+    if (who.out || who.seconds < options_.backend_seconds) continue;
     who.out = true;
-    if (!who.compared) continue;
+    if (!who.compared || index + 1 == options_.problems) continue;
     result_->refusals.push_back(
         {points_, who.name,
          fmt::format("backend {} was stopped after {} of {} problems: it had used {:.4g} s "
@@ -298,7 +304,7 @@ void CheckNames(const std::vector<std::string>& names, const solvers::BackendReg
   std::vector<std::string> known;
   for (const solvers::BackendEntry& entry : registry) known.push_back(entry.name);
   for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (!Contains(known, name)) {
       throw BadInput(
           fmt::format("--backends {}: unknown; the backends are {}.", name, Enumerate(known)));
     }
@@ -327,9 +333,22 @@ CompareResult RunCompare(const CompareOptions& options, const solvers::BackendRe
   CompareResult result;
   const int all = options.problems * static_cast<int>(options.points.size());
   int done = 0;
+  std::set<std::string> slow;
   for (const int points : options.points) {
-    Bench bench(options, points, registry, &result);
-    result.backends = bench.Compared();
+    Bench bench(options, points, registry, slow, &result);
+    for (const std::string& name : slow) {
+      if (!Contains(result.backends, name)) continue;
+      result.refusals.push_back(
+          {points, name,
+           fmt::format("backend {} sits out: it used up its time at a smaller size "
+                       "(--backend-seconds).",
+                       name)});
+    }
+    if (points == options.points.front()) {
+      for (const Contestant& who : bench.contestants()) {
+        if (who.compared) result.backends.push_back(who.name);
+      }
+    }
     if (result.backends.empty()) {
       throw BadInput(fmt::format(
           "No backend can solve this formulation: {}",
@@ -338,6 +357,9 @@ CompareResult RunCompare(const CompareOptions& options, const solvers::BackendRe
     for (int index = 0; index < options.problems; ++index) {
       bench.Run(index);
       report(++done, all);
+    }
+    for (const Contestant& who : bench.contestants()) {
+      if (who.out) slow.insert(who.name);
     }
   }
   return result;

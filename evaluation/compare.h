@@ -22,12 +22,14 @@ struct CompareOptions {
   double gap = 1e-4;                  ///< of the cost, at which a problem counts as solved
   int repeats = 3;                    ///< of the timed solve; their median counts
   std::optional<double> deadline_ms;  ///< also solve under this wall-clock limit
-  double backend_seconds = 20.0;      ///< wall time that a backend may use per number of points
+  /// Wall time that a backend may use at one number of points: one that used more sits out the
+  /// remaining problems, and all larger sizes.
+  double backend_seconds = 20.0;
 };
 
 /// What a solve was made for.
 enum class SolvePhase {
-  kTight,     ///< tightest tolerances: the reference cost, and whether success is told rightly
+  kTight,     ///< tight tolerances: the reference cost, and whether success is told rightly
   kGap,       ///< stopped from outside once it is within the gap: the time that counts
   kShares,    ///< the same, with a clock on its parts
   kDeadline,  ///< default tolerances under a wall-clock limit

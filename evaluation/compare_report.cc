@@ -15,6 +15,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+const char* Arrival(const CompareOptions& options) {
+  return options.cases.problem.arrival == planning::ArrivalMode::kFree ? "free" : "fixed";
+}
+const char* Limits(const CompareOptions& options) {
+  return options.cases.problem.limits_mode == planning::LimitsMode::kHard ? "hard" : "soft";
+}
+const char* Endpoint(const CompareOptions& options) {
+  return options.cases.problem.endpoint == planning::EndpointMode::kExplicit ? "explicit"
+                                                                             : "eliminated";
+}
+
 std::string Cell(const std::optional<double>& value, const char* format) {
   if (!value) return "-";
   if (!std::isfinite(*value)) return "fail";
@@ -106,10 +117,9 @@ std::string ProblemsText(const CompareOptions& options, const CompareResult& res
     without += !std::isfinite(row.reference_cost);
   }
   std::string text = fmt::format(
-      "{} points, {} arrival, {} start: {} problems in forest {}, seed {}; T {:.2f} s, {:.0f} "
-      "pairs "
-      "in the median; {} scenes drawn again\n",
-      points, options.cases.problem.arrival == planning::ArrivalMode::kFree ? "free" : "fixed",
+      "{} points, {} arrival, {} limits, {} endpoint, {} start: {} problems in forest {}, seed {}\n"
+      "  in the median T {:.2f} s and {:.0f} pairs; {} scenes drawn again\n",
+      points, Arrival(options), Limits(options), Endpoint(options),
       options.cases.warm ? "warm" : "cold", pairs.size(), options.cases.forest, options.cases.seed,
       Quantile(durations, 0.5).value_or(0.0), Quantile(pairs, 0.5).value_or(0.0), redrawn);
   if (without > 0) {
@@ -186,7 +196,9 @@ Json CompareSettings(const CompareOptions& options) {
   return {{"seed", options.cases.seed},
           {"points", options.points},
           {"start", options.cases.warm ? "warm" : "cold"},
-          {"arrival", problem.arrival == planning::ArrivalMode::kFree ? "free" : "fixed"},
+          {"arrival", Arrival(options)},
+          {"limits", Limits(options)},
+          {"endpoint", Endpoint(options)},
           {"gap", options.gap},
           {"repeats", options.repeats},
           {"deadline_ms", options.deadline_ms ? Json(*options.deadline_ms) : Json()},

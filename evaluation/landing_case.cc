@@ -71,6 +71,12 @@ std::unique_ptr<solvers::SolverBackend> MakingBackend(const solvers::BackendRegi
       "random landing problems need one of the backends ceres and banded for their pairs");
 }
 
+planning::LandingProblemOptions MakingOptions(planning::LandingProblemOptions options) {
+  options.limits_mode = planning::LimitsMode::kSoft;
+  options.endpoint = planning::EndpointMode::kEliminated;
+  return options;
+}
+
 }  // namespace
 
 void LandingCase::Apply(planning::LandingProblem* problem) const {
@@ -97,7 +103,7 @@ struct CaseMaker::Scene {
 CaseMaker::CaseMaker(const CaseOptions& options, int points,
                      const solvers::BackendRegistry& backends)
     : options_(options),
-      problem_(points - 3, options.problem),
+      problem_(points - 3, MakingOptions(options.problem)),
       backend_(MakingBackend(backends, problem_.view())),
       search_(kVerticalCost) {
   sim::ForestOfKind(options.forest);

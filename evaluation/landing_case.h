@@ -20,7 +20,7 @@ namespace touchdown::evaluation {
 /// How the problems are drawn.
 struct CaseOptions {
   std::uint64_t seed = 1;
-  std::string forest = "B";  ///< kind, see sim::ForestOfKind
+  std::string forest = "C";  ///< kind, see sim::ForestOfKind
   double inflation = 0.3;    ///< of the map [m]
   bool warm = false;         ///< the problem 0.1 s later, with the shifted previous solution
   planning::LandingProblemOptions problem;

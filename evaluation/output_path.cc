@@ -44,4 +44,12 @@ void CheckOutputPath(const std::string& option, const std::string& path) {
   }
 }
 
+void CheckPicturePath(const std::string& option, const std::string& path) {
+  CheckOutputPath(option, path);
+  const std::string kind = fs::path(path).extension().string();
+  if (kind != ".png" && kind != ".pdf" && kind != ".svg") {
+    throw BadInput(fmt::format("{} {}: the name must end in .png, .pdf or .svg.", option, path));
+  }
+}
+
 }  // namespace touchdown::evaluation

@@ -10,4 +10,7 @@ namespace touchdown::evaluation {
 /// @throws BadInput
 void CheckOutputPath(const std::string& option, const std::string& path);
 
+/// The same for a picture, whose name says what it is: .png, .pdf or .svg. @throws BadInput
+void CheckPicturePath(const std::string& option, const std::string& path);
+
 }  // namespace touchdown::evaluation

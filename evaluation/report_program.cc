@@ -39,23 +39,22 @@ std::string LastLine(const std::string& text) {
   return text.substr(begin + 1, end - begin);
 }
 
-[[noreturn]] void Fail(const std::string& picture_path, const std::string& why) {
-  throw std::runtime_error(
-      fmt::format("--plot {}: the picture was not drawn: {}.", picture_path, why));
-}
-
-}  // namespace
-
-void DrawLanding(const std::string& record_path, const std::string& picture_path) {
+// Runs `python -m module input picture`; `option` is the one that named the picture.
+void Draw(const char* module, const std::string& option, const std::string& input_path,
+          const std::string& picture_path) {
+  const auto fail = [&](const std::string& why) {
+    throw std::runtime_error(
+        fmt::format("{} {}: the picture was not drawn: {}.", option, picture_path, why));
+  };
   const std::string python = TOUCHDOWN_PYTHON;
   if (access(python.c_str(), X_OK) != 0) {
-    Fail(picture_path, fmt::format("{} is missing (install python3-matplotlib)", python));
+    fail(fmt::format("{} is missing (install python3-matplotlib)", python));
   }
   const std::vector<std::string> directories = PythonDirectories();
-  if (directories.empty()) Fail(picture_path, "the package touchdown_report is missing");
+  if (directories.empty()) fail("the package touchdown_report is missing");
 
   std::array<int, 2> ends;
-  if (pipe(ends.data()) != 0) Fail(picture_path, "no pipe could be opened");
+  if (pipe(ends.data()) != 0) fail("no pipe could be opened");
   const pid_t child = fork();
   if (child == 0) {
     dup2(ends[1], STDOUT_FILENO);
@@ -63,17 +62,27 @@ void DrawLanding(const std::string& record_path, const std::string& picture_path
     close(ends[0]);
     close(ends[1]);
     setenv("PYTHONPATH", directories.front().c_str(), 1);
-    execl(python.c_str(), python.c_str(), "-m", "touchdown_report.landing", record_path.c_str(),
-          picture_path.c_str(), static_cast<char*>(nullptr));
+    execl(python.c_str(), python.c_str(), "-m", module, input_path.c_str(), picture_path.c_str(),
+          static_cast<char*>(nullptr));
     _exit(127);
   }
   close(ends[1]);
   const std::string said = ReadAll(ends[0]);
   close(ends[0]);
-  if (child < 0) Fail(picture_path, "no child process could be started");
+  if (child < 0) fail("no child process could be started");
   int status = 0;
   waitpid(child, &status, 0);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) Fail(picture_path, LastLine(said));
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail(LastLine(said));
+}
+
+}  // namespace
+
+void DrawLanding(const std::string& record_path, const std::string& picture_path) {
+  Draw("touchdown_report.landing", "--plot", record_path, picture_path);
+}
+
+void DrawComparison(const std::string& table_path, const std::string& picture_path) {
+  Draw("touchdown_report.compare", "--picture", table_path, picture_path);
 }
 
 }  // namespace touchdown::evaluation

@@ -9,4 +9,7 @@ namespace touchdown::evaluation {
 /// @throws std::runtime_error with one sentence: Python or the package missing, or why it failed.
 void DrawLanding(const std::string& record_path, const std::string& picture_path);
 
+/// Draws the pictures of a comparison's table (compare_table.h). @throws as DrawLanding
+void DrawComparison(const std::string& table_path, const std::string& picture_path);
+
 }  // namespace touchdown::evaluation

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pictures of a comparison of solver backends (docs/compare.md): for each number of control
+points the performance profile (Dolan and Moré, 2002) and the distribution of the time to the gap;
+with several numbers also the time per iteration over them.
+
+    /usr/bin/python3 -m touchdown_report.compare COMPARISON.db OUT.png
+"""
+import os
+import sqlite3
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+SUPPORTED_VERSION = "1"
+# A line style for each backend: colour alone does not tell ten of them apart.
+COLOURS = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#D55E00", "#0072B2", "#CC79A7", "#999999"]
+DASHES = ["-", "--", ":", "-."]
+MOST_ROWS = 3
+# Beside the axes: curves fill all of them.
+LEGEND = {"fontsize": 7.5, "loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.edgecolor": "#BBBBBB",
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#EEEEEE",
+    "axes.axisbelow": True,
+}
+
+
+class CompareError(Exception):
+    """The file is no comparison that this package can read; the message is one sentence."""
+
+
+class Comparison:
+    """One file: `manifest` (dict), `points` and `backends` in order, and their times."""
+
+    def __init__(self, path):
+        if not os.path.isfile(path):
+            raise CompareError(f"{path}: there is no such file.")
+        try:
+            with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+                self._read(db, path)
+        except sqlite3.Error as error:
+            raise CompareError(f"{path}: not a comparison ({error}).") from error
+
+    def _read(self, db, path):
+        self.manifest = dict(db.execute("SELECT key, value FROM manifest"))
+        if self.manifest.get("version") != SUPPORTED_VERSION:
+            raise CompareError(
+                f"{path}: comparison version {self.manifest.get('version')}, "
+                f"this package reads version {SUPPORTED_VERSION}."
+            )
+        self.points = [n for n, in db.execute("SELECT DISTINCT points FROM problem ORDER BY 1")]
+        backend_order = "SELECT backend FROM summary GROUP BY backend ORDER BY MIN(rowid)"
+        self.backends = [name for name, in db.execute(backend_order)]
+        self._gap = db.execute(
+            "SELECT points, problem, backend, CASE reached WHEN 1 THEN time_cpu_ms END "
+            "FROM solve WHERE phase = 'gap'"
+        ).fetchall()
+        self._tight = db.execute(
+            "SELECT points, backend, time_cpu_ms / iterations FROM solve "
+            "WHERE phase = 'tight' AND iterations > 0"
+        ).fetchall()
+
+    def times(self, points):
+        """Milliseconds to the gap: {backend: {problem: ms}}, the median of the repeats, infinite
+        where the problem was not solved. Problems that a backend was not run on are left out."""
+        repeats = {name: {} for name in self.backends}
+        for size, problem, backend, ms in self._gap:
+            if size == points:
+                repeats[backend].setdefault(problem, []).append(np.inf if ms is None else ms)
+        return {name: {k: middle(v) for k, v in runs.items()} for name, runs in repeats.items()}
+
+    def per_iteration(self, backend):
+        """Median milliseconds per iteration of the tight solves: {points: ms}."""
+        times = {}
+        for size, name, ms in self._tight:
+            if name == backend:
+                times.setdefault(size, []).append(ms)
+        return {size: float(np.median(times[size])) for size in sorted(times)}
+
+
+def middle(values):
+    """The median, infinite where it would have to be taken next to an infinite value."""
+    low, high = (np.quantile(values, 0.5, method=m) for m in ("lower", "higher"))
+    return float(low if low == high else (low + high) / 2)
+
+
+def steps(values):
+    """The distribution function of the finite values: (values in order, fraction of all)."""
+    values = np.sort(np.asarray(values, dtype=float))
+    solved = values[np.isfinite(values)]
+    return solved, np.arange(1, len(solved) + 1) / max(1, len(values))
+
+
+def profile(times):
+    """Dolan and Moré: {backend: (ratios, fractions)}, the fraction of its problems that a backend
+    solves within `ratio` times the fastest backend's time. Problems that none solved count."""
+    best = {}
+    for runs in times.values():
+        for problem, ms in runs.items():
+            best[problem] = min(ms, best.get(problem, np.inf))
+    return {
+        backend: steps([ms / best[k] if np.isfinite(ms) else np.inf for k, ms in runs.items()])
+        for backend, runs in times.items()
+    }
+
+
+def ecdf(times):
+    """{backend: (milliseconds, fraction of its problems solved by then)}."""
+    return {backend: steps(list(runs.values())) for backend, runs in times.items()}
+
+
+def slope(per_iteration):
+    """Least-squares slope of log(ms) over log(points); NaN for fewer than two sizes."""
+    if len(per_iteration) < 2:
+        return float("nan")
+    sizes, times = np.array(list(per_iteration.items()), dtype=float).T
+    return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
+
+
+def looks(backends):
+    """Colour and dashes of each backend."""
+    return {
+        name: {"color": COLOURS[i % len(COLOURS)], "ls": DASHES[i // len(COLOURS) % len(DASHES)]}
+        for i, name in enumerate(backends)
+    }
+
+
+def draw_steps(axes, curves, styles, counts):
+    """Step curves on a logarithmic axis, each drawn on to the right edge."""
+    right = max([x[-1] for x, _ in curves.values() if len(x)] or [10.0]) * 1.3
+    for backend, (x, y) in curves.items():
+        if len(x) == 0:
+            axes.plot([], [], label=f"{backend} (0 of {counts[backend]})", **styles[backend])
+            continue
+        axes.step(
+            np.concatenate([[x[0]], x, [right]]),
+            np.concatenate([[0.0], y, [y[-1]]]),
+            where="post",
+            lw=1.6,
+            label=f"{backend} ({len(x)} of {counts[backend]})",
+            **styles[backend],
+        )
+    axes.set_xscale("log")
+    axes.set_ylim(0.0, 1.02)
+
+
+def draw_size(row, comparison, points, styles):
+    times = comparison.times(points)
+    counts = {backend: len(runs) for backend, runs in times.items()}
+    draw_steps(row[0], profile(times), styles, counts)
+    row[0].set_title(f"{points} points: performance profile")
+    row[0].set_xlabel("time / fastest backend's time on the same problem")
+    row[0].set_ylabel("fraction of problems solved")
+    draw_steps(row[1], ecdf(times), styles, counts)
+    row[1].set_title(f"{points} points: time to the gap")
+    row[1].set_xlabel("thread CPU time [ms]")
+    row[1].legend(**LEGEND)
+
+
+def draw_scaling(axes, beside, comparison, styles):
+    for backend in comparison.backends:
+        known = comparison.per_iteration(backend)
+        if not known:
+            continue
+        axes.plot(
+            list(known),
+            list(known.values()),
+            marker="o",
+            ms=3,
+            lw=1.4,
+            label=f"{backend}: slope {slope(known):.2f}",
+            **styles[backend],
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xticks(comparison.points)
+    axes.set_xticklabels([str(n) for n in comparison.points])
+    axes.minorticks_off()
+    axes.set_xlabel("control points")
+    axes.set_ylabel("thread CPU time per iteration [ms]")
+    axes.set_title("scaling, tight solves")
+    handles, labels = axes.get_legend_handles_labels()
+    beside.axis("off")
+    beside.legend(handles, labels, **{**LEGEND, "bbox_to_anchor": (0.0, 0.5)})
+
+
+def headline(manifest):
+    word = {key: value.strip('"') for key, value in manifest.items()}
+    return (
+        f"{word['problems']} random landing problems, forest {word['forest']}, "
+        f"{word['arrival']} arrival, {word['limits']} limits, {word['endpoint']} endpoint, "
+        f"{word['start']} start, seed {word['seed']}",
+        f"solved: within {float(word['gap']):.0e} of the best known cost and feasible, judged "
+        f"outside the solvers  ·  {word['cpu']}  ·  build {word['build_type']}, "
+        f"revision {word['revision']}  ·  load {float(word['load_before']):.1f} "
+        f"to {float(word['load_after']):.1f}",
+    )
+
+
+def draw(comparison, path):
+    sizes = comparison.points
+    if len(sizes) > MOST_ROWS:
+        sizes = [sizes[0], sizes[len(sizes) // 2], sizes[-1]]
+    rows = len(sizes) + (1 if len(comparison.points) > 1 else 0)
+    styles = looks(comparison.backends)
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(
+            rows, 2, figsize=(11.0, 0.9 + 3.6 * rows), squeeze=False, layout="constrained"
+        )
+        for row, points in zip(axes, sizes):
+            draw_size(row, comparison, points, styles)
+        if rows > len(sizes):
+            draw_scaling(*axes[-1], comparison, styles)
+        title, provenance = headline(comparison.manifest)
+        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+        figure.supxlabel(provenance, x=0.01, ha="left", fontsize=7.5, color="#555555")
+        figure.savefig(path, dpi=150)
+        plt.close(figure)
+
+
+def main(arguments):
+    """Command line; returns the exit status."""
+    if len(arguments) != 2:
+        print("usage: python3 -m touchdown_report.compare COMPARISON OUT.png", file=sys.stderr)
+        return 2
+    try:
+        draw(Comparison(arguments[0]), arguments[1])
+    except (CompareError, OSError, ValueError) as error:
+        print(f"touchdown_report: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
