@@ -2,12 +2,15 @@
 // The landing problem as a whole: both ends met exactly at every point the solver can reach, and
 // the one optimum of the convex problem from any start.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "touchdown/planning/certificate.h"
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/test/planning_fixtures.h"
 #include "touchdown/solvers/backend_registry.h"
+#include "touchdown/solvers/test/allocation_count.h"
 
 namespace touchdown::planning {
 namespace {
@@ -108,6 +111,191 @@ TEST(LandingProblem, FreeArrivalBeatsTheGuessAndStaysInItsBounds) {
     EXPECT_GE(T, options.min_duration - 1e-9);
     EXPECT_LE(T, options.max_duration + 1e-9);
   }
+}
+
+/// A landing on a random pad with a start inside the limits, set up in `problem`.
+struct Landing {
+  ArcPad pad;
+  SplineState start;
+  EndpointTarget target{0.0, 1.5, 0.0, 0.5};
+
+  explicit Landing(Draw* draw) : pad(draw->Pad()), start(draw->State(4.0, 1.0, 1.0)) {}
+  void Apply(double stretch, LandingProblem* problem) const {
+    problem->SetBoundary(start, 0.0, pad, target);
+    problem->SetDuration(stretch * GuessDuration(start, 0.0, pad, target, {}, 1.0));
+  }
+};
+
+solvers::SolverResult SolveTightly(const std::string& name, const LandingProblem& problem) {
+  auto backend = solvers::MakeBackend(solvers::StandardBackends(), name);
+  for (const solvers::OptionSpec& spec : std::vector(backend->options().specs())) {
+    if (spec.name.find("tolerance") == std::string::npos) continue;
+    backend->options().Set(spec.name, std::max(spec.lo, 1e-10));
+  }
+  backend->Prepare(problem.view());
+  solvers::SolverResult result;
+  backend->Solve(problem.view(), problem.Guess(), {.max_iterations = 2000}, &result);
+  EXPECT_TRUE(result.usable()) << name << ": " << result.message;
+  return result;
+}
+
+bool Compiled(const std::string& name) {
+  return solvers::MakeBackend(solvers::StandardBackends(), name)->capabilities().compiled;
+}
+
+TEST(LandingProblem, ExplicitAndEliminatedEndpointsHaveOneOptimum) {
+  for (const char* name : {"ipopt", "nlopt-slsqp"}) {
+    if (!Compiled(name)) continue;
+    for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+      SCOPED_TRACE(std::string(name) + (arrival == ArrivalMode::kFree ? " free" : " fixed"));
+      Draw draw(19);
+      for (const bool free_end : {true, false}) {
+        const Landing landing(&draw);
+        LandingProblemOptions options = Options(arrival, free_end);
+        LandingProblem eliminated(12, options);
+        options.endpoint = EndpointMode::kExplicit;
+        LandingProblem rows(12, options);
+        landing.Apply(1.2, &eliminated);
+        landing.Apply(1.2, &rows);
+        const solvers::SolverResult a = SolveTightly(name, eliminated);
+        const solvers::SolverResult b = SolveTightly(name, rows);
+        EXPECT_LE(b.max_violation, 1e-6);
+        EXPECT_NEAR(a.cost, b.cost, 1e-5 * (1.0 + a.cost));
+        const UniformBspline curve = rows.Curve(b.x);
+        const SplineState wanted = EndStateAt(landing.pad, landing.target, curve.t_end()).state;
+        EXPECT_LT((curve.AtKnot(0).p - landing.start.p).norm(), 2e-6);
+        EXPECT_LT((curve.AtKnot(12).p - wanted.p).norm(), 2e-6);
+        EXPECT_LT((curve.AtKnot(12).v - wanted.v).norm(), 2e-6);
+      }
+    }
+  }
+}
+
+TEST(LandingProblem, TheExplicitGuessMeetsBothEnds) {
+  Draw draw(23);
+  LandingProblemOptions options = Options(ArrivalMode::kFree);
+  options.endpoint = EndpointMode::kExplicit;
+  LandingProblem problem(15, options);
+  const Landing landing(&draw);
+  landing.Apply(1.3, &problem);
+  solvers::ViewEvaluation e;
+  problem.view().Resize(&e);
+  ASSERT_TRUE(problem.view().Evaluate(problem.Guess().data(), {}, {}, &e));
+  EXPECT_LT(e.full.max_violation, 1e-9);
+}
+
+TEST(LandingProblem, HardLimitsHoldOnTheWholeCurve) {
+  Draw draw(29);
+  LandingProblemOptions options = Options(ArrivalMode::kFixed);
+  options.limits_mode = LimitsMode::kHard;
+  options.settings = {{"tilt_limit", 1.0, {}, {}}, {"thrust_max", 1.0, {}, {}}};
+  for (int trial = 0; trial < 8; ++trial) {
+    const Landing landing(&draw);
+    LandingProblem problem(20, options);
+    landing.Apply(1.4, &problem);
+    const solvers::SolverResult result = SolveTightly("banded", problem);
+    ASSERT_EQ(result.status, solvers::SolveStatus::kConverged);
+    const UniformBspline curve = problem.Curve(result.x);
+    const DerivativeBounds bounds = BoundDerivatives(curve);
+    EXPECT_LE(bounds.speed, options.limits.speed + 2e-6);
+    EXPECT_LE(bounds.acceleration, options.limits.acceleration + 2e-6);
+    for (double t = 0.0; t <= curve.duration(); t += 0.01) {
+      const FlatInputs inputs = InvertFlatness(curve.Evaluate(t));
+      EXPECT_LE(inputs.specific_thrust, options.vehicle.thrust_max + 2e-6);
+      EXPECT_LE(std::acos(inputs.R_WB(2, 2)), options.vehicle.tilt_max + 2e-6);
+    }
+  }
+}
+
+TEST(LandingProblem, AStartBeyondTheLimitsLeavesHardRowsAnInterior) {
+  Draw draw(31);
+  LandingProblemOptions options = Options(ArrivalMode::kFixed);
+  options.limits_mode = LimitsMode::kHard;
+  for (int trial = 0; trial < 8; ++trial) {
+    Landing landing(&draw);
+    landing.start.v = draw.Uniform(3.2, 5.0) * Eigen::Vector3d(draw.Vector(1.0)).normalized();
+    LandingProblem problem(20, options);
+    landing.Apply(1.5, &problem);
+    const BoundaryFacts facts = problem.boundary_facts();
+    EXPECT_TRUE(facts.recovering);
+    EXPECT_FALSE(facts.end_too_fast);
+    EXPECT_NEAR(facts.start_speed, landing.start.v.norm(), 1e-12);
+    const solvers::SolverResult result = SolveTightly("banded", problem);
+    EXPECT_EQ(result.status, solvers::SolveStatus::kConverged) << result.message;
+    EXPECT_LE(result.max_violation, 1e-6);
+    EXPECT_LE(BoundDerivatives(problem.Curve(result.x)).speed,
+              std::max(facts.start_speed, facts.first_hull_speed) + 2e-6);
+  }
+}
+
+TEST(LandingProblem, APadNearTheSpeedLimitIsAFact) {
+  LandingProblem problem(12, {});
+  const ArcPad pad({5.0, 0.0, 0.5}, 2.8, 0.0, 0.0);
+  problem.SetBoundary({}, 0.0, pad, {0.0, 1.5, 0.0, 1.5});
+  problem.SetDuration(5.0);
+  EXPECT_TRUE(problem.boundary_facts().end_too_fast);
+  EXPECT_NEAR(problem.boundary_facts().end_speed, 2.8, 1e-12);
+}
+
+TEST(LandingProblem, TermsAreChosenBySettings) {
+  const auto terms = [](LandingProblemOptions options) {
+    const LandingProblem problem(12, options);
+    std::string names;
+    for (int i = 0; i < problem.view().problem().num_terms(); ++i) {
+      const bool rows = problem.view().problem().role(i) == solvers::Role::kConstraint;
+      names += problem.view().problem().term(i).info().name + (rows ? "! " : " ");
+    }
+    return names;
+  };
+  LandingProblemOptions options;
+  EXPECT_EQ(terms(options), "smoothness obstacle_pair speed_limit acceleration_limit ");
+  options.limits_mode = LimitsMode::kHard;
+  options.arrival = ArrivalMode::kFree;
+  options.endpoint = EndpointMode::kExplicit;
+  options.settings = {{"acceleration_limit", {}, false, {}},
+                      {"obstacle_pair", 0.0, {}, {}},
+                      {"thrust_max", {}, true, {}},
+                      {"consistency", 2.0, {}, {}}};
+  EXPECT_EQ(terms(options),
+            "smoothness speed_limit! acceleration_limit arrival_time thrust_max! consistency "
+            "endpoint_state! ");
+  options.settings = {{"no_such_term", 1.0, {}, {}}};
+  try {
+    LandingProblem(12, options);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no_such_term is unknown; known: smoothness"));
+  }
+}
+
+TEST(LandingProblem, NothingIsAllocatedAfterConstruction) {
+  if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  Draw draw(37);
+  LandingProblemOptions options = Options(ArrivalMode::kFree);
+  options.limits_mode = LimitsMode::kHard;
+  for (const TermEntry& entry : options.terms) options.settings.push_back({entry.info.name, 1.0});
+  LandingProblem problem(20, options);
+  const Landing landing(&draw);
+  landing.Apply(1.3, &problem);
+  const UniformBspline previous = problem.Curve(problem.Guess());
+  const std::vector<MovingObstacle> obstacles(3);
+  const std::vector<ObstaclePair> pairs(10);
+  auto backend = solvers::MakeBackend(solvers::StandardBackends(), "banded");
+  backend->Prepare(problem.view());
+  const solvers::WarmStart guess(problem.Guess());
+  const solvers::Stop stop;
+  solvers::SolverResult result;
+  long before = 0;
+  for (int round = 0; round < 2; ++round) {  // the first sizes the result
+    before = solvers::AllocationCount();
+    landing.Apply(1.4, &problem);
+    problem.SetPrevious(&previous);
+    problem.SetObstacles(obstacles);
+    problem.SetPairs(pairs);
+    problem.SetPairWeightScale(1.6);
+    backend->Solve(problem.view(), guess, stop, &result);
+  }
+  EXPECT_EQ(solvers::AllocationCount(), before);
 }
 
 TEST(LandingProblem, RefusesTooFewSegments) {

@@ -34,6 +34,33 @@ TEST(TermDerivatives, EveryTermOnEveryView) {
   }
 }
 
+/// u = |q|^2 with half of its gradient.
+struct Wrong {
+  static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  int windows() const { return 4; }
+  int first_block(int k) const { return k + 4; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+  }
+  void Jacobian(int k, const double* q, double h, double t, double* u, double* du,
+                double* du_dh) const {
+    (*this)(k, q, h, t, u);
+    for (int c = 0; c < 3; ++c) du[c] = q[c];
+    du_dh[0] = 0.0;
+  }
+};
+
+TEST(TermDerivatives, AWrongOneIsFound) {
+  TermEntry entry;
+  entry.info.name = "wrong";
+  entry.make = [](const TermSetup&) {
+    return MakeLandingTerm({"wrong"}, Wrong{}, solvers::SquareLoss(1.0), 4);
+  };
+  EXPECT_FALSE(Passed(CheckTerm(entry, {})));
+}
+
 /// A map without its derivatives by hand.
 template <class Inner>
 struct Plain {
