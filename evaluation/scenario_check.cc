@@ -22,7 +22,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr int kProbeSegments = 12;  // of the problem that a backend is asked about
+constexpr int kProbeSegments = 64;  // the longest problem of the planner: a backend may mind
 constexpr double kPathStep = 0.1;   // [s], and [m] along the drawn phase
 
 estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
