@@ -186,16 +186,17 @@ bool IpoptNlp::eval_h(Index /*n*/, const Number* x, bool /*new_x*/, Number objec
   return true;
 }
 
-bool IpoptNlp::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Index iteration,
-                                     Number /*value*/, Number primal_infeasibility,
-                                     Number dual_infeasibility, Number /*mu*/, Number step_norm,
-                                     Number /*regularization*/, Number /*alpha_dual*/,
-                                     Number /*alpha_primal*/, Index /*trials*/,
-                                     const Ipopt::IpoptData* /*data*/,
+bool IpoptNlp::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number /*value*/,
+                                     Number primal_infeasibility, Number dual_infeasibility,
+                                     Number /*mu*/, Number step_norm, Number /*regularization*/,
+                                     Number /*alpha_dual*/, Number /*alpha_primal*/,
+                                     Index /*trials*/, const Ipopt::IpoptData* /*data*/,
                                      Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
   const ShareScope scope(evaluator_, Share::kAdapter);
-  report_.primal_infeasibility = primal_infeasibility;
-  report_.dual_infeasibility = dual_infeasibility;
+  if (mode == Ipopt::RegularMode) {  // the restoration phase solves another problem
+    report_.primal_infeasibility = primal_infeasibility;
+    report_.dual_infeasibility = dual_infeasibility;
+  }
   if (iteration > 0) evaluator_->FinishIteration(step_norm, dual_infeasibility);
   ending_ = evaluator_->CheckStop();
   return !ending_;
