@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace touchdown::evaluation {
 namespace {
@@ -75,6 +76,42 @@ TEST(Program, AScenarioThatIsRefusedIsBadInput) {
   const Ran ran = Call({"land", "open", "--backend", "unheard_of"});
   EXPECT_EQ(ran.status, 2);
   EXPECT_THAT(ran.err, AllOf(HasSubstr("solver.backend"), HasSubstr("broken")));
+}
+
+TEST(Program, CompareTellsEveryBackendsFigures) {
+  const std::filesystem::path db = std::filesystem::path(::testing::TempDir()) / "compare.db";
+  std::filesystem::remove(db);
+  const Ran ran =
+      Call({"compare", "--problems", "2", "--points", "12", "--repeats", "1", "--backends",
+            "banded,ceres", "--allow-debug", "--json", "--db", db.c_str()});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  const nlohmann::json json = nlohmann::json::parse(ran.out);
+  EXPECT_EQ(json["problems"], 2);
+  EXPECT_EQ(json["settings"]["limits"], "soft");
+  for (const char* name : {"banded", "ceres"}) {
+    const nlohmann::json& backend = json["backends"][name];
+    EXPECT_EQ(backend["solved_fraction"], 1.0);
+    for (const char* key : {"median", "p95", "p99", "max"}) {
+      EXPECT_GT(backend["time_ms"][key], 0.0) << name;
+    }
+    EXPECT_TRUE(backend["iterations"].contains("median"));
+    EXPECT_TRUE(backend["evaluations"].contains("median"));
+    EXPECT_LE(backend["cost_gap"]["p95"], 1e-4);
+    EXPECT_LE(backend["endpoint_residual"]["position_m_max"], 1e-9);
+    EXPECT_LE(backend["endpoint_residual"]["velocity_mps_max"], 1e-9);
+    EXPECT_LE(backend["max_violation"], 1e-6);
+  }
+  // A study is never overwritten, and nothing is left where it is refused.
+  EXPECT_TRUE(std::filesystem::exists(db));
+  const Ran again = Call({"compare", "--problems", "1", "--allow-debug", "--db", db.c_str()});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("never overwritten"));
+  std::filesystem::remove(db);
+  const Ran refused = Call(
+      {"compare", "--allow-debug", "--limits", "hard", "--backends", "ceres", "--db", db.c_str()});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("takes no inequality constraints"));
+  EXPECT_FALSE(std::filesystem::exists(db));
 }
 
 }  // namespace

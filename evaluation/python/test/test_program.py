@@ -49,13 +49,22 @@ def test_help_lists_what_is_built(run):
         (("sweep", "open", "--vary", "gps.sigma=1..6"), ["--vary gps.sigma=1..6", "[0, 5] m"]),
         (("sweep", "open", "--jobs", "2", "--set", "planning.latency=measured"), ["--jobs"]),
         (("list", "bananas"), ["bananas"]),
+        (("compare", "--points", "5"), ["--points", "9"]),
+        (("compare", "--points", "20,many"), ["--points", "many"]),
+        (("compare", "--problems", "0"), ["--problems"]),
+        (("compare", "--start", "hot"), ["--start", "cold"]),
+        (("compare", "--forest", "jungle"), ["--forest", "jungle"]),
+        (("compare", "--backends", "newton"), ["newton", "banded"]),
+        (("compare", "--gap", "-1"), ["--gap"]),
+        (("compare", "--pin", "1023"), ["--pin 1023"]),
+        (("compare", "--picture", "out.gif"), ["out.gif", ".png"]),
     ],
 )
 def test_bad_usage_is_status_2_with_one_sentence(run, tmp_path, arguments, parts):
     extra = ()
     if arguments[:1] == ("land",):
         extra = ("--record", "out.db", "--plot", "out.png")
-    if arguments[:1] == ("sweep",):
+    if arguments[:1] in (("sweep",), ("compare",)):
         extra = ("--db", "out.db")
     done = run(*arguments, *extra, cwd=tmp_path)
     assert done.returncode == 2
