@@ -18,11 +18,18 @@ namespace {
 // they were hard rows up to what backends count as feasible (Evaluator::kFeasible) [m/s, m/s^2].
 constexpr double kLimitSlack = 2e-6;
 
+/// The speed that the start fixes: its own, and V_1 = v0 + h a0 / 2 of the hull, which no solver can
+/// change. A start just below the limit that still speeds up is beyond it by V_1.
+double StartSpeed(const UniformBspline& curve) {
+  const ControlPoints& q = curve.control_points();
+  return std::max(curve.AtKnot(0).v.norm(), (q.col(2) - q.col(1)).norm() / curve.interval());
+}
+
 /// Every segment's hull stays below what is left of a start beyond the limits.
 bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
   const ControlPoints& q = curve.control_points();
   const double h = curve.interval();
-  const double v0 = curve.AtKnot(0).v.norm(), a0 = curve.AtKnot(0).a.norm();
+  const double v0 = StartSpeed(curve), a0 = curve.AtKnot(0).a.norm();
   for (int i = 0; i < curve.segments(); ++i) {
     const double t = i * h;  // the profile falls: the start of a segment is its loosest instant
     const double recovered = RecoveryProfile::kSpeedShare * limits.acceleration *
@@ -125,9 +132,8 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   c.acceleration_bound = bounds.acceleration;
   c.limits_kept = bounds.speed <= limits.speed + kLimitSlack &&
                   bounds.acceleration <= limits.acceleration + kLimitSlack;
-  const SplineState start = curve.AtKnot(0);
-  c.recovering = !c.limits_kept && (start.v.norm() > limits.speed + kLimitSlack ||
-                                    start.a.norm() > limits.acceleration + kLimitSlack);
+  c.recovering = !c.limits_kept && (StartSpeed(curve) > limits.speed + kLimitSlack ||
+                                    curve.AtKnot(0).a.norm() > limits.acceleration + kLimitSlack);
   if (c.recovering) c.limits_kept = RecoveryProfileKept(curve, limits);
 
   const double hit = FirstBlockedTime(curve, t_from, space);

@@ -39,8 +39,9 @@ struct Certificate {
 
 /// Certifies `curve` from `t_from` to its end: the endpoint against `wanted` (nullptr: none is
 /// required), the limits by the convex hull, the clearance by visiting every cell of `space` that
-/// the curve passes. A start beyond a limit is certified against the recovery profile
-/// max(limit, |v0| - amax (t - 0.3 s) / 2), and alike for the acceleration. The vehicle must also be
+/// the curve passes. A start beyond a limit, by its speed or by
+/// V_1 = v0 + h a0 / 2, which it fixes, is certified against the RecoveryProfile from the larger of
+/// the two on, and alike for the acceleration. The vehicle must also be
 /// able to brake, `reaction` seconds after t_from, before the curve meets cells that were never
 /// observed (the strip over the pad excepted). Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,

@@ -4,6 +4,7 @@
 
 #include "touchdown/planning/landing_problem.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -149,7 +150,7 @@ BoundaryFacts LandingProblem::boundary_facts() const {
   facts.start_acceleration = context_.start.a.norm();
   facts.first_hull_speed = (context_.start.v + 0.5 * h * context_.start.a).norm();
   facts.end_speed = context_.End(h).state.v.norm();
-  facts.recovering = facts.start_speed > context_.limits.speed ||
+  facts.recovering = std::max(facts.start_speed, facts.first_hull_speed) > context_.limits.speed ||
                      facts.start_acceleration > context_.limits.acceleration;
   facts.end_too_fast = facts.end_speed > kFastestEndShare * context_.limits.speed;
   return facts;

@@ -42,7 +42,7 @@ struct BoundaryFacts {
   double start_acceleration = 0.0;  ///< |a0| = |A_0| [m/s^2]
   double first_hull_speed = 0.0;    ///< |V_1|, which the start fixes [m/s]
   double end_speed = 0.0;           ///< wanted at the (first guess of the) arrival [m/s]
-  bool recovering = false;  ///< the start is beyond a limit: rows follow the RecoveryProfile
+  bool recovering = false;          ///< the start or V_1 is beyond a limit: RecoveryProfile
   /// The end moves at more than kFastestEndShare of the speed limit: hard limits leave no interior
   /// or next to none.
   bool end_too_fast = false;
