@@ -92,6 +92,8 @@ class NloptSolver : public SolverBackend {
     const auto n = static_cast<std::size_t>(view.num_variables());
     z_.assign(n, 0.0);
     bound_.assign(n, HUGE_VAL);
+    interval_min_ = -HUGE_VAL;
+    interval_max_ = HUGE_VAL;
     nlopt_destroy(opt_);
     opt_ = nlopt_create(method_.algorithm, static_cast<unsigned>(n));
     nlopt_set_min_objective(opt_, &NloptSolver::Objective, this);
@@ -145,6 +147,8 @@ class NloptSolver : public SolverBackend {
     }
     if (view.free_interval() && !method_.interval_as_angle) {
       const ProblemShape& shape = view.problem().shape();
+      interval_min_ = shape.interval_min;
+      interval_max_ = shape.interval_max;
       bound_.back() = point_.interval_scale() * shape.interval_max;
       nlopt_set_upper_bounds(opt_, bound_.data());
       for (double& bound : bound_) bound = -HUGE_VAL;
@@ -277,6 +281,9 @@ class NloptSolver : public SolverBackend {
     if (rows_.size() > 0) return improvement_ <= kStationary * scale;
     if (!evaluator_->Evaluate(evaluator_->best().data(), {.gradient = true})) return false;
     point_.Gradient(z_.data());
+    // At a bound of the interval its own gradient remains.
+    const double h = evaluator_->last().h;
+    if (h <= interval_min_ || h >= interval_max_) z_.back() = 0.0;
     double sum = 0.0;
     for (const double g : z_) sum += g * g;
     return 0.5 * sum <= kStationary * scale;
@@ -289,6 +296,7 @@ class NloptSolver : public SolverBackend {
   Evaluator* evaluator_ = nullptr;
   std::vector<double> z_, bound_, u_, jacobian_;
   std::vector<Side> equalities_, inequalities_;
+  double interval_min_ = 0.0, interval_max_ = 0.0;  // infinite where NLopt keeps to none
   int max_iterations_ = 0;
   int failures_ = 0;
   int repeats_ = 0;

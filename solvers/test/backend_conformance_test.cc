@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "touchdown/solvers/backend_registry.h"
+#include "touchdown/solvers/missing_backend.h"
 #include "touchdown/solvers/test/standard_problems.h"
 
 namespace touchdown::solvers {
@@ -400,6 +401,40 @@ INSTANTIATE_TEST_SUITE_P(Backends, EveryBackend, ::testing::ValuesIn(CompiledBac
                            for (char& c : name) c = c == '-' ? '_' : c;
                            return name;
                          });
+
+TEST(Refusal, IsASentenceWithTheReason) {
+  Problem squares = Scalars(2);
+  squares.AddTerm(Rosenbrock(), Role::kCost);
+  const View view(squares, AffineLift::Identity(2));
+  const auto missing = MakeMissingBackend("somebody");
+  EXPECT_FALSE(missing->capabilities().compiled);
+  EXPECT_NE(missing->Refusal(view).find("somebody was not compiled in"), std::string::npos);
+  EXPECT_THROW(missing->Prepare(view), std::invalid_argument);
+
+  const StandardProblem linear = Hs35();
+  const View linear_view(*linear.problem, AffineLift::Identity(3));
+  Problem many = Scalars(6);
+  const auto rows = [](const auto* x, auto* u) {
+    for (int i = 0; i < 24; ++i) u[i] = x[i / 4] - i;
+  };
+  many.AddTerm(AtMostZero<6, 24>("many", rows), Role::kConstraint);
+  const View many_view(many, AffineLift::Identity(6));
+  for (const BackendEntry& entry : StandardBackends()) {
+    const auto backend = entry.make();
+    const Capabilities can = backend->capabilities();
+    if (!can.compiled) {
+      EXPECT_NE(backend->Refusal(view), "");
+      continue;
+    }
+    EXPECT_EQ(backend->Refusal(view), "") << entry.name;
+    if (can.needs_residuals) {
+      EXPECT_NE(backend->Refusal(linear_view).find("sums of squares"), std::string::npos);
+    }
+    if (can.hard_rows && can.max_rows < 24) {
+      EXPECT_NE(backend->Refusal(many_view).find("this problem can have 24"), std::string::npos);
+    }
+  }
+}
 
 TEST(BackendRegistry, NamesWhatItKnows) {
   try {

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "touchdown/solvers/window_term.h"
+
 namespace touchdown::solvers {
 namespace {
 
@@ -29,6 +31,15 @@ TEST(Loss, DerivativesResidualsAndConvexity) {
   ExpectConsistent(HingeLoss(2.0, 0.5));
 }
 
+TEST(Loss, LinearMayBeNegativeAndHasNoResidual) {
+  const LossValue at = LinearLoss(-2.0).Value(3.0);
+  EXPECT_EQ(at.rho, -6.0);
+  EXPECT_EQ(at.drho, -2.0);
+  EXPECT_EQ(at.d2rho, 0.0);
+  EXPECT_TRUE(HasResidual<SquareLoss>);
+  EXPECT_FALSE(HasResidual<LinearLoss>);
+}
+
 TEST(Loss, HingeIsTwiceContinuouslyDifferentiable) {
   const HingeLoss hinge(2.0, 0.5);
   for (const double joint : {0.0, 0.5}) {
@@ -44,6 +55,7 @@ TEST(Loss, RefusesBadParameters) {
   EXPECT_THROW(SquareLoss(-1.0), std::invalid_argument);
   EXPECT_THROW(SquareLoss(std::nan("")), std::invalid_argument);
   EXPECT_THROW(HingeLoss(1.0, 0.0), std::invalid_argument);
+  EXPECT_THROW(LinearLoss(std::nan("")), std::invalid_argument);
 }
 
 }  // namespace
