@@ -31,10 +31,12 @@ constexpr double kFloor = 0.3;          // for the body's origin [m]
 constexpr double kCeiling = 2.8;        // below the pillars' tops: around, not over [m]
 constexpr double kDetour = 1.05;        // of the duration guess
 constexpr double kLongest = 12.0;       // a scene that takes longer is drawn again [s]
-constexpr double kKeepOut = 2.0;        // no pillar around start and goal [m]
-constexpr double kLater = 0.1;          // of the warm problem [s]
-constexpr double kPressure = 1.6;       // weight of the pairs grows by this every round
-constexpr double kVerticalCost = 2.0;   // of A*
+constexpr double kStretch = 1.15;       // of the duration, where the limits do not leave room
+constexpr int kStretches = 4;
+constexpr double kKeepOut = 2.0;       // no pillar around start and goal [m]
+constexpr double kLater = 0.1;         // of the warm problem [s]
+constexpr double kPressure = 1.6;      // weight of the pairs grows by this every round
+constexpr double kVerticalCost = 2.0;  // of A*
 constexpr int kRounds = 8;
 constexpr int kExpansions = 200000;
 constexpr int kScenes = 100;
@@ -77,6 +79,12 @@ planning::LandingProblemOptions MakingOptions(planning::LandingProblemOptions op
   return options;
 }
 
+planning::LandingProblemOptions HardOptions(planning::LandingProblemOptions options) {
+  options = MakingOptions(std::move(options));
+  options.limits_mode = planning::LimitsMode::kHard;
+  return options;
+}
+
 }  // namespace
 
 void LandingCase::Apply(planning::LandingProblem* problem) const {
@@ -104,11 +112,13 @@ CaseMaker::CaseMaker(const CaseOptions& options, int points,
                      const solvers::BackendRegistry& backends)
     : options_(options),
       problem_(points - 3, MakingOptions(options.problem)),
+      hard_(points - 3, HardOptions(options.problem)),
       backend_(MakingBackend(backends, problem_.view())),
       search_(kVerticalCost) {
   sim::ForestOfKind(options.forest);
   planning::OccupancyMap checks_inflation(MapOptions(options.inflation));
   backend_->Prepare(problem_.view());
+  hard_.view().Resize(&limits_);
 }
 
 // An unusable scene (too long a flight) has no map.
@@ -161,7 +171,8 @@ CaseMaker::Scene CaseMaker::DrawScene(int index, int draw) const {
   return scene;
 }
 
-// Leaves the last curve in `curve`; false if it could not be made clear.
+// Leaves the last curve in `curve`; false if it could not be made clear within the full limits:
+// such a problem is one of how much to violate, which nobody flies.
 bool CaseMaker::BindUntilClear(const Scene& scene, LandingCase* made,
                                planning::UniformBspline* curve) {
   std::vector<planning::BlockedRun> runs;
@@ -178,7 +189,10 @@ bool CaseMaker::BindUntilClear(const Scene& scene, LandingCase* made,
     y = result.x;
     *curve = problem_.Curve(y);
     FindBlockedRuns(*curve, made->t0, scene.space, &runs);
-    if (runs.empty()) return true;
+    if (runs.empty()) {
+      made->Apply(&hard_);
+      return hard_.view().Evaluate(y.data(), {}, {}, &limits_) && limits_.full.max_violation <= 0.0;
+    }
     if (made->rounds == kRounds) return false;
     int bound = 0;
     for (const planning::BlockedRun& run : runs) {
@@ -193,6 +207,18 @@ bool CaseMaker::BindUntilClear(const Scene& scene, LandingCase* made,
     if (bound == 0) return false;
     if (made->rounds > 0) made->pair_scale *= kPressure;
   }
+}
+
+// As the replanner does, a longer flight is tried where the guessed one leaves no room.
+bool CaseMaker::StretchUntilClear(const Scene& scene, LandingCase* made,
+                                  planning::UniformBspline* curve) {
+  for (int stretch = 0; stretch <= kStretches; ++stretch, made->duration *= kStretch) {
+    made->target.t_reference = made->duration;
+    made->pairs.clear();
+    made->pair_scale = 1.0;
+    if (BindUntilClear(scene, made, curve)) return true;
+  }
+  return false;
 }
 
 // What the planner meets 0.1 s later: vehicle and pad where they were expected, but for noise, and
@@ -242,7 +268,7 @@ LandingCase CaseMaker::Make(int index) {
     made.pad_speed = scene.pad.mean(2);
     made.pad_rate = scene.pad.mean(4);
     planning::UniformBspline curve;
-    if (!BindUntilClear(scene, &made, &curve)) continue;
+    if (!StretchUntilClear(scene, &made, &curve)) continue;
     if (options_.warm) {
       made = Later(scene, made, curve, draw);
       if (!BindUntilClear(scene, &made, &curve)) continue;

@@ -50,8 +50,8 @@ struct LandingCase {
 };
 
 /// Draws landing problems: a forest, a start and a moving, turning pad; then pairs by the planner's
-/// own loop (solve, check the whole curve, search around what blocks it, bind, solve again) until
-/// the curve is clear. The pairs are made with soft limits and an eliminated endpoint, whatever the
+/// own loop (solve, check the whole curve, search around what blocks it, bind, solve again; then
+/// with a longer flight) until the curve is clear and keeps the full limits. The pairs are made with soft limits and an eliminated endpoint, whatever the
 /// comparison solves later: the problem does not depend on who solves it. The same (seed, index)
 /// gives the same scene for any number of points.
 class CaseMaker {
@@ -67,12 +67,15 @@ class CaseMaker {
  private:
   struct Scene;
   Scene DrawScene(int index, int draw) const;
+  bool StretchUntilClear(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
   bool BindUntilClear(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
   LandingCase Later(const Scene& scene, const LandingCase& first,
                     const planning::UniformBspline& solution, int draw) const;
 
   CaseOptions options_;
   planning::LandingProblem problem_;
+  planning::LandingProblem hard_;  // the same with hard limits, to judge by
+  solvers::ViewEvaluation limits_;
   std::unique_ptr<solvers::SolverBackend> backend_;
   planning::GridSearch search_;
 };
