@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown land: one closed-loop landing, its summary, and on request its record and picture.
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/output_path.h"
@@ -69,13 +67,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
 
 void CheckOutputs(const LandArguments& arguments) {
   if (!arguments.record.empty()) CheckOutputPath("--record", arguments.record);
-  if (arguments.plot.empty()) return;
-  CheckOutputPath("--plot", arguments.plot);
-  const std::string kind = std::filesystem::path(arguments.plot).extension().string();
-  if (kind != ".png" && kind != ".pdf" && kind != ".svg") {
-    throw BadInput(
-        fmt::format("--plot {}: the name must end in .png, .pdf or .svg.", arguments.plot));
-  }
+  if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
 }
 
 // The picture is drawn from a record; without --record that one is not kept.

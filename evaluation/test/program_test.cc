@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "touchdown/evaluation/machine.h"
+
 namespace touchdown::evaluation {
 namespace {
 
@@ -78,6 +80,17 @@ TEST(Program, AScenarioThatIsRefusedIsBadInput) {
   EXPECT_THAT(ran.err, AllOf(HasSubstr("solver.backend"), HasSubstr("broken")));
 }
 
+TEST(Program, CompareTimesNoBuildThatIsNotOptimised) {
+  const Ran ran = Call({"compare", "--problems", "1", "--points", "12", "--backends", "banded"});
+  if (TimingsMeanSomething()) {
+    EXPECT_EQ(ran.status, 0) << ran.err;
+  } else {
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_TRUE(ran.out.empty());
+    EXPECT_THAT(ran.err, HasSubstr("--allow-debug"));
+  }
+}
+
 TEST(Program, CompareTellsEveryBackendsFigures) {
   const std::filesystem::path db = std::filesystem::path(::testing::TempDir()) / "compare.db";
   std::filesystem::remove(db);
@@ -112,37 +125,6 @@ TEST(Program, CompareTellsEveryBackendsFigures) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("takes no inequality constraints"));
   EXPECT_FALSE(std::filesystem::exists(db));
-}
-
-TEST(Program, AFormulationThatTheBackendRefusesIsBadInput) {
-  for (const char* key :
-       {"solver.limits=hard", "solver.endpoint=explicit", "terms.obstacle_pair.hard=true"}) {
-    const Ran ran = Call({"land", "open", "--backend", "ceres", "--set", key});
-    EXPECT_EQ(ran.status, 2) << key;
-    EXPECT_THAT(ran.err, HasSubstr("backend ceres takes no ")) << key;
-  }
-}
-
-TEST(Program, TermsAreCheckedByName) {
-  const Ran good = Call({"check-term", "tilt_limit", "--trials", "1"});
-  EXPECT_EQ(good.status, 0);
-  EXPECT_THAT(good.out, AllOf(HasSubstr("whitened  free    rows"), HasSubstr("u = 0"),
-                              HasSubstr("all derivatives agree")));
-  const Ran unknown = Call({"check-term", "tilt"});
-  EXPECT_EQ(unknown.status, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("term tilt is unknown; known: smoothness"));
-}
-
-TEST(Program, BackendsAreListedWithEveryFormulation) {
-  const Ran ran = Call({"list", "backends", "--json"});
-  EXPECT_EQ(ran.status, 0);
-  const nlohmann::json list = nlohmann::json::parse(ran.out);
-  for (const nlohmann::json& backend : list) {
-    EXPECT_EQ(backend["formulations"].size(), 8U) << backend["name"];
-    for (const nlohmann::json& f : backend["formulations"]) {
-      EXPECT_NE(f["solves"].get<bool>(), !f["reason"].get<std::string>().empty());
-    }
-  }
 }
 
 }  // namespace
