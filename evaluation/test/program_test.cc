@@ -127,5 +127,36 @@ TEST(Program, CompareTellsEveryBackendsFigures) {
   EXPECT_FALSE(std::filesystem::exists(db));
 }
 
+TEST(Program, AFormulationThatTheBackendRefusesIsBadInput) {
+  for (const char* key :
+       {"solver.limits=hard", "solver.endpoint=explicit", "terms.obstacle_pair.hard=true"}) {
+    const Ran ran = Call({"land", "open", "--backend", "ceres", "--set", key});
+    EXPECT_EQ(ran.status, 2) << key;
+    EXPECT_THAT(ran.err, HasSubstr("backend ceres takes no ")) << key;
+  }
+}
+
+TEST(Program, TermsAreCheckedByName) {
+  const Ran good = Call({"check-term", "tilt_limit", "--trials", "1"});
+  EXPECT_EQ(good.status, 0);
+  EXPECT_THAT(good.out, AllOf(HasSubstr("whitened  free    rows"), HasSubstr("u = 0"),
+                              HasSubstr("all derivatives agree")));
+  const Ran unknown = Call({"check-term", "tilt"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("term tilt is unknown; known: smoothness"));
+}
+
+TEST(Program, BackendsAreListedWithEveryFormulation) {
+  const Ran ran = Call({"list", "backends", "--json"});
+  EXPECT_EQ(ran.status, 0);
+  const nlohmann::json list = nlohmann::json::parse(ran.out);
+  for (const nlohmann::json& backend : list) {
+    EXPECT_EQ(backend["formulations"].size(), 8U) << backend["name"];
+    for (const nlohmann::json& f : backend["formulations"]) {
+      EXPECT_NE(f["solves"].get<bool>(), !f["reason"].get<std::string>().empty());
+    }
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::evaluation
