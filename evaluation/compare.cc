@@ -80,7 +80,7 @@ class Bench {
       : options_(options),
         points_(points),
         problem_(points - 3, options.cases.problem),
-        maker_(options.cases, points, registry),
+        maker_(options.cases, points),
         result_(result) {
     problem_.view().Resize(&outside_);
     for (const solvers::BackendEntry& entry : registry) {

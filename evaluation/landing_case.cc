@@ -17,6 +17,7 @@
 #include "touchdown/planning/warm_start.h"
 #include "touchdown/sim/forest.h"
 #include "touchdown/sim/random_stream.h"
+#include "touchdown/solvers/banded_solver.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -58,21 +59,6 @@ planning::OccupancyMapOptions MapOptions(double inflation) {
   return options;
 }
 
-/// Problems are made with soft limits and an eliminated endpoint by whichever of these is there:
-/// both solve it to the one optimum.
-std::unique_ptr<solvers::SolverBackend> MakingBackend(const solvers::BackendRegistry& backends,
-                                                      const solvers::View& view) {
-  for (const char* name : {"ceres", "banded"}) {
-    for (const solvers::BackendEntry& entry : backends) {
-      if (entry.name != name) continue;
-      std::unique_ptr<solvers::SolverBackend> backend = entry.make();
-      if (backend->Refusal(view).empty()) return backend;
-    }
-  }
-  throw std::invalid_argument(
-      "random landing problems need one of the backends ceres and banded for their pairs");
-}
-
 planning::LandingProblemOptions MakingOptions(planning::LandingProblemOptions options) {
   options.limits_mode = planning::LimitsMode::kSoft;
   options.endpoint = planning::EndpointMode::kEliminated;
@@ -108,12 +94,11 @@ struct CaseMaker::Scene {
   planning::FreeSpace space;
 };
 
-CaseMaker::CaseMaker(const CaseOptions& options, int points,
-                     const solvers::BackendRegistry& backends)
+CaseMaker::CaseMaker(const CaseOptions& options, int points)
     : options_(options),
       problem_(points - 3, MakingOptions(options.problem)),
       hard_(points - 3, HardOptions(options.problem)),
-      backend_(MakingBackend(backends, problem_.view())),
+      backend_(solvers::MakeBandedSolver()),
       search_(kVerticalCost) {
   sim::ForestOfKind(options.forest);
   planning::OccupancyMap checks_inflation(MapOptions(options.inflation));

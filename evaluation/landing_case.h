@@ -57,7 +57,7 @@ struct LandingCase {
 class CaseMaker {
  public:
   /// Throws std::invalid_argument if an option is out of range or no backend can make pairs.
-  CaseMaker(const CaseOptions& options, int points, const solvers::BackendRegistry& backends);
+  CaseMaker(const CaseOptions& options, int points);
 
   /// Throws std::runtime_error if a hundred scenes in a row could not be made clear.
   LandingCase Make(int index);

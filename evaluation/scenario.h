@@ -95,7 +95,7 @@ struct Scenario {
   } planning;
 
   struct Solver {
-    std::string backend = "ceres";
+    std::string backend = "banded";
     ArrivalKind arrival = ArrivalKind::kFixed;
     EndpointKind endpoint = EndpointKind::kEliminated;
     LimitsKind limits = LimitsKind::kSoft;

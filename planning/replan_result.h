@@ -19,7 +19,7 @@
 namespace touchdown::planning {
 
 struct ReplannerOptions {
-  std::string backend = "ceres";
+  std::string backend = "banded";
   std::vector<std::pair<std::string, double>> solver_options;  ///< of the backend, by name
   ArrivalMode arrival = ArrivalMode::kFixed;
   Limits limits;

@@ -197,7 +197,7 @@ BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, 
 BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
                                                                Evaluator* evaluator) {
   Errors errors;
-  const double cost = std::max(std::abs(evaluator->last().full.value), 1e-12);
+  const double cost = std::max(std::abs(evaluator->last().full.value), kSmallestCost);
   errors.gap = Complementarity({0.0, 0.0}) * (mode_.elastic ? 2 : 1) * active_ / cost;
   for (int i = 0; i < active_; ++i) {
     errors.row = std::max(errors.row, g_[i]);

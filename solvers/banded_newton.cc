@@ -55,12 +55,12 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     if (!FactorDefinite(at.hessian, &factor_)) return SolveStatus::kNumericalFailure;
     NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
     const double slope = Dot(gradient_, step_);
-    if (-0.5 * slope <= tolerances.gap * std::abs(value)) return SolveStatus::kConverged;
+    const double scale = std::max(std::abs(value), kSmallestCost);
+    if (-0.5 * slope <= tolerances.gap * scale) return SolveStatus::kConverged;
     const double length = LineSearch(value, slope, evaluator);
     if (length == 0.0) {
       // Nothing along a descent direction is lower: what is left is rounding, or the step is wrong.
-      return -slope <= 1e-9 * std::abs(value) ? SolveStatus::kConverged
-                                              : SolveStatus::kNumericalFailure;
+      return -slope <= 1e-9 * scale ? SolveStatus::kConverged : SolveStatus::kNumericalFailure;
     }
     evaluator->FinishIteration(length * std::sqrt(Dot(step_, step_)), Largest(gradient_));
     evaluator->CheckStop();

@@ -6,11 +6,16 @@
 
 namespace touchdown::solvers {
 
-/// Solves H step = -gradient with H made positive definite where it is not, and a free interval kept
-/// in its bounds: where the step would leave them it ends on the bound, and the other variables take
-/// the best step with that. `factor` holds the factor afterwards, for further right-hand sides.
-/// False if no shift makes H definite. Does not allocate.
+/// Tolerances are relative to the cost, or to this where it is smaller: the cost of a hover is zero.
+inline constexpr double kSmallestCost = 1e-9;
+
+/// Factors H, shifted until it is positive definite where it is not; a border that alone is
+/// indefinite takes its absolute value. False if no shift helps. Does not allocate.
 bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor);
+
+/// step = -H^-1 gradient with the factor of H, and a free interval kept in its bounds: where the
+/// step would leave them it ends on the bound, and the other variables take the best step with that.
+/// Does not allocate.
 void NewtonStep(const View& view, const double* y, const double* gradient,
                 const BorderedCholesky& factor, double* step);
 

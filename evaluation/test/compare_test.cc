@@ -51,10 +51,9 @@ class LyingSolver : public solvers::SolverBackend {
 
 TEST(LandingCase, RepeatsAndIsOneSceneForEverySize) {
   const CompareOptions options = Tiny();
-  const auto backends = solvers::StandardBackends();
-  CaseMaker maker(options.cases, 14, backends);
-  CaseMaker again(options.cases, 14, backends);
-  CaseMaker larger(options.cases, 20, backends);
+  CaseMaker maker(options.cases, 14);
+  CaseMaker again(options.cases, 14);
+  CaseMaker larger(options.cases, 20);
   int bound = 0;
   for (int index = 0; index < 4; ++index) {
     const LandingCase a = maker.Make(index);
@@ -82,7 +81,7 @@ TEST(LandingCase, RepeatsAndIsOneSceneForEverySize) {
 TEST(LandingCase, AWarmStartMeetsItsEndsAndIsNearTheOptimum) {
   CompareOptions options = Tiny();
   options.cases.warm = true;
-  CaseMaker maker(options.cases, 20, solvers::StandardBackends());
+  CaseMaker maker(options.cases, 20);
   planning::LandingProblem problem(17, options.cases.problem);
   const LandingCase made = maker.Make(1);
   made.Apply(&problem);
@@ -96,8 +95,7 @@ TEST(LandingCase, AWarmStartMeetsItsEndsAndIsNearTheOptimum) {
 TEST(LandingCase, RefusesUnknownForests) {
   CaseOptions options;
   options.forest = "jungle";
-  EXPECT_THROW(CaseMaker(options, 20, solvers::StandardBackends()), std::invalid_argument);
-  EXPECT_THROW(CaseMaker(CaseOptions{}, 20, {}), std::invalid_argument);
+  EXPECT_THROW(CaseMaker(options, 20), std::invalid_argument);
 }
 
 TEST(Compare, EveryBackendFindsTheOneOptimumOfTheConvexProblem) {

@@ -111,6 +111,25 @@ TEST(BandedSolver, SolvesAQuadraticInOneStep) {
   EXPECT_EQ(result.iterations, 1);
 }
 
+TEST(BandedSolver, ConvergesWhereTheCostIsZero) {
+  // Started at its optimum, or beside it, a problem without residual leaves only rounding.
+  Problem problem({.blocks = kBlocks, .block_size = 3});
+  problem.AddTerm(
+      std::make_shared<WindowTerm<Ball, SquareLoss>>(TermInfo{"sphere", "", "", "", false},
+                                                     Ball(kBlocks, 0.5), SquareLoss(1.0), kBlocks),
+      Role::kCost);
+  const View view(problem, AffineLift::Identity(kBlocks));
+  for (const double start : {0.5 / std::sqrt(3.0), 0.29, 0.2}) {
+    auto solver = MakeBandedSolver();
+    solver->Prepare(view);
+    SolverResult result;
+    solver->Solve(view, WarmStart(Eigen::VectorXd::Constant(view.num_variables(), start)), {},
+                  &result);
+    EXPECT_EQ(result.status, SolveStatus::kConverged) << start;
+    EXPECT_LT(result.cost, 1e-12);
+  }
+}
+
 TEST(BandedSolver, MeetsTheOptimalityConditions) {
   Problem problem = ChainProblem();
   AddRows(Ball(kBlocks, 0.5), &problem);

@@ -144,7 +144,7 @@ def test_land_json_is_one_document_with_every_field(run):
     assert document["time_to_land_s"] is None and document["t_star_s"] is None
     assert document["touchdown"]["error_m"] is None
     assert document["scenario"] == "open" and document["seed"] == 5
-    assert document["planner"] == "landing" and document["backend"] == "ceres"
+    assert document["planner"] == "landing" and document["backend"] == "banded"
     for key in ("time_ratio", "mean_abs_error_last_5s_m", "min_clearance_m", "replans"):
         assert key in document
     for key in ("replan_latency_ms", "deadline_misses", "realtime_factor"):
