@@ -39,18 +39,13 @@ constexpr int kMostCarefulSteps = 200;
 constexpr double kRounding = 1e-8;
 constexpr double kLeastTarget = 0.1;  // of the gap asked for
 constexpr double kBarrierDecrease = 0.2;
-constexpr double kBarrierSolved =
-    1e-2;  // errors at which the barrier's own problem counts as solved
-constexpr double kElasticPrice = 100.0;  // of a unit of violation, times the cost it starts from
+constexpr double kBarrierSolved = 1e-2;  // errors at which its own problem counts as solved
+// Prices of a unit of violation, times the cost it starts from.
+constexpr double kElasticPrice = 100.0;
+constexpr double kElasticPriceRaised = 1e5;
 
 double Dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-double Largest(const std::vector<double>& a) {
-  double largest = 0.0;
-  for (const double value : a) largest = std::max(largest, std::abs(value));
-  return largest;
 }
 
 }  // namespace
@@ -97,14 +92,22 @@ SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
   std::copy(start, start + y_.size(), y_.begin());
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
   // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by the
-  // fast steps, then by the careful ones.
-  for (const bool careful : {false, true}) {
-    if (status != SolveStatus::kNumericalFailure) return status;
-    const Mode mode{.elastic = true, .careful = careful};
+  // fast steps, then by the careful ones. A violation that remains at one price is believed at a
+  // much higher one, and never where a point without it is known.
+  bool violating = false;  // the optimum at some price
+  for (const Mode mode : {Mode{true, false, kElasticPrice}, Mode{true, false, kElasticPriceRaised},
+                          Mode{true, true, kElasticPrice}}) {
+    if (status != SolveStatus::kNumericalFailure && status != SolveStatus::kInfeasible) {
+      return status;
+    }
+    if (violating && mode.careful) break;
     std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
     status = Attempt(view, mode, {}, tolerances, evaluator);
+    violating = violating || status == SolveStatus::kInfeasible;
   }
-  return status;
+  if (status != SolveStatus::kNumericalFailure && status != SolveStatus::kInfeasible) return status;
+  const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
+  return violating && !known_feasible ? SolveStatus::kInfeasible : SolveStatus::kNumericalFailure;
 }
 
 SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
@@ -112,7 +115,7 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
                                          const Tolerances& tolerances, Evaluator* evaluator) {
   mode_ = mode;
   if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
-  price_ = kElasticPrice * std::max(std::abs(evaluator->last().full.value), 1.0);
+  price_ = mode.price * std::max(std::abs(evaluator->last().full.value), 1.0);
   StartRows(evaluator->last(), multipliers);
   if (!EvaluateAt(y_.data(), now_, evaluator)) return SolveStatus::kEvaluationFailed;
   double barrier = Complementarity({0.0, 0.0});
@@ -123,9 +126,14 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     if (!FactorDefinite(evaluator->last().hessian, &factor_)) break;
     const Errors errors = MeasureErrors(view, evaluator);
     if (errors.gap <= tolerances.gap && errors.dual <= tolerances.gap &&
-        (errors.row <= tolerances.violation || (mode.elastic && Largest(now_.z) > 0.5 * price_))) {
+        errors.primal <= Evaluator::kFeasible &&
+        (errors.row <= tolerances.violation ||
+         (mode.elastic && LargestMultiplier() > 0.5 * price_))) {
       // An earlier point may cost less by what it violates within the tolerance.
-      evaluator->PreferLast();
+      if (errors.row <= Evaluator::kFeasible ||
+          evaluator->best_violation() > Evaluator::kFeasible) {
+        evaluator->PreferLast();
+      }
       return errors.row <= Evaluator::kFeasible ? SolveStatus::kConverged
                                                 : SolveStatus::kInfeasible;
     }
@@ -180,14 +188,15 @@ double BandedInteriorPoint::CarefulDirection(const View& view, const Errors& err
 /// and the evaluator's last.
 BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, StepLengths length,
                                                                  Evaluator* evaluator) {
-  const double penalty = 2.0 * std::max(Largest(now_.z), 1e-12);
+  const double penalty = 2.0 * std::max(LargestMultiplier(), 1e-12);
   const double merit = Merit(evaluator->last().full.value, target, penalty, now_);
   // Fast steps may go uphill a little: their target differs from step to step.
   const double slack = (mode_.careful ? 1e-12 : kFastSlack) * std::abs(merit);
   for (; length.primal >= kShortestStep; length.primal *= 0.5) {
     Move(length);
-    if (!EvaluateAt(trial_.data(), next_, evaluator)) continue;
+    const bool ok = EvaluateAt(trial_.data(), next_, evaluator);
     if (evaluator->must_stop()) break;
+    if (!ok) continue;
     ReadRows(evaluator->last());
     if (Merit(evaluator->last().full.value, target, penalty, next_) <= merit + slack) break;
   }
@@ -208,6 +217,12 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
   NewtonStep(view, y_.data(), right_.data(), factor_, step_.data());
   errors.dual = -0.5 * Dot(right_, step_) / cost;
   return errors;
+}
+
+double BandedInteriorPoint::LargestMultiplier() const {
+  double largest = 0.0;
+  for (int i = 0; i < active_; ++i) largest = std::max(largest, now_.z[i]);
+  return largest;
 }
 
 void BandedInteriorPoint::PlaceRows(const ViewEvaluation& at) {

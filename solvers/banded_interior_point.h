@@ -47,6 +47,7 @@ class BandedInteriorPoint {
   struct Mode {
     bool elastic = false;
     bool careful = false;
+    double price = 0.0;  ///< of a unit of violation, times the cost it starts from
   };
   struct Errors {
     double gap = 0.0;     ///< sum of s z and e w, share of the cost
@@ -62,6 +63,7 @@ class BandedInteriorPoint {
   double CarefulDirection(const View& view, const Errors& errors, double least, double* barrier,
                           Evaluator* evaluator);
   StepLengths LineSearch(double target, StepLengths length, Evaluator* evaluator);
+  double LargestMultiplier() const;
   Errors MeasureErrors(const View& view, Evaluator* evaluator);
   void PlaceRows(const ViewEvaluation& at);
   void StartRows(const ViewEvaluation& at, const std::vector<std::vector<double>>& multipliers);

@@ -24,7 +24,7 @@ class BandedSolver : public SolverBackend {
                       SolverOptions({
                           {"gap_tolerance", 1e-7, 1e-15, 1.0, false,
                            "expected distance to the optimum that ends a solve, share of the cost"},
-                          {"violation_tolerance", 1e-8, 1e-14, 1e-3, false,
+                          {"violation_tolerance", 1e-8, 1e-14, Evaluator::kFeasible, false,
                            "violation of a hard row at which a solve may end"},
                       })) {}
 

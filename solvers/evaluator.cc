@@ -74,15 +74,14 @@ bool Evaluator::Run(const double* y, bool new_point, Want want, const Lagrangian
   }
   if (cache_valid_ && new_point) Track();
   failed_ = failed_ || !cache_valid_;
-  if (new_point) CheckStop();
+  if (new_point && !CheckStop()) AskCallback();
   return cache_valid_;
 }
 
 void Evaluator::FinishIteration(double step_norm, double gradient_max_norm) {
   ++iterations_;
   if (!stop_->trace) return;
-  trace_.push_back({iterations_, best_cost_, best_cost_by_term_,
-                    best_violation_ > kFeasible ? best_violation_ : 0.0, step_norm,
+  trace_.push_back({iterations_, best_cost_, best_cost_by_term_, best_violation_, step_norm,
                     gradient_max_norm, elapsed_s()});
 }
 
@@ -117,7 +116,12 @@ bool Evaluator::CheckStop() {
   } else if (stop_->wall_limit_s < std::numeric_limits<double>::infinity() &&
              elapsed_s() >= stop_->wall_limit_s) {
     stop_status_ = SolveStatus::kTimeLimit;
-  } else if (stop_->callback && cache_valid_) {
+  }
+  return must_stop();
+}
+
+void Evaluator::AskCallback() {
+  if (stop_->callback && cache_valid_) {
     const StopQuery query{{cached_.data(), static_cast<std::size_t>(cached_.size())},
                           storage_.full.value,
                           storage_.full.max_violation,
@@ -125,14 +129,14 @@ bool Evaluator::CheckStop() {
                           evaluations_};
     if (stop_->callback(query)) stop_status_ = SolveStatus::kStopped;
   }
-  return must_stop();
 }
 
 void Evaluator::Track() {
   const double violation = std::max(storage_.full.max_violation, kFeasible);
+  const double best_violation = std::max(best_violation_, kFeasible);
   const double cost = storage_.full.value;
-  const bool better = !has_best_ || violation < best_violation_ ||
-                      (violation == best_violation_ && cost < best_cost_);
+  const bool better = !has_best_ || violation < best_violation ||
+                      (violation == best_violation && cost < best_cost_);
   if (better) Keep();
 }
 
@@ -142,7 +146,7 @@ void Evaluator::PreferLast() {
 
 void Evaluator::Keep() {
   has_best_ = true;
-  best_violation_ = std::max(storage_.full.max_violation, kFeasible);
+  best_violation_ = storage_.full.max_violation;
   best_cost_ = storage_.full.value;
   best_ = cached_;
   best_cost_by_term_ = storage_.full.cost_by_term;

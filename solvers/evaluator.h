@@ -49,7 +49,7 @@ class Evaluator {
   /// The status that ends the solve now, or kConverged while it may go on.
   SolveStatus stop_status() const { return stop_status_; }
   bool must_stop() const { return stop_status_ != SolveStatus::kConverged; }
-  /// Asks the budgets, the clock and the callback again, without an evaluation.
+  /// Asks the budgets and the clock again; the callback is asked once at each evaluation.
   bool CheckStop();
 
   int evaluations() const { return evaluations_; }
@@ -72,6 +72,7 @@ class Evaluator {
   bool Run(const double* y, bool new_point, Want want, const Lagrangian& lagrangian);
   void Track();
   void Keep();
+  void AskCallback();
 
   const View* view_ = nullptr;
   const Stop* stop_ = nullptr;

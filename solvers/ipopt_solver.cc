@@ -36,7 +36,7 @@ std::mutex& IpoptMutex() {
 SolverOptions OptionsOf(bool exact_hessian) {
   std::vector<OptionSpec> specs = {
       {"tolerance", 1e-8, 1e-15, 1e-1, false, "scaled optimality error that ends a solve"},
-      {"violation_tolerance", 1e-8, 1e-14, 1e-3, false,
+      {"violation_tolerance", 1e-8, 1e-14, Evaluator::kFeasible, false,
        "violation of a hard row at which a solve may end"},
       {"mu_init", 1e-3, 1e-12, 1e3, false, "first barrier parameter"},
       {"warm_mu_init", 1e-6, 1e-12, 1e3, false, "the same where multipliers are given"},

@@ -62,7 +62,7 @@ SolverOptions OptionsOf(const Method& method) {
     specs.push_back({"vector_storage", 10.0, 1.0, 1000.0, true, "gradients remembered"});
   }
   if (method.capabilities.hard_rows) {
-    specs.push_back({"violation_tolerance", 1e-8, 1e-14, 1e-3, false,
+    specs.push_back({"violation_tolerance", 1e-8, 1e-14, Evaluator::kFeasible, false,
                      "violation of a hard row at which a solve may end"});
   }
   return SolverOptions(specs);

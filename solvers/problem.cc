@@ -44,9 +44,24 @@ bool Problem::convex() const {
                                               [](const Entry& e) { return e.term->info().convex; });
 }
 
+namespace {
+
+bool IsFinite(const std::vector<double>& numbers) {
+  double sum = 0.0;
+  for (const double number : numbers) sum += 0.0 * number;  // NaN if one is not finite
+  return sum == 0.0;
+}
+
+}  // namespace
+
 void Evaluation::HoldParameters() {
   hold_ = true;
-  placed_ = constant_jacobian_ = false;
+  placed_ = false;
+  ForgetConstants();
+}
+
+void Evaluation::ForgetConstants() {
+  constant_jacobian_ = false;
   constant_factor_ = std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -62,13 +77,21 @@ void Problem::Resize(Evaluation* evaluation) const {
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     evaluation->terms[i].Resize(terms_[i].term->shape());
   }
+  evaluation->HoldParameters();  // forgets what an earlier structure held
   evaluation->hold_ = false;
 }
 
 bool Problem::Evaluate(const double* x, double h, Want want, const Lagrangian& lagrangian,
                        Evaluation* evaluation) const noexcept {
+  evaluation->ok = EvaluateAll(x, h, want, lagrangian, evaluation);
+  // Derivatives taken where a map is not finite may be wrong even if they are constant.
+  if (!evaluation->ok) evaluation->ForgetConstants();
+  return evaluation->ok;
+}
+
+bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian& lagrangian,
+                          Evaluation* evaluation) const noexcept {
   const TermInput input{x, h, t0_, shape_.free_interval};
-  evaluation->ok = false;
   evaluation->value = 0.0;
   evaluation->max_violation = 0.0;
   want.gradient = want.gradient || want.hessian;
@@ -96,7 +119,7 @@ bool Problem::Evaluate(const double* x, double h, Want want, const Lagrangian& l
     return false;  // a term that throws cannot be evaluated here: the caller sees a status
   }
   if (want.gradient || want.residual) evaluation->constant_jacobian_ = evaluation->hold_;
-  return evaluation->ok = true;
+  return !want.gradient || IsFinite(evaluation->gradient);
 }
 
 bool Problem::Place(Evaluation* evaluation) const {
@@ -125,7 +148,8 @@ void Problem::StartHessian(const Lagrangian& lagrangian, const TermInput& input,
     evaluation->hessian.SetZero();
     return;
   }
-  if (evaluation->constant_factor_ != lagrangian.objective_factor) {
+  if (evaluation->constant_factor_ != lagrangian.objective_factor ||
+      evaluation->constant_nominal_ != lagrangian.nominal_curvature) {
     evaluation->constant_hessian_.SetZero();
     TermSums constant = sums;  // the gradient that this adds to is cleared below
     constant.hessian = &evaluation->constant_hessian_;
@@ -134,11 +158,13 @@ void Problem::StartHessian(const Lagrangian& lagrangian, const TermInput& input,
       terms_[i].term->Evaluate(input,
                                {.want = {.gradient = true, .hessian = true},
                                 .objective_factor = lagrangian.objective_factor,
+                                .nominal_curvature = lagrangian.nominal_curvature,
                                 .jacobian_known = evaluation->constant_jacobian_},
                                &evaluation->terms[i], constant);
     }
     std::fill(evaluation->gradient.begin(), evaluation->gradient.end(), 0.0);
     evaluation->constant_factor_ = lagrangian.objective_factor;
+    evaluation->constant_nominal_ = lagrangian.nominal_curvature;
   }
   evaluation->hessian = evaluation->constant_hessian_;
 }

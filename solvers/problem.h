@@ -43,10 +43,13 @@ struct Evaluation {
 
  private:
   friend class Problem;
+  void ForgetConstants();
+
   bool hold_ = false;
   bool placed_ = false;
   bool constant_jacobian_ = false;  // du of the quadratic terms is in the blocks
   double constant_factor_ = 0.0;    // objective factor of constant_hessian_; NaN: not there
+  bool constant_nominal_ = false;   // its nominal_curvature
   BorderedBandMatrix constant_hessian_;
 };
 
@@ -92,6 +95,8 @@ class Problem {
     std::shared_ptr<const Term> term;
     Role role;
   };
+  bool EvaluateAll(const double* x, double h, Want want, const Lagrangian& lagrangian,
+                   Evaluation* evaluation) const noexcept;
   bool Place(Evaluation* evaluation) const;
   void StartHessian(const Lagrangian& lagrangian, const TermInput& input, const TermSums& sums,
                     Evaluation* evaluation) const;

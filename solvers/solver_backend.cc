@@ -6,6 +6,7 @@
 #include "touchdown/solvers/solver_backend.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "touchdown/solvers/thread_clock.h"
@@ -85,9 +86,9 @@ bool Matches(const View& view, const std::vector<double>& signature) {
 void SolverBackend::Prepare(const View& view) {
   const std::string refusal = Refusal(view);
   if (!refusal.empty()) throw std::invalid_argument(refusal);
+  prepared_.clear();  // what follows may throw with half of it sized
   evaluator_.Prepare(view);
   DoPrepare(view);
-  prepared_.clear();
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
 }
 
@@ -103,12 +104,18 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
                                 std::to_string(warm.y.size()) + " numbers, it needs " +
                                 std::to_string(n) + " finite ones");
   }
+  for (const std::vector<double>& rows : warm.multipliers) {
+    if (!std::all_of(rows.begin(), rows.end(), [](double m) { return std::isfinite(m); })) {
+      throw std::invalid_argument("backend " + name_ +
+                                  ": the warm start has multipliers that are " + "not finite");
+    }
+  }
   const ProblemShape& shape = view.problem().shape();
   if (view.free_interval() &&
       !(warm.y[n - 1] >= shape.interval_min && warm.y[n - 1] <= shape.interval_max)) {
-    WarmStart inside = warm;
-    inside.y[n - 1] = std::clamp(warm.y[n - 1], shape.interval_min, shape.interval_max);
-    return Solve(view, inside, stop, result);
+    inside_ = warm;
+    inside_.y[n - 1] = std::clamp(warm.y[n - 1], shape.interval_min, shape.interval_max);
+    return Solve(view, inside_, stop, result);
   }
   const double cpu_start = ThreadCpuSeconds();
   evaluator_.Begin(view, stop);
@@ -117,14 +124,18 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   for (auto& rows : result->multipliers) rows.clear();  // keeps its storage
   result->interval_multiplier = 0.0;
   result->native_status = 0;
-  DoSolve(view, warm, stop, &evaluator_, result);
+  if (n == 0) {
+    evaluator_.Evaluate(warm.y.data(), {});  // all is eliminated: nothing to choose
+    result->status = SolveStatus::kConverged;
+  } else {
+    DoSolve(view, warm, stop, &evaluator_, result);
+  }
   if (evaluator_.must_stop() && result->usable()) result->status = evaluator_.stop_status();
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();
-  const double violation = evaluator_.best_violation();
-  result->max_violation = violation > Evaluator::kFeasible ? violation : 0.0;
+  result->max_violation = evaluator_.best_violation();
   result->cost_by_term.resize(evaluator_.best_cost_by_term().size());
   for (std::size_t i = 0; i < result->cost_by_term.size(); ++i) {
     result->cost_by_term[i].name = view.problem().term(static_cast<int>(i)).info().name;

@@ -65,7 +65,8 @@ class SolverBackend {
   std::string name_;
   SolverOptions options_;
   Evaluator evaluator_;
-  std::vector<double> prepared_;  // signature of the prepared structure
+  WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the interval's bounds
+  std::vector<double> prepared_;         // signature of the prepared structure
 };
 
 }  // namespace touchdown::solvers

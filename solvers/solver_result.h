@@ -63,7 +63,8 @@ struct SolverResult {
   double cost = 0.0;
   std::vector<TermCost> cost_by_term;
   double max_violation = 0.0;  ///< worst constraint violation at x
-  /// [term][window x output] of constraint terms at x, empty where the backend has none.
+  /// [term][window x output] of constraint terms at the backend's last point (x, where it converged),
+  /// empty where the backend has none.
   std::vector<std::vector<double>> multipliers;
   double interval_multiplier = 0.0;  ///< of an active bound of a free interval
   int iterations = 0;

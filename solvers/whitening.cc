@@ -12,7 +12,8 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kFirstShift = 1e-9;  // of the mean diagonal
+constexpr double kFirstShift = 1e-9;    // of the mean diagonal, and of the corner
+constexpr double kLeastCorner = 1e-10;  // of the corner: less is rounding of what was subtracted
 constexpr double kShiftGrowth = 100.0;
 constexpr int kAttempts = 8;
 
@@ -49,17 +50,23 @@ void Whitening::Prepare(const View& view) {
 bool Whitening::Set(const View& view, const double* y, ViewEvaluation* evaluation) {
   const Lagrangian nominal{.rows = rows_.data(), .nominal_curvature = true};
   if (!view.Evaluate(y, {.gradient = true, .hessian = true}, nominal, evaluation)) return false;
-  const double unit = std::max(MeanDiagonal(evaluation->hessian), 1e-12);
+  const BorderedBandMatrix& H = evaluation->hessian;
+  const double unit = MeanDiagonal(H);
+  const double corner = H.bordered() ? H.corner() : 1.0;
   double shift = 0.0;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    const BorderedCholesky::Status status = factor_.Factor(evaluation->hessian, shift, shift);
-    if (status != BorderedCholesky::Status::kIndefinite && factor_.corner() > 1e-9 * unit) {
+    const auto status = factor_.Factor(H, shift * unit, shift * corner);
+    const bool border_ok =
+        !H.bordered() || (status == BorderedCholesky::Status::kDefinite &&
+                          factor_.corner() * factor_.corner() > kLeastCorner * corner);
+    if (status != BorderedCholesky::Status::kIndefinite && border_ok) {
       regular_ = shift == 0.0;
       return true;
     }
-    shift = shift == 0.0 ? kFirstShift * unit : kShiftGrowth * shift;
+    shift = shift == 0.0 ? kFirstShift : kShiftGrowth * shift;
   }
-  return false;
+  regular_ = false;
+  return true;
 }
 
 void Whitening::ToWhite(const double* y, double* z) const { factor_.MultiplyUpper(y, z); }
