@@ -19,8 +19,6 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kStationary = 1e-9;  // share of the cost, see nlopt_solver.cc
-
 /// The objective in Ceres's variables.
 class WhitenedObjective : public ceres::FirstOrderFunction {
  public:
@@ -144,19 +142,9 @@ class CeresLbfgs : public SolverBackend {
       default:
         break;
     }
-    if (Stationary(evaluator)) return SolveStatus::kConverged;
+    if (point_.StationaryAtBest(first_cost_)) return SolveStatus::kConverged;
     return evaluator->evaluation_failed() ? SolveStatus::kEvaluationFailed
                                           : SolveStatus::kNumericalFailure;
-  }
-
-  bool Stationary(Evaluator* evaluator) {
-    const double best = evaluator->best_cost();
-    const double scale = std::max(std::abs(best), std::abs(first_cost_ - best));
-    if (!evaluator->Evaluate(evaluator->best().data(), {.gradient = true})) return false;
-    point_.Gradient(z_.data());
-    double sum = 0.0;
-    for (const double g : z_) sum += g * g;
-    return 0.5 * sum <= kStationary * scale;
   }
 
   WhitenedPoint point_;

@@ -179,18 +179,21 @@ class CeresSolver : public SolverBackend {
     IterationWatch watch(evaluator);
     solver.callbacks.push_back(&watch);
     ceres::Solver::Summary summary;
-    bool held = false;
+    bool held = false, more = false;
     for (int round = 0; round < kMostRounds; ++round) {
       {
         const ShareScope scope(evaluator, Share::kNative);
         ceres::Solve(solver, &problem, &summary);
       }
       watch.Finish();
-      if (!ChangeHold(view, evaluator, &held, &problem)) break;
+      more = ChangeHold(view, evaluator, &held, &problem);
+      if (!more) break;
     }
     result->native_status = summary.termination_type;
     result->message = summary.message;
-    result->status = Status(summary.termination_type, *evaluator);
+    // Still changing its mind about the bound after all rounds is no convergence.
+    result->status =
+        more ? SolveStatus::kNumericalFailure : Status(summary.termination_type, *evaluator);
   }
 
   /// Ceres projects its steps onto bounds, but computes them as if there were none: with the

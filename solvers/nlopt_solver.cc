@@ -276,17 +276,11 @@ class NloptSolver : public SolverBackend {
   }
 
   bool Stationary() {
-    const double best = evaluator_->best_cost();
-    const double scale = std::max(std::abs(best), std::abs(first_cost_ - best));
-    if (rows_.size() > 0) return improvement_ <= kStationary * scale;
-    if (!evaluator_->Evaluate(evaluator_->best().data(), {.gradient = true})) return false;
-    point_.Gradient(z_.data());
-    // At a bound of the interval its own gradient remains.
-    const double h = evaluator_->last().h;
-    if (h <= interval_min_ || h >= interval_max_) z_.back() = 0.0;
-    double sum = 0.0;
-    for (const double g : z_) sum += g * g;
-    return 0.5 * sum <= kStationary * scale;
+    if (rows_.size() > 0) {
+      const double best = evaluator_->best_cost();
+      return improvement_ <= kStationary * std::max(std::abs(best), std::abs(first_cost_ - best));
+    }
+    return point_.StationaryAtBest(first_cost_);
   }
 
   Method method_;

@@ -123,4 +123,21 @@ bool WhitenedPoint::Improved(double* step) {
   return true;
 }
 
+bool WhitenedPoint::StationaryAtBest(double first_cost) {
+  constexpr double kNegligible = 1e-8, kOfFirst = 1e-4;
+  if (!whiten_ || !evaluator_->Evaluate(evaluator_->best().data(), {.gradient = true}))
+    return false;
+  std::copy(last().gradient.begin(), last().gradient.end(), plain_.begin());
+  whitening_.GradientToWhite(plain_.data());
+  if (free_interval_) {
+    const bool outwards =
+        plain_.back() > 0.0 ? last().h <= interval_min_ : last().h >= interval_max_;
+    if (outwards) plain_.back() = 0.0;
+  }
+  double sum = 0.0;
+  for (const double g : plain_) sum += g * g;
+  const double cost = std::max(std::abs(evaluator_->best_cost()), kOfFirst * std::abs(first_cost));
+  return 0.5 * sum <= kNegligible * cost;
+}
+
 }  // namespace touchdown::solvers

@@ -45,6 +45,11 @@ class WhitenedPoint {
   /// In place: a dense row in y becomes one in z.
   void RowToWhite(double* row) const;
 
+  /// Whether the decrease that the metric still promises at the best point, |g|^2 / 2 in z without a
+  /// component of the interval out of its bounds, is negligible beside its cost (or a small share of
+  /// the first one). Never without whitening, where |g| has no such meaning. Moves to that point.
+  bool StationaryAtBest(double first_cost);
+
   /// The best point so far changed since the last call, or since Begin. `step` receives how far it
   /// moved in the view's variables.
   bool Improved(double* step);
