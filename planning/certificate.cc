@@ -118,9 +118,15 @@ bool StopsInObservedSpace(const UniformBspline& curve, double t, const Limits& l
 
 }  // namespace
 
-Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
-                    const Limits& limits, double reaction, const FreeSpace& space) {
+Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
+                    const SplineState* wanted, const Limits& limits, double reaction,
+                    const FreeSpace& space) {
   Certificate c;
+  if (start) {
+    const FlatState at = curve.Evaluate(t_from);
+    c.start_position_residual = (at.p_WB - start->p).norm();
+    c.start_velocity_residual = (at.v_WB - start->v).norm();
+  }
   c.endpoint_required = wanted != nullptr;
   if (wanted) {
     const SplineState end = curve.AtKnot(curve.segments());

@@ -11,7 +11,9 @@ namespace touchdown::planning {
 /// resort that ReplanStatus::kUnsafe names.
 struct Certificate {
   bool endpoint_required = true;            ///< false for braking and climbing: they end at rest
-  double endpoint_tolerance = 1e-9;         ///< on both residuals [m, m/s]
+  double endpoint_tolerance = 1e-9;         ///< on the residuals at both ends [m, m/s]
+  double start_position_residual = 0.0;     ///< |p(t_from) - start| [m]
+  double start_velocity_residual = 0.0;     ///< |v(t_from) - start| [m/s]
   double endpoint_position_residual = 0.0;  ///< |p(T) - wanted| [m]
   double endpoint_velocity_residual = 0.0;  ///< |v(T) - wanted| [m/s]
   double speed_bound = 0.0;                 ///< hull bound over the curve [m/s]
@@ -32,19 +34,25 @@ struct Certificate {
     return !endpoint_required || (endpoint_position_residual <= endpoint_tolerance &&
                                   endpoint_velocity_residual <= endpoint_tolerance);
   }
+  bool start_met() const {
+    return start_position_residual <= endpoint_tolerance &&
+           start_velocity_residual <= endpoint_tolerance;
+  }
   bool passed() const {
-    return endpoint_met() && limits_kept && (clear || escaping) && stops_in_observed_space;
+    return start_met() && endpoint_met() && limits_kept && (clear || escaping) &&
+           stops_in_observed_space;
   }
 };
 
-/// Certifies `curve` from `t_from` to its end: the endpoint against `wanted` (nullptr: none is
-/// required), the limits by the convex hull, the clearance by visiting every cell of `space` that
+/// Certifies `curve` from `t_from` to its end: its state there against `start` (nullptr: it starts
+/// there by construction), the endpoint against `wanted` (nullptr: none is required), the limits by the convex hull, the clearance by visiting every cell of `space` that
 /// the curve passes. A start beyond a limit, by its speed or by
 /// V_1 = v0 + h a0 / 2, which it fixes, is certified against the RecoveryProfile from the larger of
 /// the two on, and alike for the acceleration. The vehicle must also be
 /// able to brake, `reaction` seconds after t_from, before the curve meets cells that were never
 /// observed (the strip over the pad excepted). Does not allocate.
-Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* wanted,
-                    const Limits& limits, double reaction, const FreeSpace& space);
+Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
+                    const SplineState* wanted, const Limits& limits, double reaction,
+                    const FreeSpace& space);
 
 }  // namespace touchdown::planning

@@ -113,18 +113,22 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 
   StageTimer timer(&result->times.certificate);
   const SplineState wanted = EndStateAt(*request.pad, request.target, result->curve.t_end()).state;
-  result->certificate = Certify(result->curve, request.t0, &wanted, options_.limits,
+  result->certificate = Certify(result->curve, request.t0, &request.start, &wanted, options_.limits,
                                 options_.reaction, *request.space);
   if (options_.problem.endpoint == EndpointMode::kExplicit) {
     result->certificate.endpoint_tolerance = kRowTolerance;
   }
-  if (result->certificate.passed()) return ReplanReason::kNone;
+  // The certificate does not know every row: tilt, thrust and a user's own are the solver's word.
+  const bool rows_kept = result->solver.max_violation <= kRowTolerance;
+  if (result->certificate.passed() && rows_kept) return ReplanReason::kNone;
   if (!result->certificate.clear && !result->certificate.escaping) {
     return runs_.front().at_start ? ReplanReason::kStartBlocked : ReplanReason::kCollisionRemains;
   }
-  if (!result->certificate.endpoint_met()) return ReplanReason::kSolverFailed;
-  return result->certificate.limits_kept ? ReplanReason::kUnobserved
-                                         : ReplanReason::kLimitsExceeded;
+  if (!result->certificate.start_met() || !result->certificate.endpoint_met()) {
+    return ReplanReason::kSolverFailed;
+  }
+  return result->certificate.limits_kept && rows_kept ? ReplanReason::kUnobserved
+                                                      : ReplanReason::kLimitsExceeded;
 }
 
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,

@@ -295,7 +295,7 @@ bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::
   result_.curve = MakeRestTrajectory(start, t0, shift, options_.limits);
   StageTimer timer(&result_.times.certificate);
   result_.certificate =
-      Certify(result_.curve, t0, nullptr, options_.limits, options_.reaction, space);
+      Certify(result_.curve, t0, nullptr, nullptr, options_.limits, options_.reaction, space);
   return result_.certificate.passed();
 }
 
@@ -305,7 +305,7 @@ bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState&
                                     const FreeSpace& space) {
   if (result_.from_odometry) return false;
   const Certificate now =
-      Certify(next_, input.t_start, nullptr, options_.limits, options_.reaction, space);
+      Certify(next_, input.t_start, nullptr, nullptr, options_.limits, options_.reaction, space);
   const SplineState last = next_.AtKnot(next_.segments());
   const bool moves_at_end = last.v.norm() > kMoving;
   const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && !moves_at_end &&

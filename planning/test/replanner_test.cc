@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <memory>
+#include <string>
 
 #include "touchdown/planning/test/planning_fixtures.h"
 
@@ -177,6 +179,76 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
     }
   }
   EXPECT_EQ(ask(room, Input(start, pad, 0.0)).reason, ReplanReason::kSearchFailed);
+}
+
+/// Gives back its first guess, the first three control points moved aside: a solve that was cut.
+class CutBackend : public solvers::SolverBackend {
+ public:
+  explicit CutBackend(double aside) : SolverBackend("cut", {}), aside_(aside) {}
+  solvers::Capabilities capabilities() const override {
+    return {.hard_rows = true, .equality_rows = true};
+  }
+
+ private:
+  void DoPrepare(const solvers::View& /*view*/) override {}
+  void DoSolve(const solvers::View& /*view*/, const solvers::WarmStart& warm,
+               const solvers::Stop& /*stop*/, solvers::Evaluator* evaluator,
+               solvers::SolverResult* result) override {
+    Eigen::VectorXd y = warm.y;
+    for (const int row : {0, 3, 6}) y[row] += aside_;
+    evaluator->Evaluate(y.data(), {});
+    result->status = solvers::SolveStatus::kIterationLimit;
+  }
+  double aside_;
+};
+
+solvers::BackendRegistry OnlyCut(double aside) {
+  return {{"cut", "", [aside] { return std::make_unique<CutBackend>(aside); }}};
+}
+
+TEST(Replanner, ACutSolveThatViolatesARowIsNoPlan) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  const auto plan = [&](const solvers::BackendRegistry& backends, double tilt_max,
+                        const std::string& backend) {
+    ReplannerOptions options = Options(ArrivalMode::kFixed);
+    options.backend = backend;
+    options.max_iterations = 1;
+    options.max_duration = 10.0;  // no time to wait until the tilt is small of itself
+    options.problem.vehicle.tilt_max = tilt_max;
+    options.problem.settings = {{"tilt_limit", {}, true, {}}};
+    Replanner replanner(options, backends);
+    replanner.CommitHover(start, 0.0);
+    const ReplanResult result = replanner.Replan(Input(start, pad, 0.0), map);
+    EXPECT_TRUE(result.status != ReplanStatus::kPlanned || result.solver.max_violation <= 2e-6);
+    return result;
+  };
+  EXPECT_EQ(plan(OnlyCut(0.0), 0.6, "cut").status, ReplanStatus::kPlanned);
+  const ReplanResult steep = plan(OnlyCut(0.0), 0.02, "cut");
+  EXPECT_NE(steep.status, ReplanStatus::kPlanned);
+  EXPECT_EQ(steep.reason, ReplanReason::kLimitsExceeded);
+  for (const double tilt_max : {0.02, 0.05, 0.1, 0.2}) {
+    plan(solvers::StandardBackends(), tilt_max, "banded");
+  }
+}
+
+TEST(Replanner, ACutSolveThatStartsElsewhereIsNoPlan) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  for (const double aside : {0.0, 1e-5, 0.3}) {
+    ReplannerOptions options = Options(ArrivalMode::kFixed);
+    options.backend = "cut";
+    options.problem.endpoint = EndpointMode::kExplicit;
+    Replanner replanner(options, OnlyCut(aside));
+    replanner.CommitHover(start, 0.0);
+    const ReplanResult result = replanner.Replan(Input(start, pad, 0.0), map);
+    const bool there = aside == 0.0;
+    EXPECT_EQ(result.status == ReplanStatus::kPlanned, there) << aside;
+    EXPECT_EQ(result.reason, there ? ReplanReason::kNone : ReplanReason::kSolverFailed) << aside;
+    EXPECT_LT((replanner.Reference(0.02).p_WB - start).norm(), 1e-9);
+  }
 }
 
 TEST(Replanner, UnobservedSpaceIsEnteredAtACrawlOrNotAtAll) {
