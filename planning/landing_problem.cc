@@ -80,6 +80,8 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
     asked_for = setup.weight > 0.0 || settings.hard.value_or(false);
   }
   if (!asked_for) return;
+  // A row's weight counts in the whitening's metric alone, which must not lose it.
+  if (setup.hard && !(setup.weight > 0.0)) setup.weight = 1.0;
   const std::shared_ptr<solvers::Term> term = entry.make(setup);
   problem_.AddTerm(term, setup.hard ? solvers::Role::kConstraint : solvers::Role::kCost);
   if (auto* user = dynamic_cast<ContextUser*>(term.get())) context_users_.push_back(user);

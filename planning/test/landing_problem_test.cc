@@ -302,5 +302,20 @@ TEST(LandingProblem, RefusesTooFewSegments) {
   EXPECT_THROW(LandingProblem(5, {}), std::invalid_argument);
 }
 
+TEST(LandingProblem, ATermThatIsOffByDefaultHasAMetricAsRows) {
+  LandingProblemOptions options;
+  options.settings = {{"tilt_limit", {}, true, {}}};
+  const LandingProblem landing(12, options);
+  const solvers::Problem& problem = landing.view().problem();
+  int found = 0;
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    if (problem.term(i).info().name != "tilt_limit") continue;
+    ++found;
+    EXPECT_EQ(problem.role(i), solvers::Role::kConstraint);
+    EXPECT_GT(problem.term(i).nominal_row_weight(), 0.0);
+  }
+  EXPECT_EQ(found, 1);
+}
+
 }  // namespace
 }  // namespace touchdown::planning
