@@ -8,7 +8,7 @@
 
 namespace touchdown::planning {
 
-/// A landing drawn at random with everything that a LandingContext points to: a pad on an arc, a
+/// A landing drawn at random with everything that a LandingContext points to: a turning pad, a
 /// sinking endpoint, a previous plan, moving obstacles and pairs. Half of the starts are beyond the
 /// limits. For derivative checks.
 class RandomContext {
@@ -20,12 +20,13 @@ class RandomContext {
   const LandingContext& get() const { return context_; }
 
  private:
-  /// A pad on a circular arc: its derivatives are exact.
+  /// A pad whose position is cubic in time: derivatives are exact, and its snap, which no prediction
+  /// has, is zero.
   class Pad : public estimation::PadPrediction {
    public:
     estimation::PadState At(double t) const noexcept override;
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    double radius = 5.0, rate = 0.3, phase = 0.0;
+    double t_reference = 0.0;
+    estimation::PadState state;  // at t_reference
   };
 
   Pad pad_;
