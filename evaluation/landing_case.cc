@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Starts and goals follow the scenes EGO-Planner was measured in (start in the middle of the
 // forest, velocity within 0.4 rad of the goal's direction); the goal is a pad on a coordinated turn.
-// The scene is a function of (seed, index, draw): each kind of draw has its own stream.
+// The scene is a function of (seed, index, draw): each kind of draw has its own stream. Which draw is
+// taken, and how long its flight is, is decided at one size for all.
 #include "touchdown/evaluation/landing_case.h"
 
 #include <cmath>
@@ -34,6 +35,7 @@ constexpr double kDetour = 1.05;        // of the duration guess
 constexpr double kLongest = 12.0;       // a scene that takes longer is drawn again [s]
 constexpr double kStretch = 1.15;       // of the duration, where the limits do not leave room
 constexpr int kStretches = 4;
+constexpr double kReach = 12.0;        // start to goal along x and y: inside the map [m]
 constexpr double kKeepOut = 2.0;       // no pillar around start and goal [m]
 constexpr double kLater = 0.1;         // of the warm problem [s]
 constexpr double kPressure = 1.6;      // weight of the pairs grows by this every round
@@ -54,12 +56,13 @@ std::shared_ptr<const estimation::PadPrediction> Foretold(const PadBelief& belie
 
 planning::OccupancyMapOptions MapOptions(double inflation) {
   planning::OccupancyMapOptions options;
-  options.size_log2 = {8, 8, 5};  // 25.6 x 25.6 x 3.2 m: all within 12 m of the start
+  options.size_log2 = {8, 8, 5};  // 25.6 x 25.6 x 3.2 m around the start
   options.inflation_radius = inflation;
   return options;
 }
 
 planning::LandingProblemOptions MakingOptions(planning::LandingProblemOptions options) {
+  options.arrival = planning::ArrivalMode::kFixed;
   options.limits_mode = planning::LimitsMode::kSoft;
   options.endpoint = planning::EndpointMode::kEliminated;
   return options;
@@ -69,6 +72,17 @@ planning::LandingProblemOptions HardOptions(planning::LandingProblemOptions opti
   options = MakingOptions(std::move(options));
   options.limits_mode = planning::LimitsMode::kHard;
   return options;
+}
+
+// The shifted previous plan, with the ends of the new problem.
+planning::UniformBspline WarmStart(const LandingCase& later,
+                                   const planning::UniformBspline& previous, int segments) {
+  const planning::UniformBspline rest =
+      planning::ShiftedSpline(previous, later.t0, later.duration, segments);
+  planning::SplineState end =
+      planning::EndStateAt(*later.pad, later.target, later.t0 + later.duration).state;
+  end.a = rest.AtKnot(rest.segments()).a;  // it is free
+  return planning::WithEnds(rest, later.start, end);
 }
 
 }  // namespace
@@ -88,25 +102,31 @@ Eigen::VectorXd LandingCase::StartPoint(const planning::LandingProblem& problem)
 struct CaseMaker::Scene {
   planning::SplineState start;
   PadBelief pad;
+  std::uint64_t forest_seed = 0;
   double duration = 0.0;
   planning::EndpointTarget target;
   std::unique_ptr<planning::OccupancyMap> map;
   planning::FreeSpace space;
 };
 
+CaseMaker::Binder::Binder(const CaseOptions& options, int points)
+    : problem(points - 3, MakingOptions(options.problem)),
+      hard(points - 3, HardOptions(options.problem)),
+      backend(solvers::MakeBandedSolver()) {
+  backend->Prepare(problem.view());
+  hard.view().Resize(&limits);
+}
+
 CaseMaker::CaseMaker(const CaseOptions& options, int points)
     : options_(options),
-      problem_(points - 3, MakingOptions(options.problem)),
-      hard_(points - 3, HardOptions(options.problem)),
-      backend_(solvers::MakeBandedSolver()),
+      reference_(options, kReferencePoints),
+      binder_(options, points),
       search_(kVerticalCost) {
   sim::ForestOfKind(options.forest);
   planning::OccupancyMap checks_inflation(MapOptions(options.inflation));
-  backend_->Prepare(problem_.view());
-  hard_.view().Resize(&limits_);
 }
 
-// An unusable scene (too long a flight) has no map.
+// An unusable scene (too long a flight, or the goal out of reach) has no map.
 CaseMaker::Scene CaseMaker::DrawScene(int index, int draw) const {
   const auto stream = [&](const char* what) {
     return RandomStream(options_.seed, fmt::format("compare {} {} {}", index, draw, what));
@@ -123,8 +143,8 @@ CaseMaker::Scene CaseMaker::DrawScene(int index, int draw) const {
   scene.start.p = {x, y, start.Uniform(1.0, 2.0)};
   const double speed = start.Uniform(0.0, 0.7 * limits.speed);
   scene.start.v = speed * Level(direction + start.Uniform(-0.4, 0.4));
-  scene.start.a = start.Uniform(0.0, 0.2 * limits.acceleration) *
-                  Level(start.Uniform(-std::numbers::pi, std::numbers::pi));
+  const double acceleration = start.Uniform(0.0, 0.2 * limits.acceleration);
+  scene.start.a = acceleration * Level(start.Uniform(-std::numbers::pi, std::numbers::pi));
 
   const double distance = pad.Uniform(7.0, 11.0);
   const double fastest = std::min(2.0, 0.6 * limits.speed);
@@ -133,81 +153,101 @@ CaseMaker::Scene CaseMaker::DrawScene(int index, int draw) const {
   scene.pad.mean(2) = pad.Uniform(0.25 * fastest, fastest);
   scene.pad.mean(3) = pad.Uniform(-std::numbers::pi, std::numbers::pi);
   scene.pad.mean(4) = pad.Uniform(-0.2, 0.2);
+  scene.forest_seed = static_cast<std::uint64_t>(world.Uniform(0.0, 0x1.0p53));
 
   const auto foretold = Foretold(scene.pad);
   scene.target.height = kArrivalHeight;
   scene.target.sink_rate = kSinkRate;
   scene.target.height_floor = -1.0e3;  // sinking goes on: the end stays smooth in a free arrival
-  scene.duration =
-      planning::GuessDuration(scene.start, 0.0, *foretold, {0.0, kArrivalHeight}, limits, kDetour);
-  if (!(scene.duration <= kLongest)) return scene;
-  scene.target.t_reference = scene.duration;
-
-  sim::ForestConfig forest = sim::ForestOfKind(options_.forest);
-  const Eigen::Vector3d goal = foretold->At(scene.duration).p_WP;
-  forest.keep_out = {{scene.start.p.head<2>(), kKeepOut}, {goal.head<2>(), kKeepOut}};
-  const auto forest_seed = static_cast<std::uint64_t>(world.Uniform(0.0, 0x1.0p53));
-  scene.map = std::make_unique<planning::OccupancyMap>(MapOptions(options_.inflation));
-  scene.map->Recentre({scene.start.p.x(), scene.start.p.y(), 0.5 * forest.height});
-  FillMap(sim::MakeForest(forest, forest_seed), scene.map.get());
-  scene.space.map = scene.map.get();
-  scene.space.floor = kFloor;
-  scene.space.ceiling = kCeiling;
+  SetDuration(
+      planning::GuessDuration(scene.start, 0.0, *foretold, {0.0, kArrivalHeight}, limits, kDetour),
+      &scene);
   return scene;
 }
 
-// Leaves the last curve in `curve`; false if it could not be made clear within the full limits:
+// Where the pad will be decides which part of the forest is kept free. False, and no map, if the
+// flight is too long or ends outside the map.
+bool CaseMaker::SetDuration(double duration, Scene* scene) const {
+  scene->map.reset();
+  if (!(duration <= kLongest)) return false;
+  const Eigen::Vector2d start = scene->start.p.head<2>();
+  const Eigen::Vector2d goal = Foretold(scene->pad)->At(duration).p_WP.head<2>();
+  if ((goal - start).lpNorm<Eigen::Infinity>() > kReach) return false;
+  scene->duration = duration;
+  scene->target.t_reference = duration;
+  sim::ForestConfig forest = sim::ForestOfKind(options_.forest);
+  forest.keep_out = {{start, kKeepOut}, {goal, kKeepOut}};
+  scene->map = std::make_unique<planning::OccupancyMap>(MapOptions(options_.inflation));
+  scene->map->Recentre({start.x(), start.y(), 0.5 * forest.height});
+  FillMap(sim::MakeForest(forest, scene->forest_seed), scene->map.get());
+  scene->space.map = scene->map.get();
+  scene->space.floor = kFloor;
+  scene->space.ceiling = kCeiling;
+  return true;
+}
+
+// Leaves the last curve in `curve`, if there was one. Not clear: also if it exceeds the full limits;
 // such a problem is one of how much to violate, which nobody flies.
-bool CaseMaker::BindUntilClear(const Scene& scene, LandingCase* made,
-                               planning::UniformBspline* curve) {
+CaseMaker::Outcome CaseMaker::BindUntilClear(const Scene& scene, Binder* binder, LandingCase* made,
+                                             planning::UniformBspline* curve) {
+  planning::LandingProblem& problem = binder->problem;
   std::vector<planning::BlockedRun> runs;
   std::vector<Eigen::Vector3d> guide;
   solvers::Stop stop;
   stop.max_iterations = kIterations;
   solvers::SolverResult result;
   Eigen::VectorXd y;
+  made->clear = false;
   for (made->rounds = 0;; ++made->rounds) {
-    made->Apply(&problem_);
-    if (made->rounds == 0) y = problem_.Guess();
-    backend_->Solve(problem_.view(), y, stop, &result);
-    if (!result.usable()) return false;
+    made->Apply(&problem);
+    if (made->rounds == 0) y = made->StartPoint(problem);
+    binder->backend->Solve(problem.view(), y, stop, &result);
+    if (!result.usable()) return Outcome::kUnsolved;
     y = result.x;
-    *curve = problem_.Curve(y);
+    *curve = problem.Curve(y);
     FindBlockedRuns(*curve, made->t0, scene.space, &runs);
     if (runs.empty()) {
-      made->Apply(&hard_);
-      return hard_.view().Evaluate(y.data(), {}, {}, &limits_) && limits_.full.max_violation <= 0.0;
+      made->Apply(&binder->hard);
+      made->clear = binder->hard.view().Evaluate(y.data(), {}, {}, &binder->limits) &&
+                    binder->limits.full.max_violation <= 0.0;
+      return made->clear ? Outcome::kClear : Outcome::kNotClear;
     }
-    if (made->rounds == kRounds) return false;
+    if (made->rounds == kRounds) return Outcome::kNotClear;
     int bound = 0;
     for (const planning::BlockedRun& run : runs) {
-      if (run.at_start || run.at_end) return false;
+      if (run.at_start || run.at_end) return Outcome::kNotClear;
       const planning::SearchStatus found =
           search_.Search(scene.space, curve->Evaluate(run.t_in).p_WB,
                          curve->Evaluate(run.t_out).p_WB, kExpansions, &guide);
-      if (found != planning::SearchStatus::kFound) return false;
+      if (found != planning::SearchStatus::kFound) return Outcome::kNotClear;
       bound += BindPairs(*curve, run, guide, scene.space,
-                         static_cast<std::size_t>(problem_.max_pairs()), &made->pairs);
+                         static_cast<std::size_t>(problem.max_pairs()), &made->pairs);
     }
-    if (bound == 0) return false;
+    if (bound == 0) return Outcome::kNotClear;
     if (made->rounds > 0) made->pair_scale *= kPressure;
   }
 }
 
-// As the replanner does, a longer flight is tried where the guessed one leaves no room.
-bool CaseMaker::StretchUntilClear(const Scene& scene, LandingCase* made,
-                                  planning::UniformBspline* curve) {
-  for (int stretch = 0; stretch <= kStretches; ++stretch, made->duration *= kStretch) {
-    made->target.t_reference = made->duration;
+// At the reference size. As the replanner does, a longer flight is tried where the guessed one
+// leaves no room.
+CaseMaker::Outcome CaseMaker::StretchUntilClear(Scene* scene, LandingCase* made,
+                                                planning::UniformBspline* curve) {
+  bool unsolved = false;
+  for (int stretch = 0; stretch <= kStretches; ++stretch) {
+    if (stretch > 0 && !SetDuration(kStretch * scene->duration, scene)) break;
+    if (scene->space.Blocked(scene->start.p)) break;
+    made->duration = scene->duration;
+    made->target = scene->target;
     made->pairs.clear();
     made->pair_scale = 1.0;
-    if (BindUntilClear(scene, made, curve)) return true;
+    const Outcome outcome = BindUntilClear(*scene, &reference_, made, curve);
+    if (outcome == Outcome::kClear) return outcome;
+    unsolved = unsolved || outcome == Outcome::kUnsolved;
   }
-  return false;
+  return unsolved ? Outcome::kUnsolved : Outcome::kNotClear;
 }
 
-// What the planner meets 0.1 s later: vehicle and pad where they were expected, but for noise, and
-// the previous solution to start from.
+// What the planner meets 0.1 s later: vehicle and pad where they were expected, but for noise.
 LandingCase CaseMaker::Later(const Scene& scene, const LandingCase& first,
                              const planning::UniformBspline& solution, int draw) const {
   RandomStream noise(options_.seed, fmt::format("compare {} {} later", first.index, draw));
@@ -231,40 +271,62 @@ LandingCase CaseMaker::Later(const Scene& scene, const LandingCase& first,
   later.duration = solution.t_end() - later.t0;
   later.pairs.clear();
   later.pair_scale = 1.0;
-  const planning::UniformBspline rest =
-      planning::ShiftedSpline(solution, later.t0, later.duration, problem_.segments());
-  planning::SplineState end =
-      planning::EndStateAt(*later.pad, later.target, later.t0 + later.duration).state;
-  end.a = rest.AtKnot(rest.segments()).a;  // it is free
-  later.warm = planning::WithEnds(rest, later.start, end);
   return later;
 }
 
+// Accepts the scene at the reference size, then binds pairs at the wanted one.
+CaseMaker::Outcome CaseMaker::MakeOf(Scene* scene, int draw, LandingCase* made) {
+  planning::UniformBspline curve;
+  const Outcome first = StretchUntilClear(scene, made, &curve);
+  if (first != Outcome::kClear) return first;
+  LandingCase here = *made;
+  here.pairs.clear();
+  here.pair_scale = 1.0;
+  planning::UniformBspline plan = curve;
+  BindUntilClear(*scene, &binder_, &here, &plan);
+  if (options_.warm) {
+    LandingCase later = Later(*scene, here, curve, draw);
+    here = later;
+    later.warm = WarmStart(later, curve, reference_.problem.segments());
+    const Outcome again = BindUntilClear(*scene, &reference_, &later, &curve);
+    if (again != Outcome::kClear) return again;
+    here.warm = WarmStart(here, plan, binder_.problem.segments());
+    BindUntilClear(*scene, &binder_, &here, &plan);
+  }
+  *made = std::move(here);
+  return Outcome::kClear;
+}
+
 LandingCase CaseMaker::Make(int index) {
+  int not_clear = 0;
+  int unsolved = 0;
   for (int draw = 0; draw < kScenes; ++draw) {
-    const Scene scene = DrawScene(index, draw);
+    Scene scene = DrawScene(index, draw);
     if (!scene.map || scene.space.Blocked(scene.start.p)) continue;
     LandingCase made;
     made.index = index;
     made.start = scene.start;
     made.pad = Foretold(scene.pad);
-    made.target = scene.target;
-    made.duration = scene.duration;
     made.pad_speed = scene.pad.mean(2);
     made.pad_rate = scene.pad.mean(4);
-    planning::UniformBspline curve;
-    if (!StretchUntilClear(scene, &made, &curve)) continue;
-    if (options_.warm) {
-      made = Later(scene, made, curve, draw);
-      if (!BindUntilClear(scene, &made, &curve)) continue;
+    switch (MakeOf(&scene, draw, &made)) {
+      case Outcome::kClear:
+        made.draws = draw + 1;
+        made.not_clear = not_clear;
+        made.unsolved = unsolved;
+        return made;
+      case Outcome::kNotClear:
+        ++not_clear;
+        break;
+      case Outcome::kUnsolved:
+        ++unsolved;
+        break;
     }
-    made.draws = draw + 1;
-    return made;
   }
   throw std::runtime_error(fmt::format(
       "problem {}: none of {} scenes of forest kind {} with an inflation of {:.4g} m could be "
-      "made clear",
-      index, kScenes, options_.forest, options_.inflation));
+      "made clear: {} not within the limits, {} not solved by {}, the others out of reach",
+      index, kScenes, options_.forest, options_.inflation, not_clear, unsolved, backend()));
 }
 
 }  // namespace touchdown::evaluation

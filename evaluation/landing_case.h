@@ -40,8 +40,11 @@ struct LandingCase {
       warm;                ///< where the solve starts; none: the Hermite guess
   double pad_speed = 0.0;  ///< [m/s]
   double pad_rate = 0.0;   ///< [rad/s]
-  int draws = 1;           ///< scenes drawn until one could be made clear
-  int rounds = 0;          ///< of binding pairs
+  int draws = 1;           ///< scenes drawn until one could be made clear ...
+  int not_clear = 0;       ///< ... of those before: no clear curve within the limits was found
+  int unsolved = 0;   ///< ... and: a solve of the making backend failed; the rest: out of reach
+  int rounds = 0;     ///< of binding pairs, at this size
+  bool clear = true;  ///< with these pairs, at this size; else they are those of the last round
 
   /// Sets the problem's parameters to this case. The case must outlive the solves.
   void Apply(planning::LandingProblem* problem) const;
@@ -51,32 +54,48 @@ struct LandingCase {
 
 /// Draws landing problems: a forest, a start and a moving, turning pad; then pairs by the planner's
 /// own loop (solve, check the whole curve, search around what blocks it, bind, solve again; then
-/// with a longer flight) until the curve is clear and keeps the full limits. The pairs are made with soft limits and an eliminated endpoint, whatever the
-/// comparison solves later: the problem does not depend on who solves it. The same (seed, index)
-/// gives the same scene for any number of points.
+/// with a longer flight) until the curve is clear and keeps the full limits. Pairs are made with soft
+/// limits, a fixed arrival and an eliminated endpoint, whatever the comparison solves later: the
+/// problem does not depend on who solves it. Whether a scene is taken, and its duration, are settled
+/// at kReferencePoints, so that the same (seed, index) is the same scene for any number of points;
+/// then pairs are bound at that number. A curve that they do not make clear there is kept as it is.
 class CaseMaker {
  public:
+  static constexpr int kReferencePoints = 30;
+
   /// Throws std::invalid_argument if an option is out of range or no backend can make pairs.
   CaseMaker(const CaseOptions& options, int points);
 
   /// Throws std::runtime_error if a hundred scenes in a row could not be made clear.
   LandingCase Make(int index);
 
-  const std::string& backend() const { return backend_->name(); }
+  const std::string& backend() const { return reference_.backend->name(); }
 
  private:
+  enum class Outcome { kClear, kNotClear, kUnsolved };
   struct Scene;
+  /// What pairs are bound with at one size.
+  struct Binder {
+    Binder(const CaseOptions& options, int points);
+
+    planning::LandingProblem problem;
+    planning::LandingProblem hard;  // the same with hard limits, to judge by
+    solvers::ViewEvaluation limits;
+    std::unique_ptr<solvers::SolverBackend> backend;
+  };
+
   Scene DrawScene(int index, int draw) const;
-  bool StretchUntilClear(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
-  bool BindUntilClear(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
+  bool SetDuration(double duration, Scene* scene) const;
+  Outcome StretchUntilClear(Scene* scene, LandingCase* made, planning::UniformBspline* curve);
+  Outcome BindUntilClear(const Scene& scene, Binder* binder, LandingCase* made,
+                         planning::UniformBspline* curve);
   LandingCase Later(const Scene& scene, const LandingCase& first,
                     const planning::UniformBspline& solution, int draw) const;
+  Outcome MakeOf(Scene* scene, int draw, LandingCase* made);
 
   CaseOptions options_;
-  planning::LandingProblem problem_;
-  planning::LandingProblem hard_;  // the same with hard limits, to judge by
-  solvers::ViewEvaluation limits_;
-  std::unique_ptr<solvers::SolverBackend> backend_;
+  Binder reference_;
+  Binder binder_;
   planning::GridSearch search_;
 };
 
