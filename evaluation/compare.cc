@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The measurement. The reference cost of a problem is the best feasible one over tight solves of
-// all backends, `banded` and `ipopt` always among them where they can solve it. A timed solve runs
+// all backends, `banded` and `ipopt` always among them where they can solve it, even when they are
+// out of the timed solves. A timed solve runs
 // with tolerances that never end it and is ended from outside by one test for all, at its evaluations:
 // cost within the gap of the reference, rows within Evaluator::kFeasible. No backend's own idea of
 // convergence decides. The point it returns is evaluated anew; what it says of itself counts for
@@ -13,11 +14,13 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/sim/random_stream.h"
 #include "touchdown/solvers/evaluator.h"
 #include "touchdown/solvers/thread_clock.h"
 
@@ -44,13 +47,15 @@ struct Contestant {
   std::unique_ptr<SolverBackend> tight;     ///< for SolvePhase::kTight
   std::unique_ptr<SolverBackend> unending;  ///< for those that are ended from outside
   std::unique_ptr<SolverBackend> usual;     ///< for SolvePhase::kDeadline, default tolerances
-  double seconds = 0.0;                     ///< used so far
-  bool out = false;
+  double seconds = 0.0;                     ///< used so far, but for the tight solves
+  bool out = false;                         ///< of all but FindReference, if it is a referee
 };
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
+
+bool IsReferee(const std::string& name) { return Contains(kReferees, name); }
 
 void SetTolerances(double tolerance, double violation, solvers::SolverOptions* options) {
   for (const solvers::OptionSpec& spec : std::vector(options->specs())) {
@@ -84,8 +89,11 @@ class Bench {
         result_(result) {
     problem_.view().Resize(&outside_);
     for (const solvers::BackendEntry& entry : registry) {
-      if (slow.contains(entry.name)) continue;
-      Enter(entry);
+      if (!slow.contains(entry.name)) {
+        Enter(entry, false);
+      } else if (IsReferee(entry.name)) {
+        Enter(entry, true);
+      }
     }
   }
 
@@ -94,7 +102,7 @@ class Bench {
   const std::vector<Contestant>& contestants() const { return contestants_; }
 
  private:
-  void Enter(const solvers::BackendEntry& entry);
+  void Enter(const solvers::BackendEntry& entry, bool out);
   void WarmUp(const LandingCase& made);
   Merit Judge(const Eigen::VectorXd& y);
   SolveRow Solve(Contestant* who, SolvePhase phase, const Stop& stop, int index);
@@ -102,8 +110,9 @@ class Bench {
   void SolveToGap(Contestant* who, const ProblemRow& row, int repeat, bool shares);
   void SolveUnderDeadline(Contestant* who, const ProblemRow& row, int repeat);
   void Rate(const ProblemRow& row, SolveRow* solve) const;
-  /// Backends that may still run, in an order that turns from one call to the next.
-  std::vector<Contestant*> InTurn(int turn);
+  /// All backends in a random order, a function of seed, size and arguments: nobody always follows
+  /// the same one.
+  std::vector<Contestant*> Shuffled(int index, SolvePhase phase, int repeat);
 
   const CompareOptions& options_;
   int points_;
@@ -118,11 +127,12 @@ class Bench {
   solvers::SolverResult solver_;
 };
 
-void Bench::Enter(const solvers::BackendEntry& entry) {
+void Bench::Enter(const solvers::BackendEntry& entry, bool out) {
   Contestant who;
   who.name = entry.name;
+  who.out = out;
   who.compared = options_.backends.empty() || Contains(options_.backends, entry.name);
-  if (!who.compared && !Contains(kReferees, entry.name)) return;
+  if (!who.compared && !IsReferee(entry.name)) return;
   who.tight = entry.make();
   who.unending = entry.make();
   who.usual = entry.make();
@@ -153,11 +163,14 @@ void Bench::WarmUp(const LandingCase& made) {
   }
 }
 
-std::vector<Contestant*> Bench::InTurn(int turn) {
+std::vector<Contestant*> Bench::Shuffled(int index, SolvePhase phase, int repeat) {
+  sim::RandomStream stream(options_.cases.seed, fmt::format("compare order {} {} {} {}", points_,
+                                                            index, ToString(phase), repeat));
   std::vector<Contestant*> order;
-  for (std::size_t i = 0; i < contestants_.size(); ++i) {
-    Contestant& who = contestants_[(i + static_cast<std::size_t>(turn)) % contestants_.size()];
-    if (!who.out) order.push_back(&who);
+  for (Contestant& who : contestants_) order.push_back(&who);
+  for (std::size_t left = order.size(); left > 1; --left) {
+    const auto drawn = static_cast<std::size_t>(stream.Uniform(0.0, static_cast<double>(left)));
+    std::swap(order[left - 1], order[std::min(drawn, left - 1)]);
   }
   return order;
 }
@@ -187,7 +200,7 @@ SolveRow Bench::Solve(Contestant* who, SolvePhase phase, const Stop& stop, int i
   row.cpu_ms = 1e3 * (solvers::ThreadCpuSeconds() - cpu);
   row.wall_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - wall).count();
-  who->seconds += 1e-3 * row.wall_ms;
+  if (phase != SolvePhase::kTight) who->seconds += 1e-3 * row.wall_ms;
   row.points = points_;
   row.problem = index;
   row.backend = who->name;
@@ -216,13 +229,15 @@ void Bench::FindReference(ProblemRow* row) {
   stop.max_iterations = kIterations;
   stop.wall_limit_s = kSolveLimit;
   std::vector<SolveRow> solves;
-  for (Contestant* who : InTurn(row->made.index)) {
+  for (Contestant* who : Shuffled(row->made.index, SolvePhase::kTight, 0)) {
+    if (who->out && !IsReferee(who->name)) continue;
+    ++row->reference_solves;
     SolveRow solve = Solve(who, SolvePhase::kTight, stop, row->made.index);
     if (solve.reached && !(solve.cost >= row->reference_cost)) {
       row->reference_cost = solve.cost;
       row->reference_backend = solve.backend;
     }
-    if (who->compared) solves.push_back(std::move(solve));
+    if (who->compared && !who->out) solves.push_back(std::move(solve));
   }
   for (SolveRow& solve : solves) {
     Rate(*row, &solve);
@@ -277,14 +292,14 @@ void Bench::Run(int index) {
   FindReference(&row);
   if (std::isfinite(row.reference_cost)) {
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-      for (Contestant* who : InTurn(index + repeat)) {
-        if (!who->compared) continue;
+      for (Contestant* who : Shuffled(index, SolvePhase::kGap, repeat)) {
+        if (!who->compared || who->out) continue;
         SolveToGap(who, row, repeat, false);
         if (options_.deadline_ms) SolveUnderDeadline(who, row, repeat);
       }
     }
-    for (Contestant* who : InTurn(index)) {
-      if (who->compared) SolveToGap(who, row, 0, true);
+    for (Contestant* who : Shuffled(index, SolvePhase::kShares, 0)) {
+      if (who->compared && !who->out) SolveToGap(who, row, 0, true);
     }
   }
   result_->problems.push_back(std::move(row));
@@ -303,10 +318,17 @@ void Bench::Run(int index) {
 void CheckNames(const std::vector<std::string>& names, const solvers::BackendRegistry& registry) {
   std::vector<std::string> known;
   for (const solvers::BackendEntry& entry : registry) known.push_back(entry.name);
-  for (const std::string& name : names) {
-    if (!Contains(known, name)) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (name->empty()) {
       throw BadInput(
-          fmt::format("--backends {}: unknown; the backends are {}.", name, Enumerate(known)));
+          fmt::format("--backends: a name is empty; the backends are {}.", Enumerate(known)));
+    }
+    if (std::find(names.begin(), name, *name) != name) {
+      throw BadInput(fmt::format("--backends {}: named twice.", *name));
+    }
+    if (!Contains(known, *name)) {
+      throw BadInput(
+          fmt::format("--backends {}: unknown; the backends are {}.", *name, Enumerate(known)));
     }
   }
 }

@@ -22,8 +22,9 @@ struct CompareOptions {
   double gap = 1e-4;                  ///< of the cost, at which a problem counts as solved
   int repeats = 3;                    ///< of the timed solve; their median counts
   std::optional<double> deadline_ms;  ///< also solve under this wall-clock limit
-  /// Wall time that a backend may use at one number of points: one that used more sits out the
-  /// remaining problems, and all larger sizes.
+  /// Wall time that a backend may use at one number of points, tight solves not counted: one that
+  /// used more sits out the remaining problems, and all larger sizes. The referees among them still
+  /// help to find the reference.
   double backend_seconds = 20.0;
 };
 
@@ -64,6 +65,7 @@ struct ProblemRow {
   LandingCase made;
   double reference_cost = 0.0;    ///< NaN: no backend found a feasible point
   std::string reference_backend;  ///< whose tight solve it is
+  int reference_solves = 0;       ///< tight solves that it is the best of
 };
 
 /// A backend that was not compared, or only on some of the problems, and the sentence why.
@@ -80,9 +82,9 @@ struct CompareResult {
   std::vector<Refusal> refusals;
 };
 
-/// Solves every problem with every backend. Backends take turns problem by problem, so that what
-/// disturbs the machine meets all of them. `report(done, all)` is called after each problem.
-/// Throws BadInput if a backend is unknown or none can solve the formulation.
+/// Solves every problem with every backend. Backends take turns problem by problem in a random order
+/// that repeats with the seed, so that what disturbs the machine meets all of them. `report(done, all)` is called after each problem.
+/// Throws BadInput if a backend is unknown or named twice, or none can solve the formulation.
 CompareResult RunCompare(const CompareOptions& options, const solvers::BackendRegistry& registry,
                          const std::function<void(int done, int all)>& report);
 

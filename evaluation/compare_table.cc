@@ -16,9 +16,10 @@ namespace {
 
 constexpr char kSchema[] = R"sql(
 CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE problem(points INTEGER, problem INTEGER, draws INTEGER, rounds INTEGER,
-  pairs INTEGER, duration_s REAL, start_speed_mps REAL, pad_speed_mps REAL, pad_rate_radps REAL,
-  distance_m REAL, reference_cost REAL, reference_backend TEXT, PRIMARY KEY(points, problem));
+CREATE TABLE problem(points INTEGER, problem INTEGER, draws INTEGER, not_clear INTEGER,
+  unsolved INTEGER, rounds INTEGER, clear INTEGER, pairs INTEGER, duration_s REAL, start_speed_mps REAL, pad_speed_mps REAL, pad_rate_radps REAL,
+  distance_m REAL, reference_cost REAL, reference_backend TEXT,
+  reference_solves INTEGER, PRIMARY KEY(points, problem));
 CREATE TABLE solve(points INTEGER, problem INTEGER, backend TEXT, phase TEXT, repeat INTEGER,
   status TEXT, reached INTEGER, time_cpu_ms REAL, time_wall_ms REAL, iterations INTEGER,
   evaluations INTEGER, cost REAL, gap REAL, end_position_m REAL, end_velocity_mps REAL,
@@ -48,13 +49,14 @@ void WriteManifest(SqliteDb& db, const CompareOptions& options, const MachineSta
 
 void WriteProblems(SqliteDb& db, const CompareResult& result) {
   SqliteStatement insert =
-      db.Prepare("INSERT INTO problem VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      db.Prepare("INSERT INTO problem VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (const ProblemRow& row : result.problems) {
     const LandingCase& made = row.made;
     const double distance = (made.pad->At(made.t0).p_WP - made.start.p).head<2>().norm();
-    insert.Run(row.points, made.index, made.draws, made.rounds, static_cast<int>(made.pairs.size()),
-               made.duration, made.start.v.norm(), made.pad_speed, made.pad_rate, distance,
-               row.reference_cost, row.reference_backend);
+    insert.Run(row.points, made.index, made.draws, made.not_clear, made.unsolved, made.rounds,
+               made.clear, static_cast<int>(made.pairs.size()), made.duration, made.start.v.norm(),
+               made.pad_speed, made.pad_rate, distance, row.reference_cost, row.reference_backend,
+               row.reference_solves);
   }
 }
 
