@@ -108,23 +108,36 @@ std::string ScalingTable(const CompareOptions& options, const CompareResult& res
 std::string ProblemsText(const CompareOptions& options, const CompareResult& result, int points) {
   std::vector<double> pairs, durations;
   int redrawn = 0;
+  int not_clear = 0;
+  int unsolved = 0;
+  int kept = 0;
   int without = 0;
   for (const ProblemRow& row : result.problems) {
     if (row.points != points) continue;
     pairs.push_back(static_cast<double>(row.made.pairs.size()));
     durations.push_back(row.made.duration);
     redrawn += row.made.draws - 1;
+    not_clear += row.made.not_clear;
+    unsolved += row.made.unsolved;
+    kept += !row.made.clear;
     without += !std::isfinite(row.reference_cost);
   }
   std::string text = fmt::format(
       "{} points, {} arrival, {} limits, {} endpoint, {} start: {} problems in forest {}, seed {}\n"
-      "  in the median T {:.2f} s and {:.0f} pairs; {} scenes drawn again\n",
+      "  in the median T {:.2f} s and {:.0f} pairs\n"
+      "  {} scenes drawn again: {} not clear within the limits, {} where a solve for the pairs "
+      "failed, {} out of reach\n",
       points, Arrival(options), Limits(options), Endpoint(options),
       options.cases.warm ? "warm" : "cold", pairs.size(), options.cases.forest, options.cases.seed,
-      Quantile(durations, 0.5).value_or(0.0), Quantile(pairs, 0.5).value_or(0.0), redrawn);
+      Quantile(durations, 0.5).value_or(0.0), Quantile(pairs, 0.5).value_or(0.0), redrawn,
+      not_clear, unsolved, redrawn - not_clear - unsolved);
+  if (kept > 0) {
+    text += fmt::format("  {} problems not clear with this many points: pairs of the last round\n",
+                        kept);
+  }
   if (without > 0) {
     text +=
-        fmt::format("  {} of them without a feasible point from any backend, left out\n", without);
+        fmt::format("  {} problems without a feasible point from any backend, left out\n", without);
   }
   return text;
 }
@@ -159,6 +172,16 @@ Json SummaryJson(const BackendSummary& s) {
                         {"cost_gap", QuantilesOrNull(s.deadline->gap)},
                         {"solves", s.deadline->solves},
                         {"best_returned", s.deadline->best_returned}};
+  }
+  return json;
+}
+
+// Only backends that ran all problems: figures over different problems are not to be compared.
+Json PooledJson(const CompareResult& result) {
+  Json json = Json::object();
+  const int all = RatedProblems(result, 0);
+  for (const BackendSummary& summary : Summarise(result, 0)) {
+    if (summary.problems == all) json[summary.backend] = SummaryJson(summary);
   }
   return json;
 }
@@ -214,7 +237,7 @@ Json CompareJson(const CompareOptions& options, const CompareResult& result,
   Json json;
   json["problems"] = options.problems;
   json["settings"] = CompareSettings(options);
-  json["backends"] = BackendsJson(result, 0);
+  json["backends"] = PooledJson(result);
   json["by_points"] = Json::object();
   for (const int points : options.points) {
     json["by_points"][std::to_string(points)] = BackendsJson(result, points);

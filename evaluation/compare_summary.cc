@@ -52,6 +52,15 @@ ShareSummary Mean(const std::vector<solvers::SolveShares>& all) {
   return sum;
 }
 
+// Problems with a reference: without one a solve has nothing to be compared with.
+std::set<ProblemKey> Rated(const CompareResult& result) {
+  std::set<ProblemKey> rated;
+  for (const ProblemRow& row : result.problems) {
+    if (std::isfinite(row.reference_cost)) rated.insert({row.points, row.made.index});
+  }
+  return rated;
+}
+
 BackendSummary SummariseOne(const std::vector<const SolveRow*>& solves,
                             const std::string& backend) {
   BackendSummary summary;
@@ -132,28 +141,39 @@ Quantiles QuantilesOf(const std::vector<double>& values) {
 }
 
 std::vector<BackendSummary> Summarise(const CompareResult& result, int points) {
-  // Without a reference a tight solve has nothing to be compared with.
-  std::set<ProblemKey> rated;
-  for (const ProblemRow& row : result.problems) {
-    if (std::isfinite(row.reference_cost)) rated.insert({row.points, row.made.index});
-  }
+  const std::set<ProblemKey> rated = Rated(result);
   std::vector<BackendSummary> summaries;
   for (const std::string& backend : result.backends) {
     std::vector<const SolveRow*> solves;
+    int wrong = 0;  // converged, as it says, at no feasible point of a problem without a reference
     for (const SolveRow& row : result.solves) {
-      const bool wanted = points == 0 || row.points == points;
-      if (wanted && row.backend == backend && rated.contains({row.points, row.problem})) {
+      if (row.backend != backend || (points != 0 && row.points != points)) continue;
+      if (rated.contains({row.points, row.problem})) {
         solves.push_back(&row);
+      } else {
+        wrong += row.phase == SolvePhase::kTight &&
+                 row.status == solvers::SolveStatus::kConverged &&
+                 !(row.max_violation <= solvers::Evaluator::kFeasible);
       }
     }
     summaries.push_back(SummariseOne(solves, backend));
+    summaries.back().reported_success += wrong;
   }
   return summaries;
 }
 
+int RatedProblems(const CompareResult& result, int points) {
+  const std::set<ProblemKey> rated = Rated(result);
+  return static_cast<int>(std::count_if(rated.begin(), rated.end(), [points](const auto& key) {
+    return points == 0 || key.first == points;
+  }));
+}
+
 std::optional<double> ScalingSlope(const CompareResult& result, const std::string& backend) {
+  const std::set<ProblemKey> rated = Rated(result);
   std::map<int, std::vector<double>> per_iteration;
   for (const SolveRow& row : result.solves) {
+    if (!rated.contains({row.points, row.problem})) continue;
     if (row.backend != backend || row.phase != SolvePhase::kTight || row.iterations == 0) continue;
     per_iteration[row.points].push_back(row.cpu_ms / row.iterations);
   }

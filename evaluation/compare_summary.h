@@ -41,11 +41,12 @@ struct BackendSummary {
   Interval solved_interval;
   Quantiles cpu_ms;  ///< to the gap, a failure's time infinite
   Quantiles wall_ms;
-  Quantiles iterations;      ///< of the solved ones, to the gap
-  Quantiles evaluations;     ///< of the solved ones, to the gap
-  int reported_success = 0;  ///< tight solves that called themselves converged
-  int agreeing = 0;          ///< of these, within 1e-4 of the reference
-  Quantiles tight_gap;       ///< of the tight solves; infinite where the point is not feasible
+  Quantiles iterations;   ///< of the solved ones, to the gap
+  Quantiles evaluations;  ///< of the solved ones, to the gap
+  /// Tight solves that called themselves converged; also where no backend found a feasible point.
+  int reported_success = 0;
+  int agreeing = 0;     ///< of these, within 1e-4 of the reference
+  Quantiles tight_gap;  ///< of the tight solves; infinite where the point is not feasible
   Quantiles tight_cpu_ms;
   double end_position_max = 0.0;  ///< [m], over all returned points
   double end_velocity_max = 0.0;  ///< [m/s]
@@ -54,6 +55,9 @@ struct BackendSummary {
   std::optional<double> ms_per_iteration;  ///< median over the tight solves, CPU time
   std::optional<DeadlineSummary> deadline;
 };
+
+/// Problems with a reference; `points` 0: of all sizes.
+int RatedProblems(const CompareResult& result, int points);
 
 /// All backends of the result, in its order; `points` 0: over all sizes.
 std::vector<BackendSummary> Summarise(const CompareResult& result, int points);

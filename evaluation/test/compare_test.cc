@@ -2,6 +2,7 @@
 // The problems repeat, the judge stands outside, failures stay failures.
 #include "touchdown/evaluation/compare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,7 +24,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 CompareOptions Tiny() {
   CompareOptions options;
   options.cases.problem.limits = {4.0, 6.0};
-  options.cases.forest = "B";
+  options.cases.forest = std::string("B");
   options.problems = 2;
   options.points = {14};
   options.repeats = 1;
@@ -53,7 +54,8 @@ TEST(LandingCase, RepeatsAndIsOneSceneForEverySize) {
   const CompareOptions options = Tiny();
   CaseMaker maker(options.cases, 14);
   CaseMaker again(options.cases, 14);
-  CaseMaker larger(options.cases, 20);
+  CaseMaker larger(options.cases, 40);
+  CaseMaker smallest(options.cases, 9);
   int bound = 0;
   for (int index = 0; index < 4; ++index) {
     const LandingCase a = maker.Make(index);
@@ -63,10 +65,16 @@ TEST(LandingCase, RepeatsAndIsOneSceneForEverySize) {
     ASSERT_EQ(a.pairs.size(), b.pairs.size());
     for (std::size_t i = 0; i < a.pairs.size(); ++i) EXPECT_EQ(a.pairs[i].p, b.pairs[i].p);
     bound += static_cast<int>(a.pairs.size());
-    const LandingCase c = larger.Make(index);
-    if (a.draws == c.draws) {
+    for (CaseMaker* other : {&larger, &smallest}) {
+      const LandingCase c = other->Make(index);
+      EXPECT_EQ(a.draws, c.draws);
       EXPECT_EQ(a.start.p, c.start.p);
+      EXPECT_EQ(a.duration, c.duration);
+      EXPECT_EQ(a.pad->At(1.0).p_WP, c.pad->At(1.0).p_WP);
     }
+    EXPECT_GE(a.draws - 1, a.not_clear + a.unsolved);
+    const Eigen::Vector3d way = a.pad->At(a.duration).p_WP - a.start.p;
+    EXPECT_LE(way.head<2>().lpNorm<Eigen::Infinity>(), 12.0) << "the goal is off the map";
     EXPECT_LE(a.start.v.norm(), 0.7 * 4.0);
     EXPECT_GE(a.pad_speed, 0.5);
     EXPECT_LE(a.pad_speed, 2.0);
@@ -90,6 +98,28 @@ TEST(LandingCase, AWarmStartMeetsItsEndsAndIsNearTheOptimum) {
   const planning::UniformBspline curve = problem.Curve(made.StartPoint(problem));
   EXPECT_LT((curve.AtKnot(0).p - made.start.p).norm(), 1e-9);
   EXPECT_LT((curve.control_points() - made.warm->control_points()).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(LandingCase, DoesNotHangOnWhatIsSolvedLater) {
+  CompareOptions options = Tiny();
+  options.cases.warm = true;
+  CaseOptions other = options.cases;
+  other.problem.arrival = planning::ArrivalMode::kFree;
+  other.problem.limits_mode = planning::LimitsMode::kHard;
+  other.problem.endpoint = planning::EndpointMode::kExplicit;
+  CaseMaker one(options.cases, 20);
+  CaseMaker two(other, 20);
+  int bound = 0;
+  for (int index = 0; index < 4; ++index) {
+    const LandingCase a = one.Make(index);
+    const LandingCase b = two.Make(index);
+    EXPECT_EQ(a.start.p, b.start.p);
+    ASSERT_EQ(a.pairs.size(), b.pairs.size());
+    for (std::size_t i = 0; i < a.pairs.size(); ++i) EXPECT_EQ(a.pairs[i].p, b.pairs[i].p);
+    EXPECT_EQ(a.warm->control_points(), b.warm->control_points());
+    bound += static_cast<int>(a.pairs.size());
+  }
+  EXPECT_GT(bound, 0) << "no forest was in the way";
 }
 
 TEST(LandingCase, RefusesUnknownForests) {
@@ -160,6 +190,39 @@ TEST(Compare, ASlowBackendSitsOut) {
   ASSERT_EQ(result.refusals.size(), 2U);
   EXPECT_THAT(result.refusals[0].reason, HasSubstr("stopped after 1 of 2 problems"));
   EXPECT_THAT(result.refusals[1].reason, HasSubstr("sits out"));
+  // Its figures stand under the size, not beside those of backends that ran all problems.
+  const nlohmann::ordered_json json = CompareJson(options, result, {});
+  EXPECT_TRUE(json["backends"].empty());
+  EXPECT_EQ(json["by_points"]["14"]["ceres"]["problems"], 1);
+}
+
+TEST(Compare, ASlowRefereeStillHelpsToFindTheReference) {
+  CompareOptions options = Tiny();
+  options.backends = {"banded", "ceres"};
+  options.points = {14, 16};
+  options.backend_seconds = 1e-9;
+  const solvers::BackendRegistry registry = solvers::StandardBackends();
+  const bool ipopt = std::any_of(registry.begin(), registry.end(),
+                                 [](const auto& e) { return e.name == "ipopt"; });
+  const CompareResult result = Compared(options, registry);
+  ASSERT_EQ(result.problems.size(), 4U);
+  EXPECT_EQ(result.problems[0].reference_solves, 2 + ipopt);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_EQ(result.problems[i].reference_solves, 1 + ipopt);
+    EXPECT_TRUE(std::isfinite(result.problems[i].reference_cost));
+  }
+  for (const SolveRow& row : result.solves) {
+    EXPECT_EQ(row.points, 14);
+    EXPECT_EQ(row.problem, 0);
+  }
+}
+
+TEST(Compare, RefusesEmptyAndDoubleNames) {
+  CompareOptions options = Tiny();
+  options.backends = {"banded", "banded"};
+  EXPECT_THROW(Compared(options, solvers::StandardBackends()), BadInput);
+  options.backends.back().clear();
+  EXPECT_THROW(Compared(options, solvers::StandardBackends()), BadInput);
 }
 
 TEST(Compare, UnderADeadlineTheBestFeasiblePointComesBack) {
@@ -192,6 +255,8 @@ CompareResult MadeUp() {
       solve.phase = SolvePhase::kTight;
       solve.iterations = 10;
       solve.cpu_ms = 1e-3 * points * points;  // slope 2
+      if (problem == 3) solve.cpu_ms = 1.0;
+      solve.max_violation = problem == 3 ? 1.0 : 0.0;
       solve.gap = problem == 2 ? 0.5 : 1e-9;
       result.solves.push_back(solve);
       solve.phase = SolvePhase::kGap;
@@ -213,8 +278,10 @@ TEST(CompareSummary, FailuresAreInfiniteAndTheMedianRepeatCounts) {
   EXPECT_DOUBLE_EQ(*s.cpu_ms.median, 2.0);  // of 1, 2, infinite
   EXPECT_EQ(*s.cpu_ms.p95, kInfinity);
   EXPECT_EQ(*s.cpu_ms.max, kInfinity);
-  EXPECT_EQ(s.reported_success, 3);
+  EXPECT_EQ(s.reported_success, 4) << "with the one where nobody found a feasible point";
   EXPECT_EQ(s.agreeing, 2);
+  EXPECT_EQ(RatedProblems(MadeUp(), 10), 3);
+  EXPECT_EQ(RatedProblems(MadeUp(), 0), 9);
   EXPECT_EQ(Summarise(MadeUp(), 0)[0].problems, 9);
 }
 

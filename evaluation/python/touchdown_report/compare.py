@@ -67,8 +67,16 @@ class Comparison:
         ).fetchall()
         self._tight = db.execute(
             "SELECT points, backend, time_cpu_ms / iterations FROM solve "
-            "WHERE phase = 'tight' AND iterations > 0"
+            "JOIN problem USING(points, problem) "
+            "WHERE phase = 'tight' AND iterations > 0 AND reference_cost IS NOT NULL"
         ).fetchall()
+        self._rated = dict(
+            db.execute("SELECT points, COUNT(reference_cost) FROM problem GROUP BY points")
+        )
+
+    def rated(self, points):
+        """Number of problems with a reference cost."""
+        return self._rated[points]
 
     def times(self, points):
         """Milliseconds to the gap: {backend: {problem: ms}}, the median of the repeats, infinite
@@ -94,29 +102,30 @@ def middle(values):
     return float(low if low == high else (low + high) / 2)
 
 
-def steps(values):
-    """The distribution function of the finite values: (values in order, fraction of all)."""
+def steps(values, count):
+    """The distribution function of the finite values: (values in order, fraction of `count`)."""
     values = np.sort(np.asarray(values, dtype=float))
     solved = values[np.isfinite(values)]
-    return solved, np.arange(1, len(solved) + 1) / max(1, len(values))
+    return solved, np.arange(1, len(solved) + 1) / max(1, count)
 
 
-def profile(times):
-    """Dolan and Moré: {backend: (ratios, fractions)}, the fraction of its problems that a backend
-    solves within `ratio` times the fastest backend's time. Problems that none solved count."""
+def profile(times, count):
+    """Dolan and Moré: {backend: (ratios, fractions)}, the fraction of `count` problems that a
+    backend solves within `ratio` times the fastest backend's time. Problems that none solved count,
+    and one that a backend was not run on counts as not solved by it."""
     best = {}
     for runs in times.values():
         for problem, ms in runs.items():
             best[problem] = min(ms, best.get(problem, np.inf))
     return {
-        backend: steps([ms / best[k] if np.isfinite(ms) else np.inf for k, ms in runs.items()])
+        backend: steps([ms / best[k] if np.isfinite(ms) else np.inf for k, ms in runs.items()], count)
         for backend, runs in times.items()
     }
 
 
-def ecdf(times):
-    """{backend: (milliseconds, fraction of its problems solved by then)}."""
-    return {backend: steps(list(runs.values())) for backend, runs in times.items()}
+def ecdf(times, count):
+    """{backend: (milliseconds, fraction of `count` problems solved by then)}."""
+    return {backend: steps(list(runs.values()), count) for backend, runs in times.items()}
 
 
 def slope(per_iteration):
@@ -135,19 +144,24 @@ def looks(backends):
     }
 
 
-def draw_steps(axes, curves, styles, counts):
+def label_of(backend, solved, run, count):
+    """The legend tells a problem that a backend was not run on from one that it failed on."""
+    return f"{backend} ({solved} of {count}{'' if run == count else f'; {run} of {count} run'})"
+
+
+def draw_steps(axes, curves, styles, runs, count):
     """Step curves on a logarithmic axis, each drawn on to the right edge."""
     right = max([x[-1] for x, _ in curves.values() if len(x)] or [10.0]) * 1.3
     for backend, (x, y) in curves.items():
         if len(x) == 0:
-            axes.plot([], [], label=f"{backend} (0 of {counts[backend]})", **styles[backend])
+            axes.plot([], [], label=label_of(backend, 0, runs[backend], count), **styles[backend])
             continue
         axes.step(
             np.concatenate([[x[0]], x, [right]]),
             np.concatenate([[0.0], y, [y[-1]]]),
             where="post",
             lw=1.6,
-            label=f"{backend} ({len(x)} of {counts[backend]})",
+            label=label_of(backend, len(x), runs[backend], count),
             **styles[backend],
         )
     axes.set_xscale("log")
@@ -156,12 +170,13 @@ def draw_steps(axes, curves, styles, counts):
 
 def draw_size(row, comparison, points, styles):
     times = comparison.times(points)
-    counts = {backend: len(runs) for backend, runs in times.items()}
-    draw_steps(row[0], profile(times), styles, counts)
+    count = comparison.rated(points)
+    runs = {backend: len(of_backend) for backend, of_backend in times.items()}
+    draw_steps(row[0], profile(times, count), styles, runs, count)
     row[0].set_title(f"{points} points: performance profile")
     row[0].set_xlabel("time / fastest backend's time on the same problem")
     row[0].set_ylabel("fraction of problems solved")
-    draw_steps(row[1], ecdf(times), styles, counts)
+    draw_steps(row[1], ecdf(times, count), styles, runs, count)
     row[1].set_title(f"{points} points: time to the gap")
     row[1].set_xlabel("thread CPU time [ms]")
     row[1].legend(**LEGEND)
