@@ -41,6 +41,37 @@ struct CompareArguments {
   }
 };
 
+// Unlike CLI::Range, which lets NaN through.
+CLI::Validator FiniteRange(double low, double high) {
+  const std::string range = fmt::format("[{:g} - {:g}]", low, high);
+  const auto check = [low, high, range](const std::string& text) {
+    double value = 0.0;
+    const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+    return inside ? std::string() : fmt::format("Value {} not in range {}", text, range);
+  };
+  return CLI::Validator(check, "FLOAT in " + range);
+}
+
+// D is B's map with a larger inflation, which is an option here.
+std::vector<std::string> ComparedForests() {
+  std::vector<std::string> kinds = sim::ForestKinds();
+  std::erase(kinds, "D");
+  return kinds;
+}
+
+// The parser's own delimiter drops empty names.
+std::vector<std::string> SplitNames(const std::vector<std::string>& lists) {
+  std::vector<std::string> names;
+  for (const std::string& list : lists) {
+    for (std::size_t from = 0; from <= list.size();) {
+      const std::size_t to = std::min(list.find(',', from), list.size());
+      names.push_back(list.substr(from, to - from));
+      from = to + 1;
+    }
+  }
+  return names;
+}
+
 // Reports about every two seconds.
 class Progress {
  public:
@@ -88,6 +119,7 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   std::sort(options.points.begin(), options.points.end());
   options.points.erase(std::unique(options.points.begin(), options.points.end()),
                        options.points.end());
+  options.backends = SplitNames(options.backends);
   options.cases.warm = arguments.start == "warm";
   planning::LandingProblemOptions& problem = options.cases.problem;
   problem.terms = registries.terms;
@@ -147,36 +179,35 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
       ->check(one_of({"eliminated", "explicit"}))
       ->capture_default_str();
   command->add_option("--backends", options.backends, "Which ones; default: all that can solve it")
-      ->delimiter(',')
       ->type_name("NAME,NAME,...");
   command->add_option("--seed", cases.seed, "Seed of the problems")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       ->capture_default_str();
   command->add_option("--gap", options.gap, "Relative gap to the best known cost: solved")
-      ->check(CLI::Range(1e-9, 1.0))
+      ->check(FiniteRange(1e-9, 1.0))
       ->capture_default_str();
   command
       ->add_option("--repeats", options.repeats, "Timed solves of each problem; the median counts")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--deadline-ms", options.deadline_ms, "Also stop solves after this wall time")
-      ->check(CLI::Range(1e-3, 1e5));
+      ->check(FiniteRange(1e-3, 1e5));
   command->add_option("--forest", cases.forest, "Kind of forest")
-      ->check(one_of(sim::ForestKinds()))
+      ->check(one_of(ComparedForests()))
       ->capture_default_str();
   command->add_option("--inflation", cases.inflation, "Obstacles are grown by this [m]")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(FiniteRange(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--speed-limit", cases.problem.limits.speed, "[m/s]")
-      ->check(CLI::Range(1.0, 30.0))
+      ->check(FiniteRange(1.0, 30.0))
       ->capture_default_str();
   command->add_option("--acceleration-limit", cases.problem.limits.acceleration, "[m/s^2]")
-      ->check(CLI::Range(1.0, 50.0))
+      ->check(FiniteRange(1.0, 50.0))
       ->capture_default_str();
   command
       ->add_option("--backend-seconds", options.backend_seconds,
                    "A backend that used this much wall time at one size sits out the rest [s]")
-      ->check(CLI::Range(0.1, 1e6))
+      ->check(FiniteRange(0.1, 1e6))
       ->capture_default_str();
   command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
   AddOutputOption(*command, "--db", &arguments->db, "Write every solve, an SQLite file", "F.db");

@@ -16,15 +16,17 @@ def test_a_profile_by_hand():
         "b": {0: 2.0, 1: 2.0, 2: INF},
         "c": {0: 8.0},  # not run on the others
     }
-    curves = compare.profile(times)
+    curves = compare.profile(times, 3)
     assert curves["a"][0].tolist() == [1.0, 2.0]
     assert np.allclose(curves["a"][1], [1 / 3, 2 / 3])  # one problem nobody solved
     assert curves["b"][0].tolist() == [1.0, 2.0]
-    assert curves["c"][0].tolist() == [8.0] and curves["c"][1].tolist() == [1.0]
+    assert curves["c"][0].tolist() == [8.0] and np.allclose(curves["c"][1], [1 / 3])
+    assert compare.label_of("c", 1, 1, 3) == "c (1 of 3; 1 of 3 run)"
+    assert compare.label_of("a", 2, 3, 3) == "a (2 of 3)"
 
 
 def test_failures_keep_a_distribution_below_one():
-    milliseconds, fractions = compare.ecdf({"a": {0: 3.0, 1: INF, 2: 1.0, 3: INF}})["a"]
+    milliseconds, fractions = compare.ecdf({"a": {0: 3.0, 1: INF, 2: 1.0, 3: INF}}, 4)["a"]
     assert milliseconds.tolist() == [1.0, 3.0]
     assert fractions.tolist() == [0.25, 0.5]
 
@@ -60,6 +62,7 @@ def test_a_table_is_read_and_tells_what_it_was_made_with(table_path):
         assert key in comparison.manifest
     times = comparison.times(12)
     assert set(times["banded"]) == {0, 1}
+    assert comparison.rated(12) == 2
     assert all(ms > 0 for ms in times["banded"].values())
     assert sorted(comparison.per_iteration("ceres")) == [12, 16]
     with sqlite3.connect(table_path) as db:
@@ -85,6 +88,22 @@ def test_the_program_draws_without_keeping_a_table(run, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["out.png"]
+
+
+@pytest.mark.parametrize(
+    "option, value",
+    [
+        *((name, "nan") for name in ("--gap", "--deadline-ms", "--inflation", "--speed-limit")),
+        ("--acceleration-limit", "inf"),
+        ("--backend-seconds", "nan"),
+        ("--backends", "banded,banded"),
+        ("--backends", "banded,,ceres"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_by_name(run, option, value):
+    done = run("compare", "--problems", "1", "--points", "9", "--allow-debug", option, value)
+    assert done.returncode == 2
+    assert option in done.stderr and done.stdout == ""
 
 
 def test_other_files_are_refused_in_a_sentence(tmp_path, capsys):
