@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace touchdown::solvers {
@@ -15,6 +16,12 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+// Differences resolve a derivative up to so much of value / step: some ulps, over the relative error
+// that callers ask for.
+constexpr double kRounding = 1e6 * std::numeric_limits<double>::epsilon();
+// Share of a term's nominal curvature below which differences across a hinge's edge say nothing.
+constexpr double kReach = 1e-3;
 
 /// All u (or all residuals) of a view's evaluation in one vector.
 VectorXd Stack(const View& view, const ViewEvaluation& e, bool residuals) {
@@ -77,11 +84,65 @@ VectorXd LagrangianGradient(const View& view, const ViewEvaluation& e,
   return gradient;
 }
 
-double RelativeError(const MatrixXd& mine, const MatrixXd& difference) {
+/// Errors are measured against the arrays' own size, and where this is smaller against `floor`.
+double RelativeError(const MatrixXd& mine, const MatrixXd& difference, double floor) {
   if (mine.size() == 0) return 0.0;
-  const double scale = 1.0 + difference.cwiseAbs().maxCoeff();
-  const double error = (mine - difference).cwiseAbs().maxCoeff() / scale;
-  return std::isfinite(error) ? error : HUGE_VAL;
+  if (!mine.allFinite() || !difference.allFinite() || !std::isfinite(floor)) return HUGE_VAL;
+  const double error = (mine - difference).cwiseAbs().maxCoeff();
+  if (error == 0.0) return 0.0;
+  return error / std::max({mine.cwiseAbs().maxCoeff(), difference.cwiseAbs().maxCoeff(), floor});
+}
+
+double Largest(const MatrixXd& m) { return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff(); }
+
+/// Sizes of what goes into the compared numbers before it cancels: sum of |du| |x| over a window for
+/// the largest u and residual, and for the whole sum.
+struct Magnitudes {
+  double u = 0.0, r = 0.0, value = 0.0, slope = 0.0;
+};
+
+Magnitudes MagnitudesOf(const View& view, const ViewEvaluation& e, const Lagrangian& lagrangian) {
+  Magnitudes m;
+  m.value = std::abs(e.full.value);
+  const int d = view.block_size();
+  for (int i = 0; i < view.problem().num_terms(); ++i) {
+    const TermBlock& block = e.full.terms[i];
+    const TermShape& shape = view.problem().term(i).shape();
+    const bool cost = view.problem().role(i) == Role::kCost;
+    const double* multiplier = lagrangian.rows ? lagrangian.rows[i].multiplier : nullptr;
+    const int v = shape.window * d;
+    for (int j = 0; j < block.windows * shape.outputs; ++j) {
+      const double* x = &e.x[static_cast<std::size_t>(block.first_block[j / shape.outputs] * d)];
+      double u = std::abs(block.u[j]) + std::abs(block.du_dh[j] * e.h), steepest = 0.0;
+      for (int k = 0; k < v; ++k) {
+        const double du = std::abs(block.du[j * v + k]);
+        u += du * std::abs(x[k]);
+        steepest = std::max(steepest, du);
+      }
+      m.u = std::max(m.u, u);
+      if (!cost) {
+        if (multiplier) m.slope += std::abs(multiplier[j]) * steepest;
+        continue;
+      }
+      m.r = std::max(m.r, std::abs(block.r[j]) + std::abs(block.dr[j]) * u);
+      m.value += std::abs(block.drho[j]) * u;
+      m.slope += (std::abs(block.drho[j]) + std::abs(block.d2rho[j]) * u) * steepest;
+    }
+  }
+  return m;
+}
+
+/// The Hessian as backends read it, the block diagonal whole.
+MatrixXd Dense(const BorderedBandMatrix& hessian) {
+  const int n = hessian.size(), d = hessian.block_size();
+  MatrixXd dense(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) dense(i, j) = hessian.At(i, j);
+  }
+  for (int b = 0; b < hessian.blocks(); ++b) {
+    for (int i = 0; i < d * d; ++i) dense(b * d + i / d, b * d + i % d) = hessian.block(b, 0)[i];
+  }
+  return dense;
 }
 
 /// Evaluations on both sides of the point along one variable.
@@ -136,7 +197,11 @@ class Coordinates {
 
 double DerivativeErrors::worst() const {
   if (!evaluated) return HUGE_VAL;
-  return std::max({gradient, hessian, residual_jacobian, row_jacobian});
+  double worst = 0.0;
+  for (const double error : {gradient, hessian, residual_jacobian, row_jacobian}) {
+    worst = std::isnan(error) ? HUGE_VAL : std::max(worst, error);
+  }
+  return worst;
 }
 
 DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lagrangian& lagrangian,
@@ -164,9 +229,12 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
                        LagrangianGradient(view, s.minus, lagrangian)) /
            (2.0 * s.dz);
   };
+  double longest = 0.0, shortest = HUGE_VAL;
   for (int j = 0; j < n; ++j) {
     const VectorXd direction = in.direction(j);
     const double dz = step / direction.cwiseAbs().maxCoeff();
+    longest = std::max(longest, dz);
+    shortest = std::min(shortest, dz);
     // On the edge of a hinge the gradient grows like u^2 to one side, and the error of its central
     // difference with the step: extrapolated away by half a step.
     if (!evaluate_sides(direction, 0.5 * dz)) return errors;
@@ -178,17 +246,22 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
     r_difference.col(j) = ResidualDifference(view, s, r_jacobian.col(j));
   }
 
-  MatrixXd mine(n, n);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) mine(i, j) = s.at.hessian.At(i, j);
-  }
-  mine = in.Rows(in.Rows(mine).transpose());
+  const Magnitudes sizes = MagnitudesOf(view, s.at, lagrangian);
+  const MatrixXd mine = in.Rows(in.Rows(Dense(s.at.hessian)).transpose()).transpose();
+  const VectorXd slope = in.Gradient(Eigen::Map<const VectorXd>(s.at.gradient.data(), n));
+  // The curvature that the terms have where they act: near the edge of a hinge all is smaller, but
+  // the differences reach over it.
+  Lagrangian nominal = lagrangian;
+  nominal.nominal_curvature = true;
+  if (!view.Evaluate(y.data(), kAll, nominal, &s.plus)) return errors;
+  const double bend = Largest(in.Rows(in.Rows(Dense(s.plus.hessian)).transpose()));
+  const double rounding = kRounding / shortest;
   errors.evaluated = true;
   errors.gradient =
-      RelativeError(in.Gradient(Eigen::Map<const VectorXd>(s.at.gradient.data(), n)), gradient);
-  errors.hessian = RelativeError(mine, hessian);
-  errors.residual_jacobian = RelativeError(r_jacobian, r_difference);
-  errors.row_jacobian = RelativeError(u_jacobian, u_difference);
+      RelativeError(slope, gradient, std::max(rounding * sizes.value, bend * longest));
+  errors.hessian = RelativeError(mine, hessian, std::max(rounding * sizes.slope, kReach * bend));
+  errors.residual_jacobian = RelativeError(r_jacobian, r_difference, rounding * sizes.r);
+  errors.row_jacobian = RelativeError(u_jacobian, u_difference, rounding * sizes.u);
   return errors;
 }
 

@@ -8,13 +8,15 @@
 
 namespace touchdown::solvers {
 
-/// Worst disagreement between derivatives and central differences, relative to the size of the
-/// compared array: max |a - b| / (1 + max |b|). A residual whose u changes sign between the two
+/// Worst disagreement between derivatives and central differences, relative to the largest number
+/// of the two compared arrays, or to what the differences themselves can resolve where that is
+/// larger; infinite where a number is not finite. A residual whose u changes sign between the two
 /// points is compared with the one-sided differences.
 struct DerivativeErrors {
   bool evaluated = false;          ///< false: the point could not be evaluated
   double gradient = 0.0;           ///< of the objective
-  double hessian = 0.0;            ///< of the Lagrangian, against differences of its gradient
+  double hessian = 0.0;            ///< of the Lagrangian, against differences of its gradient;
+                                   ///< diagonal blocks whole, others as they are stored
   double residual_jacobian = 0.0;  ///< of every residual, in reduced variables
   double row_jacobian = 0.0;       ///< of every u, in reduced variables
   double worst() const;            ///< infinite where nothing was evaluated

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "touchdown/solvers/derivative_check.h"
@@ -91,6 +92,65 @@ TEST(View, TheLagrangiansHessianMatchesDifferences) {
       const Lagrangian lagrangian{.objective_factor = 0.4, .rows = rows};
       const DerivativeErrors errors = CheckDerivatives(view, y, lagrangian);
       EXPECT_LT(errors.worst(), 1e-5);
+    }
+  }
+}
+
+/// What a map by hand can get wrong.
+enum class Fault { kNone, kNan, kSlope, kCurvature, kLowerHalf };
+
+/// u = scale (q_0 q_1 + q_0^2), d = 2, with derivatives by hand.
+struct FaultyMap {
+  static constexpr int kBlockSize = 2, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  Fault fault;
+  double scale;
+  int windows() const { return 3; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = scale * (q[0] * q[1] + q[0] * q[0]);
+  }
+  void Jacobian(int k, const double* q, double h, double t, double* u, double* du,
+                double* du_dh) const {
+    (*this)(k, q, h, t, u);
+    du[0] = scale * (q[1] + 2.0 * q[0]);
+    du[1] = scale * q[0];
+    if (fault == Fault::kSlope) du[1] *= 1.01;
+    if (fault == Fault::kNan && k == 1) du[1] = std::numeric_limits<double>::quiet_NaN();
+    du_dh[0] = 0.0;
+  }
+  void Curvature(int /*k*/, const double* /*q*/, double /*h*/, double /*t*/, bool /*free*/,
+                 const double* slope, double* sum) const {
+    sum[0] += slope[0] * scale * 2.0;
+    sum[1] += slope[0] * scale * (fault == Fault::kCurvature ? 1.01 : 1.0);
+    if (fault != Fault::kLowerHalf) sum[3] += slope[0] * scale;
+  }
+};
+
+TEST(View, AWrongDerivativeIsFoundAtAnyScale) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    for (const Role role : {Role::kCost, Role::kConstraint}) {
+      for (const Fault fault :
+           {Fault::kNone, Fault::kNan, Fault::kSlope, Fault::kCurvature, Fault::kLowerHalf}) {
+        SCOPED_TRACE(testing::Message() << scale << " as rows " << (role == Role::kConstraint)
+                                        << " fault " << static_cast<int>(fault));
+        Problem problem({.blocks = 3, .block_size = 2});
+        problem.AddTerm(
+            std::make_shared<WindowTerm<FaultyMap, SquareLoss>>(
+                TermInfo{"faulty", "", "", "", false}, FaultyMap{fault, scale}, SquareLoss(1.0), 3),
+            role);
+        const View view(problem, AffineLift::Identity(3));
+        const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(6, 0.4, 1.3);
+        const double multipliers[] = {0.7, -0.4, 1.1};
+        const RowWeights rows[] = {{.multiplier = multipliers}};
+        const double worst = CheckDerivatives(view, y, {.rows = rows}).worst();
+        if (fault == Fault::kNone) {
+          EXPECT_LT(worst, 2e-5);
+        } else {
+          EXPECT_GT(worst, 1e-3);
+        }
+      }
     }
   }
 }
