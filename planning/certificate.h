@@ -45,12 +45,12 @@ struct Certificate {
 };
 
 /// Certifies `curve` from `t_from` to its end: its state there against `start` (nullptr: it starts
-/// there by construction), the endpoint against `wanted` (nullptr: none is required), the limits by the convex hull, the clearance by visiting every cell of `space` that
-/// the curve passes. A start beyond a limit, by its speed or by
-/// V_1 = v0 + h a0 / 2, which it fixes, is certified against the RecoveryProfile from the larger of
-/// the two on, and alike for the acceleration. The vehicle must also be
-/// able to brake, `reaction` seconds after t_from, before the curve meets cells that were never
-/// observed (the strip over the pad excepted). Does not allocate.
+/// there by construction), the endpoint against `wanted` (nullptr: none is required), the limits by
+/// the convex hull, the clearance by visiting every cell of `space` that the curve passes. A start
+/// beyond a limit, by its speed or by V_1 = v0 + h a0 / 2, which it fixes, is certified against the
+/// RecoveryProfile from the larger of the two on, and alike for the acceleration. The vehicle must
+/// also be able to brake, `reaction` seconds after t_from, before the curve meets cells that were
+/// never observed (the strip over the pad excepted). Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
                     const SplineState* wanted, const Limits& limits, double reaction,
                     const FreeSpace& space);
