@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -215,6 +216,28 @@ TEST(Compare, ASlowRefereeStillHelpsToFindTheReference) {
     EXPECT_EQ(row.points, 14);
     EXPECT_EQ(row.problem, 0);
   }
+}
+
+TEST(Compare, TurnsAreRandomAndRepeat) {
+  CompareOptions options = Tiny();
+  options.backends = {"banded", "ceres", "nlopt-lbfgs"};
+  options.problems = 1;
+  options.repeats = 12;
+  const auto order = [&options] {
+    std::vector<std::string> names;
+    for (const SolveRow& row : Compared(options, solvers::StandardBackends()).solves) {
+      if (row.phase == SolvePhase::kGap) names.push_back(row.backend);
+    }
+    return names;
+  };
+  const std::vector<std::string> names = order();
+  ASSERT_EQ(names.size(), 36U);
+  EXPECT_EQ(names, order());
+  std::set<std::string> before_ceres;  // within one turn
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == "ceres") before_ceres.insert(i % 3 == 0 ? "nobody" : names[i - 1]);
+  }
+  EXPECT_EQ(before_ceres.size(), 3U);
 }
 
 TEST(Compare, RefusesEmptyAndDoubleNames) {
