@@ -68,8 +68,9 @@ std::string Text(const std::string& name, const std::vector<TermCheckRow>& rows)
                         PointName(row.point), row.points, figure(e.gradient), figure(e.hessian),
                         figure(e.residual_jacobian), figure(e.row_jacobian));
   }
+  const std::string complaint = planning::Complaint(rows);
   text += fmt::format("{} (tolerance {:.0e})\n",
-                      planning::Passed(rows) ? "all derivatives agree" : "DERIVATIVES DISAGREE",
+                      complaint.empty() ? "all derivatives agree" : "FAILED: " + complaint,
                       planning::kTermCheckTolerance);
   return text;
 }
@@ -97,6 +98,7 @@ Json ToJson(const CheckTermArguments& arguments, const std::vector<TermCheckRow>
           {"seed", arguments.options.seed},
           {"tolerance", planning::kTermCheckTolerance},
           {"passed", planning::Passed(rows)},
+          {"complaint", planning::Complaint(rows)},
           {"checks", checks}};
 }
 

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
+
+#include <Eigen/Eigenvalues>
 
 #include "touchdown/planning/random_context.h"
 
@@ -35,7 +38,8 @@ class Bench {
         std::mt19937_64& random)
       : random_(random),
         context_(control_points - 3, control_points, kMaxObstacles, random),
-        lift_(std::make_shared<BoundaryLift>(control_points - 3, true)),
+        free_end_acceleration_(std::bernoulli_distribution()(random)),
+        lift_(std::make_shared<BoundaryLift>(control_points - 3, free_end_acceleration_)),
         problem_(Shape(control_points, kind.arrival)) {
     const LandingContext& context = context_.get();
     lift_->Set(context.start, context.t0, *context.pad, context.target);
@@ -82,6 +86,8 @@ class Bench {
   }
 
   solvers::DerivativeErrors Check(const VectorXd& y, double step) {
+    if (!view_->Evaluate(y.data(), {}, {}, &at_)) return {};
+    windows_ = at_.full.terms[0].windows;
     if (whitened_ && !whitening_.Set(*view_, y.data(), &at_)) return {};
     const solvers::TermShape& shape = view_->problem().term(0).shape();
     std::vector<double> multipliers(static_cast<std::size_t>(shape.max_windows * shape.outputs));
@@ -92,6 +98,30 @@ class Bench {
     return solvers::CheckDerivatives(*view_, y, {.rows = rows.data()}, step,
                                      whitened_ ? &whitening_ : nullptr);
   }
+
+  /// Windows of the last check.
+  int windows() const { return windows_; }
+
+  /// The lowest eigenvalue of the Hessian over the largest in size, at most 0; -infinity where it
+  /// is not finite.
+  double LeastCurvature(const VectorXd& y) {
+    constexpr solvers::Want kHessian{.gradient = true, .hessian = true};
+    if (!view_->Evaluate(y.data(), kHessian, {}, &at_)) return -HUGE_VAL;
+    const int n = view_->num_variables();
+    Eigen::MatrixXd hessian(n, n);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) hessian(i, j) = at_.hessian.At(i, j);
+    }
+    if (!hessian.allFinite()) return -HUGE_VAL;
+    const double size = hessian.cwiseAbs().maxCoeff();
+    if (size < std::numeric_limits<double>::min()) return 0.0;
+    const VectorXd eigenvalues =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian / size, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    return std::min(0.0, eigenvalues.minCoeff() / eigenvalues.cwiseAbs().maxCoeff());
+  }
+
+  const solvers::Term& term() const { return problem_.term(0); }
 
  private:
   static solvers::ProblemShape Shape(int control_points, ArrivalMode arrival) {
@@ -105,6 +135,7 @@ class Bench {
     TermSetup setup = DefaultSetup(entry, control_points);
     setup.weight = 1.0;
     setup.hard = hard;
+    setup.free_end_acceleration = free_end_acceleration_;
     setup.max_pairs = control_points;
     setup.max_obstacles = kMaxObstacles;
     const std::shared_ptr<solvers::Term> term = entry.make(setup);
@@ -136,21 +167,26 @@ class Bench {
 
   std::mt19937_64& random_;
   RandomContext context_;
+  bool free_end_acceleration_;
   std::shared_ptr<BoundaryLift> lift_;
   solvers::Problem problem_;
   std::unique_ptr<View> view_;
   solvers::Whitening whitening_;
   bool whitened_ = false;
+  int windows_ = 0;
   ViewEvaluation at_;
 };
+
+/// The larger of two errors; one that is no number is the worst.
+double Worse(double a, double b) { return std::isnan(b) ? HUGE_VAL : std::max(a, b); }
 
 void KeepWorst(const solvers::DerivativeErrors& errors, TermCheckRow* row) {
   solvers::DerivativeErrors& worst = row->errors;
   worst.evaluated = errors.evaluated && (row->points == 0 || worst.evaluated);
-  worst.gradient = std::max(worst.gradient, errors.gradient);
-  worst.hessian = std::max(worst.hessian, errors.hessian);
-  worst.residual_jacobian = std::max(worst.residual_jacobian, errors.residual_jacobian);
-  worst.row_jacobian = std::max(worst.row_jacobian, errors.row_jacobian);
+  worst.gradient = Worse(worst.gradient, errors.gradient);
+  worst.hessian = Worse(worst.hessian, errors.hessian);
+  worst.residual_jacobian = Worse(worst.residual_jacobian, errors.residual_jacobian);
+  worst.row_jacobian = Worse(worst.row_jacobian, errors.row_jacobian);
   ++row->points;
 }
 
@@ -158,12 +194,21 @@ TermCheckRow CheckKind(const TermEntry& entry, TermCheckRow row, const TermCheck
   std::mt19937_64 random(options.seed);
   for (int trial = 0; trial < options.trials; ++trial) {
     Bench bench(entry, row, options.control_points, random);
+    const solvers::LossBounds bounds = bench.term().bounds();
+    row.has_edge = std::isinf(bounds.lo) != std::isinf(bounds.hi);
+    // In the problem's own variables: what a lift leaves of a term may be rounding alone.
+    row.claims_convex = bench.term().info().convex && !row.hard &&
+                        row.arrival == ArrivalMode::kFixed && row.view == CheckedView::kFull;
     VectorXd y = bench.RandomPoint();
     const bool random_point = row.point == CheckedPoint::kRandom;
     const double wanted = row.point == CheckedPoint::kZero ? 0.0 : kBeyond;
     if (!random_point && !bench.MoveTo(wanted, &y)) continue;
     const double step = row.point == CheckedPoint::kZero ? kEdgeStep : kStep;
     KeepWorst(bench.Check(y, step), &row);
+    row.windows += bench.windows();
+    if (row.claims_convex) {
+      row.least_curvature = std::min(row.least_curvature, bench.LeastCurvature(y));
+    }
   }
   return row;
 }
@@ -192,10 +237,29 @@ std::vector<TermCheckRow> CheckTerm(const TermEntry& entry, const TermCheckOptio
   return rows;
 }
 
-bool Passed(const std::vector<TermCheckRow>& rows) {
-  return std::all_of(rows.begin(), rows.end(), [](const TermCheckRow& row) {
-    return row.points == 0 || row.errors.worst() <= kTermCheckTolerance;
-  });
+std::string Complaint(const std::vector<TermCheckRow>& rows) {
+  int windows = 0, edges = 0;
+  bool has_edge = false;
+  for (const TermCheckRow& row : rows) {
+    windows += row.windows;
+    has_edge = has_edge || row.has_edge;
+    if (row.point == CheckedPoint::kZero) edges += row.points;
+    if (row.points > 0 && !(row.errors.worst() <= kTermCheckTolerance)) {
+      return "derivatives disagree with central differences";
+    }
+    if (row.claims_convex && !(row.least_curvature >= -kTermCheckConvexity)) {
+      return "the term says that it is convex, and its Hessian at a fixed interval has a negative "
+             "eigenvalue";
+    }
+  }
+  if (windows == 0) return "nothing was compared: the term had no window in any random landing";
+  if (has_edge && edges == 0) {
+    return "the edge of the hinge was not compared: no u could be brought to 0 in any random "
+           "landing";
+  }
+  return {};
 }
+
+bool Passed(const std::vector<TermCheckRow>& rows) { return Complaint(rows).empty(); }
 
 }  // namespace touchdown::planning

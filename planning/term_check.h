@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "touchdown/planning/landing_problem.h"
@@ -29,16 +30,29 @@ struct TermCheckRow {
   ArrivalMode arrival = ArrivalMode::kFixed;
   bool hard = false;  ///< as rows with random multipliers, else as a cost
   CheckedPoint point = CheckedPoint::kRandom;
-  int points = 0;  ///< compared; 0 where no u can be brought to 0
+  int points = 0;   ///< compared; 0 where no u can be brought to 0
+  int windows = 0;  ///< evaluated at these points
   solvers::DerivativeErrors errors;
+  bool has_edge = false;         ///< the term is a hinge: kZero is where its pieces meet
+  bool claims_convex = false;    ///< TermInfo::convex, and this row is a cost at a fixed interval,
+                                 ///< on the full view
+  double least_curvature = 0.0;  ///< lowest eigenvalue of its Hessian over the largest, if below 0
 };
 
+/// A cost that claims to be convex may bend the other way by this share, which is rounding.
+inline constexpr double kTermCheckConvexity = 1e-9;
+
 /// Compares gradient, Hessian, residual and row Jacobians of a term with central differences on
-/// every view, as cost and as rows, in random landings. The term is made with its default
-/// parameters and weight 1. Throws std::invalid_argument if an option is out of range.
+/// every view, as cost and as rows, in random landings whose end acceleration is fixed or free. The
+/// term is made with its default parameters and weight 1. Throws std::invalid_argument if an option
+/// is out of range.
 std::vector<TermCheckRow> CheckTerm(const TermEntry& entry, const TermCheckOptions& options);
 
-/// Every row that compared something is within the tolerance.
+/// One sentence on what is wrong; empty if nothing is: every row that compared something is within
+/// the tolerance, windows were evaluated, a hinge's edge was reached, and what claims to be convex
+/// is.
+std::string Complaint(const std::vector<TermCheckRow>& rows);
+/// Without a complaint.
 bool Passed(const std::vector<TermCheckRow>& rows);
 
 }  // namespace touchdown::planning

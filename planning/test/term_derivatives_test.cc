@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "touchdown/planning/random_context.h"
 #include "touchdown/planning/term_check.h"
 #include "touchdown/planning/terms/norm_limit.h"
@@ -17,6 +20,7 @@ TEST(TermDerivatives, EveryTermOnEveryView) {
   for (const TermEntry& entry : StandardTerms()) {
     SCOPED_TRACE(entry.info.name);
     const std::vector<TermCheckRow> rows = CheckTerm(entry, {});
+    EXPECT_EQ(Complaint(rows), "");
     for (const TermCheckRow& row : rows) {
       if (row.points == 0) {
         EXPECT_NE(row.point, CheckedPoint::kRandom);
@@ -59,6 +63,64 @@ TEST(TermDerivatives, AWrongOneIsFound) {
     return MakeLandingTerm({"wrong"}, Wrong{}, solvers::SquareLoss(1.0), 4);
   };
   EXPECT_FALSE(Passed(CheckTerm(entry, {})));
+  std::vector<TermCheckRow> rows(1);
+  rows[0].points = rows[0].windows = 1;
+  rows[0].errors = {.evaluated = true, .residual_jacobian = std::nan("")};
+  EXPECT_FALSE(Passed(rows));
+}
+
+/// q_x^2 - q_y^2 + c on `count` control points.
+struct Saddle {
+  static constexpr int kBlockSize = 3, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  int count;
+  double c;
+  int windows() const { return count; }
+  int first_block(int k) const { return k + 4; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = q[0] * q[0] - q[1] * q[1] + c;
+  }
+};
+
+/// The sum of squares that Saddle has where it can have no edge.
+struct Above : Saddle {
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + c;
+  }
+};
+
+template <class Map>
+std::string ComplaintOf(const Map& map, bool convex) {
+  TermEntry entry;
+  entry.info.name = "term";
+  entry.info.convex = convex;
+  entry.make = [=](const TermSetup& setup) {
+    return MakeLandingTerm(entry.info, map, solvers::HingeLoss(setup.weight, 1.0), 4);
+  };
+  return Complaint(CheckTerm(entry, {}));
+}
+
+TEST(TermDerivatives, WhatWasNotComparedIsNotPassed) {
+  EXPECT_EQ(ComplaintOf(Saddle{4, 0.0}, false), "");
+  EXPECT_NE(ComplaintOf(Saddle{4, 0.0}, true).find("convex"), std::string::npos);
+  EXPECT_NE(ComplaintOf(Saddle{0, 0.0}, false).find("no window"), std::string::npos);
+  EXPECT_EQ(ComplaintOf(Above{{4, -1.0}}, true), "");
+  EXPECT_NE(ComplaintOf(Above{{4, 1.0}}, true).find("edge"), std::string::npos);
+}
+
+/// Draws of a check with windows that only a fixed end acceleration has.
+TEST(TermDerivatives, BothEndsAreChecked) {
+  bool seen[2] = {false, false};
+  TermEntry entry;
+  entry.info.name = "term";
+  entry.make = [&](const TermSetup& setup) {
+    seen[setup.free_end_acceleration] = true;
+    return MakeLandingTerm(entry.info, Saddle{4, 0.0}, solvers::SquareLoss(1.0), 4);
+  };
+  EXPECT_EQ(Complaint(CheckTerm(entry, {})), "");
+  EXPECT_TRUE(seen[false] && seen[true]);
 }
 
 /// A map without its derivatives by hand.
