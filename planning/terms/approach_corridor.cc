@@ -5,6 +5,8 @@
 // Convex at fixed h. A start outside the cone would leave hard rows without an interior: what it is
 // outside by is allowed to it, falling to zero on half of the way. Source: docs/formulation.md.
 
+#include <algorithm>
+
 #include "touchdown/planning/term_kinematics.h"
 
 namespace touchdown::planning {
@@ -22,7 +24,7 @@ struct OutsideCorridor {
   bool may_recover;
   const estimation::PadPrediction* pad = nullptr;
   LastKnots knots;
-  double t0 = 0.0, excess = 0.0, relief_rate = 0.0;
+  double excess = 0.0, relieved_knots = 1.0;
 
   int windows() const { return knots.count; }
   int first_block(int k) const { return knots.first + k; }
@@ -30,18 +32,17 @@ struct OutsideCorridor {
   void Update(const LandingContext& context) {
     pad = context.pad;
     knots.Update(context, span);
-    t0 = context.t0;
     const Eigen::Vector3d& p = context.start.p;
-    const double outside = Outside<double>({p.x(), p.y(), p.z()}, t0);
+    const double outside = Outside<double>({p.x(), p.y(), p.z()}, context.t0);
     excess = may_recover ? std::max(0.0, outside) : 0.0;
-    relief_rate = excess / (kReliefShare * context.segments * context.interval);
+    relieved_knots = kReliefShare * context.segments;
   }
 
   template <class T>
-  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& t, T* u) const {
-    u[0] = Outside(KnotPosition(q), t);
-    const T relief = excess - relief_rate * (t - t0);
-    if (ValueOf(relief) > 0.0) u[0] -= relief;
+  void operator()(int k, const T* q, const T& /*h*/, const T& t, T* u) const {
+    // By the knot and not by its time: a free interval must not move a knot across the relief's end.
+    const double relief = excess * std::max(0.0, 1.0 - first_block(k) / relieved_knots);
+    u[0] = Outside(KnotPosition(q), t) - relief;
   }
 
  private:
