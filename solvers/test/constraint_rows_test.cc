@@ -14,22 +14,6 @@
 namespace touchdown::solvers {
 namespace {
 
-/// Moves nonlinearly with h.
-class SineOffset : public LiftOffset {
- public:
-  explicit SineOffset(int n) : n_(n) {}
-  void At(double h, double* l, double* dl, double* d2l) const noexcept override {
-    for (int i = 0; i < n_; ++i) {
-      l[i] = std::sin(i + h);
-      if (dl) dl[i] = std::cos(i + h);
-      if (d2l) d2l[i] = -std::sin(i + h);
-    }
-  }
-
- private:
-  int n_;
-};
-
 /// One row on each of the first `windows` blocks.
 struct FirstOfBlock {
   static constexpr int kBlockSize = 2, kWindow = 1, kOutputs = 1;
@@ -44,18 +28,6 @@ struct FirstOfBlock {
 };
 
 constexpr int kBlocks = 9;
-
-/// Blocks 0 and 1 fixed, the last three on one reduced block, as a landing's ends are.
-View Folded(const Problem& problem) {
-  AffineLift lift;
-  for (int i = 0; i < kBlocks; ++i) {
-    lift.block.push_back(i < 2 ? -1 : std::min(i - 2, kBlocks - 5));
-    lift.coefficient.push_back(i < 2 ? 0.0 : i == kBlocks - 2 ? 1.0 : i > kBlocks - 4 ? -2.0 : 1.0);
-  }
-  lift.reduced_blocks = kBlocks - 4;
-  lift.offset = std::make_shared<SineOffset>(2 * kBlocks);
-  return View(problem, lift);
-}
 
 Problem WithRows(bool free_interval) {
   Problem problem({.blocks = kBlocks, .block_size = 2, .free_interval = free_interval});
@@ -77,7 +49,7 @@ TEST(ConstraintRows, MatchTheViewsProductsAndDifferences) {
   std::normal_distribution<double> normal;
   for (const bool free_interval : {false, true}) {
     const Problem problem = WithRows(free_interval);
-    for (const View& view : {View(problem, AffineLift::Identity(kBlocks)), Folded(problem)}) {
+    for (const View& view : {View(problem, AffineLift::Identity(kBlocks)), FoldedView(problem)}) {
       const int n = view.num_variables();
       Eigen::VectorXd y(n), dy(n);
       for (int i = 0; i < n; ++i) {
@@ -130,7 +102,7 @@ TEST(ConstraintRows, MatchTheViewsProductsAndDifferences) {
 
 TEST(ConstraintRows, KnowsBoundsAndLeavesConstantRowsOut) {
   const Problem problem = WithRows(false);
-  const View view = Folded(problem);
+  const View view = FoldedView(problem);
   ViewEvaluation e;
   view.Resize(&e);
   ConstraintRows rows;

@@ -2,12 +2,14 @@
 // Small terms on scalar blocks: the conformance problems, and terms that misbehave on purpose.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 
+#include "touchdown/solvers/view.h"
 #include "touchdown/solvers/window_term.h"
 
 namespace touchdown::solvers {
@@ -58,5 +60,35 @@ class WavyMap {
  private:
   int windows_;
 };
+
+/// An offset that moves nonlinearly with h.
+class CurvedOffset : public LiftOffset {
+ public:
+  explicit CurvedOffset(int n) : n_(n) {}
+  void At(double h, double* l, double* dl, double* d2l) const noexcept override {
+    for (int i = 0; i < n_; ++i) {
+      l[i] = std::sin(i + h);
+      if (dl) dl[i] = std::cos(i + h);
+      if (d2l) d2l[i] = -std::sin(i + h);
+    }
+  }
+
+ private:
+  int n_;
+};
+
+/// Blocks 0 and 1 fixed, the last three folded onto one reduced block, as a landing's ends are, with a
+/// CurvedOffset. Blocks of two.
+inline View FoldedView(const Problem& problem) {
+  AffineLift lift;
+  const int n = problem.shape().blocks;
+  for (int i = 0; i < n; ++i) {
+    lift.block.push_back(i < 2 ? -1 : std::min(i - 2, n - 5));
+    lift.coefficient.push_back(i < 2 ? 0.0 : i == n - 2 ? 1.0 : i > n - 4 ? -2.0 : 1.0);
+  }
+  lift.reduced_blocks = n - 4;
+  lift.offset = std::make_shared<CurvedOffset>(2 * n);
+  return View(problem, lift);
+}
 
 }  // namespace touchdown::solvers

@@ -15,35 +15,6 @@
 namespace touchdown::solvers {
 namespace {
 
-/// An offset that moves nonlinearly with h.
-class CurvedOffset : public LiftOffset {
- public:
-  explicit CurvedOffset(int n) : n_(n) {}
-  void At(double h, double* l, double* dl, double* d2l) const noexcept override {
-    for (int i = 0; i < n_; ++i) {
-      l[i] = std::sin(i + h);
-      if (dl) dl[i] = std::cos(i + h);
-      if (d2l) d2l[i] = -std::sin(i + h);
-    }
-  }
-
- private:
-  int n_;
-};
-
-View FoldedView(const Problem& problem) {
-  // Blocks 0 and 1 fixed, the last three folded onto one reduced block, as a landing's ends are.
-  AffineLift lift;
-  const int n = problem.shape().blocks;
-  for (int i = 0; i < n; ++i) {
-    lift.block.push_back(i < 2 ? -1 : std::min(i - 2, n - 5));
-    lift.coefficient.push_back(i < 2 ? 0.0 : i == n - 2 ? 1.0 : i > n - 4 ? -2.0 : 1.0);
-  }
-  lift.reduced_blocks = n - 4;
-  lift.offset = std::make_shared<CurvedOffset>(2 * n);
-  return View(problem, lift);
-}
-
 TEST(View, EveryDerivativeMatchesDifferences) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
