@@ -1,46 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same standard problems on every backend that can take them, and the same answers to misuse,
-// NaN, exhausted budgets and two threads.
+// The same problems without rows on every backend, and the same answers to misuse, NaN, exhausted
+// budgets and two threads. Rows: constraint_conformance_test.cc.
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <thread>
 
-#include "touchdown/solvers/backend_registry.h"
 #include "touchdown/solvers/missing_backend.h"
-#include "touchdown/solvers/test/standard_problems.h"
+#include "touchdown/solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {
-
-class EveryBackend : public ::testing::TestWithParam<std::string> {
- protected:
-  std::unique_ptr<SolverBackend> Make() const {
-    return MakeBackend(StandardBackends(), GetParam());
-  }
-
-  SolverResult Solve(const Problem& problem, const Eigen::VectorXd& warm, const Stop& stop = {}) {
-    const View view(problem, AffineLift::Identity(problem.shape().blocks));
-    auto backend = Make();
-    backend->Prepare(view);
-    SolverResult result;
-    backend->Solve(view, warm, stop, &result);
-    return result;
-  }
-};
-
-Problem Scalars(int n) { return Problem({.blocks = n, .block_size = 1}); }
-
-auto Rosenbrock() {
-  return SumOfSquares<2, 2>(
-      "rosenbrock",
-      [](const auto* x, auto* u) {
-        u[0] = 10.0 * (x[1] - x[0] * x[0]);
-        u[1] = 1.0 - x[0];
-      },
-      false);
-}
 
 /// (log x + 30)^2: defined only for x > 0, its minimum where steps overshoot that.
 auto ShiftedLog() {
@@ -90,27 +61,6 @@ TEST_P(EveryBackend, ConvexQuadraticWithKnownSolution) {
   EXPECT_LT((result.x - expected).norm(), 1e-6);
 }
 
-TEST_P(EveryBackend, ConstrainedProblemsHaveTheirKnownOptima) {
-  int solved = 0;
-  for (const StandardProblem& standard : ConstrainedProblems()) {
-    SCOPED_TRACE(standard.name);
-    const View view(*standard.problem, AffineLift::Identity(standard.problem->shape().blocks));
-    auto backend = Make();
-    if (!backend->Refusal(view).empty()) continue;
-    ++solved;
-    backend->Prepare(view);
-    SolverResult result;
-    backend->Solve(view, standard.start, {.max_iterations = 10000}, &result);
-    EXPECT_EQ(result.status, SolveStatus::kConverged)
-        << ToString(result.status) << ": " << result.message;
-    EXPECT_NEAR(result.cost, standard.cost, 1e-6 * std::max(1.0, std::abs(standard.cost)));
-    EXPECT_LE(result.max_violation, 1e-6);
-    EXPECT_LT((result.x - standard.optimum).norm(), 1e-3);
-  }
-  // Whoever takes rows takes some of these.
-  EXPECT_EQ(solved > 0, Make()->capabilities().hard_rows);
-}
-
 TEST_P(EveryBackend, NanIsAStatusAndTheBestPointSurvives) {
   Problem problem = Scalars(1);
   problem.AddTerm(ShiftedLog(), Role::kCost);
@@ -128,72 +78,6 @@ TEST_P(EveryBackend, ATermThatThrowsIsAStatus) {
           "throws", [](const auto*, auto*) { throw std::runtime_error("term"); }, false),
       Role::kCost);
   EXPECT_EQ(Solve(problem, Eigen::VectorXd::Zero(1)).status, SolveStatus::kEvaluationFailed);
-}
-
-/// x^2 with x <= -1 and x >= 1.
-StandardProblem Infeasible() {
-  StandardProblem p = Standard("Infeasible", {0.5}, {0.0}, 0.0);
-  p.problem->AddTerm(
-      Whole<1, 1>("square", SquareLoss(2.0), [](const auto* x, auto* u) { u[0] = x[0]; }),
-      Role::kCost);
-  p.problem->AddTerm(AtMostZero<1, 2>("apart",
-                                      [](const auto* x, auto* u) {
-                                        u[0] = x[0] + 1.0;
-                                        u[1] = 1.0 - x[0];
-                                      }),
-                     Role::kConstraint);
-  return p;
-}
-
-TEST_P(EveryBackend, InfeasibleIsAStatus) {
-  const StandardProblem p = Infeasible();
-  const View view(*p.problem, AffineLift::Identity(1));
-  if (!Make()->Refusal(view).empty()) GTEST_SKIP() << Make()->Refusal(view);
-  const SolverResult result = Solve(*p.problem, p.start, {.max_iterations = 1000});
-  EXPECT_EQ(result.status, SolveStatus::kInfeasible)
-      << ToString(result.status) << ": " << result.message;
-  EXPECT_TRUE(result.x.allFinite());
-  EXPECT_GT(result.max_violation, 0.9);
-}
-
-TEST_P(EveryBackend, ARowThatCannotBeEvaluatedIsAStatus) {
-  // sqrt(x) >= 1 from x < 0, and from x > 0 where a long step leaves the domain.
-  StandardProblem p = Standard("Root", {-1.0}, {1.0}, 1.0);
-  p.problem->AddTerm(
-      Whole<1, 1>("square", SquareLoss(2.0), [](const auto* x, auto* u) { u[0] = x[0]; }),
-      Role::kCost);
-  p.problem->AddTerm(AtMostZero<1, 1>("root",
-                                      [](const auto* x, auto* u) {
-                                        using std::sqrt;
-                                        u[0] = 1.0 - sqrt(x[0]);
-                                      }),
-                     Role::kConstraint);
-  const View view(*p.problem, AffineLift::Identity(1));
-  if (!Make()->Refusal(view).empty()) GTEST_SKIP() << Make()->Refusal(view);
-  EXPECT_EQ(Solve(*p.problem, p.start).status, SolveStatus::kEvaluationFailed);
-  const SolverResult good = Solve(*p.problem, Eigen::VectorXd::Constant(1, 9.0));
-  EXPECT_NEAR(good.cost, 1.0, 1e-5) << ToString(good.status) << ": " << good.message;
-}
-
-TEST_P(EveryBackend, MultipliersSatisfyStationarity) {
-  const StandardProblem p = Projection();
-  const View view(*p.problem, AffineLift::Identity(6));
-  if (!Make()->Refusal(view).empty()) GTEST_SKIP() << Make()->Refusal(view);
-  const SolverResult result = Solve(*p.problem, p.start);
-  if (result.multipliers.empty()) GTEST_SKIP() << "no multipliers";
-  ASSERT_EQ(result.multipliers.size(), 2u);
-  ASSERT_EQ(result.multipliers[1].size(), 7u);
-  const double expected[] = {2.5, 0.5, 0.0, 0.0, 0.0, 0.0, 4.5};
-  for (int i = 0; i < 7; ++i) EXPECT_NEAR(result.multipliers[1][i], expected[i], 1e-4);
-
-  // Point and multipliers together are a start that is hard to improve.
-  auto backend = Make();
-  backend->Prepare(view);
-  SolverResult again;
-  backend->Solve(view, WarmStart(result.x, result.multipliers), {}, &again);
-  EXPECT_EQ(again.status, SolveStatus::kConverged) << again.message;
-  EXPECT_LE(again.iterations, result.iterations);
-  EXPECT_NEAR(again.cost, result.cost, 1e-6 * result.cost);
 }
 
 /// (h - target)^2 + (x - h)^2: a free interval alone decides.
@@ -385,22 +269,9 @@ TEST_P(EveryBackend, TwoThreadsGiveTheBitsOfOne) {
   }
 }
 
-std::vector<std::string> CompiledBackends() {
-  std::vector<std::string> names;
-  for (const BackendEntry& entry : StandardBackends()) {
-    if (entry.make()->capabilities().compiled) names.push_back(entry.name);
-  }
-  return names;
-}
-
 // A build without any backend has nothing to run here.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(EveryBackend);
-INSTANTIATE_TEST_SUITE_P(Backends, EveryBackend, ::testing::ValuesIn(CompiledBackends()),
-                         [](const auto& test) {
-                           std::string name = test.param;
-                           for (char& c : name) c = c == '-' ? '_' : c;
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Backends, EveryBackend, ::testing::ValuesIn(CompiledBackends()), TestName);
 
 TEST(Refusal, IsASentenceWithTheReason) {
   Problem squares = Scalars(2);

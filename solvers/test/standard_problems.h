@@ -211,4 +211,19 @@ inline std::vector<StandardProblem> ConstrainedProblems() {
   return all;
 }
 
+/// x^2 with x <= -1 and x >= 1.
+inline StandardProblem Infeasible() {
+  StandardProblem p = Standard("Infeasible", {0.5}, {0.0}, 0.0);
+  p.problem->AddTerm(
+      Whole<1, 1>("square", SquareLoss(2.0), [](const auto* x, auto* u) { u[0] = x[0]; }),
+      Role::kCost);
+  p.problem->AddTerm(AtMostZero<1, 2>("apart",
+                                      [](const auto* x, auto* u) {
+                                        u[0] = x[0] + 1.0;
+                                        u[1] = 1.0 - x[0];
+                                      }),
+                     Role::kConstraint);
+  return p;
+}
+
 }  // namespace touchdown::solvers

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Problems with constraint rows on every backend that takes rows: known optima, infeasibility, rows
+// that cannot be evaluated, multipliers.
+
+#include "touchdown/solvers/test/every_backend.h"
+
+namespace touchdown::solvers {
+namespace {
+
+class EveryRowBackend : public EveryBackend {};
+
+TEST_P(EveryRowBackend, ConstrainedProblemsHaveTheirKnownOptima) {
+  int solved = 0;
+  for (const StandardProblem& standard : ConstrainedProblems()) {
+    SCOPED_TRACE(standard.name);
+    const View view(*standard.problem, AffineLift::Identity(standard.problem->shape().blocks));
+    auto backend = Make();
+    if (!backend->Refusal(view).empty()) continue;
+    ++solved;
+    backend->Prepare(view);
+    SolverResult result;
+    backend->Solve(view, standard.start, {.max_iterations = 10000}, &result);
+    EXPECT_EQ(result.status, SolveStatus::kConverged)
+        << ToString(result.status) << ": " << result.message;
+    EXPECT_NEAR(result.cost, standard.cost, 1e-6 * std::max(1.0, std::abs(standard.cost)));
+    EXPECT_LE(result.max_violation, 1e-6);
+    EXPECT_LT((result.x - standard.optimum).norm(), 1e-3);
+  }
+  EXPECT_GT(solved, 0);  // whoever takes rows takes some of these
+}
+
+TEST_P(EveryRowBackend, InfeasibleIsAStatus) {
+  const StandardProblem p = Infeasible();
+  const View view(*p.problem, AffineLift::Identity(1));
+  ASSERT_EQ(Make()->Refusal(view), "");
+  const SolverResult result = Solve(*p.problem, p.start, {.max_iterations = 1000});
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible)
+      << ToString(result.status) << ": " << result.message;
+  EXPECT_TRUE(result.x.allFinite());
+  EXPECT_GT(result.max_violation, 0.9);
+}
+
+TEST_P(EveryRowBackend, ARowThatCannotBeEvaluatedIsAStatus) {
+  // sqrt(x) >= 1 from x < 0, and from x > 0 where a long step leaves the domain.
+  StandardProblem p = Standard("Root", {-1.0}, {1.0}, 1.0);
+  p.problem->AddTerm(
+      Whole<1, 1>("square", SquareLoss(2.0), [](const auto* x, auto* u) { u[0] = x[0]; }),
+      Role::kCost);
+  p.problem->AddTerm(AtMostZero<1, 1>("root",
+                                      [](const auto* x, auto* u) {
+                                        using std::sqrt;
+                                        u[0] = 1.0 - sqrt(x[0]);
+                                      }),
+                     Role::kConstraint);
+  const View view(*p.problem, AffineLift::Identity(1));
+  ASSERT_EQ(Make()->Refusal(view), "");
+  EXPECT_EQ(Solve(*p.problem, p.start).status, SolveStatus::kEvaluationFailed);
+  const SolverResult good = Solve(*p.problem, Eigen::VectorXd::Constant(1, 9.0));
+  EXPECT_NEAR(good.cost, 1.0, 1e-5) << ToString(good.status) << ": " << good.message;
+}
+
+TEST_P(EveryRowBackend, MultipliersSatisfyStationarity) {
+  const StandardProblem p = Projection();
+  const View view(*p.problem, AffineLift::Identity(6));
+  ASSERT_EQ(Make()->Refusal(view), "");
+  const SolverResult result = Solve(*p.problem, p.start);
+  if (GetParam().starts_with("nlopt")) {
+    EXPECT_TRUE(result.multipliers.empty());  // NLopt has none to give
+    return;
+  }
+  ASSERT_EQ(result.multipliers.size(), 2u);
+  ASSERT_EQ(result.multipliers[1].size(), 7u);
+  const double expected[] = {2.5, 0.5, 0.0, 0.0, 0.0, 0.0, 4.5};
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(result.multipliers[1][i], expected[i], 1e-4);
+
+  // Point and multipliers together are a start that is hard to improve.
+  auto backend = Make();
+  backend->Prepare(view);
+  SolverResult again;
+  backend->Solve(view, WarmStart(result.x, result.multipliers), {}, &again);
+  EXPECT_EQ(again.status, SolveStatus::kConverged) << again.message;
+  EXPECT_LE(again.iterations, result.iterations);
+  EXPECT_NEAR(again.cost, result.cost, 1e-6 * result.cost);
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(EveryRowBackend);
+INSTANTIATE_TEST_SUITE_P(Backends, EveryRowBackend, ::testing::ValuesIn(CompiledBackends(true)),
+                         TestName);
+
+}  // namespace
+}  // namespace touchdown::solvers
