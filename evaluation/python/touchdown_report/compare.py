@@ -15,6 +15,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
+from touchdown_report import command_line  # noqa: E402
+
 SUPPORTED_VERSION = "1"
 # A line style for each backend: colour alone does not tell ten of them apart.
 COLOURS = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#D55E00", "#0072B2", "#CC79A7", "#999999"]
@@ -245,15 +247,12 @@ def draw(comparison, path):
 
 def main(arguments):
     """Command line; returns the exit status."""
-    if len(arguments) != 2:
-        print("usage: python3 -m touchdown_report.compare COMPARISON OUT.png", file=sys.stderr)
-        return 2
-    try:
-        draw(Comparison(arguments[0]), arguments[1])
-    except (CompareError, OSError, ValueError) as error:
-        print(f"touchdown_report: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return command_line.run(
+        arguments,
+        "touchdown_report.compare COMPARISON OUT.png",
+        lambda source, picture: draw(Comparison(source), picture),
+        (CompareError,),
+    )
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from matplotlib.collections import LineCollection  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
-from touchdown_report import bspline  # noqa: E402
+from touchdown_report import bspline, command_line  # noqa: E402
 from touchdown_report.record import Record, RecordError  # noqa: E402
 
 # Okabe and Ito's palette: distinct for colour-blind readers as well.
@@ -259,15 +259,12 @@ def draw(record, out_path):
 
 def main(arguments):
     """Command line; returns the exit status."""
-    if len(arguments) != 2:
-        print("usage: python3 -m touchdown_report.landing RECORD OUT.png", file=sys.stderr)
-        return 2
-    try:
-        draw(Record(arguments[0]), arguments[1])
-    except (RecordError, OSError, ValueError) as error:
-        print(f"touchdown_report: {error}", file=sys.stderr)
-        return 2
-    return 0
+    return command_line.run(
+        arguments,
+        "touchdown_report.landing RECORD OUT.png",
+        lambda source, picture: draw(Record(source), picture),
+        (RecordError,),
+    )
 
 
 if __name__ == "__main__":
