@@ -2,7 +2,7 @@
 // Starts and goals follow the scenes EGO-Planner was measured in (start in the middle of the
 // forest, velocity within 0.4 rad of the goal's direction); the goal is a pad on a coordinated turn.
 // The scene is a function of (seed, index, draw): each kind of draw has its own stream. Which draw is
-// taken, and how long its flight is, is decided at one size for all.
+// taken, and how long its flight is, is decided at the same sizes whatever is asked for.
 #include "touchdown/evaluation/landing_case.h"
 
 #include <cmath>
@@ -118,10 +118,10 @@ CaseMaker::Binder::Binder(const CaseOptions& options, int points)
 }
 
 CaseMaker::CaseMaker(const CaseOptions& options, int points)
-    : options_(options),
-      reference_(options, kReferencePoints),
-      binder_(options, points),
-      search_(kVerticalCost) {
+    : options_(options), binder_(options, points), search_(kVerticalCost) {
+  for (const int size : kReferencePoints) {
+    references_.push_back(std::make_unique<Binder>(options, size));
+  }
   sim::ForestOfKind(options.forest);
   planning::OccupancyMap checks_inflation(MapOptions(options.inflation));
 }
@@ -191,6 +191,8 @@ bool CaseMaker::SetDuration(double duration, Scene* scene) const {
 CaseMaker::Outcome CaseMaker::BindUntilClear(const Scene& scene, Binder* binder, LandingCase* made,
                                              planning::UniformBspline* curve) {
   planning::LandingProblem& problem = binder->problem;
+  made->pairs.clear();
+  made->pair_scale = 1.0;
   std::vector<planning::BlockedRun> runs;
   std::vector<Eigen::Vector3d> guide;
   solvers::Stop stop;
@@ -228,8 +230,21 @@ CaseMaker::Outcome CaseMaker::BindUntilClear(const Scene& scene, Binder* binder,
   }
 }
 
-// At the reference size. As the replanner does, a longer flight is tried where the guessed one
-// leaves no room.
+CaseMaker::Outcome CaseMaker::BindAtReferences(const Scene& scene, LandingCase* made,
+                                               planning::UniformBspline* curve) {
+  const std::optional<planning::UniformBspline> before = made->warm;
+  Outcome outcome = Outcome::kClear;
+  for (const auto& reference : references_) {
+    if (before) made->warm = WarmStart(*made, *before, reference->problem.segments());
+    outcome = BindUntilClear(scene, reference.get(), made, curve);
+    if (outcome != Outcome::kClear) break;
+  }
+  made->warm = before;
+  return outcome;
+}
+
+// At every reference size; `curve` is that of the last. As the replanner does, a longer flight is
+// tried where the guessed one leaves no room.
 CaseMaker::Outcome CaseMaker::StretchUntilClear(Scene* scene, LandingCase* made,
                                                 planning::UniformBspline* curve) {
   bool unsolved = false;
@@ -238,9 +253,7 @@ CaseMaker::Outcome CaseMaker::StretchUntilClear(Scene* scene, LandingCase* made,
     if (scene->space.Blocked(scene->start.p)) break;
     made->duration = scene->duration;
     made->target = scene->target;
-    made->pairs.clear();
-    made->pair_scale = 1.0;
-    const Outcome outcome = BindUntilClear(*scene, &reference_, made, curve);
+    const Outcome outcome = BindAtReferences(*scene, made, curve);
     if (outcome == Outcome::kClear) return outcome;
     unsolved = unsolved || outcome == Outcome::kUnsolved;
   }
@@ -269,31 +282,25 @@ LandingCase CaseMaker::Later(const Scene& scene, const LandingCase& first,
   later.pad_speed = pad.mean(2);
   later.pad_rate = pad.mean(4);
   later.duration = solution.t_end() - later.t0;
-  later.pairs.clear();
-  later.pair_scale = 1.0;
   return later;
 }
 
-// Accepts the scene at the reference size, then binds pairs at the wanted one.
+// Accepts the scene at the reference sizes, then binds pairs at the wanted one.
 CaseMaker::Outcome CaseMaker::MakeOf(Scene* scene, int draw, LandingCase* made) {
   planning::UniformBspline curve;
   const Outcome first = StretchUntilClear(scene, made, &curve);
   if (first != Outcome::kClear) return first;
-  LandingCase here = *made;
-  here.pairs.clear();
-  here.pair_scale = 1.0;
   planning::UniformBspline plan = curve;
-  BindUntilClear(*scene, &binder_, &here, &plan);
-  if (options_.warm) {
-    LandingCase later = Later(*scene, here, curve, draw);
-    here = later;
-    later.warm = WarmStart(later, curve, reference_.problem.segments());
-    const Outcome again = BindUntilClear(*scene, &reference_, &later, &curve);
-    if (again != Outcome::kClear) return again;
-    here.warm = WarmStart(here, plan, binder_.problem.segments());
-    BindUntilClear(*scene, &binder_, &here, &plan);
-  }
-  *made = std::move(here);
+  BindUntilClear(*scene, &binder_, made, &plan);
+  if (!options_.warm) return Outcome::kClear;
+  LandingCase later = Later(*scene, *made, curve, draw);
+  later.warm = curve;
+  planning::UniformBspline again = curve;
+  const Outcome second = BindAtReferences(*scene, &later, &again);
+  if (second != Outcome::kClear) return second;
+  later.warm = WarmStart(later, plan, binder_.problem.segments());
+  BindUntilClear(*scene, &binder_, &later, &again);
+  *made = std::move(later);
   return Outcome::kClear;
 }
 

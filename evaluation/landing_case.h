@@ -2,6 +2,7 @@
 // Random landing problems: what the solver backends are compared on.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -56,12 +57,13 @@ struct LandingCase {
 /// own loop (solve, check the whole curve, search around what blocks it, bind, solve again; then
 /// with a longer flight) until the curve is clear and keeps the full limits. Pairs are made with soft
 /// limits, a fixed arrival and an eliminated endpoint, whatever the comparison solves later: the
-/// problem does not depend on who solves it. Whether a scene is taken, and its duration, are settled
-/// at kReferencePoints, so that the same (seed, index) is the same scene for any number of points;
-/// then pairs are bound at that number. A curve that they do not make clear there is kept as it is.
+/// problem does not depend on who solves it. A scene is taken if that succeeds, with one duration, at
+/// each of kReferencePoints, so that the same (seed, index) is the same scene for any number of
+/// points; then pairs are bound at that number. A curve that they do not make clear there (with ten
+/// points many are too stiff) is kept as it is, and counted.
 class CaseMaker {
  public:
-  static constexpr int kReferencePoints = 30;
+  static constexpr std::array kReferencePoints = {20, 40};
 
   /// Throws std::invalid_argument if an option is out of range or no backend can make pairs.
   CaseMaker(const CaseOptions& options, int points);
@@ -69,7 +71,7 @@ class CaseMaker {
   /// Throws std::runtime_error if a hundred scenes in a row could not be made clear.
   LandingCase Make(int index);
 
-  const std::string& backend() const { return reference_.backend->name(); }
+  const std::string& backend() const { return references_.front()->backend->name(); }
 
  private:
   enum class Outcome { kClear, kNotClear, kUnsolved };
@@ -87,6 +89,7 @@ class CaseMaker {
   Scene DrawScene(int index, int draw) const;
   bool SetDuration(double duration, Scene* scene) const;
   Outcome StretchUntilClear(Scene* scene, LandingCase* made, planning::UniformBspline* curve);
+  Outcome BindAtReferences(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
   Outcome BindUntilClear(const Scene& scene, Binder* binder, LandingCase* made,
                          planning::UniformBspline* curve);
   LandingCase Later(const Scene& scene, const LandingCase& first,
@@ -94,7 +97,7 @@ class CaseMaker {
   Outcome MakeOf(Scene* scene, int draw, LandingCase* made);
 
   CaseOptions options_;
-  Binder reference_;
+  std::vector<std::unique_ptr<Binder>> references_;
   Binder binder_;
   planning::GridSearch search_;
 };

@@ -66,21 +66,19 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options) : options_(option
   // A cell is blocked if any of its points is nearer than the radius to any point of an occupied
   // cell.
   const double reach = (options.inflation_radius + kChordSagitta) / options.resolution;
-  const int n = static_cast<int>(std::ceil(reach)) + 1;
+  const int n = options.inflation_radius > 0.0 ? static_cast<int>(std::ceil(reach)) + 1 : 0;
   for (int z = -n; z <= n; ++z) {
     for (int y = -n; y <= n; ++y) {
-      for (int x = -n; x <= n; ++x) {
+      int half = -1;  // a row is an interval, as a ball is convex
+      for (int x = 0; x <= n; ++x) {
         const auto gap = [](int i) { return std::max(0, std::abs(i) - 1); };
         const double distance = std::sqrt(gap(x) * gap(x) + gap(y) * gap(y) + gap(z) * gap(z));
-        const bool itself = x == 0 && y == 0 && z == 0;
-        if (itself || (options.inflation_radius > 0.0 && distance < reach)) {
-          ball_.emplace_back(x, y, z);
-        }
+        if (n == 0 || distance < reach) half = x;
       }
+      if (half < 0) continue;
+      ball_.push_back({half, y, z});
+      ball_reach_ = std::max({ball_reach_, half, std::abs(y), std::abs(z)});
     }
-  }
-  for (const CellIndex& offset : ball_) {
-    ball_reach_ = std::max(ball_reach_, offset.cwiseAbs().maxCoeff());
   }
   touched_.reserve(1 << 17);
   flips_.reserve(1 << 14);
@@ -141,10 +139,7 @@ void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
   // What enters takes over addresses of what left; its inflation is counted anew from the obstacles
   // that stay within a ball's reach of it.
   origin_ = target;
-  const auto stayed = [&](const CellIndex& cell) {
-    return ((cell - old_origin).array() >= 0).all() &&
-           ((cell - old_origin - size_).array() < 0).all();
-  };
+  const CellIndex old_end = old_origin + size_;
   for (int axis = 0; axis < 3; ++axis) {
     Slab(origin_, size_, axis, shift[axis] > 0, moved[axis], &lo, &hi);
     ForEachCell(lo, hi, [&](const CellIndex& cell) { inflation_[Address(cell)] = 0; });
@@ -160,9 +155,13 @@ void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
                              ((cell - band_hi[earlier]).array() < 0).all();
         if (counted) return;
       }
-      for (const CellIndex& ball : ball_) {
-        const CellIndex near = cell + ball;
-        if (InWindow(near) && !stayed(near)) ++inflation_[Address(near)];
+      for (const BallRow& row : ball_) {
+        const int y = cell.y() + row.y, z = cell.z() + row.z;
+        const int begin = cell.x() - row.half, end = cell.x() + row.half + 1;
+        const bool new_row =
+            y < old_origin.y() || y >= old_end.y() || z < old_origin.z() || z >= old_end.z();
+        AddToRow(y, z, begin, new_row ? end : std::min(end, old_origin.x()), 1);
+        if (!new_row) AddToRow(y, z, std::max(begin, old_end.x()), end, 1);
       }
     });
   }
@@ -275,13 +274,27 @@ void OccupancyMap::SetLogOdds(const CellIndex& cell, std::int8_t value) {
 }
 
 void OccupancyMap::Inflate(const CellIndex& cell, int increment) {
-  for (const CellIndex& offset : ball_) {
-    const CellIndex near = cell + offset;
-    if (InWindow(near)) {
-      std::uint16_t& count = inflation_[Address(near)];
-      count = static_cast<std::uint16_t>(count + increment);
-    }
+  for (const BallRow& row : ball_) {
+    AddToRow(cell.y() + row.y, cell.z() + row.z, cell.x() - row.half, cell.x() + row.half + 1,
+             increment);
   }
+}
+
+// Cells [x_begin, x_end) of a row, as far as they are in the window.
+void OccupancyMap::AddToRow(int y, int z, int x_begin, int x_end, int increment) {
+  const CellIndex end = origin_ + size_;
+  if (y < origin_.y() || y >= end.y() || z < origin_.z() || z >= end.z()) return;
+  x_begin = std::max(x_begin, origin_.x());
+  x_end = std::min(x_end, end.x());
+  std::uint16_t* row = &inflation_[RowAddress(y, z)];
+  const auto add = [&](int from, int to) {
+    for (int x = from; x < to; ++x) row[x] = static_cast<std::uint16_t>(row[x] + increment);
+  };
+  // Addresses wrap around once in the window, at a multiple of its size.
+  const int from = x_begin & mask_.x();
+  const int to = from + (x_end - x_begin);
+  add(from, std::min(to, size_.x()));
+  add(0, to - size_.x());
 }
 
 }  // namespace touchdown::planning

@@ -108,24 +108,33 @@ class OccupancyMap {
   const std::vector<CellFlip>& flips() const { return flips_; }
 
  private:
-  std::size_t Address(const CellIndex& cell) const {
+  /// Offsets (-half..half, y, z) from an obstacle's cell.
+  struct BallRow {
+    int half;
+    int y, z;
+  };
+
+  std::size_t RowAddress(int y, int z) const {
     const Eigen::Vector3i& n = options_.size_log2;
-    return (static_cast<std::size_t>(cell.z() & mask_.z()) << (n.x() + n.y())) |
-           (static_cast<std::size_t>(cell.y() & mask_.y()) << n.x()) |
-           static_cast<std::size_t>(cell.x() & mask_.x());
+    return (static_cast<std::size_t>(z & mask_.z()) << (n.x() + n.y())) |
+           (static_cast<std::size_t>(y & mask_.y()) << n.x());
+  }
+  std::size_t Address(const CellIndex& cell) const {
+    return RowAddress(cell.y(), cell.z()) | static_cast<std::size_t>(cell.x() & mask_.x());
   }
   void MarkRay(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool hit,
                const ExcludedVolume& excluded);
   void Vote(const CellIndex& cell, bool hit);
   void SetLogOdds(const CellIndex& cell, std::int8_t value);
   void Inflate(const CellIndex& cell, int increment);
+  void AddToRow(int y, int z, int x_begin, int x_end, int increment);
 
   OccupancyMapOptions options_;
   CellIndex origin_ = CellIndex::Zero();
   CellIndex size_;
   CellIndex mask_;
   std::int8_t hit_, miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
-  std::vector<CellIndex> ball_;                    // cells that one obstacle cell blocks
+  std::vector<BallRow> ball_;                      // cells that one obstacle cell blocks
   int ball_reach_ = 0;                             // its largest extent along an axis
   std::vector<std::int8_t> log_odds_;
   std::vector<std::uint16_t> inflation_;  // number of obstacle cells whose ball holds it

@@ -155,9 +155,10 @@ class Bench {
       VectorXd gradient = VectorXd::Zero(y->size());
       std::vector<int> reduced(static_cast<std::size_t>(shape.window));
       const int count = view_->WindowBlocks(first, shape.window, reduced.data());
+      VectorXd by_block(count * d);
+      view_->WindowJacobian(&block.du[row * v], first, shape.window, 1.0, by_block.data());
       for (int b = 0; b < count; ++b) {
-        view_->WindowJacobian(&block.du[row * v], first, shape.window, reduced[b],
-                              gradient.data() + reduced[b] * d);
+        gradient.segment(reduced[b] * d, d) = by_block.segment(b * d, d);
       }
       if (gradient.norm() < 1e-6) return false;  // the boundary fixes it
       *y -= miss / gradient.squaredNorm() * gradient;

@@ -13,6 +13,7 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <vector>
 
@@ -20,80 +21,125 @@ namespace touchdown::solvers {
 
 namespace {
 
-/// Evaluates the whole view whenever Ceres moves to a new point.
-class PointEvaluation : public ceres::EvaluationCallback {
- public:
-  PointEvaluation(const double* y, Evaluator* evaluator) : y_(y), evaluator_(evaluator) {}
-
-  /// Gradients come with every point: almost every trial step is accepted, and a second pass for
-  /// them would cost more than they do. Past a budget no new point is evaluated any more.
-  void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool new_evaluation_point) override {
-    const ShareScope scope(evaluator_, Share::kAdapter);
-    ok_ = !(new_evaluation_point && evaluator_->must_stop()) &&
-          evaluator_->Evaluate(y_, {.gradient = true, .residual = true});
-  }
-  bool ok() const { return ok_; }
-  const ViewEvaluation& last() const { return evaluator_->last(); }
-
- private:
-  const double* y_;
-  Evaluator* evaluator_;
-  bool ok_ = false;
-};
-
-/// The residuals of one window of one term, copied out of the evaluation.
+/// The residuals of one window of one term and their Jacobian by reduced block, as Ceres wants them.
+/// Bound anew for every solve, filled at every point.
 class WindowResidual : public ceres::CostFunction {
  public:
-  WindowResidual(const View& view, int term, int window, int first_block,
-                 const PointEvaluation& point)
-      : view_(view), term_(term), window_(window), first_block_(first_block), point_(point) {
+  void Bind(const View& view, int term, int window, int first_block, double* y) {
+    view_ = &view;
+    term_ = term;
+    window_ = window;
+    first_block_ = first_block;
     const TermShape& shape = view.problem().term(term).shape();
-    reduced_count_ = view.WindowBlocks(first_block, shape.window, reduced_);
-    for (int b = 0; b < reduced_count_; ++b) {
-      mutable_parameter_block_sizes()->push_back(view.block_size());
-    }
-    if (view.free_interval()) mutable_parameter_block_sizes()->push_back(1);
+    const int d = view.block_size();
     set_num_residuals(shape.outputs);
+    residuals_.resize(shape.outputs);
+    int reduced[kMaxWindow];
+    const int count = view.WindowBlocks(first_block, shape.window, reduced);
+    stride_ = count * d + (view.free_interval() ? 1 : 0);
+    jacobian_.resize(shape.outputs * stride_);
+    jacobian_is_known_ = false;
+    mutable_parameter_block_sizes()->assign(count, d);
+    parameters_.clear();
+    for (int b = 0; b < count; ++b) parameters_.push_back(y + reduced[b] * d);
+    if (view.free_interval()) {
+      mutable_parameter_block_sizes()->push_back(1);
+      parameters_.push_back(y + view.num_variables() - 1);
+    }
   }
 
-  int reduced_count() const { return reduced_count_; }
-  int reduced(int b) const { return reduced_[b]; }
+  const std::vector<double*>& parameters() const { return parameters_; }
+
+  void Fill(const ViewEvaluation& point, bool with_jacobian) {
+    const TermShape& shape = view_->problem().term(term_).shape();
+    const TermBlock& block = point.full.terms[term_];
+    const int first = window_ * shape.outputs;
+    std::copy_n(&block.r[first], shape.outputs, residuals_.data());
+    if (!with_jacobian || jacobian_is_known_) return;
+    jacobian_is_known_ = shape.quadratic && !view_->free_interval();
+    double* row = jacobian_.data();
+    for (int i = first; i < first + shape.outputs; ++i, row += stride_) {
+      const double* du = &block.du[i * shape.window * view_->block_size()];
+      view_->WindowJacobian(du, first_block_, shape.window, block.dr[i], row);
+      if (!view_->free_interval()) continue;
+      row[stride_ - 1] = block.dr[i] * view_->IntervalDerivative(du, block.du_dh[i], first_block_,
+                                                                 shape.window, point);
+    }
+  }
+
+  void SetValid(bool valid) { valid_ = valid; }
 
   bool Evaluate(double const* const* /*parameters*/, double* residuals,
                 double** jacobians) const override {
-    if (!point_.ok()) return false;
-    const TermShape& shape = view_.problem().term(term_).shape();
-    const TermBlock& block = point_.last().full.terms[term_];
-    const int d = view_.block_size();
-    const int v = shape.window * d;
-    for (int c = 0; c < shape.outputs; ++c) {
-      const int i = window_ * shape.outputs + c;
-      residuals[c] = block.r[i];
-      if (!jacobians) continue;
-      const double* du = &block.du[i * v];
-      for (int b = 0; b < reduced_count_; ++b) {
-        if (!jacobians[b]) continue;
-        double* row = jacobians[b] + c * d;
-        view_.WindowJacobian(du, first_block_, shape.window, reduced_[b], row);
-        for (int j = 0; j < d; ++j) row[j] *= block.dr[i];
+    if (!valid_) return false;
+    std::copy(residuals_.begin(), residuals_.end(), residuals);
+    if (!jacobians) return true;
+    int begin = 0;
+    for (std::size_t b = 0; b < parameters_.size(); ++b) {
+      const int size = parameter_block_sizes()[b];
+      for (int i = 0; jacobians[b] && i < num_residuals(); ++i) {
+        std::copy_n(&jacobian_[i * stride_ + begin], size, jacobians[b] + i * size);
       }
-      if (view_.free_interval() && jacobians[reduced_count_]) {
-        jacobians[reduced_count_][c] =
-            block.dr[i] *
-            view_.IntervalDerivative(du, block.du_dh[i], first_block_, shape.window, point_.last());
-      }
+      begin += size;
     }
     return true;
   }
 
  private:
-  const View& view_;
-  int term_;
-  int window_;
-  int first_block_;
-  const PointEvaluation& point_;
-  int reduced_[kMaxWindow] = {};
-  int reduced_count_ = 0;
+  const View* view_ = nullptr;
+  int term_ = 0;
+  int window_ = 0;
+  int first_block_ = 0;
+  int stride_ = 0;  // of a row of the Jacobian
+  bool jacobian_is_known_ = false;
+  bool valid_ = false;
+  std::vector<double*> parameters_;
+  std::vector<double> residuals_;
+  std::vector<double> jacobian_;  // row by row: its parameter blocks, then h if free
+};
+
+/// All active windows of a view, evaluated in one pass whenever Ceres moves to a new point.
+class PointEvaluation : public ceres::EvaluationCallback {
+ public:
+  /// The windows that are active at the evaluator's last point. Those of eliminated blocks only are
+  /// constants and left out.
+  void Bind(const View& view, Evaluator* evaluator, double* y) {
+    evaluator_ = evaluator;
+    y_ = y;
+    bound_ = 0;
+    for (int i = 0; i < view.problem().num_terms(); ++i) {
+      const TermBlock& block = evaluator->last().full.terms[i];
+      for (int k = 0; k < block.windows; ++k) {
+        if (bound_ == windows_.size()) windows_.emplace_back();
+        windows_[bound_].Bind(view, i, k, block.first_block[k], y);
+        if (!windows_[bound_].parameters().empty()) ++bound_;
+      }
+    }
+  }
+
+  void AddTo(ceres::Problem* problem) {
+    for (std::size_t i = 0; i < bound_; ++i) {
+      problem->AddResidualBlock(&windows_[i], nullptr, windows_[i].parameters());
+    }
+  }
+
+  /// Gradients come with every point: almost every trial step is accepted, and a second pass for
+  /// them would cost more than they do. Past a budget no new point is evaluated any more.
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    const ShareScope scope(evaluator_, Share::kAdapter);
+    const bool valid = !(new_evaluation_point && evaluator_->must_stop()) &&
+                       evaluator_->Evaluate(y_, {.gradient = true, .residual = true});
+    for (std::size_t i = 0; i < bound_; ++i) {
+      windows_[i].SetValid(valid);
+      if (valid) windows_[i].Fill(evaluator_->last(), evaluate_jacobians);
+    }
+  }
+
+ private:
+  Evaluator* evaluator_ = nullptr;
+  const double* y_ = nullptr;
+  std::deque<WindowResidual> windows_;  // Ceres keeps their addresses
+  std::size_t bound_ = 0;               // those of this solve
 };
 
 /// Hands every iteration to the evaluator. Shrinking a dogleg's region may leave the rejected step as
@@ -169,22 +215,23 @@ class CeresSolver : public SolverBackend {
       result->status = evaluator->stop_status();
       return;
     }
-    PointEvaluation point(y_.data(), evaluator);
-    ceres::Problem::Options problem_options;
-    problem_options.evaluation_callback = &point;
-    ceres::Problem problem(problem_options);
-    AddResiduals(view, evaluator->last(), point, &problem);
-
-    ceres::Solver::Options solver = Options();
+    windows_.Bind(view, evaluator, y_.data());
     IterationWatch watch(evaluator);
+    ceres::Solver::Options solver = Options();
     solver.callbacks.push_back(&watch);
+
+    const ShareScope scope(evaluator, Share::kNative);
+    ceres::Problem::Options problem_options;
+    problem_options.evaluation_callback = &windows_;
+    problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.disable_all_safety_checks = true;  // they look for equal parameter blocks
+    ceres::Problem problem(problem_options);
+    windows_.AddTo(&problem);
+    BoundInterval(view, &problem);
     ceres::Solver::Summary summary;
     bool held = false, more = false;
     for (int round = 0; round < kMostRounds; ++round) {
-      {
-        const ShareScope scope(evaluator, Share::kNative);
-        ceres::Solve(solver, &problem, &summary);
-      }
+      ceres::Solve(solver, &problem, &summary);
       watch.Finish();
       more = ChangeHold(view, evaluator, &held, &problem);
       if (!more) break;
@@ -220,23 +267,7 @@ class CeresSolver : public SolverBackend {
     return true;
   }
 
-  void AddResiduals(const View& view, const ViewEvaluation& now, const PointEvaluation& point,
-                    ceres::Problem* problem) {
-    const int d = view.block_size();
-    for (int i = 0; i < view.problem().num_terms(); ++i) {
-      const TermBlock& block = now.full.terms[i];
-      for (int k = 0; k < block.windows; ++k) {
-        auto residual = std::make_unique<WindowResidual>(view, i, k, block.first_block[k], point);
-        std::vector<double*> parameters;
-        parameters.reserve(kMaxWindow + 1);
-        for (int b = 0; b < residual->reduced_count(); ++b) {
-          parameters.push_back(&y_[residual->reduced(b) * d]);
-        }
-        if (view.free_interval()) parameters.push_back(&y_.back());
-        // A window of eliminated blocks only is a constant: nothing to optimise.
-        if (!parameters.empty()) problem->AddResidualBlock(residual.release(), nullptr, parameters);
-      }
-    }
+  void BoundInterval(const View& view, ceres::Problem* problem) {
     double* h = &y_.back();
     if (!view.free_interval() || !problem->HasParameterBlock(h)) return;
     const ProblemShape& shape = view.problem().shape();
@@ -278,6 +309,7 @@ class CeresSolver : public SolverBackend {
   }
 
   std::vector<double> y_;
+  PointEvaluation windows_;
 };
 
 }  // namespace

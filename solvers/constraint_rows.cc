@@ -81,9 +81,8 @@ void ConstraintRows::Jacobian(const ViewEvaluation& evaluation, double* values) 
     for (int c = 0; c < shape.outputs; ++c) {
       const int j = w.index * shape.outputs + c;
       const double* du = &block.du[j * shape.window * d];
-      for (int b = 0; b < w.reduced_count; ++b, values += d) {
-        view_->WindowJacobian(du, w.first_block, shape.window, w.reduced[b], values);
-      }
+      view_->WindowJacobian(du, w.first_block, shape.window, 1.0, values);
+      values += w.reduced_count * d;
       if (!view_->free_interval()) continue;
       *values++ =
           view_->IntervalDerivative(du, block.du_dh[j], w.first_block, shape.window, evaluation);

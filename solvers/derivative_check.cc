@@ -49,9 +49,9 @@ MatrixXd StackJacobian(const View& view, const ViewEvaluation& e, bool residuals
       VectorXd row = VectorXd::Zero(view.num_variables());
       std::vector<int> reduced(static_cast<std::size_t>(shape.window));
       const int count = view.WindowBlocks(first, shape.window, reduced.data());
-      for (int b = 0; b < count; ++b) {
-        view.WindowJacobian(du, first, shape.window, reduced[b], row.data() + reduced[b] * d);
-      }
+      VectorXd by_block(count * d);
+      view.WindowJacobian(du, first, shape.window, 1.0, by_block.data());
+      for (int b = 0; b < count; ++b) row.segment(reduced[b] * d, d) = by_block.segment(b * d, d);
       if (view.free_interval()) {
         row[view.num_variables() - 1] =
             view.IntervalDerivative(du, block.du_dh[j], first, shape.window, e);

@@ -258,13 +258,39 @@ int View::WindowBlocks(int first_block, int window, int* reduced) const {
   return count;
 }
 
-void View::WindowJacobian(const double* du, int first_block, int window, int reduced,
+namespace {
+
+// D: the block's size, or Eigen::Dynamic.
+template <int D>
+void FoldWindow(const AffineLift& lift, const double* du, int d, int first_block, int window,
+                double scale, double* out) {
+  using Block = Eigen::Matrix<double, D, 1>;
+  int last = -1;
+  out -= d;
+  for (int i = first_block; i < first_block + window; ++i, du += d) {
+    const int b = lift.block[i];
+    if (b < 0) continue;
+    const double factor = scale * lift.coefficient[i];
+    const Eigen::Map<const Block> from(du, d);
+    if (b == last) {
+      Eigen::Map<Block>(out, d) += factor * from;
+    } else {
+      out += d;
+      Eigen::Map<Block>(out, d) = factor * from;
+      last = b;
+    }
+  }
+}
+
+}  // namespace
+
+void View::WindowJacobian(const double* du, int first_block, int window, double scale,
                           double* out) const {
   const int d = block_size();
-  std::fill(out, out + d, 0.0);
-  for (int i = 0; i < window; ++i) {
-    if (lift_.block[first_block + i] != reduced) continue;
-    for (int c = 0; c < d; ++c) out[c] += lift_.coefficient[first_block + i] * du[i * d + c];
+  if (d == 3) {
+    FoldWindow<3>(lift_, du, d, first_block, window, scale, out);
+  } else {
+    FoldWindow<Eigen::Dynamic>(lift_, du, d, first_block, window, scale, out);
   }
 }
 

@@ -69,8 +69,9 @@ class View {
   /// The distinct reduced blocks that a window reaches, in order; at most `window` of them.
   /// Returns their number.
   int WindowBlocks(int first_block, int window, int* reduced) const;
-  /// Derivative of one output of a window with respect to reduced block `reduced` (d numbers).
-  void WindowJacobian(const double* du, int first_block, int window, int reduced,
+  /// `scale` times the derivative of one output of a window, `du` in its full blocks, by the reduced
+  /// blocks that WindowBlocks lists: `out` has d numbers for each.
+  void WindowJacobian(const double* du, int first_block, int window, double scale,
                       double* out) const;
   /// Its derivative with respect to h, the moving offset included.
   double IntervalDerivative(const double* du, double du_dh, int first_block, int window,
