@@ -9,7 +9,7 @@
 
 #include <random>
 
-#include "touchdown/solvers/test/allocation_count.h"
+#include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/window_term.h"
 
 namespace touchdown::solvers {
