@@ -123,7 +123,11 @@ void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
   // A shift costs whole slabs of cells, so the window waits until there is one to move.
   const CellIndex slack = size_ / 16;
   const CellIndex offset = (target - origin_).cwiseAbs();
-  if (((offset - slack).array() < 0).all()) return;
+  if (((offset - slack).array() >= 0).any()) MoveWindow(target);
+}
+
+void OccupancyMap::MoveWindow(const CellIndex& target) {
+  flips_.clear();
   const CellIndex old_origin = origin_;
   const CellIndex shift = target - old_origin;
   const CellIndex moved = shift.cwiseAbs().cwiseMin(size_);
@@ -230,6 +234,34 @@ void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
   flips_.clear();
   const CellIndex cell = CellOf(p_W);
   if (InWindow(cell)) SetLogOdds(cell, max_);
+}
+
+void OccupancyMap::SetState(const CellIndex& cell, CellState state) {
+  flips_.clear();
+  if (!InWindow(cell)) return;
+  const bool known = state != CellState::kUnknown;
+  SetLogOdds(cell, !known ? kUnknown : state == CellState::kOccupied ? max_ : min_);
+}
+
+void OccupancyMap::CopyStates(std::vector<CellState>* states) const {
+  states->resize(log_odds_.size());
+  CellState* out = states->data();
+  const auto copy = [&](const std::int8_t* from, const std::int8_t* to) {
+    for (; from != to; ++from, ++out) {
+      const CellState free =
+          *from < 0 && *from != kUnknown ? CellState::kFree : CellState::kUnknown;
+      *out = *from >= occupied_ ? CellState::kOccupied : free;
+    }
+  };
+  // Addresses wrap around once in a row.
+  const int wrap = origin_.x() & mask_.x();
+  for (int z = origin_.z(); z < origin_.z() + size_.z(); ++z) {
+    for (int y = origin_.y(); y < origin_.y() + size_.y(); ++y) {
+      const std::int8_t* row = &log_odds_[RowAddress(y, z)];
+      copy(row + wrap, row + size_.x());
+      copy(row, row + wrap);
+    }
+  }
 }
 
 void OccupancyMap::MarkOwnVolume(const Eigen::Vector3d& p_W, double radius) {

@@ -39,6 +39,9 @@ struct ExcludedVolume {
   double top = 0.0;                                  ///< returns above this height count again [m]
 };
 
+/// What a planner can tell of a cell. What was hit and is neither free nor occupied is unknown to it.
+enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
+
 /// A cell that became blocked or free, before inflation.
 struct CellFlip {
   CellIndex cell;
@@ -59,6 +62,12 @@ class OccupancyMap {
   /// Moves the window so that it is centred at p_W, once p_W is a sixteenth of the window's size
   /// off its centre; cells that enter are unknown, cells that leave are forgotten.
   void Recentre(const Eigen::Vector3d& p_W);
+
+  /// Moves the window so that `origin` is its lowest cell.
+  void MoveWindow(const CellIndex& origin);
+
+  /// Sets one cell as a planner sees it. Out of the window: ignored.
+  void SetState(const CellIndex& cell, CellState state);
 
   /// Fuses one depth frame: every cell is updated once, hits win over misses.
   void Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded);
@@ -99,6 +108,9 @@ class OccupancyMap {
   bool IsKnown(const CellIndex& cell) const;
   /// Observed, and likelier free than not. A cell that was hit once may be neither free nor occupied.
   bool IsObservedFree(const CellIndex& cell) const;
+
+  /// States of the window's cells, x fastest, from origin() on. Allocates if `states` is too small.
+  void CopyStates(std::vector<CellState>* states) const;
 
   /// Lowest cell of the window and its extent [cells].
   const CellIndex& origin() const { return origin_; }

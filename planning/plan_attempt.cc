@@ -69,6 +69,17 @@ void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
+  const ReplanReason reason = Try(request, result);
+  if (request.log) {
+    request.log->duration = request.duration;
+    request.log->arrival = request.arrival;
+    request.log->segments = SegmentsFor(request.duration);
+    request.log->reason = reason;
+  }
+  return reason;
+}
+
+ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
   Prepared& prepared = prepared_.at({SegmentsFor(request.duration), request.arrival});
   LandingProblem& problem = *prepared.problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
@@ -83,6 +94,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   Eigen::VectorXd y = problem.Guess();
   solvers::Stop stop;
   stop.max_iterations = options_.max_iterations;
+  stop.trace = request.log != nullptr;
   double pressure = 1.0;
 
   for (int round = 0;; ++round) {
@@ -94,12 +106,17 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
     }
     ++result->solves;
     if (round > 0) ++result->rebinds;
+    if (request.log) request.log->rounds.push_back({pressure, pairs_, result->solver, {}, {}});
     if (!result->solver.usable()) return ReplanReason::kSolverFailed;
     y = result->solver.x;
     result->curve = problem.Curve(y);
     {
       StageTimer timer(&result->times.check);
       FindBlockedRuns(result->curve, request.t0, *request.space, &runs_);
+    }
+    if (request.log) {
+      request.log->rounds.back().curve = result->curve;
+      request.log->rounds.back().blocked = runs_;
     }
     // A blocked start alone is for the certificate: it may be an escape.
     const bool only_start = runs_.size() == 1 && runs_.front().at_start && round > 0;
@@ -118,6 +135,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   if (options_.problem.endpoint == EndpointMode::kExplicit) {
     result->certificate.endpoint_tolerance = kRowTolerance;
   }
+  if (request.log) request.log->certificate = result->certificate;
   // The certificate does not know every row: tilt, thrust and a user's own are the solver's word.
   const bool rows_kept = result->solver.max_violation <= kRowTolerance;
   if (result->certificate.passed() && rows_kept) return ReplanReason::kNone;

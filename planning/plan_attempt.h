@@ -9,6 +9,7 @@
 #include "touchdown/planning/collision_pairs.h"
 #include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/replan_result.h"
 #include "touchdown/solvers/backend_registry.h"
 
@@ -27,6 +28,7 @@ struct AttemptRequest {
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice while clear
+  AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };
 
 /// Solve, check the whole curve, bind pairs where it is blocked, solve again, until it is clear or
@@ -45,6 +47,7 @@ class PlanAttempt {
     std::unique_ptr<solvers::SolverBackend> backend;
   };
   void Prepare(int segments, ArrivalMode arrival);
+  ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve,
                     std::size_t max_pairs, ReplanResult* result);
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,

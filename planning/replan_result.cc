@@ -53,6 +53,26 @@ const char* ToString(ReplanReason reason) {
   return "unknown";
 }
 
+const char* Explain(ReplanStatus status) {
+  switch (status) {
+    case ReplanStatus::kPlanned:
+      return "A new plan to the pad is flown.";
+    case ReplanStatus::kKept:
+      return "The committed curve is still safe and goes on.";
+    case ReplanStatus::kBraking:
+      return "The vehicle brakes to rest along a certified curve.";
+    case ReplanStatus::kClimbing:
+      return "The vehicle climbs to rest along a certified curve.";
+    case ReplanStatus::kEscaping:
+      return "The vehicle leaves the inflated zone around an obstacle and comes to rest.";
+    case ReplanStatus::kHolding:
+      return "The vehicle is at rest in free space and stays.";
+    case ReplanStatus::kUnsafe:
+      return "Nothing could be certified: the vehicle brakes without a certificate.";
+  }
+  return "Unknown status.";
+}
+
 const char* Explain(ReplanReason reason) {
   switch (reason) {
     case ReplanReason::kNone:

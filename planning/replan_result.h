@@ -3,6 +3,7 @@
 // again.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -76,16 +77,24 @@ enum class ReplanReason {
 const char* ToString(ReplanStatus status);
 const char* ToString(ReplanReason reason);
 /// One sentence for people.
+const char* Explain(ReplanStatus status);
 const char* Explain(ReplanReason reason);
 
-/// Wall and thread CPU time of the stages of one replanning step [s]. Never part of what must
-/// repeat bit by bit.
+/// What the stages of one replanning step cost. Never part of what must repeat bit by bit.
 struct StageTimes {
   struct Span {
-    double wall = 0.0;
-    double cpu = 0.0;
+    const char* stage = "";
+    double wall = 0.0;     ///< [s]
+    double cpu = 0.0;      ///< of the thread [s]
+    long allocations = 0;  ///< on the heap, where they are counted (solvers/allocation_count.h)
   };
-  Span predict, check, search, pairs, solve, certificate, total;
+  Span predict{"predict"}, search{"search"}, pairs{"pairs"}, solve{"solve"}, check{"check"},
+      certificate{"certificate"}, total{"total"};
+
+  /// The stages without the total, in the order in which they come.
+  std::array<const Span*, 6> Stages() const {
+    return {&predict, &search, &pairs, &solve, &check, &certificate};
+  }
 };
 
 struct ReplanResult {

@@ -109,8 +109,12 @@ class Replanner::Impl {
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
   const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
 
+  ReplannerState State() const;
+  void Restore(const ReplannerState& state);
+
   const ReplannerOptions options_;
   UniformBspline current_, next_;
+  ReplanLog* log_ = nullptr;
 
  private:
   FreeSpace Space(const OccupancyMap& map) const;
@@ -169,7 +173,35 @@ double Replanner::Impl::WatchedUntil(const ReplanInput& input) const {
   return std::max(input.t_start + options_.min_duration, next_.t_end());
 }
 
+ReplannerState Replanner::Impl::State() const {
+  ReplannerState state;
+  state.current = current_;
+  state.next = next_;
+  state.planned = planned_before_;
+  if (climbing_ >= 0.0) state.climb = climbing_;
+  if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
+  state.strip_from = strip_.pad_from;
+  state.strip_to = strip_.pad_to;
+  state.strip_floor = strip_.pad_floor;
+  return state;
+}
+
+void Replanner::Impl::Restore(const ReplannerState& state) {
+  current_ = state.current;
+  next_ = state.next;
+  planned_before_ = state.planned;
+  climbing_ = state.climb.value_or(-1.0);
+  strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
+  strip_.floor = options_.floor_height;
+  strip_.ceiling = options_.ceiling_height;
+  strip_.pad_from = state.strip_from;
+  strip_.pad_to = state.strip_to;
+  strip_.pad_radius = options_.pad_radius;
+  strip_.pad_floor = state.strip_floor;
+}
+
 void Replanner::Impl::Begin() {
+  if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
@@ -274,6 +306,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.space = &space;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
+    request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
@@ -376,5 +409,11 @@ const ReplanResult& Replanner::Rest(const ReplanInput& input, double climb,
 FlatState Replanner::Reference(double t) const { return StateOn(impl_->InForce(t), t); }
 
 const ReplannerOptions& Replanner::options() const { return impl_->options_; }
+
+ReplannerState Replanner::state() const { return impl_->State(); }
+
+void Replanner::Restore(const ReplannerState& state) { impl_->Restore(state); }
+
+void Replanner::set_log(ReplanLog* log) { impl_->log_ = log; }
 
 }  // namespace touchdown::planning

@@ -2,15 +2,31 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <Eigen/Core>
 
 #include "touchdown/planning/flatness.h"
 #include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/replan_result.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
+
+/// All that a replanner remembers from one step to the next. Plain data: with the same options, map
+/// and input the next step gives the same bits.
+struct ReplannerState {
+  UniformBspline current;       ///< flown before next.t0()
+  UniformBspline next;          ///< committed
+  bool planned = false;         ///< `next` is a plan to the pad: its arrival is kept
+  std::optional<double> climb;  ///< `next` is the caller's rest with this climb [m]
+  std::optional<double>
+      strip_t;  ///< when the strip over the pad was last known [s], and the strip:
+  Eigen::Vector2d strip_from = Eigen::Vector2d::Zero();  ///< in W [m]
+  Eigen::Vector2d strip_to = Eigen::Vector2d::Zero();    ///< in W [m]
+  double strip_floor = 0.0;                              ///< in W [m]
+};
 
 /// Plans, re-plans and holds the committed trajectory (docs/architecture.md). One instance
 /// per vehicle; not thread-safe; different instances are independent.
@@ -41,6 +57,14 @@ class Replanner {
   FlatState Reference(double t) const;
 
   const ReplannerOptions& options() const;
+
+  /// What the next step depends on, besides its arguments, and the way back to it. Allocate.
+  ReplannerState state() const;
+  void Restore(const ReplannerState& state);
+
+  /// The steps from now on are written down in `log` (cleared at each), nullptr: no more. It must
+  /// outlive the steps. Allocates in the steps; what they decide stays the same.
+  void set_log(ReplanLog* log);
 
  private:
   class Impl;

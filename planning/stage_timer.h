@@ -4,26 +4,41 @@
 #include <chrono>
 
 #include "touchdown/planning/replan_result.h"
+#include "touchdown/planning/span_log.h"
+#include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/thread_clock.h"
 
 namespace touchdown::planning {
 
-/// Adds the wall and thread CPU time of its own lifetime to a span.
+/// Adds the wall and thread CPU time of its own lifetime, and the allocations in it, to a span; shows
+/// it to the log that listens to the thread, if there is one. Does not allocate.
 class StageTimer {
  public:
   explicit StageTimer(StageTimes::Span* span)
-      : span_(span), wall_(std::chrono::steady_clock::now()), cpu_(solvers::ThreadCpuSeconds()) {}
+      : span_(span),
+        log_(SpanLog::Active()),
+        allocations_(solvers::AllocationCount()),
+        wall_(SpanLog::Clock::now()),
+        cpu_(solvers::ThreadCpuSeconds()) {
+    if (log_) logged_ = log_->Open(span->stage, wall_);
+  }
   ~StageTimer() {
-    const auto elapsed = std::chrono::steady_clock::now() - wall_;
-    span_->wall += std::chrono::duration<double>(elapsed).count();
-    span_->cpu += solvers::ThreadCpuSeconds() - cpu_;
+    const double cpu = solvers::ThreadCpuSeconds() - cpu_;
+    const double wall = std::chrono::duration<double>(SpanLog::Clock::now() - wall_).count();
+    span_->wall += wall;
+    span_->cpu += cpu;
+    span_->allocations += solvers::AllocationCount() - allocations_;
+    if (log_) log_->Close(logged_, wall, cpu);
   }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
  private:
   StageTimes::Span* span_;
-  std::chrono::steady_clock::time_point wall_;
+  SpanLog* log_;
+  std::size_t logged_ = 0;
+  long allocations_;
+  SpanLog::Clock::time_point wall_;
   double cpu_;
 };
 

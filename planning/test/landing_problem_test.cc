@@ -10,7 +10,7 @@
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/test/planning_fixtures.h"
 #include "touchdown/solvers/backend_registry.h"
-#include "touchdown/solvers/test/allocation_count.h"
+#include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
 namespace {

@@ -4,12 +4,15 @@
 
 #include "touchdown/planning/replanner.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "touchdown/planning/span_log.h"
 #include "touchdown/planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
@@ -132,6 +135,87 @@ TEST(Replanner, TheSameQuestionTwiceGivesTheSameBits) {
     return replanner.Replan(Input({-4.0, 0.0, 1.5}, pad, 0.0), map).curve.control_points();
   };
   EXPECT_EQ(run(), run());
+}
+
+// Every step again in another replanner, from the state before it, written down and not.
+TEST(Replanner, AStepIsRepeatedFromItsState) {
+  const ArcPad pad({5.0, 2.0, 0.3}, 1.0, 0.4, 0.1);
+  OccupancyMap map = ObservedMap();
+  AddPillar(0.5, 1.0, &map);
+  Replanner flown(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  Replanner other(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  ReplanLog log;
+  Eigen::Vector3d p(-4.0, 0.0, 1.6);
+  flown.CommitHover(p, 0.0);
+  std::vector<std::string> statuses;
+  for (int step = 0; step < 50; ++step) {
+    ReplanInput input = Input(p, pad, 0.1 * step);
+    input.vehicle.v_WB = flown.Reference(input.t_now).v_WB;
+    if (step == 12) AddPillar(p.x() + 1.5, p.y(), &map);
+    const bool rests = step > 20 && step < 25;
+    if (step > 30 && step < 34) input.pad = nullptr;
+    const ReplannerState before = flown.state();
+    const ReplanResult& wanted = rests ? flown.Rest(input, 1.0, map) : flown.Replan(input, map);
+    statuses.push_back(ToString(wanted.status));
+    for (ReplanLog* written : {static_cast<ReplanLog*>(nullptr), &log}) {
+      other.set_log(written);
+      other.Restore(before);
+      const ReplanResult& got = rests ? other.Rest(input, 1.0, map) : other.Replan(input, map);
+      ASSERT_EQ(got.status, wanted.status) << step;
+      ASSERT_EQ(got.reason, wanted.reason) << step;
+      ASSERT_EQ(got.curve.control_points(), wanted.curve.control_points()) << step;
+      ASSERT_EQ(got.curve.t_end(), wanted.curve.t_end()) << step;
+    }
+    EXPECT_EQ(log.attempts.empty(), rests || input.pad == nullptr);
+    if (wanted.status == ReplanStatus::kPlanned) {
+      const AttemptLog& last = log.attempts.back();
+      EXPECT_EQ(last.reason, ReplanReason::kNone);
+      EXPECT_EQ(last.rounds.back().curve.control_points(), wanted.curve.control_points());
+      EXPECT_TRUE(last.rounds.back().blocked.empty());
+      EXPECT_EQ(static_cast<int>(last.rounds.back().pairs.size()), wanted.pairs);
+      EXPECT_EQ(last.rounds.back().solver.trace.size(),
+                static_cast<std::size_t>(wanted.solver.iterations));
+    }
+    p = flown.Reference(input.t_now + 0.1).p_WB;
+  }
+  EXPECT_THAT(statuses, ::testing::Contains("climbing"));
+  EXPECT_THAT(statuses, ::testing::Contains("kept"));
+}
+
+TEST(Replanner, SpansAreLoggedWhereSomebodyListens) {
+  OccupancyMap map = ObservedMap();
+  AddPillar(0.0, 0.2, &map);
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.8, 0.3, 0.1);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
+  const ReplanInput input = Input({-4.0, 0.0, 1.5}, pad, 0.0);
+  const ReplannerState before = replanner.state();
+  SpanLog log, full;
+  log.Reserve(1000);
+  full.Reserve(1);
+  {
+    const SpanLog::Listening listening(&log);
+    replanner.Replan(input, map);
+  }
+  replanner.Restore(before);
+  {
+    const SpanLog::Listening listening(&full);
+    const StageTimes& times = replanner.Replan(input, map).times;
+    EXPECT_LE(times.solve.cpu + times.check.cpu + times.search.cpu, times.total.cpu);
+  }
+  EXPECT_EQ(full.spans().size(), 1u);
+  EXPECT_EQ(full.dropped() + 1, log.spans().size());
+  ASSERT_FALSE(log.spans().empty());
+  const LoggedSpan& total = log.spans().front();
+  EXPECT_STREQ(total.stage, "total");
+  double end = total.begin;
+  for (std::size_t i = 1; i < log.spans().size(); ++i) {
+    const LoggedSpan& span = log.spans()[i];
+    EXPECT_EQ(span.depth, 1);
+    EXPECT_GE(span.begin, end);
+    end = span.begin + span.wall;
+  }
+  EXPECT_LE(end, total.begin + total.wall);
 }
 
 TEST(Replanner, NamesWhyThereIsNoPlan) {

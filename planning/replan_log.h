@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A replanning step written down: what it tried on the way to its answer. Plain data.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "touchdown/planning/certificate.h"
+#include "touchdown/planning/curve_check.h"
+#include "touchdown/planning/landing_term.h"
+#include "touchdown/planning/replan_result.h"
+#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/solvers/solver_result.h"
+
+namespace touchdown::planning {
+
+/// One solve and the check of its curve.
+struct RoundLog {
+  double pressure = 1.0;            ///< factor on the weight of the pairs
+  std::vector<ObstaclePair> pairs;  ///< that were bound in the solve
+  solvers::SolverResult solver;     ///< with its trace
+  UniformBspline curve;             ///< if the solver's point was usable
+  std::vector<BlockedRun> blocked;  ///< stretches of the curve
+};
+
+/// One arrival time that was tried.
+struct AttemptLog {
+  double duration = 0.0;  ///< T, or its first guess [s]
+  ArrivalMode arrival = ArrivalMode::kFixed;
+  int segments = 0;
+  std::vector<RoundLog> rounds;
+  std::optional<Certificate> certificate;  ///< if it came to that
+  ReplanReason reason = ReplanReason::kNone;
+};
+
+struct ReplanLog {
+  std::vector<AttemptLog> attempts;
+};
+
+}  // namespace touchdown::planning
