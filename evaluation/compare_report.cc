@@ -176,6 +176,19 @@ Json SummaryJson(const BackendSummary& s) {
   return json;
 }
 
+/// What the problems of one size were drawn from.
+Json ScenesJson(const CompareResult& result, int points) {
+  int drawn = 0, not_clear = 0, unsolved = 0, clear = 0;
+  for (const ProblemRow& row : result.problems) {
+    if (row.points != points) continue;
+    drawn += row.made.draws;
+    not_clear += row.made.not_clear;
+    unsolved += row.made.unsolved;
+    clear += row.made.clear ? 1 : 0;
+  }
+  return {{"drawn", drawn}, {"not_clear", not_clear}, {"unsolved", unsolved}, {"clear", clear}};
+}
+
 // Only backends that ran all problems: figures over different problems are not to be compared.
 Json PooledJson(const CompareResult& result) {
   Json json = Json::object();
@@ -241,6 +254,7 @@ Json CompareJson(const CompareOptions& options, const CompareResult& result,
   json["by_points"] = Json::object();
   for (const int points : options.points) {
     json["by_points"][std::to_string(points)] = BackendsJson(result, points);
+    json["scenes"][std::to_string(points)] = ScenesJson(result, points);
   }
   json["scaling_slope"] = Json::object();
   for (const std::string& backend : result.backends) {

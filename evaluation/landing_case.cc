@@ -230,30 +230,29 @@ CaseMaker::Outcome CaseMaker::BindUntilClear(const Scene& scene, Binder* binder,
   }
 }
 
+// Binds at every reference size; a warm case starts at each from the curve that `curves` holds for
+// it, and leaves the new one there.
 CaseMaker::Outcome CaseMaker::BindAtReferences(const Scene& scene, LandingCase* made,
-                                               planning::UniformBspline* curve) {
-  const std::optional<planning::UniformBspline> before = made->warm;
-  Outcome outcome = Outcome::kClear;
-  for (const auto& reference : references_) {
-    if (before) made->warm = WarmStart(*made, *before, reference->problem.segments());
-    outcome = BindUntilClear(scene, reference.get(), made, curve);
-    if (outcome != Outcome::kClear) break;
+                                               Curves* curves) {
+  for (std::size_t i = 0; i < references_.size(); ++i) {
+    if (made->warm) {
+      made->warm = WarmStart(*made, (*curves)[i], references_[i]->problem.segments());
+    }
+    const Outcome outcome = BindUntilClear(scene, references_[i].get(), made, &(*curves)[i]);
+    if (outcome != Outcome::kClear) return outcome;
   }
-  made->warm = before;
-  return outcome;
+  return Outcome::kClear;
 }
 
-// At every reference size; `curve` is that of the last. As the replanner does, a longer flight is
-// tried where the guessed one leaves no room.
-CaseMaker::Outcome CaseMaker::StretchUntilClear(Scene* scene, LandingCase* made,
-                                                planning::UniformBspline* curve) {
+// As the replanner does, a longer flight is tried where the guessed one leaves no room.
+CaseMaker::Outcome CaseMaker::StretchUntilClear(Scene* scene, LandingCase* made, Curves* curves) {
   bool unsolved = false;
   for (int stretch = 0; stretch <= kStretches; ++stretch) {
     if (stretch > 0 && !SetDuration(kStretch * scene->duration, scene)) break;
     if (scene->space.Blocked(scene->start.p)) break;
     made->duration = scene->duration;
     made->target = scene->target;
-    const Outcome outcome = BindAtReferences(*scene, made, curve);
+    const Outcome outcome = BindAtReferences(*scene, made, curves);
     if (outcome == Outcome::kClear) return outcome;
     unsolved = unsolved || outcome == Outcome::kUnsolved;
   }
@@ -285,21 +284,21 @@ LandingCase CaseMaker::Later(const Scene& scene, const LandingCase& first,
   return later;
 }
 
-// Accepts the scene at the reference sizes, then binds pairs at the wanted one.
+// Accepts the scene at the reference sizes, then binds pairs at the wanted one, where a failed solve
+// leaves the pairs of the last round. The warm problem follows the finest reference's plan.
 CaseMaker::Outcome CaseMaker::MakeOf(Scene* scene, int draw, LandingCase* made) {
-  planning::UniformBspline curve;
-  const Outcome first = StretchUntilClear(scene, made, &curve);
+  Curves curves;
+  const Outcome first = StretchUntilClear(scene, made, &curves);
   if (first != Outcome::kClear) return first;
-  planning::UniformBspline plan = curve;
+  planning::UniformBspline plan = curves.back();
   BindUntilClear(*scene, &binder_, made, &plan);
   if (!options_.warm) return Outcome::kClear;
-  LandingCase later = Later(*scene, *made, curve, draw);
-  later.warm = curve;
-  planning::UniformBspline again = curve;
-  const Outcome second = BindAtReferences(*scene, &later, &again);
+  LandingCase later = Later(*scene, *made, curves.back(), draw);
+  later.warm = plan;
+  const Outcome second = BindAtReferences(*scene, &later, &curves);
   if (second != Outcome::kClear) return second;
   later.warm = WarmStart(later, plan, binder_.problem.segments());
-  BindUntilClear(*scene, &binder_, &later, &again);
+  BindUntilClear(*scene, &binder_, &later, &plan);
   *made = std::move(later);
   return Outcome::kClear;
 }

@@ -58,7 +58,7 @@ struct LandingCase {
 /// with a longer flight) until the curve is clear and keeps the full limits. Pairs are made with soft
 /// limits, a fixed arrival and an eliminated endpoint, whatever the comparison solves later: the
 /// problem does not depend on who solves it. A scene is taken if that succeeds, with one duration, at
-/// each of kReferencePoints, so that the same (seed, index) is the same scene for any number of
+/// each of kReferencePoints (a warm one: now and 0.1 s later), so that the same (seed, index) is the same scene for any number of
 /// points; then pairs are bound at that number. A curve that they do not make clear there (with ten
 /// points many are too stiff) is kept as it is, and counted.
 class CaseMaker {
@@ -75,6 +75,7 @@ class CaseMaker {
 
  private:
   enum class Outcome { kClear, kNotClear, kUnsolved };
+  using Curves = std::array<planning::UniformBspline, kReferencePoints.size()>;
   struct Scene;
   /// What pairs are bound with at one size.
   struct Binder {
@@ -88,8 +89,8 @@ class CaseMaker {
 
   Scene DrawScene(int index, int draw) const;
   bool SetDuration(double duration, Scene* scene) const;
-  Outcome StretchUntilClear(Scene* scene, LandingCase* made, planning::UniformBspline* curve);
-  Outcome BindAtReferences(const Scene& scene, LandingCase* made, planning::UniformBspline* curve);
+  Outcome StretchUntilClear(Scene* scene, LandingCase* made, Curves* curves);
+  Outcome BindAtReferences(const Scene& scene, LandingCase* made, Curves* curves);
   Outcome BindUntilClear(const Scene& scene, Binder* binder, LandingCase* made,
                          planning::UniformBspline* curve);
   LandingCase Later(const Scene& scene, const LandingCase& first,

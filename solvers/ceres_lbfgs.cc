@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "touchdown/solvers/whitened_point.h"
@@ -47,6 +48,13 @@ class IterationWatch : public ceres::IterationCallback {
   IterationWatch(WhitenedPoint* point, Evaluator* evaluator)
       : point_(point), evaluator_(evaluator) {}
 
+  void BeginLeg(const MetricLegs& legs) {
+    leg_end_ = legs.endless() ? std::numeric_limits<int>::max()
+                              : evaluator_->evaluations() + legs.length();
+    leg_over_ = false;
+  }
+  bool leg_over() const { return leg_over_; }
+
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     const ShareScope scope(evaluator_, Share::kAdapter);
     double step = 0.0;
@@ -54,12 +62,16 @@ class IterationWatch : public ceres::IterationCallback {
       point_->Improved(&step);
       evaluator_->FinishIteration(step, summary.gradient_max_norm);
     }
-    return evaluator_->CheckStop() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    leg_over_ = evaluator_->evaluations() >= leg_end_;
+    return evaluator_->CheckStop() || leg_over_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                                                : ceres::SOLVER_CONTINUE;
   }
 
  private:
   WhitenedPoint* point_;
   Evaluator* evaluator_;
+  int leg_end_ = 0;
+  bool leg_over_ = false;
 };
 
 class CeresLbfgs : public SolverBackend {
@@ -74,6 +86,7 @@ class CeresLbfgs : public SolverBackend {
                  "largest gradient that ends a solve"},
                 {"parameter_tolerance", 0.0, 0.0, 1.0, false, "relative step that ends a solve"},
                 {"vector_storage", 10.0, 1.0, 1000.0, true, "gradients remembered"},
+                MetricLegs::Option(),
                 {"whiten", 1.0, 0.0, 1.0, true,
                  "1: solve in whitened variables, where their metric is regular"},
             })) {}
@@ -99,16 +112,20 @@ class CeresLbfgs : public SolverBackend {
       return;
     }
     first_cost_ = point_.value();
-    std::copy(point_.z(), point_.z() + point_.size(), z_.begin());
 
     const ceres::GradientProblem problem(new WhitenedObjective(&point_, evaluator));
     ceres::GradientProblemSolver::Options solver = Options(stop);
     IterationWatch watch(&point_, evaluator);
     solver.callbacks.push_back(&watch);
     ceres::GradientProblemSolver::Summary summary;
-    {
+    MetricLegs legs(point_.whitened() ? options().Get("metric_evaluations") : 0.0);
+    for (;; legs.Next()) {
+      std::copy(point_.z(), point_.z() + point_.size(), z_.begin());
+      watch.BeginLeg(legs);
       const ShareScope scope(evaluator, Share::kNative);
       ceres::Solve(solver, problem, z_.data(), &summary);
+      if (!watch.leg_over() || evaluator->must_stop()) break;
+      point_.RenewMetric(view, z_.data());
     }
     // Ceres does not call back after the step that meets its stop test.
     double step = 0.0;

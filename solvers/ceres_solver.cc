@@ -38,7 +38,7 @@ class WindowResidual : public ceres::CostFunction {
     const int count = view.WindowBlocks(first_block, shape.window, reduced);
     stride_ = count * d + (view.free_interval() ? 1 : 0);
     jacobian_.resize(shape.outputs * stride_);
-    jacobian_is_known_ = false;
+    jacobian_is_known_ = valid_ = false;
     mutable_parameter_block_sizes()->assign(count, d);
     parameters_.clear();
     for (int b = 0; b < count; ++b) parameters_.push_back(y + reduced[b] * d);
@@ -99,7 +99,7 @@ class WindowResidual : public ceres::CostFunction {
 };
 
 /// All active windows of a view, evaluated in one pass whenever Ceres moves to a new point.
-class PointEvaluation : public ceres::EvaluationCallback {
+class WindowResiduals : public ceres::EvaluationCallback {
  public:
   /// The windows that are active at the evaluator's last point. Those of eliminated blocks only are
   /// constants and left out.
@@ -161,6 +161,7 @@ class IterationWatch : public ceres::IterationCallback {
 
   /// After a solve: Ceres does not call back after the step that meets its stop test.
   void Finish() {
+    const ShareScope scope(evaluator_, Share::kAdapter);
     if (evaluator_->must_stop() || evaluator_->best_cost() == told_cost_) return;
     const double hidden = std::numeric_limits<double>::quiet_NaN();
     Tell(hidden, hidden);
@@ -224,7 +225,9 @@ class CeresSolver : public SolverBackend {
     ceres::Problem::Options problem_options;
     problem_options.evaluation_callback = &windows_;
     problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    problem_options.disable_all_safety_checks = true;  // they look for equal parameter blocks
+    // They look for parameter blocks that repeat, differ in size or overlap: those of a view are
+    // distinct slices of y_.
+    problem_options.disable_all_safety_checks = true;
     ceres::Problem problem(problem_options);
     windows_.AddTo(&problem);
     BoundInterval(view, &problem);
@@ -247,6 +250,7 @@ class CeresSolver : public SolverBackend {
   /// interval at a bound it stops beside the optimum. So the interval is held there and the rest
   /// solved again, and let go where the objective falls inwards. True if there is more to solve.
   bool ChangeHold(const View& view, Evaluator* evaluator, bool* held, ceres::Problem* problem) {
+    const ShareScope scope(evaluator, Share::kAdapter);
     double* h = &y_.back();
     if (!view.free_interval() || evaluator->must_stop() || !problem->HasParameterBlock(h)) {
       return false;
@@ -309,7 +313,7 @@ class CeresSolver : public SolverBackend {
   }
 
   std::vector<double> y_;
-  PointEvaluation windows_;
+  WindowResiduals windows_;
 };
 
 }  // namespace

@@ -60,6 +60,7 @@ SolverOptions OptionsOf(const Method& method) {
   };
   if (method.stores_vectors) {
     specs.push_back({"vector_storage", 10.0, 1.0, 1000.0, true, "gradients remembered"});
+    specs.push_back(MetricLegs::Option());
   }
   if (method.capabilities.hard_rows) {
     specs.push_back({"violation_tolerance", 1e-8, 1e-14, Evaluator::kFeasible, false,
@@ -116,7 +117,7 @@ class NloptSolver : public SolverBackend {
     rows_.Set(view, point_.last());
     Configure(view);
     std::copy(point_.z(), point_.z() + point_.size(), z_.begin());
-    const nlopt_result code = Run();
+    const nlopt_result code = Run(view);
     if (error_) std::rethrow_exception(error_);
     result->native_status = code;
     const char* words = nlopt_get_errmsg(opt_);
@@ -124,14 +125,24 @@ class NloptSolver : public SolverBackend {
     result->status = Status(code);
   }
 
-  /// NLopt, and again from where it ended while it says that it has converged, the rows are not met,
-  /// and they get closer: SLSQP of version 2.7 looks at its tolerances whether feasible or not.
-  nlopt_result Run() {
+  /// NLopt, and again from where it ended at the end of a leg; or while it says that it has converged,
+  /// the rows are not met, and they get closer: SLSQP of version 2.7 looks at its tolerances whether
+  /// feasible or not.
+  nlopt_result Run(const View& view) {
     nlopt_result code = NLOPT_FORCED_STOP;
     double value = 0.0;
+    const bool renews = method_.stores_vectors && point_.whitened();
+    MetricLegs legs(renews ? options().Get("metric_evaluations") : 0.0);
     for (double before = HUGE_VAL; !evaluator_->must_stop();) {
       const ShareScope scope(evaluator_, Share::kNative);
+      nlopt_set_maxeval(opt_, legs.endless() ? 0 : legs.length());
       code = nlopt_optimize(opt_, z_.data(), &value);
+      if (code == NLOPT_MAXEVAL_REACHED) {
+        point_.RenewMetric(view, z_.data());
+        std::copy(point_.z(), point_.z() + point_.size(), z_.begin());
+        legs.Next();
+        continue;
+      }
       const double violation = evaluator_->best_violation();
       if (code < 0 || violation <= Evaluator::kFeasible || violation > kCloser * before) break;
       before = violation;

@@ -37,7 +37,7 @@ struct IterationRecord {
 struct SolveShares {
   double evaluation_s = 0.0;  ///< View::Evaluate
   double whitening_s = 0.0;   ///< factor and triangular solves of the whitening
-  double native_s = 0.0;      ///< the solver library, or the backend's own algorithm
+  double native_s = 0.0;      ///< the solver library, its own problem built; or our algorithm
   double adapter_s = 0.0;     ///< all else: copies, set-up, checks, bookkeeping
 };
 

@@ -32,7 +32,8 @@ struct TermShape {
   int outputs = 1;            ///< components of u, m
   int max_windows = 0;        ///< most windows it can ever have at this problem size
   bool uses_interval = true;  ///< u depends on h
-  bool quadratic = false;     ///< u affine in the blocks and rho quadratic: one Hessian for all x
+  bool quadratic = false;     ///< u affine in the blocks, rho quadratic, r affine in u: one Hessian
+                              ///< and one residual Jacobian for all x
   bool has_residual = true;   ///< its cost is a sum of squares r^2 / 2
 };
 

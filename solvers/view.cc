@@ -266,17 +266,16 @@ void FoldWindow(const AffineLift& lift, const double* du, int d, int first_block
                 double scale, double* out) {
   using Block = Eigen::Matrix<double, D, 1>;
   int last = -1;
-  out -= d;
   for (int i = first_block; i < first_block + window; ++i, du += d) {
     const int b = lift.block[i];
     if (b < 0) continue;
     const double factor = scale * lift.coefficient[i];
     const Eigen::Map<const Block> from(du, d);
     if (b == last) {
-      Eigen::Map<Block>(out, d) += factor * from;
+      Eigen::Map<Block>(out - d, d) += factor * from;
     } else {
-      out += d;
       Eigen::Map<Block>(out, d) = factor * from;
+      out += d;
       last = b;
     }
   }

@@ -73,7 +73,7 @@ class View {
   /// blocks that WindowBlocks lists: `out` has d numbers for each.
   void WindowJacobian(const double* du, int first_block, int window, double scale,
                       double* out) const;
-  /// Its derivative with respect to h, the moving offset included.
+  /// Its derivative, unscaled, with respect to h, the moving offset included.
   double IntervalDerivative(const double* du, double du_dh, int first_block, int window,
                             const ViewEvaluation& evaluation) const;
 

@@ -55,6 +55,14 @@ bool WhitenedPoint::Begin(const View& view, const double* y, const Settings& set
   return true;
 }
 
+void WhitenedPoint::RenewMetric(const View& view, const double* z) {
+  MoveTo(z);
+  const ShareScope scope(evaluator_, Share::kWhitening);
+  if (!whitening_.Set(view, y_.data(), &metric_)) return;
+  whitening_.ToWhite(y_.data(), z_.data());
+  if (angle_) StartAngle();
+}
+
 void WhitenedPoint::StartAngle() {
   middle_ = 0.5 * interval_scale() * (interval_max_ + interval_min_);
   half_ = 0.5 * interval_scale() * (interval_max_ - interval_min_);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "touchdown/solvers/evaluator.h"
+#include "touchdown/solvers/solver_options.h"
 #include "touchdown/solvers/whitening.h"
 
 namespace touchdown::solvers {
@@ -26,6 +27,11 @@ class WhitenedPoint {
   /// Starts a solve: evaluates at y, with gradients, and takes the metric there. False if a term
   /// cannot be evaluated. All arguments outlive the solve. Does not allocate.
   bool Begin(const View& view, const double* y, const Settings& settings, Evaluator* evaluator);
+
+  /// Goes on from z with the metric of that place; z() is then the same point in it. Where the point
+  /// cannot be evaluated the metric stays. For methods that have used up their leg (MetricLegs).
+  /// Does not allocate.
+  void RenewMetric(const View& view, const double* z);
 
   int size() const { return static_cast<int>(z_.size()); }
   bool whitened() const { return whiten_; }
@@ -70,6 +76,32 @@ class WhitenedPoint {
   std::vector<double> z_, y_, plain_;              // plain_: z with the scaled interval, no angle
   Eigen::VectorXd best_;
   double best_cost_ = 0.0, best_violation_ = 0.0;
+};
+
+/// How long a quasi-Newton method keeps one metric. Hinges that are inactive at the start have no
+/// curvature in it; where many of them matter the method has to find it by itself, and a new metric
+/// at a better place is cheaper. Each leg is half as long again as the one before, so that the
+/// method's own convergence is left alone in the end.
+class MetricLegs {
+ public:
+  static OptionSpec Option() {
+    return {"metric_evaluations",
+            20.0,
+            0.0,
+            1e6,
+            true,
+            "evaluations until the metric is taken anew; 0: never"};
+  }
+
+  /// `first`: evaluations of the first leg, <= 0 for one without end.
+  explicit MetricLegs(double first) : length_(first) {}
+
+  bool endless() const { return length_ <= 0.0; }
+  int length() const { return static_cast<int>(length_); }
+  void Next() { length_ *= 1.5; }
+
+ private:
+  double length_;
 };
 
 }  // namespace touchdown::solvers

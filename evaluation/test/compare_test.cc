@@ -51,6 +51,21 @@ class LyingSolver : public solvers::SolverBackend {
   }
 };
 
+TEST(LandingCase, IsClearAtTheReferenceSizes) {
+  for (const bool warm : {false, true}) {
+    CompareOptions options = Tiny();
+    options.cases.warm = warm;
+    for (const int points : CaseMaker::kReferencePoints) {
+      CaseMaker maker(options.cases, points);
+      for (int index = 0; index < 6; ++index) {
+        const LandingCase made = maker.Make(index);
+        EXPECT_TRUE(made.clear) << warm << " " << points << " " << index;
+        EXPECT_EQ(made.warm.has_value(), warm);
+      }
+    }
+  }
+}
+
 TEST(LandingCase, RepeatsAndIsOneSceneForEverySize) {
   const CompareOptions options = Tiny();
   CaseMaker maker(options.cases, 14);

@@ -172,6 +172,30 @@ TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
   }
 }
 
+TEST(OccupancyMap, InflationLeavesNothingBehind) {
+  for (const double radius : {0.0, 0.3, 1.0}) {  // the last ball is wider than the window
+    OccupancyMapOptions options = SmallMap();
+    options.size_log2 = {4, 4, 4};
+    options.inflation_radius = radius;
+    OccupancyMap map(options);
+    Draw draw(5);
+    for (int step = 0; step < 6; ++step) {
+      for (int i = 0; i < 5; ++i) {
+        map.SetOccupied(map.CentreOf(map.origin()) + Eigen::Vector3d(draw.Uniform(0, 1.5),
+                                                                     draw.Uniform(0, 1.5),
+                                                                     draw.Uniform(0, 1.5)));
+      }
+      ExpectInflationIsConsistent(map);
+      map.Recentre(map.CentreOf(map.origin() + map.size() / 2) + draw.Vector(0.5));
+      ExpectInflationIsConsistent(map);
+    }
+    map.Recentre({100.0, 0.0, 0.0});
+    map.Recentre(Eigen::Vector3d::Zero());
+    ExpectInflationIsConsistent(map);
+    EXPECT_FALSE(map.IsBlocked(Eigen::Vector3d(0.0, 0.0, 0.0)));
+  }
+}
+
 TEST(OccupancyMap, RefusesBadOptions) {
   OccupancyMapOptions options;
   options.resolution = 0.0;
