@@ -9,6 +9,7 @@
 #include "touchdown/solvers/ceres_lbfgs.h"
 #include "touchdown/solvers/ceres_solver.h"
 #include "touchdown/solvers/ipopt_solver.h"
+#include "touchdown/solvers/lbfgs_solver.h"
 #include "touchdown/solvers/nlopt_solver.h"
 
 namespace touchdown::solvers {
@@ -17,6 +18,8 @@ BackendRegistry StandardBackends() {
   return {
       {"banded", "own Newton and interior point on the arrowhead band; soft and hard limits",
        MakeBandedSolver},
+      {"lbfgs", "own limited-memory BFGS with a More-Thuente line search, whitened; soft limits",
+       MakeLbfgsSolver},
       {"ceres", "Ceres trust region on residuals, sparse normal equations; soft limits",
        MakeCeresSolver},
       {"ceres-lbfgs", "Ceres limited-memory BFGS, whitened; soft limits", MakeCeresLbfgs},
