@@ -53,6 +53,8 @@ class Trial {
     return result_;
   }
 
+  planning::PersistentMap TakePersistentMap() { return perception_.TakePersistentMap(); }
+
  private:
   // Runs a stage and adds its thread CPU time to `stage`.
   template <typename Stage>
@@ -263,13 +265,15 @@ Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& regi
 }  // namespace
 
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
-                     TrialRecord* record) {
+                     TrialRecord* record, std::optional<planning::PersistentMap>* map) {
   const auto wall = std::chrono::steady_clock::now();
   const double cpu = solvers::ThreadCpuSeconds();
-  TrialResult result = SetUp(scenario, seed, registries, record).Run();
+  Trial trial = SetUp(scenario, seed, registries, record);
+  TrialResult result = trial.Run();
   result.timing.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   result.timing.cpu_s = solvers::ThreadCpuSeconds() - cpu;
+  if (map != nullptr) *map = trial.TakePersistentMap();
   return result;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/trial_record.h"
 #include "touchdown/evaluation/trial_result.h"
+#include "touchdown/planning/persistent_map.h"
 
 namespace touchdown::evaluation {
 
@@ -13,10 +15,12 @@ namespace touchdown::evaluation {
 /// sensors and replanning at the scenario's rates. A pure function of scenario and seed but for the
 /// result's timing, unless planning.latency is `measured`. Any number may run in threads at a time.
 /// @param record filled if not null.
+/// @param map what was known at the end, filled if not null.
 /// Physics that fails is an outcome, `unstable`.
 /// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
 /// a part of the program fails.
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
-                     TrialRecord* record = nullptr);
+                     TrialRecord* record = nullptr,
+                     std::optional<planning::PersistentMap>* map = nullptr);
 
 }  // namespace touchdown::evaluation

@@ -2,12 +2,14 @@
 // touchdown land: one closed-loop landing, its summary, and on request its record and picture.
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/record.h"
 #include "touchdown/evaluation/report_program.h"
@@ -23,6 +25,7 @@ struct LandArguments {
   ScenarioArguments scenario;
   std::string record;
   std::string plot;
+  std::string save_map;
   bool json = false;
 };
 
@@ -68,6 +71,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
 void CheckOutputs(const LandArguments& arguments) {
   if (!arguments.record.empty()) CheckOutputPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
+  if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
 // The picture is drawn from a record; without --record that one is not kept.
@@ -86,14 +90,17 @@ int Land(const LandArguments& arguments, const Registries& registries) {
   CheckOutputs(arguments);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
+  std::optional<planning::PersistentMap> map;
   const TrialResult result =
-      RunTrial(scenario, scenario.seed, registries, recorded ? &record : nullptr);
+      RunTrial(scenario, scenario.seed, registries, recorded ? &record : nullptr,
+               arguments.save_map.empty() ? nullptr : &map);
   if (arguments.json) {
     std::cout << LandJson(scenario, result).dump(2) << std::endl;
   } else {
     std::cout << Summary(scenario, result) << std::flush;
   }
   if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
+  if (map) WriteMapFile(arguments.save_map, &*map);
   if (!arguments.plot.empty()) Draw(arguments, scenario, result, record);
   return result.landed() ? kDone : kFellShort;
 }
@@ -108,6 +115,8 @@ void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run
   AddOutputOption(*command, "--record", &arguments->record, "Write the record, an SQLite file",
                   "F.db");
   AddOutputOption(*command, "--plot", &arguments->plot, "Draw plan and side view", "F.png");
+  AddOutputOption(*command, "--save-map", &arguments->save_map,
+                  "Write what was seen of the world, an OctoMap file; see map.prior", "F.bt|F.ot");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Land(*arguments, registries); };

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "touchdown/evaluation/map_file.h"
 #include "touchdown/solvers/thread_clock.h"
 
 namespace touchdown::evaluation {
@@ -47,9 +49,16 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       depth_clock_(scenario.depth_rate),
       pad_filter_(FilterOptions(scenario)),
       map_(MapOptions(scenario)),
+      persistent_map_(map_.options()),
       deck_half_diagonal_(scenario.pad.deck_size * std::sqrt(0.5)),
       deck_height_(scenario.pad.deck_height),
-      keep_changes_(keep_changes) {}
+      keep_changes_(keep_changes) {
+  if (scenario.map_prior == "none") return;
+  ReadMapFile(scenario.map_prior, &persistent_map_);
+  map_.Recentre(world.vehicle().p_WB);
+  persistent_map_.Refill(&map_);
+  KeepFlips();
+}
 
 void Perception::Sense(const sim::World& world) {
   const double begin = solvers::ThreadCpuSeconds();
@@ -70,7 +79,7 @@ void Perception::Sense(const sim::World& world) {
   const double sensed = solvers::ThreadCpuSeconds();
   sensing_cpu_s_ += sensed - begin;
   if (!image_due) return;
-  map_.Recentre(vehicle.p_WB);
+  persistent_map_.Recentre(vehicle.p_WB, &map_);
   KeepFlips();
   const planning::ExcludedVolume volume = PadVolume(t);
   map_.MarkOwnVolume(vehicle.p_WB, world.model().hull_radius);
@@ -100,6 +109,11 @@ std::vector<planning::CellFlip> Perception::TakeMapChanges() {
   std::vector<planning::CellFlip> taken;
   taken.swap(changes_);
   return taken;
+}
+
+planning::PersistentMap Perception::TakePersistentMap() {
+  persistent_map_.Flush(&map_);
+  return std::move(persistent_map_);
 }
 
 }  // namespace touchdown::evaluation

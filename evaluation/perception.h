@@ -7,6 +7,7 @@
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/persistent_map.h"
 #include "touchdown/sim/depth_camera.h"
 #include "touchdown/sim/gps.h"
 #include "touchdown/sim/sample_clock.h"
@@ -16,11 +17,12 @@
 namespace touchdown::evaluation {
 
 /// The vehicle's senses in a simulated world: GPS of the pad, tag camera, depth camera, and what is
-/// made of them, the pad filter and the obstacle map.
+/// made of them, the pad filter and the obstacle map with its memory.
 class Perception {
  public:
-  /// `world` only gives the configuration. Every sensor has its own stream of `seed`.
+  /// `world` only gives the configuration and the start. Every sensor has its own stream of `seed`.
   /// `keep_changes`: the map's changes are kept for TakeMapChanges.
+  /// @throws std::invalid_argument naming the file if map.prior cannot be used.
   Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed,
              bool keep_changes);
 
@@ -35,6 +37,9 @@ class Perception {
 
   /// Cells that changed since the last call, in order; none unless they are kept.
   std::vector<planning::CellFlip> TakeMapChanges();
+
+  /// Hands over all that was ever observed; the last call.
+  planning::PersistentMap TakePersistentMap();
 
   double sensing_cpu_s() const {
     return sensing_cpu_s_;
@@ -51,6 +56,7 @@ class Perception {
   sim::SampleClock depth_clock_;
   estimation::PadFilter pad_filter_;
   planning::OccupancyMap map_;
+  planning::PersistentMap persistent_map_;
   estimation::DepthFrame frame_;
   std::vector<planning::CellFlip> changes_;
   double deck_half_diagonal_;

@@ -84,6 +84,9 @@ struct Scenario {
   OwnStateKind own_state = OwnStateKind::kTrue;
   PadEstimatorKind pad_estimator = PadEstimatorKind::kTurnRate;
 
+  /// An OctoMap file that is known before the flight, or none.
+  std::string map_prior = "none";
+
   ControllerKind controller = ControllerKind::kGeometric;
   DescentKind descent = DescentKind::kVertical;
   PlannerKind planner = PlannerKind::kLanding;

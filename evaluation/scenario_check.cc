@@ -13,6 +13,7 @@
 
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/planning/plan_attempt.h"
@@ -171,6 +172,18 @@ void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& m
   throw BadInput(fmt::format("{}: {}.", source.WhereOf(key).ToString(), refusal));
 }
 
+void CheckPriorMap(const ScenarioSource& source) {
+  const std::string& path = source.scenario.map_prior;
+  if (path == "none") return;
+  try {
+    planning::PersistentMap map{planning::OccupancyMapOptions{}};
+    ReadMapFile(path, &map);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(
+        fmt::format("{}: map.prior {}.", source.WhereOf("map.prior").ToString(), error.what()));
+  }
+}
+
 // The motion's own limits, at the key they come from.
 void CheckPadMotion(const ScenarioSource& source) {
   try {
@@ -254,6 +267,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   CheckTerms(source, registries.terms);
   CheckSolver(source, model, registries);
   CheckPadMotion(source);
+  CheckPriorMap(source);
   CheckStart(source, obstacles, model);
   CheckStartBesidePad(source, model);
   CheckPadPath(source, obstacles);

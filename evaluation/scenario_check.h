@@ -22,7 +22,7 @@ struct ScenarioSource {
 
 /// What no single key shows: obstacles or the pad on the start, obstacles on the pad's way, a pad
 /// faster than the vehicle, a latency beyond the replanning period, a clearance below the hull, a
-/// ceiling below what is flown, an unreadable vehicle file; a backend, one of its options, a term or one
+/// ceiling below what is flown, an unreadable vehicle or map file; a backend, one of its options, a term or one
 /// of its parameters that the registries do not know or allow; a formulation that the backend
 /// refuses. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const Registries& registries);

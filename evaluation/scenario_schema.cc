@@ -137,6 +137,9 @@ void AddSensorKeys(std::vector<SchemaKey<Scenario>>& keys) {
                                   AT(tag_rate)));
   keys.push_back(Number<Scenario>("depth.rate", Above(0, 100, "Hz"), "rate of the depth camera",
                                   AT(depth_rate)));
+  keys.push_back(Text("map.prior", "none or the path of an OctoMap file (.bt or .ot)",
+                      "what is known of the obstacles before the flight, in cells of 0.1 m",
+                      AT(map_prior)));
   keys.push_back(Choice("sensing", {"fast"}, "camera models: analytic", AT(sensing)));
   keys.push_back(
       Choice("own_state", {"true"}, "what the vehicle knows of its own state", AT(own_state)));

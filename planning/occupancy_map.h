@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "touchdown/estimation/measurements.h"
+#include "touchdown/planning/cell_box.h"
+#include "touchdown/planning/frame_votes.h"
 
 namespace touchdown::planning {
 
 /// Largest distance between a chord of the whole-curve check and the curve [m]. The inflation is
 /// larger by it, so that what is checked on chords holds on the curve.
 inline constexpr double kChordSagitta = 0.002;
-
-using CellIndex = Eigen::Vector3i;  ///< cell of the unbounded lattice: floor(p / resolution)
 
 /// Parameters of the rolling grid. Probabilities as in EGO-Planner's map, but for the threshold: what
 /// was seen once blocks, as in OctoMap.
@@ -48,11 +50,20 @@ struct CellFlip {
   bool occupied;
 };
 
+/// What was observed of a cell.
+struct CellValue {
+  CellIndex cell;
+  std::int8_t log_odds;  ///< in steps of OccupancyMap::kLogOddsStep
+};
+
 /// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle; what
-/// leaves it is forgotten. Unknown is free for planning; IsKnown tells the difference. Allocates in
-/// the constructor only (the list of flips grows to its high-water mark).
+/// leaves it is forgotten here, and handed to whoever keeps it (planning/persistent_map.h). Unknown
+/// is free for planning; IsKnown tells the difference. Allocates in the constructor only (the lists
+/// of flips, hits and cells that left grow to their high-water mark).
 class OccupancyMap {
  public:
+  static constexpr double kLogOddsStep = 1.0 / 16.0;
+
   /// Throws std::invalid_argument on a resolution, size, radius or probability out of range.
   explicit OccupancyMap(const OccupancyMapOptions& options);
 
@@ -69,7 +80,24 @@ class OccupancyMap {
   /// Sets one cell as a planner sees it. Out of the window: ignored.
   void SetState(const CellIndex& cell, CellState state);
 
-  /// Fuses one depth frame: every cell is updated once, hits win over misses.
+  /// Cells that left in the last Recentre or MoveWindow and had changed since they entered or were last taken.
+  const std::vector<CellValue>& left() const { return left_; }
+  /// What entered in it: disjoint boxes, at most three.
+  const std::vector<CellBox>& entered() const { return entered_; }
+
+  /// Gives a cell what is remembered of it; that is no change. The log-odds are clamped to this map's
+  /// limits. Ignored out of the window, and for an obstacle that lies below ground_height as a whole:
+  /// that is ground. Adds to flips().
+  void Restore(const CellValue& value);
+
+  /// Appends every cell of the window that changed since it entered or was last taken.
+  void TakeChanges(std::vector<CellValue>* changes);
+
+  /// Fuses one depth frame. Every cell is updated at most once: as hit if a return ends in it, else
+  /// as miss if a ray passes it. The cell in which a ray ends without a return, or at the ground or
+  /// the excluded volume, is not updated by that ray. A camera out of the window or at
+  /// a pose that is not finite says nothing.
+  /// @throws std::invalid_argument if the frame has not width x height depths.
   void Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded);
 
   /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored.
@@ -116,10 +144,18 @@ class OccupancyMap {
   const CellIndex& origin() const { return origin_; }
   const CellIndex& size() const { return size_; }
 
-  /// Cells that changed in the last Integrate, SetOccupied, Clear or Recentre.
+  /// Cells that became blocked or free in the last Integrate, SetOccupied, Clear or Recentre, and the
+  /// Restores since.
   const std::vector<CellFlip>& flips() const { return flips_; }
 
  private:
+  // Never observed. Outside the clamps, so that no update can reach it.
+  static constexpr std::int8_t kUnknown = -128;
+
+  struct Cell {
+    std::int8_t log_odds = kUnknown;  // in steps of kLogOddsStep
+    bool changed = false;             // since it entered the window or was last taken
+  };
   /// Offsets (-half..half, y, z) from an obstacle's cell.
   struct BallRow {
     int half;
@@ -134,9 +170,14 @@ class OccupancyMap {
   std::size_t Address(const CellIndex& cell) const {
     return RowAddress(cell.y(), cell.z()) | static_cast<std::size_t>(cell.x() & mask_.x());
   }
-  void MarkRay(const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool hit,
-               const ExcludedVolume& excluded);
-  void Vote(const CellIndex& cell, bool hit);
+  std::int8_t Updated(std::uint8_t vote, std::int8_t log_odds) const {
+    return update_[vote][static_cast<std::uint8_t>(log_odds)];
+  }
+  void ApplyVotes();
+  template <class Visit>
+  void ForEachAddress(const CellBox& box, Visit&& visit) const;
+  void Forget(const CellIndex& cell, Cell* stored);
+  void CountInflation(const CellIndex& cell, const CellBox& but_for);
   void SetLogOdds(const CellIndex& cell, std::int8_t value);
   void Inflate(const CellIndex& cell, int increment);
   void AddToRow(int y, int z, int x_begin, int x_end, int increment);
@@ -145,15 +186,18 @@ class OccupancyMap {
   CellIndex origin_ = CellIndex::Zero();
   CellIndex size_;
   CellIndex mask_;
-  std::int8_t hit_, miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
-  std::vector<BallRow> ball_;                      // cells that one obstacle cell blocks
-  int ball_reach_ = 0;                             // its largest extent along an axis
-  std::vector<std::int8_t> log_odds_;
+  std::int8_t miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
+  // What a cell becomes, by its vote and its log-odds: unknown and the clamps are settled here once.
+  std::array<std::array<std::int8_t, 256>, 3> update_;
+  std::vector<BallRow> ball_;  // cells that one obstacle cell blocks
+  int ball_reach_ = 0;         // its largest extent along an axis
+  std::vector<Cell> cells_;
   std::vector<std::uint16_t> inflation_;  // number of obstacle cells whose ball holds it
-  std::vector<std::uint32_t> stamp_;      // frame of the last vote, hit in the lowest bit
-  std::vector<CellIndex> touched_;
+  FrameVotes votes_;
   std::vector<CellFlip> flips_;
-  std::uint32_t frame_ = 0;
+  std::vector<CellValue> left_;
+  std::vector<CellBox> entered_;
+  std::vector<CellBox> slabs_;  // of the Recentre at hand
 };
 
 }  // namespace touchdown::planning

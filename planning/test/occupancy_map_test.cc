@@ -5,10 +5,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "touchdown/planning/test/planning_fixtures.h"
+#include "touchdown/planning/voxel_traversal.h"
+#include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
 namespace {
@@ -195,6 +199,166 @@ TEST(OccupancyMap, InflationLeavesNothingBehind) {
     ExpectInflationIsConsistent(map);
     EXPECT_FALSE(map.IsBlocked(Eigen::Vector3d(0.0, 0.0, 0.0)));
   }
+}
+
+/// A frame from anywhere in any direction: near and far returns, none, and invalid pixels.
+estimation::DepthFrame AnyFrame(Draw* draw, const Eigen::Vector3d& about) {
+  estimation::DepthFrame frame;
+  frame.p_WC = about + draw->Vector(0.6);
+  frame.R_WC =
+      Eigen::AngleAxisd(draw->Uniform(0.0, 3.0), draw->Vector(1.0).normalized()).toRotationMatrix();
+  frame.max_range = 4.0;
+  for (int i = 0; i < 80 * 60; ++i) {
+    const double kind = draw->Uniform(0.0, 1.0);
+    float depth = static_cast<float>(draw->Uniform(0.05, 3.0));
+    if (kind < 0.3) depth = std::numeric_limits<float>::infinity();
+    if (kind > 0.98) depth = std::numeric_limits<float>::quiet_NaN();
+    frame.depth.push_back(depth);
+  }
+  return frame;
+}
+
+enum class Seen { kNot, kMissed, kHit };
+
+/// The documented rule, with a traversal per ray.
+std::map<std::array<int, 3>, Seen> SeenCells(const OccupancyMap& map,
+                                             const estimation::DepthFrame& frame,
+                                             const ExcludedVolume& pad) {
+  std::map<std::array<int, 3>, Seen> seen;
+  const estimation::CameraIntrinsics& k = frame.intrinsics;
+  for (int v = 0; v < k.height; ++v) {
+    for (int u = 0; u < k.width; ++u) {
+      const double depth = frame.depth[static_cast<std::size_t>(v * k.width + u)];
+      if (std::isnan(depth)) continue;
+      const Eigen::Vector3d ray((u + 0.5 - k.cx) / k.focal, (v + 0.5 - k.cy) / k.focal, 1.0);
+      const bool returned = std::isfinite(depth);
+      const double along = returned ? depth : frame.max_range / ray.norm();
+      if (along * ray.norm() < map.options().min_ray) continue;
+      const Eigen::Vector3d end = frame.p_WC + frame.R_WC * ray * along;
+      const bool counts = returned && end.z() > map.options().ground_height &&
+                          !(end.z() < pad.top && (end.head<2>() - pad.centre).norm() < pad.radius);
+      TraverseCells(frame.p_WC, end, map.resolution(), [&](const CellIndex& cell) {
+        if (!map.InWindow(cell)) return false;
+        Seen& cell_seen = seen[{cell.x(), cell.y(), cell.z()}];
+        const bool last = cell == map.CellOf(end);
+        if (!last) cell_seen = std::max(cell_seen, Seen::kMissed);
+        if (last && counts) cell_seen = Seen::kHit;
+        return true;
+      });
+    }
+  }
+  return seen;
+}
+
+TEST(OccupancyMap, UpdatesWhatATraversalOfEveryRayVisits) {
+  Draw draw(5);
+  const ExcludedVolume pad{{0.5, 0.3}, 0.6, 0.5};
+  int hits = 0, misses = 0;
+  for (int round = 0; round < 12; ++round) {
+    OccupancyMap map(SmallMap());
+    const Eigen::Vector3d about(draw.Uniform(-20, 20), draw.Uniform(-20, 20), draw.Uniform(0, 2));
+    map.Recentre(about);
+    const estimation::DepthFrame frame = AnyFrame(&draw, about);
+    const auto seen = SeenCells(map, frame, pad);
+    map.Integrate(frame, pad);
+    int wrong = 0;
+    ForEachCell({map.origin(), map.origin() + map.size()}, [&](const CellIndex& cell) {
+      const auto found = seen.find({cell.x(), cell.y(), cell.z()});
+      const Seen expected = found == seen.end() ? Seen::kNot : found->second;
+      hits += expected == Seen::kHit;
+      misses += expected == Seen::kMissed;
+      wrong += map.IsOccupied(cell) != (expected == Seen::kHit);
+      wrong += map.IsObservedFree(cell) != (expected == Seen::kMissed);
+    });
+    EXPECT_EQ(wrong, 0) << "round " << round;
+  }
+  EXPECT_GT(hits, 5000);
+  EXPECT_GT(misses, 30000);
+}
+
+TEST(OccupancyMap, ACellIsUpdatedOnceAFrameWithinTheClamps) {
+  OccupancyMap map(SmallMap());
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  const CellIndex wall = map.CellOf({2.01, 0.05, 0.85}), before = map.CellOf({0.5, 0.05, 0.85});
+  const auto log_odds = [&](const CellIndex& cell) {
+    std::vector<CellValue> changes;
+    OccupancyMap copy = map;
+    copy.TakeChanges(&changes);
+    for (const CellValue& value : changes) {
+      if (value.cell == cell) return static_cast<int>(value.log_odds);
+    }
+    return 0;
+  };
+  // Logits of 0.65, 0.35, 0.12 and 0.90 in steps of 1/16; dozens of rays pass the cell before.
+  for (const int hit : {10, 20, 30, 35, 35}) {
+    map.Integrate(WallFrame(p_WC, 2.0), {});
+    EXPECT_EQ(log_odds(wall), hit);
+    EXPECT_EQ(log_odds(before), std::max(-hit, -32));
+  }
+}
+
+TEST(OccupancyMap, SaysNothingFromOutOfTheWindow) {
+  OccupancyMap map(SmallMap());
+  map.Integrate(WallFrame({50.0, 0.0, 0.85}, 52.0), {});
+  map.Integrate(WallFrame({0.0, std::nan(""), 0.85}, 2.0), {});
+  std::vector<CellValue> changes;
+  map.TakeChanges(&changes);
+  EXPECT_TRUE(changes.empty());
+}
+
+TEST(OccupancyMap, RefusesAFrameWithTooFewDepths) {
+  OccupancyMap map(SmallMap());
+  estimation::DepthFrame frame = WallFrame({0.05, 0.05, 0.85}, 2.0);
+  frame.depth.pop_back();
+  EXPECT_THROW(map.Integrate(frame, {}), std::invalid_argument);
+}
+
+TEST(OccupancyMap, HandsOutWhatLeavesAndTakesItBackWithoutChange) {
+  OccupancyMap map(SmallMap());
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  map.Integrate(WallFrame(p_WC, 2.0), {});
+  const OccupancyMap before = map;
+  map.Recentre(p_WC + Eigen::Vector3d(-5.0, 0.0, 0.0));
+  const std::vector<CellValue> left = map.left();
+  EXPECT_GT(left.size(), 1000u);
+  ASSERT_EQ(map.entered().size(), 1u);
+  EXPECT_EQ(map.entered()[0].high.x() - map.entered()[0].low.x(), 50);
+  EXPECT_FALSE(map.IsKnown(map.CellOf({2.01, 0.05, 0.85})));
+  map.Recentre(p_WC);
+  for (const CellValue& value : left) map.Restore(value);
+  int wrong = 0;
+  ForEachCell({map.origin(), map.origin() + map.size()}, [&](const CellIndex& cell) {
+    wrong += map.IsOccupied(cell) != before.IsOccupied(cell) ||
+             map.IsKnown(cell) != before.IsKnown(cell) ||
+             map.IsBlocked(cell) != before.IsBlocked(cell);
+  });
+  EXPECT_EQ(wrong, 0);
+  ExpectInflationIsConsistent(map);
+  map.Recentre(p_WC + Eigen::Vector3d(-5.0, 0.0, 0.0));
+  EXPECT_TRUE(map.left().empty());  // nothing was seen anew
+}
+
+TEST(OccupancyMap, LeavesOutTheGroundOfWhatIsRestored) {
+  OccupancyMap map(SmallMap());
+  map.Restore({map.CellOf({0.05, 0.05, 0.05}), 30});
+  map.Restore({map.CellOf({0.05, 0.05, 0.15}), 127});
+  map.Restore({map.CellOf({9.0, 0.05, 0.15}), 30});  // out of the window
+  EXPECT_FALSE(map.IsKnown(map.CellOf({0.05, 0.05, 0.05})));
+  EXPECT_TRUE(map.IsOccupied(map.CellOf({0.05, 0.05, 0.15})));
+  EXPECT_EQ(map.flips().size(), 1u);
+}
+
+TEST(OccupancyMap, DoesNotAllocateOnceItsListsHaveGrown) {
+  Draw draw(6);
+  OccupancyMap map(SmallMap());
+  const estimation::DepthFrame frame = AnyFrame(&draw, {0.0, 0.0, 0.8});
+  map.Integrate(frame, {});
+  const long before = solvers::AllocationCount();
+  map.Integrate(frame, {});
+  map.Recentre({1.0, 0.0, 0.8});
+  EXPECT_EQ(solvers::AllocationCount(), before);
 }
 
 TEST(OccupancyMap, RefusesBadOptions) {

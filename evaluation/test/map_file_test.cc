@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Maps as files: saved after a flight, known before the next one, refused with a sentence.
+
+#include "touchdown/evaluation/map_file.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <octomap/octomap.h>
+#include <unistd.h>
+
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/program.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct Ran {
+  int status = 0;
+  std::string err;
+};
+
+Ran Call(std::vector<const char*> arguments) {
+  const Registries registries = StandardRegistries();
+  arguments.insert(arguments.begin(), "touchdown");
+  Ran ran;
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  ran.status = RunProgram(static_cast<int>(arguments.size()), arguments.data(), registries);
+  ::testing::internal::GetCapturedStdout();
+  ran.err = ::testing::internal::GetCapturedStderr();
+  return ran;
+}
+
+/// A directory of its own, gone with the test.
+class MapFile : public ::testing::Test {
+ protected:
+  MapFile() { fs::create_directory(directory_); }
+  ~MapFile() override { fs::remove_all(directory_); }
+  std::string Path(const std::string& name) const { return (directory_ / name).string(); }
+  std::vector<std::string> Files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_)) {
+      names.push_back(entry.path().filename().string());
+    }
+    return names;
+  }
+
+ private:
+  fs::path directory_ =
+      fs::path(::testing::TempDir()) / ("touchdown_map_" + std::to_string(getpid()));
+};
+
+Scenario StraightTurn(const std::vector<std::string>& overrides) {
+  return LoadScenario(FindScenario("straight_turn"), overrides, StandardRegistries());
+}
+
+TEST_F(MapFile, WhatWasSeenIsKnownInTheNextFlight) {
+  for (const char* name : {"seen.bt", "seen.ot"}) {
+    const std::string path = Path(name);
+    EXPECT_EQ(Call({"land", "straight_turn", "--save-map", path.c_str()}).status, 0);
+    TrialRecord record;
+    const Scenario scenario = StraightTurn({"map.prior=" + path});
+    const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
+    EXPECT_EQ(result.outcome, Outcome::kLanded) << result.detail;
+    // Before anything can be seen, the wall behind the first box is known.
+    planning::PersistentMap seen{planning::OccupancyMapOptions{}};
+    ReadMapFile(path, &seen);
+    int known = 0;
+    for (const planning::CellFlip& flip : record.plans.front().map_changes) {
+      known += flip.occupied && flip.cell.x() > 100 && seen.IsOccupied(flip.cell);
+    }
+    EXPECT_GT(known, 20) << name;
+    fs::remove(path);
+  }
+  EXPECT_THAT(Files(), IsEmpty());  // nothing is left beside
+}
+
+// A map that octomap made: free space with a wall across the straight line to the pad, where the
+// world has none. With the camera all but off, it is all that is known.
+TEST_F(MapFile, AForeignMapIsFlownIn) {
+  octomap::OcTree tree(0.1);
+  for (int x = -20; x < 90; ++x) {
+    for (int y = -60; y < 60; ++y) {
+      for (int z = 0; z < 55; ++z) {
+        const bool wall = std::abs(x - 30) < 2 && std::abs(y) < 25;
+        tree.updateNode(0.1 * x + 0.05, 0.1 * y + 0.05, 0.1 * z + 0.05, wall, true);
+      }
+    }
+  }
+  tree.updateInnerOccupancy();
+  const std::string path = Path("wall.bt");
+  ASSERT_TRUE(tree.writeBinary(path));
+  const Scenario scenario =
+      LoadScenario(FindScenario("open"),
+                   {"map.prior=" + path, "depth.rate=0.001", "pad.motion=static",
+                    "pad.start=[6, 0]", "planning.ceiling=4"},
+                   StandardRegistries());
+  TrialRecord record;
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
+  EXPECT_EQ(result.outcome, Outcome::kLanded) << result.detail;
+  bool round_it = false;
+  for (const RecordSample& sample : record.samples) {
+    const Eigen::Vector3d& p = sample.vehicle.p_WB;
+    if (std::abs(p.x() - 3.05) > 0.15) continue;
+    round_it = true;
+    EXPECT_GT(std::abs(p.y()), 2.5) << p.transpose();
+  }
+  EXPECT_TRUE(round_it);
+}
+
+TEST_F(MapFile, AMapThatCannotBeUsedIsBadInput) {
+  const auto refuses = [](const std::string& path, const std::string& why) {
+    const std::string key = "map.prior=" + path;
+    const Ran ran = Call({"land", "open", "--set", key.c_str()});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, AllOf(HasSubstr("map.prior"), HasSubstr(path), HasSubstr(why)));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1);
+  };
+  refuses(Path("nowhere.bt"), "cannot be read (No such file");
+  refuses(Path(""), "this is a directory");
+  std::ofstream(Path("text.bt")) << "Hello.\n";
+  refuses(Path("text.bt"), "it is no OctoMap file");
+  octomap::OcTree coarse(0.2);
+  coarse.updateNode(1.0, 1.0, 1.0, true);
+  ASSERT_TRUE(coarse.write(Path("coarse.ot")));
+  refuses(Path("coarse.ot"), "its resolution is 0.2");
+}
+
+TEST_F(MapFile, APlaceForNoMapIsBadInputBeforeTheFlight) {
+  const Ran unnamed = Call({"land", "open", "--save-map", Path("map.txt").c_str()});
+  EXPECT_EQ(unnamed.status, 2);
+  EXPECT_THAT(unnamed.err, HasSubstr("the name must end in .bt or .ot"));
+  const Ran nowhere = Call({"land", "open", "--save-map", Path("no/map.bt").c_str()});
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("there is no directory"));
+  EXPECT_THAT(Files(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

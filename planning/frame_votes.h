@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace touchdown::planning {
+
+/// What one depth frame says of the cells of a window: passed by a ray, or hit by a return.
+/// Coordinates are in cells, from the window's lowest corner: cell (x, y, z) is
+/// [x, x+1) x [y, y+1) x [z, z+1). Allocates in the constructor only (the list of hits grows to its
+/// high-water mark).
+class FrameVotes {
+ public:
+  static constexpr std::uint8_t kNone = 0;
+  static constexpr std::uint8_t kMiss = 1;
+  static constexpr std::uint8_t kHit = 2;
+
+  /// A window of 2^n cells a side, n <= 10.
+  explicit FrameVotes(const Eigen::Vector3i& size_log2);
+
+  /// Begins a frame seen from `eye`, which lies in the window.
+  void Begin(const Eigen::Vector3d& eye);
+
+  /// Votes miss for the cells that the segment from the eye to `end` passes within the window, but
+  /// for the one that holds `end`: that one is seen in part only. `hit`: it is voted hit instead.
+  void AddRay(const Eigen::Vector3d& end, bool hit);
+
+  /// Ends the frame: a cell that was both hit and missed is hit.
+  void Finish();
+
+  /// Box [low, high) that holds every vote of the frame.
+  const Eigen::Vector3i& low() const { return low_; }
+  const Eigen::Vector3i& high() const { return high_; }
+
+  /// The votes of cells (0, y, z) to (size - 1, y, z). Whoever reads a vote sets it back to kNone.
+  std::uint8_t* Row(int y, int z) { return &votes_[Address({0, y, z})]; }
+
+ private:
+  /// A segment from the eye, clipped to the window.
+  struct Ray {
+    Eigen::Vector3d along;        ///< [cells]
+    Eigen::Vector3d per_cell;     ///< ray parameter from one face to the next, on each axis
+    Eigen::Vector3d first_cross;  ///< ray parameter of the first face on each axis
+    Eigen::Vector3i last;         ///< end cell
+    Eigen::Vector3i step;         ///< -1 or 1
+    Eigen::Vector3i crossings;    ///< number of faces passed on each axis
+  };
+  /// A coordinate at successive faces of another axis, in fixed point.
+  struct Track {
+    std::int64_t at, by;
+  };
+
+  std::size_t Address(const Eigen::Vector3i& cell) const {
+    return static_cast<std::size_t>(cell.x()) | static_cast<std::size_t>(cell.y()) << shift_[1] |
+           static_cast<std::size_t>(cell.z()) << shift_[2];
+  }
+  /// The cell of a point in the window; rounding must not put it beyond.
+  Eigen::Vector3i CellIn(const Eigen::Vector3d& p) const {
+    return p.cast<int>().cwiseMax(0).cwiseMin(size_ - Eigen::Vector3i::Ones());
+  }
+  Track MakeTrack(const Ray& ray, int axis, int minor) const;
+  void MissBehindFaces(const Ray& ray, int axis);
+
+  Eigen::Vector3i size_;
+  Eigen::Vector3i shift_;  // of a cell's coordinates in its address
+  Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // the eye's cell
+  Eigen::Vector3i low_ = Eigen::Vector3i::Zero();
+  Eigen::Vector3i high_ = Eigen::Vector3i::Zero();
+  std::vector<std::uint8_t> votes_;
+  std::vector<std::size_t> hits_;  // addresses
+};
+
+}  // namespace touchdown::planning
