@@ -43,6 +43,45 @@ void WriteHead(MapFormat format, const octomap::OcTree& tree, std::ostream* out)
        << "\nid OcTree\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
 }
 
+/// The leaves of a tree that are free or occupied. OctoMap's binary format calls every cell free
+/// that is not occupied; one that was hit, and then passed, is neither, and must not come back as
+/// observed free space. The leaves are copied, as OctoMap aborts when a node's last child is deleted.
+class SureTree : public octomap::OcTree {
+ public:
+  explicit SureTree(const octomap::OcTree& from) : OcTree(from.getResolution()), from_(from) {
+    if (from.getRoot() == nullptr) return;
+    root = new octomap::OcTreeNode;
+    ++tree_size;
+    Copy(from.getRoot(), root);
+    prune();
+  }
+
+ private:
+  bool IsSure(const octomap::OcTreeNode* node) const {
+    if (!from_.nodeHasChildren(node)) {
+      return node->getLogOdds() < 0.0f || from_.isNodeOccupied(node);
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+      if (from_.nodeChildExists(node, i) && IsSure(from_.getNodeChild(node, i))) return true;
+    }
+    return false;
+  }
+  void Copy(const octomap::OcTreeNode* node, octomap::OcTreeNode* to) {
+    if (!from_.nodeHasChildren(node)) {
+      to->setLogOdds(from_.isNodeOccupied(node) ? from_.getClampingThresMaxLog()
+                                                : from_.getClampingThresMinLog());
+      return;
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+      if (!from_.nodeChildExists(node, i)) continue;
+      const octomap::OcTreeNode* child = from_.getNodeChild(node, i);
+      if (IsSure(child)) Copy(child, createNodeChild(to, i));
+    }
+  }
+
+  const octomap::OcTree& from_;
+};
+
 }  // namespace
 
 struct PersistentMap::Impl {
@@ -165,18 +204,7 @@ void PersistentMap::Write(std::ostream& out, MapFormat format) {
     tree.writeData(out);
     return;
   }
-  // OctoMap calls every cell free that is not occupied. One that was hit, and then passed, is
-  // neither: it must not come back as observed free space.
-  octomap::OcTree sure(tree);
-  std::vector<std::pair<octomap::OcTreeKey, unsigned>> unsure;
-  for (auto leaf = sure.begin_leafs(); leaf != sure.end_leafs(); ++leaf) {
-    if (leaf->getLogOdds() >= 0.0f && !sure.isNodeOccupied(*leaf)) {
-      unsure.emplace_back(leaf.getKey(), leaf.getDepth());
-    }
-  }
-  for (const auto& [key, depth] : unsure) sure.deleteNode(key, depth);
-  sure.toMaxLikelihood();
-  sure.prune();
+  const SureTree sure(tree);
   WriteHead(format, sure, &out);
   if (sure.size() > 0) sure.writeBinaryData(out);
 }

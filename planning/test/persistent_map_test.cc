@@ -162,6 +162,24 @@ TEST(PersistentMap, BinaryFilesHoldWhatIsSure) {
   EXPECT_GT(unsure, 0);  // there were such cells to leave out
 }
 
+TEST(PersistentMap, ABinaryFileLeavesOutWholeGroupsThatAreUnsure) {
+  octomap::OcTree tree(0.1);
+  for (int i = 0; i < 64; ++i) {
+    const auto at = [&](int shift) { return 0.05 + 0.1 * (i >> shift & 3); };
+    tree.setNodeValue(at(0), at(2), at(4), 0.1f * static_cast<float>(i % 2), true);
+  }
+  tree.setNodeValue(0.85, 0.05, 0.05, 2.0f);
+  std::stringstream log_odds, binary;
+  tree.write(log_odds);
+  PersistentMap kept(SmallMap());
+  kept.Read(log_odds);
+  EXPECT_TRUE(kept.LogOdds({0, 0, 0}).has_value());
+  kept.Write(binary, MapFormat::kBinary);
+  kept.Read(binary);
+  EXPECT_FALSE(kept.LogOdds({0, 0, 0}).has_value());
+  EXPECT_TRUE(kept.IsOccupied({8, 0, 0}));
+}
+
 TEST(PersistentMap, AnEmptyMapIsAFileToo) {
   for (const MapFormat format : {MapFormat::kLogOdds, MapFormat::kBinary}) {
     std::stringstream file;
