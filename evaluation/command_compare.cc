@@ -17,6 +17,7 @@
 #include "touchdown/evaluation/compare_table.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/sim/forest.h"
 
@@ -31,6 +32,7 @@ struct CompareArguments {
   std::string endpoint = "eliminated";
   std::string db;
   std::string picture;
+  std::vector<std::string> set;
   std::optional<int> pin;
   bool json = false;
   bool allow_debug = false;
@@ -89,7 +91,35 @@ class Progress {
   Clock::time_point last_ = begin_;
 };
 
+/// "terms.reach.weight=3" becomes a setting of the problem.
+planning::TermSettings ParseTermSetting(const std::string& text,
+                                        const planning::TermRegistry& terms) {
+  const std::size_t name = text.find('.'), key = text.find('.', name + 1), is = text.find('=');
+  double value = 0.0;
+  const bool shaped = text.starts_with("terms.") && key < is && is != std::string::npos;
+  std::string number = shaped ? text.substr(is + 1) : "";
+  if (number == "true") number = "1";
+  if (number == "false") number = "0";
+  if (!shaped || !CLI::detail::lexical_cast(number, value) || !std::isfinite(value)) {
+    throw BadInput(fmt::format("--set {}: it must be terms.<term>.<key>=<number>.", text));
+  }
+  const std::string term = text.substr(name + 1, key - name - 1);
+  const planning::TermSettings settings =
+      TermSettingsOf(term, {{text.substr(key + 1, is - key - 1), value}});
+  try {
+    const planning::TermEntry& entry = planning::FindTerm(terms, term);
+    planning::TermSetup setup = planning::DefaultSetup(entry, CaseMaker::kReferencePoints.front());
+    planning::ApplySettings(entry, settings, &setup);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("--set {}: {}.", text, error.what()));
+  }
+  return settings;
+}
+
 void CheckOutputs(const CompareArguments& arguments) {
+  if (!arguments.db.empty() && arguments.db == arguments.picture) {
+    throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
+  }
   if (!arguments.db.empty()) {
     CheckOutputPath("--db", arguments.db);
     if (std::filesystem::exists(arguments.db)) {
@@ -123,6 +153,9 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   options.cases.warm = arguments.start == "warm";
   planning::LandingProblemOptions& problem = options.cases.problem;
   problem.terms = registries.terms;
+  for (const std::string& text : arguments.set) {
+    problem.settings.push_back(ParseTermSetting(text, registries.terms));
+  }
   problem.arrival =
       arguments.arrival == "free" ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
   problem.limits_mode =
@@ -180,6 +213,12 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
       ->capture_default_str();
   command->add_option("--backends", options.backends, "Which ones; default: all that can solve it")
       ->type_name("NAME,NAME,...");
+  command
+      ->add_option(
+          "--set", arguments->set,
+          "Change a term: terms.<term>.<key>=<number>, as in a scenario; may be given again")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   command->add_option("--seed", cases.seed, "Seed of the problems")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       ->capture_default_str();

@@ -229,6 +229,13 @@ std::string CompareText(const CompareOptions& options, const CompareResult& resu
 
 Json CompareSettings(const CompareOptions& options) {
   const planning::LandingProblemOptions& problem = options.cases.problem;
+  Json terms = Json::object();
+  for (const planning::TermSettings& settings : problem.settings) {
+    Json& term = terms[settings.name];
+    if (settings.weight) term["weight"] = *settings.weight;
+    if (settings.hard) term["hard"] = *settings.hard;
+    for (const auto& [key, value] : settings.parameters) term[key] = value;
+  }
   return {{"seed", options.cases.seed},
           {"points", options.points},
           {"start", options.cases.warm ? "warm" : "cold"},
@@ -242,6 +249,7 @@ Json CompareSettings(const CompareOptions& options) {
           {"inflation_m", options.cases.inflation},
           {"speed_limit_mps", problem.limits.speed},
           {"acceleration_limit_mps2", problem.limits.acceleration},
+          {"terms", terms},
           {"backend_seconds", options.backend_seconds}};
 }
 

@@ -81,6 +81,12 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   app.set_version_flag("--version", TOUCHDOWN_VERSION);
   app.require_subcommand(1);
   CommandRun run;
+  try {
+    planning::RequireDistinct(registries.terms);
+  } catch (const std::invalid_argument& error) {
+    spdlog::error("{}.", error.what());
+    return kBadInput;
+  }
   AddLandCommand(app, registries, &run);
   AddCompareCommand(app, registries, &run);
   AddSweepCommand(app, registries, &run);

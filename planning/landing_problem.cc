@@ -56,6 +56,7 @@ LandingProblem::LandingProblem(int segments, const LandingProblemOptions& option
 }
 
 void LandingProblem::AddTerms(const LandingProblemOptions& options) {
+  RequireDistinct(options.terms);
   for (const TermSettings& settings : options.settings) FindTerm(options.terms, settings.name);
   for (const TermEntry& entry : options.terms) AddTerm(entry, options);
 }

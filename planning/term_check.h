@@ -11,7 +11,9 @@
 namespace touchdown::planning {
 
 /// Derivatives of a term count as right up to this relative error (DerivativeErrors).
-inline constexpr double kTermCheckTolerance = 2e-5;
+/// Central differences of a hinge are this good at its edge, where the third derivative jumps (worst
+/// of 130 random runs over all terms: 4e-5); a wrong derivative is off by percents.
+inline constexpr double kTermCheckTolerance = 1e-4;
 
 struct TermCheckOptions {
   int control_points = 12;  ///< >= 9

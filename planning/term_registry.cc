@@ -68,6 +68,15 @@ double TermSetup::Get(std::string_view name) const {
   throw std::invalid_argument("TermSetup: no parameter " + std::string(name));
 }
 
+void RequireDistinct(const TermRegistry& registry) {
+  for (auto entry = registry.begin(); entry != registry.end(); ++entry) {
+    for (auto other = registry.begin(); other != entry; ++other) {
+      if (other->info.name != entry->info.name) continue;
+      throw std::invalid_argument("term " + entry->info.name + " is registered twice");
+    }
+  }
+}
+
 const TermEntry& FindTerm(const TermRegistry& registry, std::string_view name) {
   for (const TermEntry& entry : registry) {
     if (entry.info.name == name) return entry;

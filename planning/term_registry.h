@@ -15,6 +15,9 @@ using TermRegistry = std::vector<TermEntry>;
 /// Every term shipped with the library, from planning/terms/terms.def.
 TermRegistry StandardTerms();
 
+/// Throws std::invalid_argument naming a term whose name is in the registry twice.
+void RequireDistinct(const TermRegistry& registry);
+
 /// The entry of that name. Throws std::invalid_argument naming the known ones.
 const TermEntry& FindTerm(const TermRegistry& registry, std::string_view name);
 

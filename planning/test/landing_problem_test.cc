@@ -317,5 +317,11 @@ TEST(LandingProblem, ATermThatIsOffByDefaultHasAMetricAsRows) {
   EXPECT_EQ(found, 1);
 }
 
+TEST(LandingProblem, RefusesATermThatIsRegisteredTwice) {
+  LandingProblemOptions options;
+  options.terms.push_back(FindTerm(options.terms, "smoothness"));
+  EXPECT_THROW(LandingProblem(12, options), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace touchdown::planning
