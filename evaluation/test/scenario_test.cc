@@ -167,7 +167,7 @@ TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
   EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),
               HasSubstr("straight_turn, circle, line or static"));
   EXPECT_THAT(Refusal("solver: {backend: newton}\n"),
-              AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be banded, ceres, "),
+              AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be banded, lbfgs, ceres, "),
                     HasSubstr("not 'newton'")));
 }
 

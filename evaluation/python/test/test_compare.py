@@ -106,6 +106,13 @@ def test_what_makes_no_sense_is_refused_by_name(run, option, value):
     assert option in done.stderr and done.stdout == ""
 
 
+def test_table_and_picture_need_two_files(run, tmp_path):
+    one = str(tmp_path / "one.png")
+    done = run("compare", "--problems", "1", "--allow-debug", "--db", one, "--picture", one)
+    assert done.returncode == 2
+    assert "same file" in done.stderr and not (tmp_path / "one.png").exists()
+
+
 def test_other_files_are_refused_in_a_sentence(tmp_path, capsys):
     with pytest.raises(CompareError, match="no such file"):
         Comparison(str(tmp_path / "missing.db"))

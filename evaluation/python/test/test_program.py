@@ -56,7 +56,6 @@ def test_help_lists_what_is_built(run):
         (("compare", "--set", "terms.speed_limit.weight=heavy"), ["terms.<term>.<key>=<number>"]),
         (("compare", "--set", "terms.nothing.weight=3"), ["nothing", "speed_limit"]),
         (("compare", "--set", "terms.speed_limit.colour=3"), ["colour", "weight"]),
-        (("compare", "--db", "same.png", "--picture", "same.png"), ["same file"]),
         (("compare", "--start", "hot"), ["--start", "cold"]),
         (("compare", "--forest", "jungle"), ["--forest", "jungle"]),
         (("compare", "--backends", "newton"), ["newton", "banded"]),
