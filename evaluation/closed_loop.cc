@@ -28,18 +28,22 @@ constexpr double kSampleRate = 50.0;    // of metrics and record [Hz]
 class Trial {
  public:
   Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
-        TrialRecord* record)
+        TrialRecord* record, TrialSamples* samples)
       : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
-        perception_(scenario, world_, seed, record != nullptr),
+        perception_(scenario, world_, seed),
         pilot_(scenario, world_.model(), world_.pad_motion(), registries, world_.vehicle()),
         clearance_(world_.config().obstacles, world_.model()),
         judge_(LandingRule{}, scenario.timeout),
         mission_clock_(kMissionRate),
         replan_clock_(scenario.planning.rate),
         sample_clock_(kSampleRate),
-        record_(record) {
+        record_(record),
+        samples_(samples) {
     result_.seed = seed;
-    if (record_ != nullptr) record_->map_resolution = perception_.map().resolution();
+    if (record_ != nullptr) {
+      record_->map_resolution = perception_.map().resolution();
+      record_->map_size = perception_.map().size();
+    }
   }
 
   TrialResult Run() {
@@ -66,6 +70,9 @@ class Trial {
 
   void Step() {
     perception_.Sense(world_);
+    if (samples_ != nullptr && perception_.image_taken()) {
+      samples_->frames.push_back({world_.time(), perception_.frame_times()});
+    }
     const estimation::VehicleState vehicle = world_.vehicle();
     const estimation::PadState pad = world_.pad();
     Timed(&result_.timing.control_cpu_s, [&] {
@@ -102,6 +109,8 @@ class Trial {
 
   void Replan(const estimation::VehicleState& vehicle) {
     const planning::ReplanResult* plan = nullptr;
+    planning::ReplannerState before;
+    if (record_ != nullptr) before = pilot_.replanner_state();
     Timed(&result_.timing.planning_cpu_s,
           [&] { plan = pilot_.Replan(vehicle, perception_.pad_filter(), perception_.map()); });
     if (plan == nullptr) return;
@@ -114,30 +123,15 @@ class Trial {
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
     if (total.wall > pilot_.last_replan().latency_s) ++result_.timing.deadline_misses;
-    if (record_ != nullptr) record_->plans.push_back(PlanRow(*plan));
-  }
-
-  RecordPlan PlanRow(const planning::ReplanResult& plan) {
-    const PilotReplan& asked = pilot_.last_replan();
+    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(vehicle.t, *plan));
+    if (record_ == nullptr) return;
     RecordPlan row;
-    row.t_now = asked.input.t_now;
-    row.t_start = asked.input.t_start;
-    row.endpoint = asked.input.endpoint;
-    row.vehicle = asked.input.vehicle;
-    row.pad = asked.pad;
-    row.status = plan.status;
-    row.reason = plan.reason;
-    row.from_odometry = plan.from_odometry;
-    row.curve = plan.curve;
-    row.certificate = plan.certificate;
-    row.guide_paths = plan.guide_paths;
-    row.pairs = plan.pairs;
-    row.solves = plan.solves;
-    row.rebinds = plan.rebinds;
-    row.iterations = plan.solver.iterations;
-    row.cost = plan.solver.cost;
-    row.map_changes = perception_.TakeMapChanges();
-    return row;
+    row.request = pilot_.last_replan().request;
+    row.pad = pilot_.last_replan().pad;
+    row.before = std::move(before);
+    row.map_change = map_recorder_.Take(perception_.map());
+    row.result = OutcomeOf(*plan);
+    record_->plans.push_back(std::move(row));
   }
 
   void Judge(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
@@ -246,6 +240,8 @@ class Trial {
   sim::SampleClock replan_clock_;
   sim::SampleClock sample_clock_;
   TrialRecord* record_;
+  MapRecorder map_recorder_;
+  TrialSamples* samples_;
   TrialResult result_;
   std::string touched_;
   std::string physics_failure_;  ///< empty while the physics works
@@ -253,9 +249,9 @@ class Trial {
 
 // What the simulator or a backend refuses before the flight is the user's to mend.
 Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
-            TrialRecord* record) {
+            TrialRecord* record, TrialSamples* samples) {
   try {
-    return Trial(scenario, seed, registries, record);
+    return Trial(scenario, seed, registries, record, samples);
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: it cannot be set up with seed {}: {}.", scenario.name, seed,
                                error.what()));
@@ -265,10 +261,11 @@ Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& regi
 }  // namespace
 
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
-                     TrialRecord* record, std::optional<planning::PersistentMap>* map) {
+                     TrialRecord* record, std::optional<planning::PersistentMap>* map,
+                     TrialSamples* samples) {
   const auto wall = std::chrono::steady_clock::now();
   const double cpu = solvers::ThreadCpuSeconds();
-  Trial trial = SetUp(scenario, seed, registries, record);
+  Trial trial = SetUp(scenario, seed, registries, record, samples);
   TrialResult result = trial.Run();
   result.timing.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();

@@ -7,6 +7,7 @@
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/trial_record.h"
 #include "touchdown/evaluation/trial_result.h"
+#include "touchdown/evaluation/trial_samples.h"
 #include "touchdown/planning/persistent_map.h"
 
 namespace touchdown::evaluation {
@@ -16,11 +17,13 @@ namespace touchdown::evaluation {
 /// result's timing, unless planning.latency is `measured`. Any number may run in threads at a time.
 /// @param record filled if not null.
 /// @param map what was known at the end, filled if not null.
+/// @param samples filled with what every replanning step and depth image cost, if not null.
 /// Physics that fails is an outcome, `unstable`.
 /// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
 /// a part of the program fails.
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
                      TrialRecord* record = nullptr,
-                     std::optional<planning::PersistentMap>* map = nullptr);
+                     std::optional<planning::PersistentMap>* map = nullptr,
+                     TrialSamples* samples = nullptr);
 
 }  // namespace touchdown::evaluation

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "touchdown/evaluation/map_file.h"
+#include "touchdown/planning/stage_timer.h"
 #include "touchdown/solvers/thread_clock.h"
 
 namespace touchdown::evaluation {
@@ -33,16 +35,15 @@ sim::TagSensorConfig TagConfig(const Scenario& scenario) {
   return config;
 }
 
+}  // namespace
+
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
   planning::OccupancyMapOptions options;
   options.inflation_radius = scenario.planning.clearance;
   return options;
 }
 
-}  // namespace
-
-Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed,
-                       bool keep_changes)
+Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed)
     : gps_({scenario.gps.sigma, scenario.gps.rate}, seed),
       tags_(TagConfig(scenario), world.config().obstacles, seed),
       depth_(sim::DepthCameraConfig{}, world.config().obstacles, world.config().pad, seed),
@@ -51,20 +52,35 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       map_(MapOptions(scenario)),
       persistent_map_(map_.options()),
       deck_half_diagonal_(scenario.pad.deck_size * std::sqrt(0.5)),
-      deck_height_(scenario.pad.deck_height),
-      keep_changes_(keep_changes) {
+      deck_height_(scenario.pad.deck_height) {
   if (scenario.map_prior == "none") return;
   ReadMapFile(scenario.map_prior, &persistent_map_);
   map_.Recentre(world.vehicle().p_WB);
   persistent_map_.Refill(&map_);
-  KeepFlips();
 }
 
 void Perception::Sense(const sim::World& world) {
   const double begin = solvers::ThreadCpuSeconds();
   const double t = world.time();
   const estimation::VehicleState vehicle = world.vehicle();
-  const estimation::PadState pad = world.pad();
+  image_taken_ = depth_clock_.Due(t);
+  if (image_taken_) frame_times_ = {};
+  SenseAt(t, vehicle, world.pad());
+  const double sensed = solvers::ThreadCpuSeconds();
+  sensing_cpu_s_ += sensed - begin;
+  if (!image_taken_) return;
+  {
+    const planning::StageTimer timer(&frame_times_.map);
+    UpdateMap(t, vehicle, world.model().hull_radius);
+  }
+  mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
+}
+
+void Perception::SenseAt(double t, const estimation::VehicleState& vehicle,
+                         const estimation::PadState& pad) {
+  // Steps without an image are over at once; of them there is no span.
+  std::optional<planning::StageTimer> timer;
+  if (image_taken_) timer.emplace(&frame_times_.sense);
   pad_measured_ = false;
   if (const auto fix = gps_.Poll(t, pad)) {
     pad_filter_.AddGps(*fix);
@@ -74,20 +90,15 @@ void Perception::Sense(const sim::World& world) {
     pad_filter_.AddSighting(*sighting, vehicle);
     pad_measured_ = true;
   }
-  const bool image_due = depth_clock_.Due(t);
-  if (image_due) depth_.Capture(vehicle, pad, &frame_);
-  const double sensed = solvers::ThreadCpuSeconds();
-  sensing_cpu_s_ += sensed - begin;
-  if (!image_due) return;
+  if (image_taken_) depth_.Capture(vehicle, pad, &frame_);
+}
+
+void Perception::UpdateMap(double t, const estimation::VehicleState& vehicle, double hull_radius) {
   persistent_map_.Recentre(vehicle.p_WB, &map_);
-  KeepFlips();
   const planning::ExcludedVolume volume = PadVolume(t);
-  map_.MarkOwnVolume(vehicle.p_WB, world.model().hull_radius);
+  map_.MarkOwnVolume(vehicle.p_WB, hull_radius);
   map_.Clear(volume);
-  KeepFlips();
   map_.Integrate(frame_, volume);
-  KeepFlips();
-  mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
 }
 
 planning::ExcludedVolume Perception::PadVolume(double t) const {
@@ -98,17 +109,6 @@ planning::ExcludedVolume Perception::PadVolume(double t) const {
                   kVolumeSigmas * std::min(pad_filter_.PositionSigma(t), kVolumeSigmaMax);
   volume.top = deck_height_ + kVolumeMargin;
   return volume;
-}
-
-void Perception::KeepFlips() {
-  if (!keep_changes_) return;
-  changes_.insert(changes_.end(), map_.flips().begin(), map_.flips().end());
-}
-
-std::vector<planning::CellFlip> Perception::TakeMapChanges() {
-  std::vector<planning::CellFlip> taken;
-  taken.swap(changes_);
-  return taken;
 }
 
 planning::PersistentMap Perception::TakePersistentMap() {

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/occupancy_map.h"
 #include "touchdown/planning/persistent_map.h"
+#include "touchdown/planning/replan_result.h"
 #include "touchdown/sim/depth_camera.h"
 #include "touchdown/sim/gps.h"
 #include "touchdown/sim/sample_clock.h"
@@ -16,15 +16,21 @@
 
 namespace touchdown::evaluation {
 
+/// The map that a scenario's planner asks.
+planning::OccupancyMapOptions MapOptions(const Scenario& scenario);
+
+/// What one depth image cost, from the sensors' simulation to the map.
+struct FrameTimes {
+  planning::StageTimes::Span sense{"sense"}, map{"map"};
+};
+
 /// The vehicle's senses in a simulated world: GPS of the pad, tag camera, depth camera, and what is
 /// made of them, the pad filter and the obstacle map with its memory.
 class Perception {
  public:
   /// `world` only gives the configuration and the start. Every sensor has its own stream of `seed`.
-  /// `keep_changes`: the map's changes are kept for TakeMapChanges.
   /// @throws std::invalid_argument naming the file if map.prior cannot be used.
-  Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed,
-             bool keep_changes);
+  Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed);
 
   /// Takes the measurements that are due at the world's time. Call once per physics step.
   void Sense(const sim::World& world);
@@ -35,8 +41,9 @@ class Perception {
   /// A GPS fix or a sighting was taken in the last call of Sense.
   bool pad_measured() const { return pad_measured_; }
 
-  /// Cells that changed since the last call, in order; none unless they are kept.
-  std::vector<planning::CellFlip> TakeMapChanges();
+  /// A depth image was taken and fused in the last call of Sense, and what that cost.
+  bool image_taken() const { return image_taken_; }
+  const FrameTimes& frame_times() const { return frame_times_; }
 
   /// Hands over all that was ever observed; the last call.
   planning::PersistentMap TakePersistentMap();
@@ -47,8 +54,9 @@ class Perception {
   double mapping_cpu_s() const { return mapping_cpu_s_; }  ///< fusing depth into the map
 
  private:
+  void SenseAt(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);
+  void UpdateMap(double t, const estimation::VehicleState& vehicle, double hull_radius);
   planning::ExcludedVolume PadVolume(double t) const;
-  void KeepFlips();
 
   sim::PadGps gps_;
   sim::TagSensor tags_;
@@ -58,11 +66,11 @@ class Perception {
   planning::OccupancyMap map_;
   planning::PersistentMap persistent_map_;
   estimation::DepthFrame frame_;
-  std::vector<planning::CellFlip> changes_;
   double deck_half_diagonal_;
   double deck_height_;
-  bool keep_changes_;
   bool pad_measured_ = false;
+  bool image_taken_ = false;
+  FrameTimes frame_times_;
   double sensing_cpu_s_ = 0.0;
   double mapping_cpu_s_ = 0.0;
 };

@@ -27,17 +27,21 @@ control::DescentStyle StyleOf(DescentKind kind) {
 }
 
 // The paper extrapolates along the heading: a turn that the filter knows of is left out.
-estimation::BeliefPrediction PredictionOf(const Scenario& scenario,
-                                          const estimation::PadFilter& filter) {
-  if (scenario.pad.prediction != PadPredictionKind::kPaper) return estimation::Predict(filter);
-  estimation::PadBelief belief = filter.belief();
-  if (belief.motion == estimation::PadMotion::kTurn) {
-    belief.motion = estimation::PadMotion::kHeading;
-    belief.mean[4] = 0.0;
-    belief.cov.row(4).setZero();
-    belief.cov.col(4).setZero();
+PredictionData PredictionOf(const Scenario& scenario, const estimation::PadFilter& filter) {
+  PredictionData data;
+  data.source = scenario.pad.prediction == PadPredictionKind::kOracle ? PredictionSource::kOracle
+                                                                      : PredictionSource::kBelief;
+  data.belief = filter.belief();
+  data.height = filter.options().pad_height;
+  data.noise = filter.options().noise;
+  const bool paper = scenario.pad.prediction == PadPredictionKind::kPaper;
+  if (paper && data.belief.motion == estimation::PadMotion::kTurn) {
+    data.belief.motion = estimation::PadMotion::kHeading;
+    data.belief.mean[4] = 0.0;
+    data.belief.cov.row(4).setZero();
+    data.belief.cov.col(4).setZero();
   }
-  return {belief, filter.options().pad_height, filter.options().noise};
+  return data;
 }
 
 control::ControllerOptions TrackingOptions(const Scenario& scenario) {
@@ -110,17 +114,17 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     return nullptr;
   }
   replan_.latency_s = Latency();
-  replan_.input.t_now = vehicle.t;
-  replan_.input.t_start = vehicle.t + replan_.latency_s;
-  replan_.input.vehicle = vehicle;
-  replan_.input.endpoint = Endpoint(vehicle.t);
+  planning::ReplanInput& input = replan_.request.input;
+  input.t_now = vehicle.t;
+  input.t_start = vehicle.t + replan_.latency_s;
+  input.vehicle = vehicle;
+  input.endpoint = Endpoint(vehicle.t);
 
   const bool wants_plan = WantsPlan(filter, vehicle.t);
   // No plan is missing while none is tried: a climb must not end as a failure to plan.
   if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
-  const planning::ReplanResult& result =
-      wants_plan ? PlanToPad(filter, map) : replanner_.Rest(replan_.input, RestClimb(), map);
+  const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   last_planned_ = result.status == planning::ReplanStatus::kPlanned;
@@ -142,14 +146,23 @@ double Pilot::RestClimb() const {
 
 const planning::ReplanResult& Pilot::PlanToPad(const estimation::PadFilter& filter,
                                                const planning::OccupancyMap& map) {
-  const estimation::BeliefPrediction prediction = PredictionOf(scenario_, filter);
-  const bool oracle = scenario_.pad.prediction == PadPredictionKind::kOracle;
-  replan_.input.pad =
+  ReplanRequest& request = replan_.request;
+  request.rest_climb.reset();
+  request.prediction = PredictionOf(scenario_, filter);
+  const estimation::BeliefPrediction prediction = request.prediction.Belief();
+  const bool oracle = request.prediction.source == PredictionSource::kOracle;
+  request.input.pad =
       oracle ? static_cast<const estimation::PadPrediction*>(&oracle_) : &prediction;
-  replan_.pad = replan_.input.pad->At(replan_.input.t_now);
-  const planning::ReplanResult& result = replanner_.Replan(replan_.input, map);
-  replan_.input.pad = nullptr;  // the prediction ends with this call
+  replan_.pad = request.input.pad->At(request.input.t_now);
+  const planning::ReplanResult& result = replanner_.Replan(request.input, map);
+  request.input.pad = nullptr;  // the prediction ends with this call
   return result;
+}
+
+const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& map) {
+  replan_.request.rest_climb = RestClimb();
+  replan_.request.prediction.source = PredictionSource::kNone;
+  return replanner_.Rest(replan_.request.input, *replan_.request.rest_climb, map);
 }
 
 control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) const {

@@ -11,6 +11,7 @@
 #include "touchdown/control/yaw_planner.h"
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/estimation/vehicle_model.h"
+#include "touchdown/evaluation/replan_request.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/replanner.h"
 #include "touchdown/sim/pad_motion.h"
@@ -19,7 +20,7 @@ namespace touchdown::evaluation {
 
 /// A replanning step, as the pilot asked for it.
 struct PilotReplan {
-  planning::ReplanInput input;
+  ReplanRequest request;
   estimation::PadState pad;  ///< the prediction at t_now
   double latency_s = 0.0;    ///< with which the plan is flown
 };
@@ -51,6 +52,8 @@ class Pilot {
 
   const control::MissionOutputs& mission() const { return mission_; }
   const PilotReplan& last_replan() const { return replan_; }
+  /// What the replanner remembers before its next step. Allocates.
+  planning::ReplannerState replanner_state() const { return replanner_.state(); }
   bool plan_valid(double t) const;
 
  private:
@@ -62,6 +65,7 @@ class Pilot {
   double RestClimb() const;
   const planning::ReplanResult& PlanToPad(const estimation::PadFilter& filter,
                                           const planning::OccupancyMap& map);
+  const planning::ReplanResult& ComeToRest(const planning::OccupancyMap& map);
 
   Scenario scenario_;
   estimation::VehicleModel model_;

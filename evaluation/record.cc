@@ -3,6 +3,8 @@
 // frames where there is a choice; docs/record.md explains each.
 #include "touchdown/evaluation/record.h"
 
+#include <fmt/format.h>
+
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/scenario_world.h"
@@ -31,12 +33,25 @@ CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT,
   escaping INTEGER, stops_in_observed_space INTEGER);
 CREATE TABLE control_point(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE guide_path(plan INTEGER, path INTEGER, i INTEGER, x REAL, y REAL, z REAL);
-CREATE TABLE map_change(plan INTEGER, ix INTEGER, iy INTEGER, iz INTEGER, occupied INTEGER);
-CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL,
+CREATE TABLE map_window(plan INTEGER PRIMARY KEY, ix INTEGER, iy INTEGER, iz INTEGER);
+CREATE TABLE map_change(plan INTEGER, ix INTEGER, iy INTEGER, iz INTEGER, count INTEGER,
+  state TEXT);
+CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL, rest_climb REAL,
   px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
+  qw REAL, qx REAL, qy REAL, qz REAL, wx REAL, wy REAL, wz REAL,
   pad_px REAL, pad_py REAL, pad_pz REAL, pad_vx REAL, pad_vy REAL, pad_vz REAL,
   pad_ax REAL, pad_ay REAL, pad_az REAL, pad_yaw REAL, pad_yaw_rate REAL,
-  endpoint_height REAL, endpoint_sink_rate REAL, endpoint_height_floor REAL);
+  endpoint_t_reference REAL, endpoint_height REAL, endpoint_sink_rate REAL,
+  endpoint_height_floor REAL);
+CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t REAL, height REAL,
+  noise_position REAL, noise_velocity REAL, noise_acceleration REAL, noise_heading REAL,
+  noise_turn REAL);
+CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, cov2 REAL, cov3 REAL,
+  cov4 REAL, PRIMARY KEY(plan, i));
+CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, climb REAL, strip_t REAL,
+  strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
+  current_t0 REAL, current_h REAL, next_t0 REAL, next_h REAL);
+CREATE TABLE state_point(plan INTEGER, curve TEXT, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL, radius REAL);
 CREATE TABLE timing(stage TEXT PRIMARY KEY, cpu_s REAL);
@@ -50,7 +65,9 @@ void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result
   insert.Run("scenario", scenario.name);
   insert.Run("scenario_yaml", DumpScenario(scenario));
   insert.Run("seed", std::to_string(result.seed));
-  insert.Run("map_resolution", std::to_string(record.map_resolution));
+  insert.Run("map_resolution", fmt::format("{}", record.map_resolution));
+  const planning::CellIndex& cells = record.map_size;
+  insert.Run("map_size", fmt::format("{} {} {}", cells.x(), cells.y(), cells.z()));
   nlohmann::ordered_json json = LandJson(scenario, result);
   json.erase("wall_clock");  // wall-clock figures stand only in the table timing
   insert.Run("result_json", json.dump());
@@ -91,41 +108,93 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
   }
 }
 
+void WriteResult(SqliteStatement& insert, int id, const RecordPlan& row) {
+  const ReplanOutcome& r = row.result;
+  const planning::Certificate& c = r.certificate;
+  insert.Run(id, row.request.input.t_now, row.request.input.t_start, planning::ToString(r.status),
+             planning::ToString(r.reason), r.from_odometry, r.curve.t0(), r.curve.interval(),
+             static_cast<int>(r.curve.control_points().cols()), r.pairs, r.solves, r.rebinds,
+             r.iterations, r.cost, c.passed(), c.endpoint_position_residual,
+             c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.limits_kept,
+             c.recovering, c.clear, c.clearance, c.endpoint_required, c.escaping,
+             c.stops_in_observed_space);
+}
+
+void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
+  const planning::ReplanInput& input = row.request.input;
+  const estimation::VehicleState& v = input.vehicle;
+  const estimation::PadState& pad = row.pad;
+  const planning::EndpointTarget& end = input.endpoint;
+  insert.Run(id, input.t_now, input.t_start, row.request.rest_climb, v.p_WB.x(), v.p_WB.y(),
+             v.p_WB.z(), v.v_WB.x(), v.v_WB.y(), v.v_WB.z(), v.q_WB.w(), v.q_WB.x(), v.q_WB.y(),
+             v.q_WB.z(), v.w_WB_B.x(), v.w_WB_B.y(), v.w_WB_B.z(), pad.p_WP.x(), pad.p_WP.y(),
+             pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(), pad.a_WP.x(), pad.a_WP.y(),
+             pad.a_WP.z(), pad.yaw, pad.yaw_rate, end.t_reference, end.height, end.sink_rate,
+             end.height_floor);
+}
+
+void WritePoints(SqliteStatement& insert, int id, const char* curve,
+                 const planning::ControlPoints& q) {
+  for (int i = 0; i < q.cols(); ++i) insert.Run(id, curve, i, q(0, i), q(1, i), q(2, i));
+}
+
+// What the replanner is asked again with: one row a step, points and matrix rows beside it.
+void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
+  SqliteStatement input = db.Prepare(
+      "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement prediction =
+      db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement state =
+      db.Prepare("INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
+  int id = 0;
+  for (const RecordPlan& row : plans) {
+    WriteInput(input, id, row);
+    const PredictionData& p = row.request.prediction;
+    const estimation::PadNoise& n = p.noise;
+    prediction.Run(id, ToString(p.source), ToString(p.belief.motion), p.belief.t, p.height,
+                   n.position, n.velocity, n.acceleration, n.heading, n.turn);
+    const estimation::PadMatrix& c = p.belief.cov;
+    for (int i = 0; i < c.rows() && p.source == PredictionSource::kBelief; ++i) {
+      belief.Run(id, i, p.belief.mean(i), c(i, 0), c(i, 1), c(i, 2), c(i, 3), c(i, 4));
+    }
+    const planning::ReplannerState& s = row.before;
+    state.Run(id, s.planned, s.climb, s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(),
+              s.strip_to.y(), s.strip_floor, s.current.t0(), s.current.interval(), s.next.t0(),
+              s.next.interval());
+    WritePoints(point, id, "current", s.current.control_points());
+    WritePoints(point, id, "next", s.next.control_points());
+    ++id;
+  }
+}
+
 void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement plan = db.Prepare(
       "INSERT INTO plan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO control_point VALUES(?, ?, ?, ?, ?)");
   SqliteStatement guide = db.Prepare("INSERT INTO guide_path VALUES(?, ?, ?, ?, ?, ?)");
-  SqliteStatement change = db.Prepare("INSERT INTO map_change VALUES(?, ?, ?, ?, ?)");
-  SqliteStatement input = db.Prepare(
-      "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?)");
+  SqliteStatement window = db.Prepare("INSERT INTO map_window VALUES(?, ?, ?, ?)");
+  SqliteStatement change = db.Prepare("INSERT INTO map_change VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
-  for (const RecordPlan& p : plans) {
-    const planning::ControlPoints& q = p.curve.control_points();
-    const planning::Certificate& c = p.certificate;
-    plan.Run(id, p.t_now, p.t_start, planning::ToString(p.status), planning::ToString(p.reason),
-             p.from_odometry, p.curve.t0(), p.curve.interval(), static_cast<int>(q.cols()), p.pairs,
-             p.solves, p.rebinds, p.iterations, p.cost, c.passed(), c.endpoint_position_residual,
-             c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.limits_kept,
-             c.recovering, c.clear, c.clearance, c.endpoint_required, c.escaping,
-             c.stops_in_observed_space);
+  for (const RecordPlan& row : plans) {
+    WriteResult(plan, id, row);
+    const planning::ControlPoints& q = row.result.curve.control_points();
     for (int i = 0; i < q.cols(); ++i) point.Run(id, i, q(0, i), q(1, i), q(2, i));
-    for (std::size_t k = 0; k < p.guide_paths.size(); ++k) {
-      for (std::size_t i = 0; i < p.guide_paths[k].size(); ++i) {
-        const Eigen::Vector3d& x = p.guide_paths[k][i];
+    const auto& paths = row.result.guide_paths;
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+      for (std::size_t i = 0; i < paths[k].size(); ++i) {
+        const Eigen::Vector3d& x = paths[k][i];
         guide.Run(id, static_cast<int>(k), static_cast<int>(i), x.x(), x.y(), x.z());
       }
     }
-    for (const planning::CellFlip& flip : p.map_changes) {
-      change.Run(id, flip.cell.x(), flip.cell.y(), flip.cell.z(), flip.occupied);
+    const planning::CellIndex& lowest = row.map_change.origin;
+    window.Run(id, lowest.x(), lowest.y(), lowest.z());
+    for (const MapRun& run : row.map_change.runs) {
+      change.Run(id, run.cell.x(), run.cell.y(), run.cell.z(), run.count, ToString(run.state));
     }
-    input.Run(id, p.t_now, p.t_start, p.vehicle.p_WB.x(), p.vehicle.p_WB.y(), p.vehicle.p_WB.z(),
-              p.vehicle.v_WB.x(), p.vehicle.v_WB.y(), p.vehicle.v_WB.z(), p.pad.p_WP.x(),
-              p.pad.p_WP.y(), p.pad.p_WP.z(), p.pad.v_WP.x(), p.pad.v_WP.y(), p.pad.v_WP.z(),
-              p.pad.a_WP.x(), p.pad.a_WP.y(), p.pad.a_WP.z(), p.pad.yaw, p.pad.yaw_rate,
-              p.endpoint.height, p.endpoint.sink_rate, p.endpoint.height_floor);
     ++id;
   }
 }
@@ -175,6 +244,7 @@ void WriteRecord(const std::string& path, const Scenario& scenario, const TrialR
       for (const RecordEvent& e : record.events) insert.Run(e.t, e.kind, e.text);
     }
     WritePlans(db, record.plans);
+    WriteRequests(db, record.plans);
     WriteObstacles(db, scenario);
     WriteTiming(db, result.timing);
     transaction.Commit();

@@ -139,9 +139,11 @@ class Reader {
   bool lines_;
 };
 
-YAML::Node ParseFile(const std::string& path) {
+// `load` gives the YAML documents of what sentences call `path`.
+template <typename Load>
+YAML::Node OneDocument(const std::string& path, const Load& load) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAllFromFile(path);
+    const std::vector<YAML::Node> documents = load();
     if (documents.empty() || documents.front().IsNull()) {
       throw BadInput(fmt::format("{}: the scenario file holds no key.", path));
     }
@@ -175,19 +177,32 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
   Reader(source, file, false).ReadEntry(name, value, where);
 }
 
+Scenario Complete(const YAML::Node& root, const std::string& name, const std::string& file,
+                  const std::vector<std::string>& overrides, const Registries& registries) {
+  ScenarioSource source;
+  source.scenario.name = name;
+  source.file = file;
+  Reader(&source, file, true).Read(root);
+  for (const std::string& text : overrides) ApplyOverride(text, &source);
+  CheckScenario(source, registries);
+  return source.scenario;
+}
+
 }  // namespace
 
 Scenario::Scenario() = default;
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
                       const Registries& registries) {
-  ScenarioSource source;
-  source.scenario.name = std::filesystem::path(path).stem().string();
-  source.file = path;
-  Reader(&source, path, true).Read(ParseFile(path));
-  for (const std::string& text : overrides) ApplyOverride(text, &source);
-  CheckScenario(source, registries);
-  return source.scenario;
+  const auto load = [&path] { return YAML::LoadAllFromFile(path); };
+  return Complete(OneDocument(path, load), std::filesystem::path(path).stem().string(), path,
+                  overrides, registries);
+}
+
+Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& file,
+                       const std::vector<std::string>& overrides, const Registries& registries) {
+  const auto load = [&text] { return YAML::LoadAll(text); };
+  return Complete(OneDocument(file, load), name, file, overrides, registries);
 }
 
 std::string DumpScenario(const Scenario& scenario) {

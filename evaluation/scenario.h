@@ -137,6 +137,10 @@ std::vector<std::string> ListScenarios();
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
                       const Registries& registries);
 
+/// The same from the text of a scenario file. `file` stands in sentences, `name` is the scenario's.
+Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& file,
+                       const std::vector<std::string>& overrides, const Registries& registries);
+
 /// The effective scenario as YAML that LoadScenario reads back to the same values.
 std::string DumpScenario(const Scenario& scenario);
 

@@ -9,6 +9,8 @@
 
 #include "touchdown/estimation/pad_prediction.h"
 #include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/evaluation/map_history.h"
+#include "touchdown/evaluation/replan_request.h"
 #include "touchdown/planning/occupancy_map.h"
 #include "touchdown/planning/replanner.h"
 
@@ -33,13 +35,8 @@ struct RecordEvent {
   std::string text;
 };
 
-/// One replanning step: what was asked and what came out.
-struct RecordPlan {
-  double t_now = 0.0;
-  double t_start = 0.0;
-  planning::EndpointTarget endpoint;
-  estimation::VehicleState vehicle;  ///< as the planner was told
-  estimation::PadState pad;          ///< its prediction at t_now
+/// What came out of a replanning step; all of it repeats bit by bit.
+struct ReplanOutcome {
   planning::ReplanStatus status = planning::ReplanStatus::kHolding;
   planning::ReplanReason reason = planning::ReplanReason::kNone;
   bool from_odometry = false;
@@ -51,12 +48,26 @@ struct RecordPlan {
   int rebinds = 0;
   int iterations = 0;
   double cost = 0.0;
-  std::vector<planning::CellFlip> map_changes;  ///< since the previous replanning step
+};
+ReplanOutcome OutcomeOf(const planning::ReplanResult& result);
+
+/// All that a record holds is the same in both. Numbers that are not finite count as equal, and so
+/// do the zeros: a file does not tell them apart.
+bool Same(const ReplanOutcome& a, const ReplanOutcome& b);
+
+/// One replanning step: what was asked and what came out.
+struct RecordPlan {
+  ReplanRequest request;
+  planning::ReplannerState before;  ///< what the replanner remembered
+  MapChange map_change;             ///< since the previous replanning step
+  estimation::PadState pad;         ///< the prediction at t_now
+  ReplanOutcome result;
 };
 
 /// Everything of one trial that is worth keeping, in memory until it is written at the end.
 struct TrialRecord {
-  double map_resolution = 0.1;
+  double map_resolution = 0.1;                                 ///< [m]
+  planning::CellIndex map_size = planning::CellIndex::Ones();  ///< of the window
   std::vector<RecordSample> samples;
   std::vector<RecordEvent> events;
   std::vector<RecordPlan> plans;

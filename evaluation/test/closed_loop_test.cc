@@ -44,13 +44,15 @@ TEST(ClosedLoop, NothingIsFlownWithoutItsCertificate) {
     TrialRecord record;
     RunTrial(scenario, seed, StandardRegistries(), &record);
     int planned = 0;
-    for (const RecordPlan& plan : record.plans) {
+    for (const RecordPlan& asked : record.plans) {
       using planning::ReplanStatus;
-      EXPECT_NE(plan.status, ReplanStatus::kUnsafe) << "seed " << seed << " at " << plan.t_now;
+      const ReplanOutcome& plan = asked.result;
+      EXPECT_NE(plan.status, ReplanStatus::kUnsafe)
+          << "seed " << seed << " at " << asked.request.input.t_now;
       const bool kept = plan.status == ReplanStatus::kKept || plan.status == ReplanStatus::kHolding;
       if (!kept) {
-        EXPECT_TRUE(plan.certificate.passed())
-            << planning::ToString(plan.status) << ", seed " << seed << " at " << plan.t_now;
+        EXPECT_TRUE(plan.certificate.passed()) << planning::ToString(plan.status) << ", seed "
+                                               << seed << " at " << asked.request.input.t_now;
       }
       if (plan.status != ReplanStatus::kPlanned) continue;
       ++planned;

@@ -74,8 +74,11 @@ TEST_F(MapFile, WhatWasSeenIsKnownInTheNextFlight) {
     planning::PersistentMap seen{planning::OccupancyMapOptions{}};
     ReadMapFile(path, &seen);
     int known = 0;
-    for (const planning::CellFlip& flip : record.plans.front().map_changes) {
-      known += flip.occupied && flip.cell.x() > 100 && seen.IsOccupied(flip.cell);
+    for (const MapRun& run : record.plans.front().map_change.runs) {
+      for (int i = 0; i < run.count && run.state == planning::CellState::kOccupied; ++i) {
+        const planning::CellIndex cell = run.cell + i * planning::CellIndex::UnitX();
+        known += cell.x() > 100 && seen.IsOccupied(cell);
+      }
     }
     EXPECT_GT(known, 20) << name;
     fs::remove(path);

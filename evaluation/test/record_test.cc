@@ -29,11 +29,11 @@ TrialRecord SmallRecord() {
   record.samples = {sample};
   record.events = {{0.01, "mode", "tracking (pad_converged)"}};
   RecordPlan plan;
-  plan.t_now = 0.1;
-  plan.t_start = 0.12;
-  plan.status = planning::ReplanStatus::kPlanned;
-  plan.guide_paths = {{{0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}}};
-  plan.map_changes = {{planning::CellIndex(-1, 2, 3), true}};
+  plan.request.input.t_now = 0.1;
+  plan.request.input.t_start = 0.12;
+  plan.result.status = planning::ReplanStatus::kPlanned;
+  plan.result.guide_paths = {{{0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}}};
+  plan.map_change.runs = {{planning::CellIndex(-1, 2, 3), 4, planning::CellState::kOccupied}};
   record.plans = {plan};
   return record;
 }
@@ -64,10 +64,11 @@ TEST(Record, HoldsWhatWasWritten) {
   SqliteStatement points = db.Prepare("SELECT count(*) FROM control_point WHERE plan = 0");
   ASSERT_TRUE(points.Step());
   EXPECT_EQ(points.Integer(0), plan.Integer(2));
-  SqliteStatement change = db.Prepare("SELECT ix, occupied FROM map_change");
+  SqliteStatement change = db.Prepare("SELECT ix, count, state FROM map_change");
   ASSERT_TRUE(change.Step());
   EXPECT_EQ(change.Integer(0), -1);
-  EXPECT_EQ(change.Integer(1), 1);
+  EXPECT_EQ(change.Integer(1), 4);
+  EXPECT_EQ(change.Text(2), "occupied");
   SqliteStatement guide = db.Prepare("SELECT count(*) FROM guide_path");
   ASSERT_TRUE(guide.Step());
   EXPECT_EQ(guide.Integer(0), 2);

@@ -6,7 +6,7 @@ import sqlite3
 
 import numpy as np
 
-SUPPORTED_VERSION = "1"
+SUPPORTED_VERSION = "2"
 
 
 class RecordError(Exception):

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A record is data from outside: every number that a planner is given is looked at first.
+#include "touchdown/evaluation/record_reader.h"
+
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/perception.h"
+#include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/table_rows.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr int kMostPoints = 10000;           // of a spline
+constexpr int kMostCells = 1024;             // of a run: a window's longest side
+constexpr std::int64_t kFarthest = 1 << 24;  // cell index
+
+std::string Version() { return std::to_string(kRecordVersion); }
+
+// A table with exactly one row a plan.
+template <typename Read>
+void ReadEach(TableRows rows, std::vector<RecordPlan>* plans, const Read& read) {
+  for (RecordPlan& plan : *plans) {
+    if (!rows.Next()) rows.Refuse("lacks replanning steps");
+    rows.Integer(&plan - plans->data(), &plan - plans->data());
+    read(rows, &plan);
+  }
+  if (rows.Next()) rows.Refuse("has more replanning steps than the table plan");
+}
+
+// A table with any number of rows a plan, in the order of the plans.
+template <typename Read>
+void ReadMany(TableRows rows, std::vector<RecordPlan>* plans, const Read& read) {
+  while (rows.Next()) {
+    const int plan = rows.Integer(0, static_cast<std::int64_t>(plans->size()) - 1);
+    read(rows, &(*plans)[static_cast<std::size_t>(plan)]);
+  }
+}
+
+struct Knots {
+  double t0 = 0.0;
+  double h = 0.0;
+  std::vector<Eigen::Vector3d> points;
+
+  void Add(TableRows& rows) {
+    if (rows.Integer(0, kMostPoints) != static_cast<int>(points.size())) {
+      rows.Refuse("holds control points out of order");
+    }
+    points.push_back(rows.Vector3());
+  }
+  planning::UniformBspline Curve() const {
+    planning::ControlPoints q(3, static_cast<Eigen::Index>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) q.col(static_cast<Eigen::Index>(i)) = points[i];
+    return {q, h, t0};
+  }
+};
+
+void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
+  TableRows rows(
+      db, "plan",
+      "id, status, reason, from_odometry, t0, h, pairs, solves, rebinds, iterations, cost, "
+      "endpoint_position_residual, endpoint_velocity_residual, speed_bound, "
+      "acceleration_bound, limits_kept, recovering, clear, clearance, endpoint_required, "
+      "escaping, stops_in_observed_space",
+      "id");
+  std::vector<Knots> knots;
+  while (rows.Next()) {
+    rows.Integer(static_cast<std::int64_t>(plans->size()),
+                 static_cast<std::int64_t>(plans->size()));
+    ReplanOutcome& r = plans->emplace_back().result;
+    r.status = rows.Named(planning::ReplanStatus::kUnsafe, planning::ToString);
+    r.reason = rows.Named(planning::ReplanReason::kLimitsExceeded, planning::ToString);
+    r.from_odometry = rows.Flag();
+    knots.push_back({rows.Number(), 0.0, {}});
+    knots.back().h = rows.Number();
+    r.pairs = rows.Count();
+    r.solves = rows.Count();
+    r.rebinds = rows.Count();
+    r.iterations = rows.Count();
+    r.cost = rows.NumberOrNan();
+    planning::Certificate& c = r.certificate;
+    c.endpoint_position_residual = rows.NumberOrNan();
+    c.endpoint_velocity_residual = rows.NumberOrNan();
+    c.speed_bound = rows.NumberOrNan();
+    c.acceleration_bound = rows.NumberOrNan();
+    c.limits_kept = rows.Flag();
+    c.recovering = rows.Flag();
+    c.clear = rows.Flag();
+    c.clearance = rows.NumberOrNan();
+    c.endpoint_required = rows.Flag();
+    c.escaping = rows.Flag();
+    c.stops_in_observed_space = rows.Flag();
+  }
+  ReadMany(TableRows(db, "control_point", "plan, i, x, y, z", "plan, i"), plans,
+           [&](TableRows& row, RecordPlan* plan) {
+             knots[static_cast<std::size_t>(plan - plans->data())].Add(row);
+           });
+  for (std::size_t i = 0; i < plans->size(); ++i) (*plans)[i].result.curve = knots[i].Curve();
+  ReadMany(TableRows(db, "guide_path", "plan, path, i, x, y, z", "plan, path, i"), plans,
+           [](TableRows& row, RecordPlan* plan) {
+             auto& paths = plan->result.guide_paths;
+             const auto path =
+                 static_cast<std::size_t>(row.Integer(0, static_cast<std::int64_t>(paths.size())));
+             if (path == paths.size()) paths.emplace_back();
+             row.Integer(static_cast<std::int64_t>(paths[path].size()),
+                         static_cast<std::int64_t>(paths[path].size()));
+             paths[path].push_back(row.Vector3());
+           });
+}
+
+void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
+  const auto read_input = [](TableRows& row, RecordPlan* plan) {
+    planning::ReplanInput& input = plan->request.input;
+    input.t_now = row.Number();
+    input.t_start = row.Number();
+    plan->request.rest_climb = row.Optional();
+    estimation::VehicleState& vehicle = input.vehicle;
+    vehicle.t = input.t_now;
+    vehicle.p_WB = row.Vector3();
+    vehicle.v_WB = row.Vector3();
+    const double qw = row.Number();
+    const Eigen::Vector3d q = row.Vector3();
+    vehicle.q_WB = {qw, q.x(), q.y(), q.z()};
+    vehicle.w_WB_B = row.Vector3();
+    plan->pad.p_WP = row.Vector3();
+    plan->pad.v_WP = row.Vector3();
+    plan->pad.a_WP = row.Vector3();
+    plan->pad.yaw = row.Number();
+    plan->pad.yaw_rate = row.Number();
+    input.endpoint.t_reference = row.Number();
+    input.endpoint.height = row.Number();
+    input.endpoint.sink_rate = row.Number();
+    input.endpoint.height_floor = row.Number();
+  };
+  ReadEach(
+      TableRows(db, "replan_input",
+                "plan, t_now, t_start, rest_climb, px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, "
+                "wz, pad_px, pad_py, pad_pz, pad_vx, pad_vy, pad_vz, pad_ax, pad_ay, pad_az, "
+                "pad_yaw, pad_yaw_rate, endpoint_t_reference, endpoint_height, "
+                "endpoint_sink_rate, endpoint_height_floor",
+                "plan"),
+      plans, read_input);
+  const auto read_prediction = [](TableRows& row, RecordPlan* plan) {
+    PredictionData& p = plan->request.prediction;
+    p.source = row.Named(PredictionSource::kOracle, ToString);
+    p.belief.motion = row.Named(estimation::PadMotion::kTurn, ToString);
+    p.belief.t = row.Number();
+    p.height = row.Number();
+    p.noise = {row.Number(), row.Number(), row.Number(), row.Number(), row.Number()};
+    if (plan->request.rest_climb.has_value() != (p.source == PredictionSource::kNone)) {
+      row.Refuse("does not agree with the table replan_input");
+    }
+  };
+  ReadEach(TableRows(db, "prediction",
+                     "plan, source, motion, t, height, noise_position, noise_velocity, "
+                     "noise_acceleration, noise_heading, noise_turn",
+                     "plan"),
+           plans, read_prediction);
+  ReadMany(TableRows(db, "belief", "plan, i, mean, cov0, cov1, cov2, cov3, cov4", "plan, i"), plans,
+           [](TableRows& row, RecordPlan* plan) {
+             estimation::PadBelief& belief = plan->request.prediction.belief;
+             const int i = row.Integer(0, 4);
+             belief.mean(i) = row.Number();
+             for (int k = 0; k < 5; ++k) belief.cov(i, k) = row.Number();
+           });
+}
+
+void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
+  std::vector<std::map<std::string, Knots>> knots(plans->size());
+  ReadEach(TableRows(db, "replanner_state",
+                     "plan, planned, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
+                     "strip_to_y, strip_floor, current_t0, current_h, next_t0, next_h",
+                     "plan"),
+           plans, [&](TableRows& row, RecordPlan* plan) {
+             planning::ReplannerState& s = plan->before;
+             s.planned = row.Flag();
+             s.climb = row.Optional();
+             s.strip_t = row.Optional();
+             s.strip_from = row.Vector2();
+             s.strip_to = row.Vector2();
+             s.strip_floor = row.Number();
+             auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
+             for (const char* curve : {"current", "next"}) {
+               curves[curve].t0 = row.Number();
+               curves[curve].h = row.Number();
+             }
+           });
+  ReadMany(TableRows(db, "state_point", "plan, curve, i, x, y, z", "plan, curve, i"), plans,
+           [&](TableRows& row, RecordPlan* plan) {
+             auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
+             const auto curve = curves.find(row.Text());
+             if (curve == curves.end()) row.Refuse("names an unknown curve");
+             curve->second.Add(row);
+           });
+  for (std::size_t i = 0; i < plans->size(); ++i) {
+    (*plans)[i].before.current = knots[i].at("current").Curve();
+    (*plans)[i].before.next = knots[i].at("next").Curve();
+  }
+}
+
+void ReadMap(SqliteDb& db, std::vector<RecordPlan>* plans) {
+  const auto cell = [](TableRows& row) {
+    const auto one = [&row] { return row.Integer(-kFarthest, kFarthest); };
+    const int x = one(), y = one();
+    return planning::CellIndex(x, y, one());
+  };
+  ReadEach(TableRows(db, "map_window", "plan, ix, iy, iz", "plan"), plans,
+           [&](TableRows& row, RecordPlan* plan) { plan->map_change.origin = cell(row); });
+  ReadMany(TableRows(db, "map_change", "plan, ix, iy, iz, count, state", "rowid"), plans,
+           [&](TableRows& row, RecordPlan* plan) {
+             const planning::CellIndex first = cell(row);
+             const int count = row.Integer(1, kMostCells);
+             plan->map_change.runs.push_back(
+                 {first, count, row.Named(planning::CellState::kOccupied, ToString)});
+           });
+}
+
+using Meta = std::map<std::string, std::string>;
+
+Meta ReadMeta(SqliteDb& db) {
+  Meta meta;
+  SqliteStatement rows = db.Prepare("SELECT key, value FROM meta");
+  while (rows.Step()) meta[rows.Text(0)] = rows.Text(1);
+  return meta;
+}
+
+// The grid that this build makes for the scenario must be the one that was recorded.
+void CheckMap(const Meta& meta, const Scenario& scenario) {
+  const planning::OccupancyMap map(MapOptions(scenario));
+  const std::string resolution = fmt::format("{}", map.resolution());
+  const std::string size = fmt::format("{} {} {}", map.size().x(), map.size().y(), map.size().z());
+  if (meta.at("map_resolution") != resolution || meta.at("map_size") != size) {
+    throw std::invalid_argument(
+        fmt::format("its map has cells of {} m in a window of {} cells, this build's {} m and {}",
+                    meta.at("map_resolution"), meta.at("map_size"), resolution, size));
+  }
+}
+
+void CheckFormat(const Meta& meta) {
+  const auto value = [&meta](const char* key) {
+    const auto entry = meta.find(key);
+    if (entry == meta.end()) {
+      throw std::invalid_argument(fmt::format("its table meta lacks {}", key));
+    }
+    return entry->second;
+  };
+  if (value("format") != "touchdown record") {
+    throw std::invalid_argument("it is no record of a landing");
+  }
+  if (value("version") != Version()) {
+    throw std::invalid_argument(fmt::format("it is a record of version {}, this build reads {}",
+                                            value("version"), Version()));
+  }
+  for (const char* key : {"scenario", "scenario_yaml", "seed", "build_hash", "revision",
+                          "map_resolution", "map_size"}) {
+    value(key);
+  }
+}
+
+RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& overrides,
+                       const Registries& registries) {
+  SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+  const Meta meta = ReadMeta(db);
+  CheckFormat(meta);
+  RecordedFlight flight;
+  flight.path = path;
+  std::vector<std::string> all = {"seed=" + meta.at("seed")};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),
+                                  path + " (scenario_yaml)", all, registries);
+  CheckMap(meta, flight.scenario);
+  flight.build_hash = meta.at("build_hash");
+  flight.revision = meta.at("revision");
+  ReadResults(db, &flight.plans);
+  ReadRequests(db, &flight.plans);
+  ReadStates(db, &flight.plans);
+  ReadMap(db, &flight.plans);
+  return flight;
+}
+
+}  // namespace
+
+RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
+                          const Registries& registries) {
+  if (!std::filesystem::is_regular_file(path)) {
+    throw BadInput(fmt::format("{}: there is no such record.", path));
+  }
+  try {
+    return ReadAll(path, overrides, registries);
+  } catch (const SqliteError& error) {
+    throw BadInput(fmt::format("{}: not a record that this build reads ({}).", path, error.what()));
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: {}.", path, error.what()));
+  }
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/trial_record.h"
+
+namespace touchdown::evaluation {
+
+/// The part of a record that replanning steps are asked again from.
+struct RecordedFlight {
+  std::string path;
+  Scenario scenario;  ///< the effective one, its seed that of the flight
+  std::string build_hash;
+  std::string revision;
+  std::vector<RecordPlan> plans;  ///< in the order in which they were made
+};
+
+/// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario. @throws BadInput
+/// with one sentence that names the file: it is not there, no record, of another version, or
+/// something in it is missing or out of its range.
+RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
+                          const Registries& registries);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A record holds all that its replanning steps depend on: asked again, they answer the same bits.
+#include "touchdown/evaluation/replay.h"
+
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/sqlite_db.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+class Replayed : public ::testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  void Fly(const std::string& scenario_name, const std::vector<std::string>& overrides) {
+    const Scenario scenario = LoadScenario(FindScenario(scenario_name), overrides, registries_);
+    WriteRecord(path_, scenario, RunTrial(scenario, scenario.seed, registries_, &flown_), flown_);
+  }
+
+  void Execute(const std::string& sql) { SqliteDb(path_, SqliteDb::Mode::kReadWrite).Execute(sql); }
+
+  std::string Refusal() {
+    try {
+      ReadRecord(path_, {}, registries_);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const Registries registries_ = StandardRegistries();
+  TrialRecord flown_;
+  std::string path_ = ::testing::TempDir() + "touchdown_replay_" +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".db";
+};
+
+// Every step of a flight, in two orders.
+void ExpectTheSameBits(const RecordedFlight& flight, const Registries& registries) {
+  Replay replay(flight, registries);
+  for (int step = 0; step < replay.steps(); ++step) {
+    replay.Seek(step);
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      ASSERT_TRUE(Same(OutcomeOf(replay.Solve()), replay.recorded().result)) << "step " << step;
+    }
+  }
+  for (int step = replay.steps() - 1; step >= 0; step -= 17) {
+    replay.Seek(step);
+    ASSERT_TRUE(Same(OutcomeOf(replay.Solve()), replay.recorded().result)) << "step " << step;
+  }
+}
+
+TEST_F(Replayed, TheFirstCaseBitForBit) {
+  Fly("straight_turn", {});
+  const RecordedFlight flight = ReadRecord(path_, {}, registries_);
+  ASSERT_EQ(flight.plans.size(), flown_.plans.size());
+  ASSERT_GT(flight.plans.size(), 100u);
+  EXPECT_EQ(DumpScenario(flight.scenario),
+            DumpScenario(LoadScenario(FindScenario("straight_turn"), {}, registries_)));
+  for (std::size_t i = 0; i < flight.plans.size(); ++i) {
+    EXPECT_TRUE(Same(flight.plans[i].result, flown_.plans[i].result)) << i;
+  }
+  ExpectTheSameBits(flight, registries_);
+}
+
+TEST_F(Replayed, OtherPredictionsAndBackendsToo) {
+  const std::vector<std::vector<std::string>> cases = {
+      {"pad.prediction=oracle", "start.position_spread=[1, 1, 1]", "pad.phase_spread=2", "seed=7"},
+      {"pad.prediction=paper", "estimator.pad=paper", "solver.arrival=free"},
+      {"solver.backend=nlopt-lbfgs", "gps.sigma=0.5"}};
+  for (const auto& overrides : cases) {
+    flown_ = {};
+    std::vector<std::string> all = overrides;
+    all.push_back("timeout=5");
+    Fly("straight_turn", all);
+    const RecordedFlight flight = ReadRecord(path_, {}, registries_);
+    ASSERT_GT(flight.plans.size(), 10u);
+    ExpectTheSameBits(flight, registries_);
+  }
+}
+
+TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
+  EXPECT_THAT(Refusal(), ::testing::HasSubstr("there is no such record"));
+  Fly("straight_turn", {"timeout=2"});
+  EXPECT_EQ(Refusal(), "");
+  const auto damaged = [this](const std::string& sql, const std::string& words) {
+    const std::string kept = path_ + ".kept";
+    std::filesystem::copy_file(path_, kept);
+    Execute(sql);
+    const std::string refusal = Refusal();
+    EXPECT_THAT(refusal, ::testing::StartsWith(path_ + ": ")) << sql;
+    EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
+    std::filesystem::rename(kept, path_);
+  };
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 2");
+  damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
+  damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
+  damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");
+  damaged("DROP TABLE belief", "no such table");
+  damaged("DELETE FROM replan_input WHERE plan = 3", "replan_input");
+  damaged("UPDATE replan_input SET px = NULL WHERE plan = 3", "replan_input lacks a number");
+  damaged("UPDATE plan SET status = 'flying' WHERE id = 3", "flying");
+  damaged("DELETE FROM control_point WHERE plan = 3 AND i > 1", "control points");
+  damaged("UPDATE state_point SET i = 4 WHERE plan = 3 AND i = 3", "state_point");
+  damaged("UPDATE map_change SET count = -1 WHERE rowid = 1", "map_change");
+  damaged("UPDATE replanner_state SET next_h = -1 WHERE plan = 3", "interval");
+}
+
+TEST(MapRecorder, RebuildsARollingMap) {
+  planning::OccupancyMapOptions options;
+  options.size_log2 = {5, 5, 4};
+  planning::OccupancyMap map(options), rebuilt(options);
+  MapRecorder recorder;
+  std::vector<planning::CellState> wanted, got;
+  for (int step = 0; step < 12; ++step) {
+    const Eigen::Vector3d p(0.7 * step, step < 6 ? 0.3 * step : 3.0 - 0.5 * step, 0.1 * step);
+    map.Recentre(p);
+    map.MarkOwnVolume(p, 0.5);
+    map.SetOccupied(p + Eigen::Vector3d(0.6, 0.2, 0.1));
+    Apply(recorder.Take(map), &rebuilt);
+    EXPECT_EQ(rebuilt.origin(), map.origin());
+    map.CopyStates(&wanted);
+    rebuilt.CopyStates(&got);
+    ASSERT_EQ(got, wanted) << step;
+  }
+  EXPECT_TRUE(recorder.Take(map).runs.empty());
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/trial_record.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace touchdown::evaluation {
+namespace {
+
+bool Same(double a, double b) { return a == b || (!std::isfinite(a) && !std::isfinite(b)); }
+
+bool Same(const planning::UniformBspline& a, const planning::UniformBspline& b) {
+  return a.t0() == b.t0() && a.interval() == b.interval() && a.segments() == b.segments() &&
+         a.control_points() == b.control_points();
+}
+
+bool Same(const planning::Certificate& a, const planning::Certificate& b) {
+  return a.passed() == b.passed() && a.endpoint_required == b.endpoint_required &&
+         Same(a.endpoint_position_residual, b.endpoint_position_residual) &&
+         Same(a.endpoint_velocity_residual, b.endpoint_velocity_residual) &&
+         Same(a.speed_bound, b.speed_bound) && Same(a.acceleration_bound, b.acceleration_bound) &&
+         a.limits_kept == b.limits_kept && a.recovering == b.recovering && a.clear == b.clear &&
+         Same(a.clearance, b.clearance) && a.escaping == b.escaping &&
+         a.stops_in_observed_space == b.stops_in_observed_space;
+}
+
+}  // namespace
+
+ReplanOutcome OutcomeOf(const planning::ReplanResult& result) {
+  ReplanOutcome outcome;
+  outcome.status = result.status;
+  outcome.reason = result.reason;
+  outcome.from_odometry = result.from_odometry;
+  outcome.curve = result.curve;
+  outcome.certificate = result.certificate;
+  outcome.guide_paths = result.guide_paths;
+  outcome.pairs = result.pairs;
+  outcome.solves = result.solves;
+  outcome.rebinds = result.rebinds;
+  outcome.iterations = result.solver.iterations;
+  outcome.cost = result.solver.cost;
+  return outcome;
+}
+
+bool Same(const ReplanOutcome& a, const ReplanOutcome& b) {
+  return a.status == b.status && a.reason == b.reason && a.from_odometry == b.from_odometry &&
+         Same(a.curve, b.curve) && Same(a.certificate, b.certificate) &&
+         a.guide_paths == b.guide_paths && a.pairs == b.pairs && a.solves == b.solves &&
+         a.rebinds == b.rebinds && a.iterations == b.iterations && Same(a.cost, b.cost);
+}
+
+}  // namespace touchdown::evaluation

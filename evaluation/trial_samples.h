@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a flight cost, sample by sample: the raw material of a profile.
+#pragma once
+
+#include <vector>
+
+#include "touchdown/evaluation/perception.h"
+#include "touchdown/planning/replan_result.h"
+
+namespace touchdown::evaluation {
+
+/// One replanning step.
+struct ReplanSample {
+  double t_now = 0.0;  ///< [s]
+  planning::ReplanStatus status = planning::ReplanStatus::kHolding;
+  planning::ReplanReason reason = planning::ReplanReason::kNone;
+  bool from_odometry = false;
+  int pairs = 0;
+  int solves = 0;
+  int rebinds = 0;
+  int iterations = 0;  ///< of the last solve
+  planning::StageTimes times;
+};
+
+/// One depth image.
+struct FrameSample {
+  double t = 0.0;  ///< [s]
+  FrameTimes times;
+};
+
+struct TrialSamples {
+  std::vector<ReplanSample> replans;
+  std::vector<FrameSample> frames;
+};
+
+/// `t_now`: when the step was asked for [s].
+inline ReplanSample SampleOf(double t_now, const planning::ReplanResult& result) {
+  return {t_now,        result.status, result.reason,  result.from_odometry,
+          result.pairs, result.solves, result.rebinds, result.solver.iterations,
+          result.times};
+}
+
+}  // namespace touchdown::evaluation
