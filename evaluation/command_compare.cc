@@ -2,7 +2,6 @@
 // touchdown compare: solver backends on the same random landing problems.
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -42,17 +41,6 @@ struct CompareArguments {
     options.cases.problem.limits = {4.0, 6.0};
   }
 };
-
-// Unlike CLI::Range, which lets NaN through.
-CLI::Validator FiniteRange(double low, double high) {
-  const std::string range = fmt::format("[{:g} - {:g}]", low, high);
-  const auto check = [low, high, range](const std::string& text) {
-    double value = 0.0;
-    const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-    return inside ? std::string() : fmt::format("Value {} not in range {}", text, range);
-  };
-  return CLI::Validator(check, "FLOAT in " + range);
-}
 
 // D is B's map with a larger inflation, which is an option here.
 std::vector<std::string> ComparedForests() {
@@ -120,13 +108,7 @@ void CheckOutputs(const CompareArguments& arguments) {
   if (!arguments.db.empty() && arguments.db == arguments.picture) {
     throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
   }
-  if (!arguments.db.empty()) {
-    CheckOutputPath("--db", arguments.db);
-    if (std::filesystem::exists(arguments.db)) {
-      throw BadInput(
-          fmt::format("--db {}: the file exists; a study is never overwritten.", arguments.db));
-    }
-  }
+  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
   if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
 }
 
@@ -140,11 +122,7 @@ void Draw(const CompareArguments& arguments, const CompareResult& result,
 }
 
 int Compare(CompareArguments arguments, const Registries& registries) {
-  if (!TimingsMeanSomething() && !arguments.allow_debug) {
-    throw BadInput(
-        "This build is not optimised, so its timings mean nothing: use the preset release or "
-        "native, or give --allow-debug.");
-  }
+  CheckTimings(arguments.allow_debug);
   CompareOptions& options = arguments.options;
   std::sort(options.points.begin(), options.points.end());
   options.points.erase(std::unique(options.points.begin(), options.points.end()),
@@ -249,9 +227,9 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
       ->check(FiniteRange(0.1, 1e6))
       ->capture_default_str();
   command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
-  AddOutputOption(*command, "--db", &arguments->db, "Write every solve, an SQLite file", "F.db");
-  AddOutputOption(*command, "--picture", &arguments->picture,
-                  "Draw performance profile, latency and scaling", "F.png");
+  AddFileOption(*command, "--db", &arguments->db, "Write every solve, an SQLite file", "F.db");
+  AddFileOption(*command, "--picture", &arguments->picture,
+                "Draw performance profile, latency and scaling", "F.png");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
   command->callback([arguments, &registries, run] {

@@ -112,11 +112,11 @@ void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run
   const auto arguments = std::make_shared<LandArguments>();
   arguments->scenario.AddTo(*command, false);
   command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=")->type_name("S");
-  AddOutputOption(*command, "--record", &arguments->record, "Write the record, an SQLite file",
-                  "F.db");
-  AddOutputOption(*command, "--plot", &arguments->plot, "Draw plan and side view", "F.png");
-  AddOutputOption(*command, "--save-map", &arguments->save_map,
-                  "Write what was seen of the world, an OctoMap file; see map.prior", "F.bt|F.ot");
+  AddFileOption(*command, "--record", &arguments->record, "Write the record, an SQLite file",
+                "F.db");
+  AddFileOption(*command, "--plot", &arguments->plot, "Draw plan and side view", "F.png");
+  AddFileOption(*command, "--save-map", &arguments->save_map,
+                "Write what was seen of the world, an OctoMap file; see map.prior", "F.bt|F.ot");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Land(*arguments, registries); };

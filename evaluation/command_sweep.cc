@@ -2,7 +2,6 @@
 // touchdown sweep: many landings of one scenario on threads, their table and its study file.
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <thread>
@@ -12,7 +11,6 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
-#include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
 #include "touchdown/evaluation/trial_table.h"
@@ -52,13 +50,6 @@ class Progress {
   Clock::time_point last_ = begin_;
 };
 
-void CheckOutput(const std::string& db) {
-  CheckOutputPath("--db", db);
-  if (std::filesystem::exists(db)) {
-    throw BadInput(fmt::format("--db {}: the file exists; a study is never overwritten.", db));
-  }
-}
-
 int Sweep(const SweepArguments& arguments, const Registries& registries) {
   SweepOptions options;
   options.scenario_path = FindScenario(arguments.scenario.scenario);
@@ -74,7 +65,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
           "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
     }
   }
-  if (!arguments.db.empty()) CheckOutput(arguments.db);
+  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
   const std::vector<SweepRow> rows =
       RunSweep(trials, arguments.jobs, registries, Progress(options.trials));
   if (arguments.json) {
@@ -109,8 +100,7 @@ void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   command->add_option("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       ->capture_default_str();
-  AddOutputOption(*command, "--db", &arguments->db, "Write the trial table, an SQLite file",
-                  "F.db");
+  AddFileOption(*command, "--db", &arguments->db, "Write the trial table, an SQLite file", "F.db");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Sweep(*arguments, registries); };

@@ -25,6 +25,8 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
 void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddCheckTermCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run);
+void AddPlanCommand(CLI::App& app, const Registries& registries, CommandRun* run);
+void AddProfileCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 
 /// The options that choose a scenario, shared by the commands that fly.
 struct ScenarioArguments {
@@ -37,12 +39,23 @@ struct ScenarioArguments {
   void AddTo(CLI::App& command, bool scenario_required);
   /// --set and its short forms, in the order in which they count.
   std::vector<std::string> Overrides() const;
+  /// The same for a recorded flight, of which only the planner can be changed. @throws BadInput
+  std::vector<std::string> ReplayOverrides() const;
 };
 
-/// An option that names a file to write; an empty name is refused. The command asks CheckOutputPath
-/// before it runs.
-CLI::Option* AddOutputOption(CLI::App& command, const std::string& name, std::string* path,
-                             const std::string& help, const std::string& type);
+/// An option that names a file; an empty name is refused. For one to write the command asks
+/// CheckOutputPath before it runs.
+CLI::Option* AddFileOption(CLI::App& command, const std::string& name, std::string* path,
+                           const std::string& help, const std::string& type);
+
+/// A number in [low, high]; unlike CLI::Range it does not let NaN through.
+CLI::Validator FiniteRange(double low, double high);
+
+/// @throws BadInput if the timings of this build mean nothing and the user did not ask for them.
+void CheckTimings(bool allow_debug);
+
+/// CheckOutputPath for a study, which is never overwritten. @throws BadInput
+void CheckNewStudy(const std::string& option, const std::string& path);
 
 /// Names of the registry's backends.
 std::vector<std::string> BackendNames(const Registries& registries);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/scenario_value.h"
 
 namespace touchdown::evaluation {
@@ -41,12 +44,48 @@ std::vector<std::string> ScenarioArguments::Overrides() const {
   return overrides;
 }
 
-CLI::Option* AddOutputOption(CLI::App& command, const std::string& name, std::string* path,
-                             const std::string& help, const std::string& type) {
+std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
+  std::vector<std::string> overrides = Overrides();
+  for (const std::string& text : overrides) {
+    if (text.rfind("solver.", 0) != 0 && text.rfind("terms.", 0) != 0) {
+      throw BadInput(fmt::format(
+          "--set {}: of a recorded flight only keys of solver and terms can be changed.", text));
+    }
+  }
+  return overrides;
+}
+
+CLI::Option* AddFileOption(CLI::App& command, const std::string& name, std::string* path,
+                           const std::string& help, const std::string& type) {
   const auto named = [](const std::string& text) {
     return std::string(text.empty() ? "no file is named" : "");
   };
   return command.add_option(name, *path, help)->type_name(type)->check(named);
+}
+
+CLI::Validator FiniteRange(double low, double high) {
+  const std::string range = fmt::format("[{:g} - {:g}]", low, high);
+  const auto check = [low, high, range](const std::string& text) {
+    double value = 0.0;
+    const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+    return inside ? std::string() : fmt::format("Value {} not in range {}", text, range);
+  };
+  return CLI::Validator(check, "FLOAT in " + range);
+}
+
+void CheckTimings(bool allow_debug) {
+  if (TimingsMeanSomething() || allow_debug) return;
+  throw BadInput(
+      "This build is not optimised, so its timings mean nothing: use the preset release or native, "
+      "or give --allow-debug.");
+}
+
+void CheckNewStudy(const std::string& option, const std::string& path) {
+  CheckOutputPath(option, path);
+  if (std::filesystem::exists(path)) {
+    throw BadInput(
+        fmt::format("{} {}: the file exists; a study is never overwritten.", option, path));
+  }
 }
 
 std::vector<std::string> BackendNames(const Registries& registries) {
@@ -90,6 +129,8 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddLandCommand(app, registries, &run);
   AddCompareCommand(app, registries, &run);
   AddSweepCommand(app, registries, &run);
+  AddPlanCommand(app, registries, &run);
+  AddProfileCommand(app, registries, &run);
   AddCheckTermCommand(app, registries, &run);
   AddListCommand(app, registries, &run);
   try {

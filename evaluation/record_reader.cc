@@ -269,7 +269,8 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   CheckFormat(meta);
   RecordedFlight flight;
   flight.path = path;
-  std::vector<std::string> all = {"seed=" + meta.at("seed")};
+  // The steps hold the whole map: what was known beforehand is in the first of them.
+  std::vector<std::string> all = {"seed=" + meta.at("seed"), "map.prior=none"};
   all.insert(all.end(), overrides.begin(), overrides.end());
   flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),
                                   path + " (scenario_yaml)", all, registries);

@@ -16,9 +16,9 @@ def one_sentence(text):
 def test_help_lists_what_is_built(run):
     done = run("--help")
     assert done.returncode == 0
-    for command in ("land", "compare", "sweep", "list"):
+    for command in ("land", "plan", "profile", "compare", "sweep", "list"):
         assert command in done.stdout
-    for command in ("land", "compare", "sweep", "list"):
+    for command in ("land", "plan", "profile", "compare", "sweep", "list"):
         assert run(command, "--help").returncode == 0
 
 

@@ -18,3 +18,22 @@ def sample(control_points, per_segment=8):
     pieces = [powers @ _BASIS @ q[i : i + 4] for i in range(len(q) - 3)]
     end = (q[-3] + 4.0 * q[-2] + q[-1]) / 6.0
     return np.vstack(pieces + [end[None, :]])
+
+
+def derivative_norms(control_points, interval, per_segment=16):
+    """Time from the start, speed and acceleration along the curve, each of shape
+    (segments * per_segment + 1,)."""
+    q = np.asarray(control_points, dtype=float)
+    velocity = np.diff(q, axis=0) / interval
+    acceleration = np.diff(velocity, axis=0) / interval
+    s = np.arange((len(q) - 3) * per_segment + 1) / per_segment
+    i = np.minimum(s.astype(int), len(q) - 4)
+    u = (s - i)[:, None]
+    # The velocity is a quadratic B-spline of its own control points, the acceleration is linear.
+    v = (
+        0.5 * (1.0 - u) ** 2 * velocity[i]
+        + (0.5 + u - u**2) * velocity[i + 1]
+        + 0.5 * u**2 * velocity[i + 2]
+    )
+    a = (1.0 - u) * acceleration[i] + u * acceleration[i + 1]
+    return s * interval, np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)

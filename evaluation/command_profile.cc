@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown profile: what replanning costs, stage by stage.
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/output_path.h"
+#include "touchdown/evaluation/profile.h"
+#include "touchdown/evaluation/profile_report.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+struct ProfileArguments {
+  ScenarioArguments scenario;
+  ProfileOptions options;
+  std::string record;
+  std::string trace;
+  std::string db;
+  std::optional<int> pin;
+  bool json = false;
+  bool allow_debug = false;
+};
+
+void CheckOutputs(const ProfileArguments& arguments) {
+  if (!arguments.db.empty() && arguments.db == arguments.trace) {
+    throw BadInput(fmt::format("--db and --trace are the same file, {}.", arguments.db));
+  }
+  if (!arguments.trace.empty()) CheckOutputPath("--trace", arguments.trace);
+  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+}
+
+Profile Run(const ProfileArguments& arguments, const Registries& registries,
+            MachineState* machine) {
+  ProfileOptions options = arguments.options;
+  options.spans = !arguments.trace.empty();
+  const auto progress = [](int done, int all) {
+    if (all > 1) spdlog::info("{} of {} runs", done, all);
+  };
+  const auto begin = [&] {
+    CheckOutputs(arguments);
+    if (arguments.pin) PinToCpu(*arguments.pin);
+    machine->load_before = LoadAverage();
+  };
+  if (!arguments.record.empty()) {
+    const RecordedFlight flight =
+        ReadRecord(arguments.record, arguments.scenario.ReplayOverrides(), registries);
+    begin();
+    return ProfileRecord(flight, options, registries, progress);
+  }
+  const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
+                                         arguments.scenario.Overrides(), registries);
+  begin();
+  return ProfileFlights(scenario, options, registries, progress);
+}
+
+void WriteTrace(const std::string& path, const Profile& profile) {
+  AtomicFile file(path);
+  std::ofstream out(file.working_path());
+  out << ChromeTrace(profile).dump() << std::endl;
+  if (!out) throw std::runtime_error(fmt::format("--trace {}: it could not be written.", path));
+  out.close();
+  file.Commit();
+}
+
+int RunProfile(const ProfileArguments& arguments, const Registries& registries) {
+  CheckTimings(arguments.allow_debug);
+  MachineState machine;
+  machine.pinned = arguments.pin;
+  const Profile profile = Run(arguments, registries, &machine);
+  machine.load_after = LoadAverage();
+  if (arguments.json) {
+    std::cout << ProfileJson(profile, machine).dump(2) << std::endl;
+  } else {
+    std::cout << ProfileText(profile) << std::flush;
+  }
+  if (!arguments.trace.empty()) WriteTrace(arguments.trace, profile);
+  if (!arguments.db.empty()) WriteProfileTable(arguments.db, profile, machine);
+  return kDone;
+}
+
+}  // namespace
+
+void AddProfileCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
+  CLI::App* command =
+      app.add_subcommand("profile", "Replanning latency by stage, in flight or from a record");
+  const auto arguments = std::make_shared<ProfileArguments>();
+  ProfileOptions& options = arguments->options;
+  arguments->scenario.AddTo(*command, false);
+  CLI::Option* seed =
+      command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=");
+  seed->type_name("S");
+  CLI::Option* trials = command->add_option("--trials", options.trials,
+                                            "Flights, with this seed and the ones that follow it");
+  trials->check(CLI::Range(1, 10000))->capture_default_str();
+  CLI::Option* from = AddFileOption(
+      *command, "--from", &arguments->record,
+      "Replay every replanning step of a record (`land --record`) instead of flying: with the map, "
+      "the pad prediction, the committed trajectory and the input that it had, whatever the step "
+      "before it answers. --backend, --set solver.* and --set terms.* change the planner",
+      "RECORD");
+  from->excludes(seed)->excludes(trials)->excludes(command->get_option("SCENARIO"));
+  command
+      ->add_option("--repeats", options.repeats,
+                   "With --from: measured passes over all steps, after one that is compared with "
+                   "the record and not measured")
+      ->check(CLI::Range(1, 10000))
+      ->needs(from)
+      ->capture_default_str();
+  command
+      ->add_option("--deadline-ms", options.deadline_ms,
+                   "Steps that take longer than this wall time are misses; default: "
+                   "planning.latency, or the replanning period where that is measured or 0")
+      ->check(FiniteRange(1e-3, 1e5));
+  command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
+  AddFileOption(*command, "--trace", &arguments->trace,
+                "Write the spans in Chrome's trace format, for Perfetto or chrome://tracing",
+                "F.json");
+  AddFileOption(*command, "--db", &arguments->db, "Write every sample, an SQLite file", "F.db");
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
+  command->callback([arguments, &registries, run] {
+    *run = [arguments, &registries] { return RunProfile(*arguments, registries); };
+  });
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/plan_case.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "touchdown/control/landing_state_machine.h"
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/field_map.h"
+#include "touchdown/evaluation/perception.h"
+#include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/sim/vehicle_file.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kDrawnAround = 3.0;  // occupied cells this near to what was planned [m]
+
+planning::EndpointTarget FollowAbovePad(const estimation::VehicleModel& model) {
+  planning::EndpointTarget target;
+  target.height = control::MissionParameters{}.follow_height + model.foot_depth;
+  target.height_floor = target.height;
+  return target;
+}
+
+MapChange KnownObstacles(const Scenario& scenario, const TrialDraw& draw) {
+  planning::OccupancyMap map(MapOptions(scenario));
+  map.Recentre(draw.p_WB);
+  std::vector<sim::Obstacle> obstacles;
+  for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
+  FillMap(sim::ObstacleField(std::move(obstacles)), &map);
+  return MapRecorder().Take(map);
+}
+
+// The occupied cells in the box around all curves and guide paths of the step.
+std::vector<planning::CellIndex> CellsNear(const SolvedStep& solved,
+                                           const planning::OccupancyMap& map) {
+  Eigen::Vector3d low = solved.recorded.request.input.vehicle.p_WB;
+  Eigen::Vector3d high = low;
+  const auto hold = [&](const Eigen::Vector3d& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  };
+  const auto hold_curve = [&](const planning::UniformBspline& curve) {
+    for (int i = 0; i < curve.control_points().cols(); ++i) hold(curve.control_points().col(i));
+  };
+  hold_curve(solved.outcome.curve);
+  hold_curve(solved.recorded.before.next);
+  for (const auto& path : solved.outcome.guide_paths) {
+    for (const Eigen::Vector3d& p : path) hold(p);
+  }
+  for (const estimation::PadState& pad : solved.pad) hold(pad.p_WP);
+  const planning::CellIndex first = map.CellOf(low.array() - kDrawnAround).cwiseMax(map.origin());
+  const planning::CellIndex last =
+      map.CellOf(high.array() + kDrawnAround)
+          .cwiseMin(map.origin() + map.size() - planning::CellIndex::Ones());
+  std::vector<planning::CellIndex> cells;
+  planning::CellIndex cell;
+  for (cell.z() = first.z(); cell.z() <= last.z(); ++cell.z()) {
+    for (cell.y() = first.y(); cell.y() <= last.y(); ++cell.y()) {
+      for (cell.x() = first.x(); cell.x() <= last.x(); ++cell.x()) {
+        if (map.IsOccupied(cell)) cells.push_back(cell);
+      }
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registries) {
+  try {
+    const TrialDraw draw = DrawTrial(scenario, scenario.seed);
+    const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(scenario));
+    planning::Replanner replanner(PlannerOptions(scenario, model, registries.terms),
+                                  registries.backends);
+    replanner.CommitHover(draw.p_WB, 0.0);
+    RecordedFlight flight;
+    flight.path = scenario.name;
+    flight.scenario = scenario;
+    RecordPlan& plan = flight.plans.emplace_back();
+    plan.before = replanner.state();
+    plan.map_change = KnownObstacles(scenario, draw);
+    planning::ReplanInput& input = plan.request.input;
+    input.t_start = scenario.planning.latency.measured ? LongestLatency(scenario)
+                                                       : 1e-3 * scenario.planning.latency.ms;
+    input.vehicle.p_WB = draw.p_WB;
+    input.vehicle.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
+    input.endpoint = FollowAbovePad(model);
+    plan.request.prediction.source = PredictionSource::kOracle;
+    return flight;
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: no plan can be asked for: {}.", scenario.name, error.what()));
+  }
+}
+
+SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& registries) {
+  Replay replay(flight, registries);
+  replay.Seek(step);
+  SolvedStep solved;
+  solved.scenario = flight.scenario;
+  solved.step = step;
+  solved.recorded = replay.recorded();
+  solved.limits = replay.replanner().options().limits;
+  replay.Solve();  // the first time finds cold caches
+  solved.times = replay.Solve().times;
+  replay.replanner().set_log(&solved.log);
+  const planning::ReplanResult& result = replay.Solve();
+  solved.outcome = OutcomeOf(result);
+  for (const solvers::TermCost& term : result.solver.cost_by_term)
+    solved.terms.push_back(term.name);
+  solved.resolution = replay.map().resolution();
+  if (const estimation::PadPrediction* prediction = replay.prediction()) {
+    solved.t_pad = solved.recorded.request.input.t_now;
+    const double end = std::max(solved.outcome.curve.t_end(), solved.t_pad);
+    for (int i = 0; solved.t_pad + i * SolvedStep::kPadStep <= end; ++i) {
+      solved.pad.push_back(prediction->At(solved.t_pad + i * SolvedStep::kPadStep));
+    }
+  }
+  solved.occupied = CellsNear(solved, replay.map());
+  return solved;
+}
+
+}  // namespace touchdown::evaluation

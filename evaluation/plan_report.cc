@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/plan_report.h"
+
+#include <fmt/format.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+std::string Vector(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.3f}, {:.3f}, {:.3f}]", v.x(), v.y(), v.z());
+}
+
+std::string QuestionText(const SolvedStep& solved) {
+  const RecordPlan& asked = solved.recorded;
+  const planning::ReplanInput& input = asked.request.input;
+  std::string text = fmt::format("asked at t = {:.3f} s for a curve that takes over at {:.3f} s\n",
+                                 input.t_now, input.t_start);
+  text += fmt::format("  vehicle    p {} m, v {} m/s\n", Vector(input.vehicle.p_WB),
+                      Vector(input.vehicle.v_WB));
+  if (asked.request.rest_climb) {
+    text += fmt::format("  wanted     rest, {:.2f} m higher\n", *asked.request.rest_climb);
+  } else {
+    const estimation::PadState& pad = solved.pad.front();
+    text += fmt::format(
+        "  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP), Vector(pad.v_WP),
+        asked.request.prediction.source == PredictionSource::kOracle ? "its true motion"
+                                                                     : "the filter's belief");
+    text +=
+        fmt::format("  wanted     {:.2f} m above the deck, sinking at {:.2f} m/s to {:.2f} m\n",
+                    input.endpoint.height, input.endpoint.sink_rate, input.endpoint.height_floor);
+  }
+  text += fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s\n",
+                      asked.before.planned ? "a plan to the pad" : "a curve to rest",
+                      asked.before.next.duration(), asked.before.next.t_end());
+  return text;
+}
+
+std::string RoundText(const planning::RoundLog& round, int number) {
+  const solvers::SolverResult& solver = round.solver;
+  std::string text = fmt::format(
+      "    round {}: {} pairs with weight x {:.2f}; {} after {} iterations, cost {:.6g}{}\n",
+      number, round.pairs.size(), round.pressure, solvers::ToString(solver.status),
+      solver.iterations, solver.cost,
+      solver.message.empty() ? "" : fmt::format(" ({})", solver.message));
+  std::string costs;
+  for (const solvers::TermCost& term : solver.cost_by_term) {
+    if (term.cost == 0.0) continue;
+    costs += fmt::format("{}{} {:.4g}", costs.empty() ? "" : ", ", term.name, term.cost);
+  }
+  if (!costs.empty()) text += fmt::format("      cost by term: {}\n", costs);
+  if (!solver.usable()) return text;
+  if (round.blocked.empty()) return text + "      the curve is clear\n";
+  for (const planning::BlockedRun& run : round.blocked) {
+    text += fmt::format("      blocked from {:.2f} s to {:.2f} s{}{}\n", run.t_in, run.t_out,
+                        run.at_start ? ", from the start" : "", run.at_end ? ", at the end" : "");
+  }
+  return text;
+}
+
+// `indent` stands before every line.
+std::string CertificateText(const planning::Certificate& c, const planning::Limits& limits,
+                            const std::string& indent) {
+  std::string text =
+      fmt::format("{}certificate {}\n", indent, c.passed() ? "passed" : "not passed");
+  const char* kept = c.limits_kept ? (c.recovering ? ", recovering" : "") : ": not kept";
+  text += fmt::format(
+      "{}  speed bound {:.4f} of {:.4g} m/s, acceleration bound {:.4f} of {:.4g} m/s^2{}\n", indent,
+      c.speed_bound, limits.speed, c.acceleration_bound, limits.acceleration, kept);
+  if (c.endpoint_required) {
+    text += fmt::format("{}  endpoint residual {:.1e} m, {:.1e} m/s\n", indent,
+                        c.endpoint_position_residual, c.endpoint_velocity_residual);
+  }
+  const std::string way = c.clear      ? fmt::format("clear by {:.2f} m", c.clearance)
+                          : c.escaping ? fmt::format("escapes, {:.2f} m away", c.clearance)
+                                       : fmt::format("blocked at t = {:.2f} s", c.first_hit_t);
+  text += fmt::format("{}  {}; {} before space that was not observed\n", indent, way,
+                      c.stops_in_observed_space ? "stops" : "does not stop");
+  return text;
+}
+
+std::string AttemptText(const planning::AttemptLog& attempt, int number,
+                        const planning::Limits& limits) {
+  std::string text = fmt::format(
+      "  attempt {}: T = {:.3f} s ({}) in {} segments\n", number, attempt.duration,
+      attempt.arrival == planning::ArrivalMode::kFree ? "free" : "fixed", attempt.segments);
+  int round = 0;
+  for (const planning::RoundLog& log : attempt.rounds) text += RoundText(log, ++round);
+  if (attempt.certificate) text += CertificateText(*attempt.certificate, limits, "    ");
+  if (attempt.reason != planning::ReplanReason::kNone) {
+    text += fmt::format("    failed: {}\n", planning::ToString(attempt.reason));
+  }
+  return text;
+}
+
+std::string TimesText(const planning::StageTimes& times) {
+  std::string text = fmt::format("  took {:.3f} ms of thread CPU time, {:.3f} ms of wall time:",
+                                 1e3 * times.total.cpu, 1e3 * times.total.wall);
+  for (const planning::StageTimes::Span* stage : times.Stages()) {
+    text += fmt::format(" {} {:.3f}", stage->stage, 1e3 * stage->cpu);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string PlanText(const SolvedStep& solved) {
+  std::string text = fmt::format("{}, backend {}: ", solved.source, solved.scenario.solver.backend);
+  text += QuestionText(solved);
+  int number = 0;
+  for (const planning::AttemptLog& attempt : solved.log.attempts) {
+    text += AttemptText(attempt, ++number, solved.limits);
+  }
+  const ReplanOutcome& out = solved.outcome;
+  text += fmt::format("{}: {}\n", planning::ToString(out.status), planning::Explain(out.status));
+  if (out.reason != planning::ReplanReason::kNone) {
+    text += fmt::format("  no new plan: {}: {}\n", planning::ToString(out.reason),
+                        planning::Explain(out.reason));
+  }
+  if (out.from_odometry) text += "  it starts at the vehicle: tracking had lost the reference\n";
+  text += fmt::format("  flown from t = {:.3f} s to {:.3f} s: {} control points every {:.4f} s\n",
+                      out.curve.t0(), out.curve.t_end(), out.curve.control_points().cols(),
+                      out.curve.interval());
+  text += CertificateText(out.certificate, solved.limits, "  ");
+  text += TimesText(solved.times);
+  if (solved.same) {
+    text += *solved.same ? "  the recorded answer, bit for bit\n"
+                         : fmt::format("  not the recorded answer: that was {} ({}), cost {:.6g}\n",
+                                       planning::ToString(solved.recorded.result.status),
+                                       planning::ToString(solved.recorded.result.reason),
+                                       solved.recorded.result.cost);
+  }
+  return text;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of one planning problem and its solution (`touchdown plan --picture`): both views with
+the map, guide paths, pairs, old and new curve; speed and acceleration against the limits; cost by
+iteration.
+
+    /usr/bin/python3 -m touchdown_report.plan PLAN.json OUT.png
+"""
+import json
+import os
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.collections import PatchCollection  # noqa: E402
+from matplotlib.patches import Rectangle  # noqa: E402
+
+from touchdown_report import bspline, command_line  # noqa: E402
+
+# Okabe and Ito's palette.
+NEW, OLD, GUIDE, PAIR, PAD = "#0072B2", "#999999", "#009E73", "#D55E00", "#2B2B2B"
+TERMS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000"]
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.edgecolor": "#BBBBBB",
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#EEEEEE",
+    "axes.axisbelow": True,
+}
+
+
+class PlanError(Exception):
+    """The file is no document of a plan; the message is one sentence."""
+
+
+def load(path):
+    """The document of `touchdown plan`, with the map's occupied cells."""
+    if not os.path.isfile(path):
+        raise PlanError(f"{path}: there is no such file.")
+    with open(path, encoding="utf-8") as file:
+        try:
+            plan = json.load(file)
+        except ValueError as error:
+            raise PlanError(f"{path}: not a document of a plan ({error}).") from error
+    if not isinstance(plan, dict) or not {"input", "attempts", "result", "occupied"} <= set(plan):
+        raise PlanError(f"{path}: not a document of a plan.")
+    return plan
+
+
+def last_round(plan):
+    """The round that gave the result; None where nothing was solved."""
+    rounds = plan["attempts"][-1]["rounds"] if plan["attempts"] else []
+    return rounds[-1] if rounds else None
+
+
+def costs_by_iteration(plan):
+    """(cost of each term after each iteration of all rounds, shape (n, terms); index of the first
+    iteration of each round)."""
+    rows, starts = [], []
+    for attempt in plan["attempts"]:
+        for solve in attempt["rounds"]:
+            starts.append(len(rows))
+            rows += [it["cost_by_term"] for it in solve["trace"]]
+    return np.array(rows, dtype=float).reshape(len(rows), len(plan["terms"])), starts
+
+
+def draw_cells(axes, plan, down):
+    """Columns of occupied cells, seen from above or from the south."""
+    cells = np.array(plan["occupied"], dtype=int).reshape(-1, 3)
+    seen = np.unique(cells[:, [0, down]], axis=0)
+    edge = plan["resolution"]
+    squares = [Rectangle((x * edge, y * edge), edge, edge) for x, y in seen]
+    axes.add_collection(PatchCollection(squares, facecolor="#DDD8CF", edgecolor="none"))
+
+
+def draw_view(axes, plan, down):
+    draw_cells(axes, plan, down)
+    for path in plan["guide_paths"]:
+        points = np.array(path)
+        axes.plot(points[:, 0], points[:, down], color=GUIDE, lw=1.2, ls=":", label="guide path")
+    old = bspline.sample(plan["input"]["committed"]["control_points"])
+    axes.plot(old[:, 0], old[:, down], color=OLD, lw=2.0, ls="--", label="committed before")
+    new = bspline.sample(plan["result"]["curve"]["control_points"])
+    axes.plot(new[:, 0], new[:, down], color=NEW, lw=2.2, label=plan["result"]["status"])
+    solve = last_round(plan)
+    if solve and solve["pairs"]:
+        p = np.array([pair["p"] for pair in solve["pairs"]])
+        v = np.array([pair["v"] for pair in solve["pairs"]])
+        axes.quiver(
+            *(p[:, 0], p[:, down], v[:, 0], v[:, down]),
+            **{"color": PAIR, "angles": "xy", "scale_units": "xy", "scale": 2.5, "width": 0.003},
+            label="pairs {p, v}",
+            zorder=4,
+        )
+    if plan["input"]["pad"]:
+        pad = np.array([state["p_WP"] for state in plan["input"]["pad"]])
+        axes.plot(pad[:, 0], pad[:, down], color=PAD, lw=1.2, label="predicted pad")
+        axes.plot(*pad[-1, [0, down]], "s", ms=6, mfc="white", mec=PAD)
+    vehicle = plan["input"]["p_WB"]
+    axes.plot(vehicle[0], vehicle[down], "o", ms=6, mfc="white", mec="#333333")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]" if down == 1 else "z [m]")
+
+
+def draw_profiles(axes, plan):
+    curve, limits = plan["result"]["curve"], plan["input"]["limits"]
+    t, speed, acceleration = bspline.derivative_norms(curve["control_points"], curve["h"])
+    axes.plot(curve["t0"] + t, speed, color=NEW, label="speed [m/s]")
+    axes.plot(curve["t0"] + t, acceleration, color=PAIR, label="acceleration [m/s²]")
+    axes.axhline(limits["speed_mps"], color=NEW, lw=0.8, ls="--")
+    axes.axhline(limits["acceleration_mps2"], color=PAIR, lw=0.8, ls="--")
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("t [s]")
+    axes.set_title("speed and acceleration, limits dashed")
+    axes.legend(frameon=False)
+
+
+def draw_costs(axes, plan):
+    axes.set_title("cost by iteration, rounds divided")
+    axes.set_xlabel("iteration of all rounds")
+    costs, starts = costs_by_iteration(plan)
+    if len(costs) == 0:
+        axes.text(0.5, 0.5, "nothing was solved", ha="center", transform=axes.transAxes)
+        return
+    x = np.arange(1, len(costs) + 1)
+    shown = [i for i in range(costs.shape[1]) if costs[:, i].max() > 0.0]
+    for i in shown:
+        values = np.where(costs[:, i] > 0.0, costs[:, i], np.nan)
+        axes.plot(x, values, marker=".", color=TERMS[i % len(TERMS)], label=plan["terms"][i])
+    axes.plot(x, costs.sum(axis=1), color="#333333", lw=1.0, ls="--", label="all")
+    for start in starts[1:]:
+        axes.axvline(start + 0.5, color="#BBBBBB", lw=0.8)
+    axes.set_yscale("log")
+    axes.legend(frameon=False, fontsize=8)
+
+
+def draw(plan, path):
+    result = plan["result"]
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(2, 2, figsize=(12.0, 8.0), layout="constrained")
+        draw_view(axes[0, 0], plan, 1)
+        axes[0, 0].set_title("plan view")
+        draw_view(axes[0, 1], plan, 2)
+        axes[0, 1].set_title("side view from the south")
+        handles = dict(zip(*reversed(axes[0, 0].get_legend_handles_labels())))
+        axes[0, 0].legend(handles.values(), handles.keys(), frameon=False, fontsize=8)
+        draw_profiles(axes[1, 0], plan)
+        draw_costs(axes[1, 1], plan)
+        reason = "" if result["reason"] == "none" else f" ({result['reason']})"
+        figure.suptitle(
+            f"{plan['source']}, backend {plan['backend']}: {result['status']}{reason}, "
+            f"{result['solves']} solves, {result['pairs']} pairs",
+            **{"x": 0.01, "ha": "left", "fontsize": 11, "fontweight": "bold"},
+        )
+        figure.savefig(path, dpi=150)
+        plt.close(figure)
+
+
+def main(arguments):
+    """Command line; returns the exit status."""
+    return command_line.run(
+        arguments,
+        "touchdown_report.plan PLAN.json OUT.png",
+        lambda source, picture: draw(load(source), picture),
+        (PlanError,),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
