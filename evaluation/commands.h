@@ -22,6 +22,7 @@ inline constexpr int kBadInput = 2;
 using CommandRun = std::function<int()>;
 void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* run);
+void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddCheckTermCommand(CLI::App& app, const Registries& registries, CommandRun* run);
 void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run);

@@ -128,6 +128,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   }
   AddLandCommand(app, registries, &run);
   AddCompareCommand(app, registries, &run);
+  AddStudyCommand(app, registries, &run);
   AddSweepCommand(app, registries, &run);
   AddPlanCommand(app, registries, &run);
   AddProfileCommand(app, registries, &run);

@@ -33,7 +33,7 @@ ReplanOutcome OutcomeOf(const planning::ReplanResult& result) {
   outcome.from_odometry = result.from_odometry;
   outcome.curve = result.curve;
   outcome.certificate = result.certificate;
-  outcome.guide_paths = result.guide_paths;
+  outcome.guide_paths.assign(result.guide_paths.begin(), result.guide_paths.end());
   outcome.pairs = result.pairs;
   outcome.solves = result.solves;
   outcome.rebinds = result.rebinds;

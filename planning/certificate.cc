@@ -21,13 +21,13 @@ constexpr double kLimitSlack = 2e-6;
 /// The speed that the start fixes: its own, and V_1 = v0 + h a0 / 2 of the hull, which no solver can
 /// change. A start just below the limit that still speeds up is beyond it by V_1.
 double StartSpeed(const UniformBspline& curve) {
-  const ControlPoints& q = curve.control_points();
+  const Eigen::Map<const ControlPoints> q = curve.control_points();
   return std::max(curve.AtKnot(0).v.norm(), (q.col(2) - q.col(1)).norm() / curve.interval());
 }
 
 /// Every segment's hull stays below what is left of a start beyond the limits.
 bool RecoveryProfileKept(const UniformBspline& curve, const Limits& limits) {
-  const ControlPoints& q = curve.control_points();
+  const Eigen::Map<const ControlPoints> q = curve.control_points();
   const double h = curve.interval();
   const double v0 = StartSpeed(curve), a0 = curve.AtKnot(0).a.norm();
   for (int i = 0; i < curve.segments(); ++i) {

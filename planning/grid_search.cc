@@ -12,6 +12,26 @@
 
 namespace touchdown::planning {
 
+namespace {
+
+/// A path of neighbouring cells cannot pass a plane without a cell this near to it.
+constexpr double kHalfThickness = 0.9;  // [cells]
+constexpr double kCosFan = 0.5;
+
+bool InBarrier(const Eigen::Vector3d& centre, double resolution,
+               std::span<const Barrier> barriers) {
+  for (const Barrier& barrier : barriers) {
+    const Eigen::Vector3d offset = centre - barrier.p;
+    const double along = offset.dot(barrier.normal);
+    if (std::abs(along) > kHalfThickness * resolution) continue;
+    const Eigen::Vector3d across = offset - along * barrier.normal;
+    if (across.dot(barrier.side) > kCosFan * across.norm()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 GridSearch::GridSearch(double vertical_cost) : vertical_cost_(static_cast<float>(vertical_cost)) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
@@ -86,7 +106,8 @@ void GridSearch::Reset(const FreeSpace& space) {
 
 SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
                                 const Eigen::Vector3d& to, int max_expansions,
-                                std::vector<Eigen::Vector3d>* path) {
+                                std::vector<Eigen::Vector3d>* path,
+                                std::span<const Barrier> barriers) {
   path->clear();
   const OccupancyMap& map = *space.map;
   CellIndex start = map.CellOf(from), goal = map.CellOf(to);
@@ -141,6 +162,7 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
       const float g = g_[here] + steps_[s].length;
       if (seen && ((seen_[there] & 1u) != 0u || g >= g_[there])) continue;
       if (space.Blocked(next)) continue;
+      if (!barriers.empty() && InBarrier(map.CentreOf(next), map.resolution(), barriers)) continue;
       g_[there] = g;
       parent_[there] = s;
       seen_[there] = search_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,6 +18,14 @@ enum class SearchStatus {
   kEndsBlocked,     ///< no free cell near a blocked end
   kNoPath,          ///< everything reachable was expanded
   kExpansionLimit,  ///< the budget of expansions was used up
+};
+
+/// A fan of the plane through `p` across `normal`: what lies in it within 60 deg of `side` may not be
+/// crossed. Closes one way around an obstacle at p, so that the search finds another.
+struct Barrier {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();        ///< in W [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit vector, along the way
+  Eigen::Vector3d side = Eigen::Vector3d::UnitY();    ///< unit vector in the plane
 };
 
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance
@@ -35,7 +44,7 @@ class GridSearch {
   /// `max_expansions` cells. Allocates only to grow to a high-water mark.
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& to, int max_expansions,
-                      std::vector<Eigen::Vector3d>* path);
+                      std::vector<Eigen::Vector3d>* path, std::span<const Barrier> barriers = {});
 
   /// Moves `cell` to the nearest free one within kEndSearchRadius; false if there is none. Does not
   /// allocate.

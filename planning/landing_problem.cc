@@ -160,10 +160,15 @@ BoundaryFacts LandingProblem::boundary_facts() const {
 }
 
 Eigen::VectorXd LandingProblem::Guess() const {
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(view_->num_variables());
-  if (!view_->lift().offset) lift_->At(context_.interval, y.data(), nullptr, nullptr);
-  if (view_->free_interval()) y[y.size() - 1] = context_.interval;
+  Eigen::VectorXd y;
+  Guess(&y);
   return y;
+}
+
+void LandingProblem::Guess(Eigen::VectorXd* y) const {
+  y->setZero(view_->num_variables());
+  if (!view_->lift().offset) lift_->At(context_.interval, y->data(), nullptr, nullptr);
+  if (view_->free_interval()) (*y)[y->size() - 1] = context_.interval;
 }
 
 UniformBspline LandingProblem::Curve(const Eigen::VectorXd& y) const {
@@ -172,6 +177,12 @@ UniformBspline LandingProblem::Curve(const Eigen::VectorXd& y) const {
   view_->Lift(y.data(), &x, &h);
   return UniformBspline(Eigen::Map<const ControlPoints>(x.data(), 3, segments_ + 3), h,
                         context_.t0);
+}
+
+void LandingProblem::Curve(const Eigen::VectorXd& y, UniformBspline* curve) {
+  double h = 0.0;
+  view_->Lift(y.data(), &x_, &h);
+  curve->Assign(Eigen::Map<const ControlPoints>(x_.data(), 3, segments_ + 3), h, context_.t0);
 }
 
 }  // namespace touchdown::planning

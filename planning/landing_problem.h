@@ -82,8 +82,12 @@ class LandingProblem {
 
   /// The view's variables at the quintic Hermite guess, and the interval if it is free.
   Eigen::VectorXd Guess() const;
+  /// The same without allocation, once `y` has this size.
+  void Guess(Eigen::VectorXd* y) const;
   /// The spline at the view's variables y. Allocates its control points.
   UniformBspline Curve(const Eigen::VectorXd& y) const;
+  /// The same without allocation, once `curve` has had this many control points.
+  void Curve(const Eigen::VectorXd& y, UniformBspline* curve);
 
  private:
   void AddTerms(const LandingProblemOptions& options);
@@ -98,6 +102,7 @@ class LandingProblem {
   std::vector<ObstaclePair> pairs_;          // what context_ points to
   std::vector<MovingObstacle> obstacles_;    // alike
   std::vector<ContextUser*> context_users_;  // among the problem's terms
+  std::vector<double> x_;                    // all control points
   solvers::Problem problem_;
   std::unique_ptr<solvers::View> view_;
 };

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "touchdown/planning/certificate.h"
@@ -32,35 +33,66 @@ struct AttemptRequest {
 };
 
 /// Solve, check the whole curve, bind pairs where it is blocked, solve again, until it is clear or
-/// out of rounds; then certify. Keeps one prepared problem and backend per number of segments.
+/// out of rounds; then certify. Where the straight way is blocked, up to max_guides ways around the
+/// first obstacle are tried like that, each a candidate, and the cheapest that is certified wins;
+/// against the side that is flown already another has to be much cheaper. Keeps one prepared problem
+/// and backend per number of segments.
 class PlanAttempt {
  public:
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
 
   /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
-  /// (adding to counts and times). Returns kNone when the certificate passed.
+  /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
+  /// does not allocate it does not either, once its buffers have grown.
   ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
 
  private:
   struct Prepared {
     std::unique_ptr<LandingProblem> problem;
     std::unique_ptr<solvers::SolverBackend> backend;
+    solvers::WarmStart start{Eigen::VectorXd()};  // of the next solve
+    solvers::SolverResult solver;                 // of the last
   };
+  /// A plan that was tried, and how it ended.
+  struct Candidate {
+    UniformBspline curve;
+    Certificate certificate;
+    solvers::SolverSummary solver;
+    int pairs = 0;
+    ReplanReason reason = ReplanReason::kNone;
+  };
+
   void Prepare(int segments, ArrivalMode arrival);
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve,
-                    std::size_t max_pairs, ReplanResult* result);
+  ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason SolveAndCheck(const AttemptRequest& request, double pressure, Candidate* candidate,
+                             ReplanResult* result);
+  ReplanReason Follow(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
+  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool first_is_known,
+                    ReplanResult* result);
+  ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,
                          const BlockedRun& run, GuidePath* guide, ReplanResult* result);
+  bool CloseWay(const BlockedRun& run);
+  bool Keeps(const AttemptRequest& request, const BlockedRun& run) const;
+  static bool Better(const Candidate& a, const Candidate& b, bool keeps_side);
 
   ReplannerOptions options_;
   solvers::BackendRegistry backends_;
   std::map<std::pair<int, ArrivalMode>, Prepared> prepared_;
   GridSearch search_;
-  int expansions_left_ = 0;      // of this attempt
+
+  // Of the attempt under way.
+  Prepared* now_ = nullptr;
+  int expansions_left_ = 0;
   bool previous_clear_ = false;  // the committed curve can serve as a guide
-  std::vector<BlockedRun> runs_;
+  Eigen::VectorXd first_y_;      // before any pair
+  UniformBspline first_curve_;
+  std::vector<BlockedRun> first_runs_, runs_;
+  Candidate best_, other_;
   std::vector<ObstaclePair> pairs_;
+  std::vector<Barrier> barriers_;  // ways around the first obstacle that were taken
+  GuidePath first_guide_, guide_;
 };
 
 }  // namespace touchdown::planning

@@ -21,6 +21,7 @@ struct RoundLog {
   solvers::SolverResult solver;     ///< with its trace
   UniformBspline curve;             ///< if the solver's point was usable
   std::vector<BlockedRun> blocked;  ///< stretches of the curve
+  int guide = 0;                    ///< which way around the first obstacle it follows
 };
 
 /// One arrival time that was tried.

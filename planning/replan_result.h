@@ -34,6 +34,7 @@ struct ReplannerOptions {
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
   double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]
   double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
+  int max_guides = 2;               ///< ways around the first obstacle that are tried
   int max_rebinds = 6;              ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;          ///< solver iterations per solve
   int max_expansions = 200000;      ///< A* expansions per attempt
@@ -97,17 +98,40 @@ struct StageTimes {
   }
 };
 
+/// Polylines in W [m]. Clear keeps their memory, so that a list that is used again does not allocate
+/// once it has grown.
+class PathList {
+ public:
+  using Path = std::vector<Eigen::Vector3d>;
+
+  const Path* begin() const { return paths_.data(); }
+  const Path* end() const { return paths_.data() + size_; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  const Path& operator[](std::size_t i) const { return paths_[i]; }
+
+  void Clear() { size_ = 0; }
+  void Add(const Path& path) {
+    if (size_ == paths_.size()) paths_.emplace_back();
+    paths_[size_++] = path;
+  }
+
+ private:
+  std::vector<Path> paths_;
+  std::size_t size_ = 0;
+};
+
 struct ReplanResult {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
   bool from_odometry = false;  ///< started at the vehicle, not at the old plan
   UniformBspline curve;        ///< what is flown from t_start on
   Certificate certificate;
-  std::vector<std::vector<Eigen::Vector3d>> guide_paths;  ///< A* paths of this step, in W [m]
-  int pairs = 0;                                          ///< {p, v} pairs bound at the end
-  int solves = 0;                                         ///< solver calls
-  int rebinds = 0;                                        ///< of these, after a re-binding
-  solvers::SolverResult solver;                           ///< of the last solve
+  PathList guide_paths;           ///< A* paths of this step
+  int pairs = 0;                  ///< {p, v} pairs bound at the end
+  int solves = 0;                 ///< solver calls
+  int rebinds = 0;                ///< of these, after a re-binding
+  solvers::SolverSummary solver;  ///< of the last solve of that plan
   StageTimes times;
 };
 

@@ -86,6 +86,7 @@ void Validate(const ReplannerOptions& o) {
   Require(o.max_duration > o.min_duration, "max_duration", o.max_duration, "above min_duration");
   Require(o.odometry_threshold > 0.0, "odometry_threshold", o.odometry_threshold, "> 0 m");
   Require(o.reaction >= 0.0, "reaction", o.reaction, ">= 0 s");
+  Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");
   Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
   Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
   Require(o.max_expansions >= 1, "max_expansions", o.max_expansions, ">= 1");
@@ -203,7 +204,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
 void Replanner::Impl::Begin() {
   if (log_) log_->attempts.clear();
   result_.times = {};
-  result_.guide_paths.clear();
+  result_.guide_paths.Clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
   result_.from_odometry = false;
   result_.reason = ReplanReason::kNone;

@@ -12,31 +12,40 @@
 
 namespace touchdown::planning {
 
-UniformBspline::UniformBspline() : control_points_(ControlPoints::Zero(3, 4)) {}
+UniformBspline::UniformBspline() : numbers_(12, 0.0) {}
 
-UniformBspline::UniformBspline(ControlPoints control_points, double interval, double t0)
-    : control_points_(std::move(control_points)), h_(interval), t0_(t0) {
-  if (control_points_.cols() < 4) {
-    throw std::invalid_argument("UniformBspline: " + std::to_string(control_points_.cols()) +
+UniformBspline::UniformBspline(const Eigen::Ref<const ControlPoints>& control_points,
+                               double interval, double t0) {
+  Assign(control_points, interval, t0);
+}
+
+void UniformBspline::Assign(const Eigen::Ref<const ControlPoints>& control_points, double interval,
+                            double t0) {
+  if (control_points.cols() < 4) {
+    throw std::invalid_argument("UniformBspline: " + std::to_string(control_points.cols()) +
                                 " control points, it needs at least 4");
   }
-  if (!(h_ > 0.0) || !std::isfinite(h_)) {
-    throw std::invalid_argument("UniformBspline: interval is " + std::to_string(h_) +
+  if (!(interval > 0.0) || !std::isfinite(interval)) {
+    throw std::invalid_argument("UniformBspline: interval is " + std::to_string(interval) +
                                 " s, it must be positive and finite");
   }
-  if (!std::isfinite(t0_) || !control_points_.allFinite()) {
+  if (!std::isfinite(t0) || !control_points.allFinite()) {
     throw std::invalid_argument("UniformBspline: start time or a control point is not finite");
   }
+  numbers_.assign(control_points.data(), control_points.data() + control_points.size());
+  h_ = interval;
+  t0_ = t0;
 }
 
 FlatState UniformBspline::Evaluate(double t) const {
   const double s = std::clamp((t - t0_) / h_, 0.0, static_cast<double>(segments()));
   const int i = std::min(static_cast<int>(s), segments() - 1);
   const double u = s - i;
-  const auto q0 = control_points_.col(i);
-  const auto q1 = control_points_.col(i + 1);
-  const auto q2 = control_points_.col(i + 2);
-  const auto q3 = control_points_.col(i + 3);
+  const Eigen::Map<const ControlPoints> q = control_points();
+  const auto q0 = q.col(i);
+  const auto q1 = q.col(i + 1);
+  const auto q2 = q.col(i + 2);
+  const auto q3 = q.col(i + 3);
   const double w = 1.0 - u;
 
   FlatState out;
@@ -52,14 +61,15 @@ FlatState UniformBspline::Evaluate(double t) const {
 }
 
 SplineState UniformBspline::AtKnot(int k) const {
-  const auto q0 = control_points_.col(k);
-  const auto q1 = control_points_.col(k + 1);
-  const auto q2 = control_points_.col(k + 2);
+  const Eigen::Map<const ControlPoints> q = control_points();
+  const auto q0 = q.col(k);
+  const auto q1 = q.col(k + 1);
+  const auto q2 = q.col(k + 2);
   return {(q0 + 4.0 * q1 + q2) / 6.0, (q2 - q0) / (2.0 * h_), (q0 - 2.0 * q1 + q2) / (h_ * h_)};
 }
 
 DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
-  const ControlPoints& q = curve.control_points();
+  const Eigen::Map<const ControlPoints> q = curve.control_points();
   const double h = curve.interval();
   const int n = static_cast<int>(q.cols());
   DerivativeBounds bounds;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "touchdown/planning/flatness.h"
@@ -26,12 +28,19 @@ class UniformBspline {
 
   /// Throws std::invalid_argument if there are fewer than 4 control points, if h is not positive
   /// and finite, or if a number is not finite. Allocates.
-  UniformBspline(ControlPoints control_points, double interval, double t0);
+  UniformBspline(const Eigen::Ref<const ControlPoints>& control_points, double interval, double t0);
 
-  const ControlPoints& control_points() const { return control_points_; }
+  /// As the constructor. Does not allocate if it has had this many control points before; neither
+  /// does an assignment.
+  void Assign(const Eigen::Ref<const ControlPoints>& control_points, double interval, double t0);
+
+  /// One per column. A view of the spline.
+  Eigen::Map<const ControlPoints> control_points() const {
+    return {numbers_.data(), 3, static_cast<Eigen::Index>(numbers_.size() / 3)};
+  }
   double interval() const { return h_; }  ///< h [s]
   double t0() const { return t0_; }       ///< start [s]
-  int segments() const { return static_cast<int>(control_points_.cols()) - 3; }
+  int segments() const { return static_cast<int>(numbers_.size() / 3) - 3; }
   double duration() const { return segments() * h_; }  ///< T [s]
   double t_end() const { return t0_ + duration(); }    ///< [s]
 
@@ -43,7 +52,7 @@ class UniformBspline {
   SplineState AtKnot(int k) const;
 
  private:
-  ControlPoints control_points_;
+  std::vector<double> numbers_;  // of the control points; a vector keeps its memory
   double h_ = 1.0;
   double t0_ = 0.0;
 };

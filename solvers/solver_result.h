@@ -57,30 +57,34 @@ struct WarmStart {
   std::vector<std::vector<double>> multipliers;
 };
 
-struct SolverResult {
+/// What a solve came to, without its point: of one size for all problems.
+struct SolverSummary {
   SolveStatus status = SolveStatus::kNumericalFailure;
-  Eigen::VectorXd x;  ///< best feasible point, variables of the solved view
   double cost = 0.0;
   std::vector<TermCost> cost_by_term;
-  double max_violation = 0.0;  ///< worst constraint violation at x
-  /// [term][window x output] of constraint terms at the backend's last point (x, where it converged),
-  /// empty where the backend has none.
-  std::vector<std::vector<double>> multipliers;
-  double interval_multiplier = 0.0;  ///< of an active bound of a free interval
+  double max_violation = 0.0;  ///< worst constraint violation at the point
   int iterations = 0;
   int evaluations = 0;  ///< evaluations of value, gradient or residuals
   double wall_s = 0.0;
-  double cpu_s = 0.0;                  ///< thread CPU time
-  int native_status = 0;               ///< the backend's own code
-  std::string message;                 ///< the backend's own words
-  std::vector<IterationRecord> trace;  ///< filled if Stop::trace asks for it
-  SolveShares shares;                  ///< filled if Stop::shares asks for it
+  double cpu_s = 0.0;     ///< thread CPU time
+  int native_status = 0;  ///< the backend's own code
 
   /// The point may be used: it was evaluated, whether or not the solve converged.
   bool usable() const {
     return status == SolveStatus::kConverged || status == SolveStatus::kIterationLimit ||
            status == SolveStatus::kTimeLimit || status == SolveStatus::kStopped;
   }
+};
+
+struct SolverResult : SolverSummary {
+  Eigen::VectorXd x;  ///< best feasible point, variables of the solved view
+  /// [term][window x output] of constraint terms at the backend's last point (x, where it converged),
+  /// empty where the backend has none.
+  std::vector<std::vector<double>> multipliers;
+  double interval_multiplier = 0.0;    ///< of an active bound of a free interval
+  std::string message;                 ///< the backend's own words
+  std::vector<IterationRecord> trace;  ///< filled if Stop::trace asks for it
+  SolveShares shares;                  ///< filled if Stop::shares asks for it
 };
 
 }  // namespace touchdown::solvers

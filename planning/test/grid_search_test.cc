@@ -107,5 +107,31 @@ TEST(GridSearch, MovesBlockedEndsToFreeCells) {
   EXPECT_FALSE(space.Blocked(path.front()));
 }
 
+TEST(GridSearch, ABarrierLeadsTheOtherWay) {
+  OccupancyMap map(SmallMap(0.1));
+  for (double y = -0.45; y <= 0.5; y += 0.1) {
+    for (double z = -0.8; z < 1.0; z += 0.1) map.SetOccupied({0.05, y, z});
+  }
+  FreeSpace space;
+  space.map = &map;
+  space.floor = -10.0;
+  GridSearch search(kUp);
+  const Eigen::Vector3d from(-1.05, 0.05, 0.05), to(1.05, 0.05, 0.05);
+  std::vector<Eigen::Vector3d> path;
+  std::vector<Barrier> barriers;
+  std::vector<double> sides;
+  for (int way = 0; way < 2; ++way) {
+    ASSERT_EQ(search.Search(space, from, to, 100000, &path, barriers), SearchStatus::kFound);
+    for (const Eigen::Vector3d& p : path) {
+      EXPECT_FALSE(space.Blocked(p));
+      if (std::abs(p.x() - 0.05) < 0.05) sides.push_back(p.y());
+    }
+    ASSERT_FALSE(sides.empty());
+    barriers.push_back({Eigen::Vector3d(0.05, 0.05, 0.05), Eigen::Vector3d::UnitX(),
+                        Eigen::Vector3d(0.0, sides.back() > 0.05 ? 1.0 : -1.0, 0.0)});
+  }
+  EXPECT_LT((sides.front() - 0.05) * (sides.back() - 0.05), 0.0);
+}
+
 }  // namespace
 }  // namespace touchdown::planning

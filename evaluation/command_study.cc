@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown study: the standing studies. `replan`: the replanner's latency, success and safety in
+// random forests.
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/replan_report.h"
+#include "touchdown/evaluation/replan_study.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+struct StudyArguments {
+  std::string study;
+  std::vector<std::string> parts = {"safety"};
+  std::vector<std::string> kinds = {"A", "B", "C", "D"};
+  std::string arrival = "fixed";
+  std::string limits = "soft";
+  ReplanStudyOptions options;
+  std::optional<int> pin;
+  std::string db;
+  bool json = false;
+  bool allow_debug = false;
+};
+
+class Progress {
+ public:
+  explicit Progress(std::string what) : what_(std::move(what)) {}
+  void operator()(int done, int all) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(2) && done < all) return;
+    last_ = now;
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    spdlog::info("{}: {} of {} scenes, {:.0f} s left", what_, done, all,
+                 elapsed / done * (all - done));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string what_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
+void RunSafety(const StudyArguments& arguments, const Registries& registries,
+               std::vector<ReplanStudyPart>* parts) {
+  for (const std::string& kind : arguments.kinds) {
+    ReplanStudyPart part;
+    part.part = "safety";
+    part.options = arguments.options;
+    part.options.scenes.kind = SceneKindNamed(kind);
+    part.rows = RunReplanStudy(part.options, registries.backends, Progress("kind " + kind));
+    parts->push_back(std::move(part));
+  }
+}
+
+int Study(StudyArguments arguments, const Registries& registries) {
+  CheckTimings(arguments.allow_debug);
+  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+  planning::ReplannerOptions& replanner = arguments.options.replanner;
+  replanner.problem.terms = registries.terms;
+  replanner.arrival =
+      arguments.arrival == "free" ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+  replanner.problem.limits_mode =
+      arguments.limits == "hard" ? planning::LimitsMode::kHard : planning::LimitsMode::kSoft;
+  MachineState machine;
+  machine.pinned = arguments.pin;
+  if (arguments.pin) PinToCpu(*arguments.pin);
+  machine.load_before = LoadAverage();
+  std::vector<ReplanStudyPart> parts;
+  RunSafety(arguments, registries, &parts);
+  machine.load_after = LoadAverage();
+  if (arguments.json) {
+    std::cout << ReplanStudyJson(parts, machine).dump(2) << std::endl;
+  } else {
+    std::cout << ReplanStudyText(parts) << std::flush;
+  }
+  if (!arguments.db.empty()) WriteReplanStudy(arguments.db, parts, machine);
+  return kDone;
+}
+
+}  // namespace
+
+void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
+  CLI::App* study = app.add_subcommand("study", "The standing studies");
+  study->require_subcommand(1);
+  CLI::App* command = study->add_subcommand(
+      "replan", "Latency, success and safety of replanning steps in random forests");
+  const auto arguments = std::make_shared<StudyArguments>();
+  ReplanStudyOptions& options = arguments->options;
+  command->add_option("--scenes", options.count, "Scenes of each kind")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--kinds", arguments->kinds, "Kinds of scenes")
+      ->delimiter(',')
+      ->type_name("A,B,...")
+      ->check(CLI::IsMember({"A", "B", "C", "D"}))
+      ->capture_default_str();
+  command->add_option("--backend", options.replanner.backend, "Solver backend")
+      ->check(CLI::IsMember(BackendNames(registries)))
+      ->capture_default_str();
+  command->add_option("--arrival", arguments->arrival, "Arrival time")
+      ->check(CLI::IsMember({"fixed", "free"}))
+      ->capture_default_str();
+  command->add_option("--limits", arguments->limits, "As a penalty, or as constraints")
+      ->check(CLI::IsMember({"soft", "hard"}))
+      ->capture_default_str();
+  command->add_option("--guides", options.replanner.max_guides, "Most guide paths to try")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command->add_option("--horizon", options.scenes.horizon, "Start to end [m]")
+      ->check(CLI::Range(3.0, 40.0))
+      ->capture_default_str();
+  command->add_option("--resolution", options.scenes.resolution, "Of the map [m]")
+      ->check(CLI::Range(0.05, 0.4))
+      ->capture_default_str();
+  command->add_option("--repeats", options.repeats, "Timed steps of each scene; the median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--seed", options.scenes.seed, "Seed of the scenes")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      ->capture_default_str();
+  command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
+  AddFileOption(*command, "--db", &arguments->db, "Write every step, an SQLite file", "F.db");
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
+  command->callback([arguments, &registries, run] {
+    *run = [arguments, &registries] { return Study(*arguments, registries); };
+  });
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The replanning study in words, in JSON and as a table of all its steps.
+#include "touchdown/evaluation/replan_report.h"
+
+#include <map>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/sqlite_db.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char kSchema[] = R"sql(
+CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, kind TEXT, backend TEXT, arrival TEXT,
+  limits TEXT, guides INTEGER, horizon_m REAL, resolution_m REAL, inflation_m REAL,
+  density_per_m2 REAL, speed_limit_mps REAL, acceleration_limit_mps2 REAL, seed INTEGER);
+CREATE TABLE step(part INTEGER, scene INTEGER, feasible INTEGER, straight_blocked INTEGER,
+  target_moved_m REAL, status TEXT, reason TEXT, solves INTEGER, pairs INTEGER, guides INTEGER,
+  duration_s REAL, stretch REAL, length_m REAL, jerk_m2ps5 REAL, limits_kept INTEGER,
+  map_blocked INTEGER, truly_near INTEGER, true_clearance_m REAL, predict_ms REAL, check_ms REAL,
+  search_ms REAL, pairs_ms REAL, solve_ms REAL, certificate_ms REAL, total_ms REAL,
+  total_wall_ms REAL, PRIMARY KEY(part, scene));
+)sql";
+
+const char* Arrival(const ReplanStudyOptions& options) {
+  return options.replanner.arrival == planning::ArrivalMode::kFree ? "free" : "fixed";
+}
+
+const char* Limits(const ReplanStudyOptions& options) {
+  return options.replanner.problem.limits_mode == planning::LimitsMode::kHard ? "hard" : "soft";
+}
+
+std::string LatencyText(const char* name, const LatencyQuantiles& q) {
+  if (q.count == 0) return fmt::format("  {:<22}{:>6}\n", name, 0);
+  return fmt::format("  {:<22}{:>6}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}\n", name, q.count, q.median,
+                     q.p95, q.p99, q.max);
+}
+
+Json LatencyJson(const LatencyQuantiles& q) {
+  if (q.count == 0) return {{"count", 0}};
+  return {{"count", q.count}, {"median", q.median}, {"p95", q.p95}, {"p99", q.p99}, {"max", q.max}};
+}
+
+std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows) {
+  std::map<std::string, int> count;
+  for (const ReplanRow& row : rows) {
+    if (row.feasible && !row.planned()) ++count[planning::ToString(row.reason)];
+  }
+  return count;
+}
+
+}  // namespace
+
+std::string ReplanStudyText(const std::vector<ReplanStudyPart>& parts) {
+  std::string text;
+  for (const ReplanStudyPart& part : parts) {
+    const ReplanSummary s = Summarise(part.rows);
+    const SceneOptions& scenes = part.options.scenes;
+    text += fmt::format(
+        "kind {}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m, horizon {:.4g} m, {} arrival, {} "
+        "limits, {}, seed {}\n",
+        scenes.kind.name, scenes.kind.limits.speed, scenes.kind.limits.acceleration,
+        scenes.kind.inflation, scenes.horizon, Arrival(part.options), Limits(part.options),
+        part.options.replanner.backend, scenes.seed);
+    text += fmt::format(
+        "  first step planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
+        "all\n",
+        s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi, s.scenes);
+    for (const auto& [reason, count] : FailuresByReason(part.rows)) {
+      text += fmt::format("    not planned: {} x {}\n", count, reason);
+    }
+    if (part.options.check) {
+      text += fmt::format(
+          "  of {} accepted plans {} collide (at 1 cm), {} beyond a limit; checkers disagree on "
+          "{}\n",
+          s.accepted, s.colliding, s.beyond_limits, s.disagreeing);
+    }
+    text += fmt::format("  {:<22}{:>6}{:>10}{:>10}{:>10}{:>10}\n", "thread CPU time [ms]", "n",
+                        "median", "p95", "p99", "max");
+    text += LatencyText("all scenes", s.all);
+    text += LatencyText("straight way free", s.clear);
+    text += LatencyText("obstacle in the way", s.blocked);
+  }
+  return text;
+}
+
+Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineState& machine) {
+  Json json;
+  json["parts"] = Json::array();
+  for (const ReplanStudyPart& part : parts) {
+    const ReplanSummary s = Summarise(part.rows);
+    json["parts"].push_back({{"part", part.part},
+                             {"kind", part.options.scenes.kind.name},
+                             {"backend", part.options.replanner.backend},
+                             {"arrival", Arrival(part.options)},
+                             {"limits", Limits(part.options)},
+                             {"guides", part.options.replanner.max_guides},
+                             {"horizon_m", part.options.scenes.horizon},
+                             {"resolution_m", part.options.scenes.resolution},
+                             {"seed", part.options.scenes.seed},
+                             {"scenes", s.scenes},
+                             {"feasible", s.feasible},
+                             {"succeeded", s.succeeded},
+                             {"success_interval_95", {s.success.lo, s.success.hi}},
+                             {"failures", FailuresByReason(part.rows)},
+                             {"accepted", s.accepted},
+                             {"colliding", s.colliding},
+                             {"disagreeing", s.disagreeing},
+                             {"beyond_limits", s.beyond_limits},
+                             {"time_ms",
+                              {{"all", LatencyJson(s.all)},
+                               {"straight_free", LatencyJson(s.clear)},
+                               {"straight_blocked", LatencyJson(s.blocked)}}}});
+  }
+  json["machine"] = {{"pinned_cpu", machine.pinned ? Json(*machine.pinned) : Json()},
+                     {"load_before", machine.load_before},
+                     {"load_after", machine.load_after}};
+  return json;
+}
+
+void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart>& parts,
+                      const MachineState& machine) {
+  AtomicFile file(path);
+  {
+    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
+    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
+    SqliteTransaction transaction(db);
+    db.Execute(kSchema);
+    SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
+    manifest.Run("format", "touchdown replan study");
+    manifest.Run("version", "1");
+    manifest.Run("pinned_cpu", machine.pinned ? std::to_string(*machine.pinned) : "none");
+    manifest.Run("load_before", std::to_string(machine.load_before));
+    manifest.Run("load_after", std::to_string(machine.load_after));
+    for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
+    SqliteStatement insert_part =
+        db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    SqliteStatement insert = db.Prepare(
+        "INSERT INTO step VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+        "?, ?, ?, ?)");
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const int number = static_cast<int>(i);
+      const ReplanStudyOptions& o = parts[i].options;
+      insert_part.Run(number, parts[i].part, o.scenes.kind.name, o.replanner.backend, Arrival(o),
+                      Limits(o), o.replanner.max_guides, o.scenes.horizon, o.scenes.resolution,
+                      o.scenes.kind.inflation, o.scenes.density, o.scenes.kind.limits.speed,
+                      o.scenes.kind.limits.acceleration, static_cast<std::int64_t>(o.scenes.seed));
+      for (const ReplanRow& row : parts[i].rows) {
+        const planning::StageTimes& t = row.times;
+        insert.Run(number, row.index, row.feasible, row.straight_blocked, row.target_moved,
+                   planning::ToString(row.status), planning::ToString(row.reason), row.solves,
+                   row.pairs, row.guides, row.duration, row.stretch, row.length, row.jerk,
+                   row.limits_kept, row.map_blocked, row.truly_near, row.true_clearance,
+                   1e3 * t.predict.cpu, 1e3 * t.check.cpu, 1e3 * t.search.cpu, 1e3 * t.pairs.cpu,
+                   1e3 * t.solve.cpu, 1e3 * t.certificate.cpu, 1e3 * t.total.cpu,
+                   1e3 * t.total.wall);
+      }
+    }
+    transaction.Commit();
+  }
+  file.Commit();
+}
+
+}  // namespace touchdown::evaluation

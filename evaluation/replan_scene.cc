@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The moving end is the one difference from the published scenes: theirs is a point and a velocity,
+// whenever it is reached. Here it moves with that velocity and passes the point when the replanner's
+// own guess of the duration says, so that a plan that is on time ends there.
+#include "touchdown/evaluation/replan_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/field_map.h"
+#include "touchdown/planning/curve_check.h"
+#include "touchdown/planning/duration_guess.h"
+#include "touchdown/planning/grid_search.h"
+#include "touchdown/planning/rest_trajectory.h"
+#include "touchdown/planning/voxel_traversal.h"
+#include "touchdown/sim/forest.h"
+#include "touchdown/sim/random_stream.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using sim::RandomStream;
+
+constexpr double kHeight = 1.0;       // of start and goal [m]
+constexpr double kFloor = 0.2;        // [m]
+constexpr double kCeiling = 2.5;      // [m]
+constexpr double kKeepOut = 2.0;      // of pillars around start and goal [m]
+constexpr double kSquare = 8.0;       // half side of the square of starts [m]
+constexpr double kGoal = 11.0 / 7.5;  // of the horizon
+constexpr double kMostMoved = 1.0;    // of a target, in a feasible scene [m]
+constexpr double kMostDetour = 1.3;
+constexpr int kExpansions = 2000000;
+constexpr int kDraws = 100;
+constexpr int kGuesses = 20;
+
+planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
+  planning::OccupancyMapOptions map;
+  map.resolution = options.resolution;
+  map.inflation_radius = options.kind.inflation;
+  // Known 12 m around the start at the usual horizon; a window is a power of two.
+  const double half = std::max(12.8, options.horizon + 4.0);
+  const auto log2_of = [&](double extent) {
+    return std::clamp(static_cast<int>(std::ceil(std::log2(extent / options.resolution - 1e-9))), 4,
+                      10);
+  };
+  map.size_log2 = {log2_of(2.0 * half), log2_of(2.0 * half), log2_of(3.2)};
+  return map;
+}
+
+/// Speed of a flight to rest at the goal, `left` before it.
+double SpeedBefore(double left, const planning::Limits& limits) {
+  return std::min(limits.speed, std::sqrt(2.0 * limits.acceleration * left)) * 0.8;
+}
+
+// The duration and the place where the end is at the start depend on each other.
+void SetEnd(const Eigen::Vector3d& v_end, const planning::Limits& limits, ReplanScene* scene) {
+  double T = 1.0;
+  for (int i = 0; i < kGuesses; ++i) {
+    const MovingTarget end(scene->target, v_end, T);
+    const double guess = planning::GuessDuration(scene->start, 0.0, end, {}, limits, 1.0);
+    if (std::abs(guess - T) < 1e-9) break;
+    T = guess;
+  }
+  scene->duration = T;
+  scene->end = std::make_unique<MovingTarget>(scene->target, v_end, T);
+}
+
+bool BrakesFreely(const ReplanScene& scene, const planning::FreeSpace& space,
+                  const planning::Limits& limits) {
+  const planning::UniformBspline brake =
+      planning::MakeRestTrajectory(scene.start, 0.0, Eigen::Vector3d::Zero(), limits);
+  return !std::isfinite(planning::FirstBlockedTime(brake, 0.0, space));
+}
+
+bool Joined(const ReplanScene& scene, const planning::FreeSpace& space) {
+  planning::GridSearch search;
+  std::vector<Eigen::Vector3d> path;
+  if (search.Search(space, scene.start.p, scene.target, kExpansions, &path) !=
+      planning::SearchStatus::kFound) {
+    return false;
+  }
+  double length = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
+  return length <= kMostDetour * (scene.target - scene.start.p).norm();
+}
+
+}  // namespace
+
+estimation::PadState MovingTarget::At(double t) const noexcept {
+  estimation::PadState state;
+  state.p_WP = p_ + (t - t_) * v_;
+  state.v_WP = v_;
+  return state;
+}
+
+const std::vector<SceneKind>& SceneKinds() {
+  static const std::vector<SceneKind> kinds = {{"A", "A", {2.0, 3.0}, 0.1},
+                                               {"B", "B", {2.0, 3.0}, 0.1},
+                                               {"C", "C", {3.0, 6.0}, 0.1},
+                                               {"D", "B", {3.0, 6.0}, 0.3}};
+  return kinds;
+}
+
+const SceneKind& SceneKindNamed(const std::string& name) {
+  for (const SceneKind& kind : SceneKinds()) {
+    if (kind.name == name) return kind;
+  }
+  throw std::invalid_argument(fmt::format("scene kind {}: the kinds are A, B, C and D", name));
+}
+
+planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
+                                                 planning::ReplannerOptions base) {
+  base.limits = options.kind.limits;
+  base.floor_height = kFloor;
+  base.ceiling_height = kCeiling;
+  base.pad_radius = 0.0;  // there is no vehicle under the end
+  return base;
+}
+
+ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
+  const planning::Limits& limits = options.kind.limits;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    RandomStream stream(options.seed, fmt::format("replan scene {} {}", index, draw));
+    ReplanScene scene;
+    const double x = stream.Uniform(-kSquare, kSquare);
+    const double y = stream.Uniform(-kSquare, kSquare);
+    const double heading = stream.Uniform(-std::numbers::pi, std::numbers::pi);
+    const double speed = stream.Uniform(0.0, 0.8 * limits.speed);
+    const double course = heading + stream.Uniform(-0.4, 0.4);
+    const Eigen::Vector3d ahead(std::cos(heading), std::sin(heading), 0.0);
+    scene.start.p = {x, y, kHeight};
+    scene.start.v = speed * Eigen::Vector3d(std::cos(course), std::sin(course), 0.0);
+    const double distance = kGoal * options.horizon;
+    const Eigen::Vector3d goal = scene.start.p + distance * ahead;
+
+    sim::ForestConfig forest = sim::ForestOfKind(options.kind.forest);
+    // The published forest reaches a metre beyond the farthest goal.
+    const double density =
+        options.density > 0.0 ? options.density : forest.pillars / forest.size.prod();
+    const double rings = forest.rings / forest.size.prod();
+    forest.size = forest.size.cwiseMax(2.0 * (kSquare + distance + 1.0));
+    forest.rings = static_cast<int>(std::lround(rings * forest.size.prod()));
+    sim::SetDensity(density, &forest);
+    forest.keep_out = {{scene.start.p.head<2>(), kKeepOut}, {goal.head<2>(), kKeepOut}};
+    scene.field =
+        sim::MakeForest(forest, static_cast<std::uint64_t>(stream.Uniform(0.0, 0x1.0p53)));
+    scene.map = std::make_unique<planning::OccupancyMap>(MapOptions(options));
+    scene.map->Recentre({x, y, 0.5 * forest.height});
+    FillMap(scene.field, scene.map.get());
+    planning::FreeSpace space;
+    space.map = scene.map.get();
+    space.floor = kFloor;
+    space.ceiling = kCeiling;
+    if (space.Blocked(scene.start.p)) continue;
+
+    const Eigen::Vector3d wanted = scene.start.p + options.horizon * ahead;
+    planning::CellIndex cell = scene.map->CellOf(wanted);
+    const bool blocked = space.Blocked(cell);
+    const bool found = planning::GridSearch::NearestFree(space, &cell);
+    scene.target = blocked && found ? scene.map->CentreOf(cell) : wanted;
+    scene.target_moved = (scene.target - wanted).norm();
+    SetEnd(SpeedBefore(distance - options.horizon, limits) * ahead, limits, &scene);
+    scene.straight_blocked = false;
+    planning::TraverseCells(scene.start.p, scene.target, scene.map->resolution(),
+                            [&](const planning::CellIndex& passed) {
+                              scene.straight_blocked = space.Blocked(passed);
+                              return !scene.straight_blocked;
+                            });
+    scene.feasible = found && scene.target_moved < kMostMoved && Joined(scene, space) &&
+                     BrakesFreely(scene, space, limits);
+    return scene;
+  }
+  throw std::runtime_error(
+      fmt::format("replan scene {}: the start was blocked in {} draws", index, kDraws));
+}
+
+planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* replanner) {
+  constexpr double kAhead = 0.5;  // [s]
+  planning::ControlPoints straight(3, 4);
+  for (int i = 0; i < 4; ++i) {
+    straight.col(i) = scene.start.p + (i - 1) * kAhead * scene.start.v;
+  }
+  planning::ReplannerState state;
+  state.current = state.next = planning::UniformBspline(straight, kAhead, 0.0);
+  replanner->Restore(state);
+  planning::ReplanInput input;
+  input.vehicle.p_WB = scene.start.p;
+  input.vehicle.v_WB = scene.start.v;
+  input.pad = scene.end.get();
+  input.endpoint.height = 0.0;
+  return input;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Single replanning steps in random forests: the scenes that EGO-Planner was measured in, for this
+// project's replanner.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/planning/limits.h"
+#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/replanner.h"
+#include "touchdown/sim/obstacle_field.h"
+
+namespace touchdown::evaluation {
+
+/// A kind of scenes: forest, limits and inflation.
+struct SceneKind {
+  std::string name;    ///< A, B, C, D
+  std::string forest;  ///< as sim::ForestOfKind
+  planning::Limits limits;
+  double inflation = 0.1;  ///< of the map [m]
+};
+
+/// The kinds A to D of the published measurements. Throws std::invalid_argument naming them.
+const SceneKind& SceneKindNamed(const std::string& name);
+const std::vector<SceneKind>& SceneKinds();
+
+/// What is varied for the growth study.
+struct SceneOptions {
+  SceneKind kind;
+  double horizon = 7.5;     ///< start to target [m]
+  double resolution = 0.1;  ///< of the map [m]
+  double density = 0.0;     ///< pillars per square metre; 0: the kind's own
+  std::uint64_t seed = 1;
+};
+
+/// An end that moves at a constant velocity: at `p` at the time `t` [s].
+class MovingTarget : public estimation::PadPrediction {
+ public:
+  MovingTarget(const Eigen::Vector3d& p, const Eigen::Vector3d& v, double t)
+      : p_(p), v_(v), t_(t) {}
+  estimation::PadState At(double t) const noexcept override;
+
+ private:
+  Eigen::Vector3d p_, v_;
+  double t_;
+};
+
+/// One scene, with all obstacles within 12 m of the start known.
+struct ReplanScene {
+  sim::ObstacleField field;
+  std::unique_ptr<planning::OccupancyMap> map;
+  planning::SplineState start;                       ///< at t = 0
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< free; where the end is after `duration`
+  std::unique_ptr<MovingTarget> end;
+  double duration = 0.0;         ///< the replanner's own guess for that end [s]
+  double target_moved = 0.0;     ///< out of an obstacle, by this much [m]
+  bool straight_blocked = true;  ///< an obstacle is in the straight way
+  /// The target was free or moved less than 1 m, A* on the known map joins start and target within
+  /// 1.3 times the straight length, and full braking from the start is free.
+  bool feasible = false;
+};
+
+/// What the replanner of a scene's kind is asked with. `base`: backend, formulation, guides.
+planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
+                                                 planning::ReplannerOptions base);
+
+/// Draws scene `index`: start at 1 m height with up to 0.8 of the speed limit within 0.4 rad of the
+/// way to a goal 1.5 horizons ahead; the end passes a point one horizon ahead at the speed that a
+/// flight to rest at the goal would have there. Scenes whose start is blocked are drawn again. The
+/// same options and index give the same scene. Throws std::invalid_argument for an option out of
+/// range.
+ReplanScene DrawReplanScene(const SceneOptions& options, int index);
+
+/// Puts the replanner at the scene's start: it is flying there at the start's velocity.
+planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* replanner);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Latency, success and safety of single replanning steps.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/replan_scene.h"
+#include "touchdown/evaluation/statistics.h"
+#include "touchdown/planning/replan_result.h"
+#include "touchdown/solvers/backend_registry.h"
+
+namespace touchdown::evaluation {
+
+struct ReplanStudyOptions {
+  SceneOptions scenes;
+  planning::ReplannerOptions replanner;
+  int count = 700;    ///< scenes
+  int repeats = 3;    ///< timed steps of each scene; the median counts
+  bool check = true;  ///< look for collisions at 1 cm, by map and by FCL
+};
+
+/// The first step in one scene.
+struct ReplanRow {
+  int index = 0;
+  bool feasible = false;
+  bool straight_blocked = false;  ///< an obstacle is in the straight way
+  double target_moved = 0.0;      ///< [m]
+  planning::ReplanStatus status = planning::ReplanStatus::kUnsafe;
+  planning::ReplanReason reason = planning::ReplanReason::kNone;
+  planning::StageTimes times;  ///< of the repeat whose total is the median
+  int solves = 0;
+  int pairs = 0;
+  int guides = 0;         ///< guide paths searched
+  double duration = 0.0;  ///< of the plan [s]
+  double stretch = 0.0;   ///< duration over the guessed one
+  double length = 0.0;    ///< [m]
+  double jerk = 0.0;      ///< integral of squared jerk [m^2/s^5]
+  bool limits_kept = false;
+  // Of the accepted plan, sampled at 1 cm.
+  bool map_blocked = false;     ///< a sample lies in a blocked cell
+  bool truly_near = false;      ///< a sample is nearer to an obstacle than the inflation, by FCL
+  double true_clearance = 0.0;  ///< least distance to an obstacle, by FCL [m]
+
+  bool planned() const { return status == planning::ReplanStatus::kPlanned; }
+};
+
+/// Quantiles of a time over rows [ms, thread CPU].
+struct LatencyQuantiles {
+  int count = 0;
+  double median = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
+};
+
+/// One kind of scenes in figures.
+struct ReplanSummary {
+  int scenes = 0;
+  int feasible = 0;
+  int succeeded = 0;      ///< first steps in feasible scenes
+  Interval success;       ///< 95 % Clopper-Pearson
+  int accepted = 0;       ///< in all scenes
+  int colliding = 0;      ///< of these
+  int disagreeing = 0;    ///< accepted plans that one checker takes for colliding and one does not
+  int beyond_limits = 0;  ///< of the accepted
+  LatencyQuantiles all, clear, blocked;  ///< all scenes; straight way free; not free
+};
+
+/// Runs the first step in every scene; deterministic but for the times. `report` is told of progress.
+std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
+                                      const solvers::BackendRegistry& backends,
+                                      const std::function<void(int done, int all)>& report);
+
+ReplanSummary Summarise(const std::vector<ReplanRow>& rows);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A replanner over random pillars: what its tests share.
+#pragma once
+
+#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/test/planning_fixtures.h"
+
+namespace touchdown::planning {
+
+/// A map of observed free space with random pillars between start and pad.
+inline OccupancyMap ObservedMap(double inflation = 0.35) {
+  OccupancyMapOptions options;
+  options.inflation_radius = inflation;
+  OccupancyMap map(options);
+  map.MarkOwnVolume(Eigen::Vector3d(0, 0, 0), 11.0);
+  return map;
+}
+
+inline void AddPillar(double x, double y, OccupancyMap* map) {
+  for (double dx = -0.25; dx <= 0.3; dx += 0.1) {
+    for (double dy = -0.25; dy <= 0.3; dy += 0.1) {
+      for (double z = 0.05; z < 3.1; z += 0.1) map->SetOccupied({x + dx, y + dy, z});
+    }
+  }
+}
+
+inline ReplannerOptions Options(ArrivalMode arrival) {
+  ReplannerOptions options;
+  options.arrival = arrival;
+  return options;
+}
+
+inline ReplanInput Input(const Eigen::Vector3d& p_WB, const estimation::PadPrediction& pad,
+                         double t) {
+  ReplanInput input;
+  input.t_now = t;
+  input.t_start = t + 0.02;
+  input.vehicle.t = t;
+  input.vehicle.p_WB = p_WB;
+  input.pad = &pad;
+  input.endpoint = {t, 1.3, 0.0, 1.3};
+  return input;
+}
+
+}  // namespace touchdown::planning

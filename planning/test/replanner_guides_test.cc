@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ways around the first obstacle: both sides are tried, the cheaper is flown, and a side once flown
+// is kept; and none of it allocates.
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/test/replanner_fixtures.h"
+#include "touchdown/solvers/allocation_count.h"
+
+namespace touchdown::planning {
+namespace {
+
+ReplannerOptions WithGuides(int guides) {
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.max_guides = guides;
+  return options;
+}
+
+/// Where the curve passes x = 0.
+double SideOf(const UniformBspline& curve) {
+  for (double t = curve.t0(); t < curve.t_end(); t += 0.01) {
+    const Eigen::Vector3d p = curve.Evaluate(t).p_WB;
+    if (p.x() >= 0.0) return p.y();
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
+  Draw draw(41);
+  int chosen_second = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    OccupancyMap map = ObservedMap();
+    const double y = draw.Uniform(-0.3, 0.3);
+    for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar(0.0, y + dy, &map);
+    const ArcPad pad({4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    const Eigen::Vector3d start(-4.0, 0.0, 1.6);
+    std::vector<double> jerk;
+    std::vector<double> side;
+    for (const int guides : {1, 2}) {
+      Replanner replanner(WithGuides(guides), solvers::StandardBackends());
+      replanner.CommitHover(start, 0.0);
+      const ReplanResult& result = replanner.Replan(Input(start, pad, 0.0), map);
+      ASSERT_EQ(result.status, ReplanStatus::kPlanned);
+      EXPECT_GE(static_cast<int>(result.guide_paths.size()), guides);
+      double sum = 0.0;
+      const auto q = result.curve.control_points();
+      for (int i = 0; i + 3 < q.cols(); ++i) {
+        sum += (q.col(i + 3) - 3.0 * q.col(i + 2) + 3.0 * q.col(i + 1) - q.col(i)).squaredNorm();
+      }
+      jerk.push_back(sum / std::pow(result.curve.interval(), 5));
+      side.push_back(SideOf(result.curve));
+    }
+    // Durations may differ only if one guide alone failed at the first.
+    if ((side[0] > y) != (side[1] > y)) {
+      ++chosen_second;
+      EXPECT_LT(jerk[1], 1.05 * jerk[0]);
+    } else {
+      EXPECT_NEAR(jerk[1], jerk[0], 1e-6 * jerk[0]);
+    }
+  }
+  EXPECT_GT(chosen_second, 0);
+}
+
+TEST(ReplannerGuides, ASideOnceFlownIsKept) {
+  // The pad weaves, so that now this side, now that one, is a little cheaper.
+  OccupancyMap map = ObservedMap();
+  for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar(0.0, dy, &map);
+  Replanner replanner(WithGuides(2), solvers::StandardBackends());
+  Eigen::Vector3d p(-5.0, 0.0, 1.6);
+  replanner.CommitHover(p, 0.0);
+  double first_side = 0.0;
+  for (int step = 0; p.x() < -0.6; ++step) {
+    ASSERT_LT(step, 100);
+    const double t = 0.1 * step;
+    const ArcPad pad({5.0, step % 2 == 0 ? 0.15 : -0.15, 0.3}, 0.0, 0.0, 0.0);
+    ReplanInput input = Input(p, pad, t);
+    input.vehicle.v_WB = replanner.Reference(t).v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    ASSERT_EQ(result.status, ReplanStatus::kPlanned) << t;
+    const double side = SideOf(result.curve);
+    if (step == 0) first_side = side;
+    EXPECT_GT(side * first_side, 0.0) << t;
+    p = replanner.Reference(t + 0.1).p_WB;
+  }
+}
+
+TEST(ReplannerGuides, AStepDoesNotAllocateOnceWarm) {
+  if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  OccupancyMap map = ObservedMap();
+  AddPillar(-1.0, 0.2, &map);
+  AddPillar(1.5, -0.3, &map);
+  const ArcPad pad({5.0, 1.0, 0.3}, 0.5, 0.4, 0.1);
+  Replanner replanner(WithGuides(2), solvers::StandardBackends());
+  // The same flight twice: the first grows the buffers.
+  for (const bool counted : {false, true}) {
+    Eigen::Vector3d p(-5.0, 0.0, 1.6);
+    replanner.CommitHover(p, 0.0);
+    for (int step = 0; step < 60; ++step) {
+      const double t = 0.1 * step;
+      ReplanInput input = Input(p, pad, t);
+      input.vehicle.v_WB = replanner.Reference(t).v_WB;
+      const long before = solvers::AllocationCount();
+      const ReplanResult& result = replanner.Replan(input, map);
+      const long after = solvers::AllocationCount();
+      if (counted) {
+        EXPECT_EQ(after - before, 0) << t << " " << ToString(result.status);
+      }
+      p = replanner.Reference(t + 0.1).p_WB;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::planning
