@@ -54,7 +54,8 @@ Json OutcomeJson(const ReplanOutcome& r) {
 
 Json RoundJson(const planning::RoundLog& round) {
   const solvers::SolverResult& solver = round.solver;
-  Json json = {{"pressure", round.pressure},
+  Json json = {{"guide", round.guide},
+               {"pressure", round.pressure},
                {"status", solvers::ToString(solver.status)},
                {"message", solver.message},
                {"iterations", solver.iterations},
@@ -92,6 +93,7 @@ Json AttemptJson(const planning::AttemptLog& attempt) {
   Json json = {{"duration_s", attempt.duration},
                {"arrival", attempt.arrival == planning::ArrivalMode::kFree ? "free" : "fixed"},
                {"segments", attempt.segments},
+               {"best", attempt.best < 0 ? Json() : Json(attempt.best)},
                {"reason", planning::ToString(attempt.reason)}};
   json["certificate"] = attempt.certificate ? CertificateJson(*attempt.certificate) : Json();
   Json& rounds = json["rounds"] = Json::array();

@@ -38,9 +38,9 @@ std::string QuestionText(const SolvedStep& solved) {
 std::string RoundText(const planning::RoundLog& round, int number) {
   const solvers::SolverResult& solver = round.solver;
   std::string text = fmt::format(
-      "    round {}: {} pairs with weight x {:.2f}; {} after {} iterations, cost {:.6g}{}\n",
-      number, round.pairs.size(), round.pressure, solvers::ToString(solver.status),
-      solver.iterations, solver.cost,
+      "    round {}{}: {} pairs with weight x {:.2f}; {} after {} iterations, cost {:.6g}{}\n",
+      number, round.guide > 0 ? ", another way around" : "", round.pairs.size(), round.pressure,
+      solvers::ToString(solver.status), solver.iterations, solver.cost,
       solver.message.empty() ? "" : fmt::format(" ({})", solver.message));
   std::string costs;
   for (const solvers::TermCost& term : solver.cost_by_term) {
@@ -85,6 +85,9 @@ std::string AttemptText(const planning::AttemptLog& attempt, int number,
       attempt.arrival == planning::ArrivalMode::kFree ? "free" : "fixed", attempt.segments);
   int round = 0;
   for (const planning::RoundLog& log : attempt.rounds) text += RoundText(log, ++round);
+  if (attempt.best >= 0 && attempt.best + 1 < round) {
+    text += fmt::format("    round {} is the best\n", attempt.best + 1);
+  }
   if (attempt.certificate) text += CertificateText(*attempt.certificate, limits, "    ");
   if (attempt.reason != planning::ReplanReason::kNone) {
     text += fmt::format("    failed: {}\n", planning::ToString(attempt.reason));

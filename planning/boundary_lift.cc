@@ -50,40 +50,47 @@ EndColumn Column(const SplineState& start, const SplineState& end, double h) {
   return {start.p, h * start.v, h * h * start.a, end.p, h * end.v, h * h * end.a};
 }
 
-/// out_i = sum_j w_ij column_j.
+/// sum_j w_j column_j.
+void Combine(const BoundaryWeights& weights, const EndColumn& column, double* out) {
+  for (int c = 0; c < 3; ++c) {
+    double sum = weights.of[0] * column[0][c];
+    for (int j = 1; j < 6; ++j) sum += weights.of[j] * column[j][c];
+    out[c] = sum;
+  }
+}
+
+/// The same for all control points, one after the other.
 void Combine(const std::vector<BoundaryWeights>& weights, const EndColumn& column, double* out) {
   for (const BoundaryWeights& w : weights) {
-    for (int c = 0; c < 3; ++c) {
-      double sum = w.of[0] * column[0][c];
-      for (int j = 1; j < 6; ++j) sum += w.of[j] * column[j][c];
-      out[c] = sum;
-    }
+    Combine(w, column, out);
     out += 3;
   }
 }
 
-std::vector<BoundaryWeights> AllWeights(int segments) {
-  std::vector<BoundaryWeights> all;
+/// Weights of the six end values in control point i of M + 3 with both ends eliminated.
+BoundaryWeights WeightsAt(int i, int segments) {
   const int n = segments + 3;
-  for (int i = 0; i < n; ++i) {
-    const double second = i == 1 || i == n - 2 ? -1.0 / 6.0 : 1.0 / 3.0;
-    if (i < 3) {
-      all.push_back({{1.0, i - 1.0, second, 0.0, 0.0, 0.0}});
-    } else if (i >= n - 3) {
-      all.push_back({{0.0, 0.0, 0.0, 1.0, i - (n - 2.0), second}});
-    } else {
-      all.push_back({HermiteWeights(i, segments)});
-    }
-  }
-  return all;
+  const double second = i == 1 || i == n - 2 ? -1.0 / 6.0 : 1.0 / 3.0;
+  if (i < 3) return {{1.0, i - 1.0, second, 0.0, 0.0, 0.0}};
+  if (i >= n - 3) return {{0.0, 0.0, 0.0, 1.0, i - (n - 2.0), second}};
+  return {HermiteWeights(i, segments)};
 }
 
 }  // namespace
 
+void HermiteControlPoints(const SplineState& start, const SplineState& end, double duration,
+                          Eigen::Ref<ControlPoints> points) {
+  const int segments = static_cast<int>(points.cols()) - 3;
+  const EndColumn column = Column(start, end, duration / segments);
+  for (int i = 0; i < points.cols(); ++i) {
+    Combine(WeightsAt(i, segments), column, points.col(i).data());
+  }
+}
+
 ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
                                    double duration) {
   ControlPoints points(3, segments + 3);
-  Combine(AllWeights(segments), Column(start, end, duration / segments), points.data());
+  HermiteControlPoints(start, end, duration, points);
   return points;
 }
 
@@ -93,7 +100,7 @@ BoundaryLift::BoundaryLift(int segments, bool free_end_acceleration)
     throw std::invalid_argument("BoundaryLift: " + std::to_string(segments) +
                                 " segments, it needs at least 4");
   }
-  weights_ = AllWeights(segments);
+  for (int i = 0; i < segments + 3; ++i) weights_.push_back(WeightsAt(i, segments));
 }
 
 void BoundaryLift::Set(const SplineState& start, double t0, const estimation::PadPrediction& pad,

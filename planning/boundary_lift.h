@@ -16,6 +16,10 @@ namespace touchdown::planning {
 ControlPoints HermiteControlPoints(const SplineState& start, const SplineState& end, int segments,
                                    double duration);
 
+/// The same for as many segments as `points` (at least 7 columns) has room for. Does not allocate.
+void HermiteControlPoints(const SplineState& start, const SplineState& end, double duration,
+                          Eigen::Ref<ControlPoints> points);
+
 /// What one control point takes of the end values (p0, h v0, h^2 a0, P, h V, h^2 A).
 struct BoundaryWeights {
   using Column = std::array<Eigen::Vector3d, 6>;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kSegmentDuration = 0.20;  // [s], aimed at
 constexpr int kFewestSegments = 12;
-constexpr int kMostSegments = 64;
+constexpr int kMostSegments = PlanAttempt::kMostControlPoints - 3;
 constexpr int kSegmentStep = 4;         // keeps the number of prepared problems small
 constexpr double kPressure = 1.6;       // weight of the pairs grows by this every round
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
@@ -72,6 +72,9 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
     Prepare(segments, ArrivalMode::kFixed);
     if (options.arrival == ArrivalMode::kFree) Prepare(segments, ArrivalMode::kFree);
   }
+  for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
+    curve->Reserve(kMostControlPoints);
+  }
 }
 
 void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
@@ -83,7 +86,7 @@ void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
   }
   prepared.backend->Prepare(prepared.problem->view());
   prepared.start.y.resize(prepared.problem->view().num_variables());
-  prepared.solver.x = prepared.start.y;
+  prepared.solver.x = prepared.y_without_pairs = prepared.start.y;
 }
 
 bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) {
@@ -94,18 +97,23 @@ bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
-  best_.curve = UniformBspline();
-  best_.certificate = {};
+  best_.certificate.reset();
+  best_.solved = false;
   best_.pairs = 0;
+  best_.round = -1;
   best_.reason = Try(request, result);
-  result->curve = best_.curve;
-  result->certificate = best_.certificate;
-  result->solver = best_.solver;
+  if (best_.solved) {
+    result->curve = best_.curve;
+    result->solver = best_.solver;
+  }
+  result->certificate = best_.certificate.value_or(Certificate());
   result->pairs = best_.pairs;
   if (request.log) {
     request.log->duration = request.duration;
     request.log->arrival = request.arrival;
     request.log->segments = SegmentsFor(request.duration);
+    request.log->best = best_.round;
+    request.log->certificate = best_.certificate;
     request.log->reason = best_.reason;
   }
   return best_.reason;
@@ -120,8 +128,6 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   const bool hard = options_.problem.limits_mode == LimitsMode::kHard;
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
   expansions_left_ = options_.max_expansions;
-  previous_clear_ = request.previous &&
-                    !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space));
   pairs_.clear();
   barriers_.clear();
   problem.Guess(&now_->start.y);
@@ -133,11 +139,16 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
 
 // The way around the first obstacle makes the difference: behind it the usual choices follow.
 ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult* result) {
-  first_y_ = now_->start.y;
+  now_->y_without_pairs = now_->start.y;
   first_curve_ = best_.curve;
   first_runs_ = runs_;
   const BlockedRun run = first_runs_.front();
   if (run.at_end) return ReplanReason::kGoalBlocked;
+  {
+    StageTimer timer(&result->times.check);
+    previous_clear_ = request.previous && !std::isfinite(FirstBlockedTime(
+                                              *request.previous, request.t0, *request.space));
+  }
   const bool keeps_side = Keeps(request, run);
   const int guides = run.at_start ? 1 : options_.max_guides;
   for (int i = 0; i < guides; ++i) {
@@ -146,16 +157,13 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
     if (found != ReplanReason::kNone) return found;
     Candidate* candidate = i == 0 ? &best_ : &other_;
     candidate->curve = first_curve_;
-    candidate->certificate = {};
-    now_->start.y = first_y_;
+    candidate->certificate.reset();
+    now_->start.y = now_->y_without_pairs;
     runs_ = first_runs_;
     first_guide_ = guide_;
     candidate->reason = Follow(request, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
     if (i + 1 < guides && !CloseWay(run)) break;
-  }
-  if (request.log && best_.certificate.endpoint_required) {
-    request.log->certificate = best_.certificate;
   }
   return best_.reason;
 }
@@ -196,12 +204,14 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, double pr
   candidate->solver = now_->solver;
   candidate->pairs = static_cast<int>(pairs_.size());
   if (request.log) {
-    request.log->rounds.push_back({pressure, pairs_, now_->solver, {}, {}, 0});
-    request.log->rounds.back().guide = static_cast<int>(barriers_.size());
+    const int guide = static_cast<int>(barriers_.size());
+    candidate->round = static_cast<int>(request.log->rounds.size());
+    request.log->rounds.push_back({pressure, pairs_, now_->solver, {}, {}, guide});
   }
   if (!now_->solver.usable()) return ReplanReason::kSolverFailed;
   now_->start.y = now_->solver.x;
   problem.Curve(now_->start.y, &candidate->curve);
+  candidate->solved = true;
   {
     StageTimer timer(&result->times.check);
     FindBlockedRuns(candidate->curve, request.t0, *request.space, &runs_);
@@ -218,14 +228,13 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
                                  ReplanResult* result) {
   StageTimer timer(&result->times.certificate);
   const UniformBspline& curve = candidate->curve;
-  Certificate& certificate = candidate->certificate;
   const SplineState wanted = EndStateAt(*request.pad, request.target, curve.t_end()).state;
-  certificate = Certify(curve, request.t0, &request.start, &wanted, options_.limits,
-                        options_.reaction, *request.space);
+  Certificate& certificate =
+      candidate->certificate.emplace(Certify(curve, request.t0, &request.start, &wanted,
+                                             options_.limits, options_.reaction, *request.space));
   if (options_.problem.endpoint == EndpointMode::kExplicit) {
     certificate.endpoint_tolerance = kRowTolerance;
   }
-  if (request.log) request.log->certificate = certificate;
   // The certificate does not know every row: tilt, thrust and a user's own are the solver's word.
   const bool rows_kept = candidate->solver.max_violation <= kRowTolerance;
   if (certificate.passed() && rows_kept) return ReplanReason::kNone;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct AttemptRequest {
 /// and backend per number of segments.
 class PlanAttempt {
  public:
+  static constexpr int kMostControlPoints = 67;  ///< of a plan
+
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
 
   /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
@@ -52,13 +55,16 @@ class PlanAttempt {
     std::unique_ptr<solvers::SolverBackend> backend;
     solvers::WarmStart start{Eigen::VectorXd()};  // of the next solve
     solvers::SolverResult solver;                 // of the last
+    Eigen::VectorXd y_without_pairs;
   };
   /// A plan that was tried, and how it ended.
   struct Candidate {
     UniformBspline curve;
-    Certificate certificate;
+    std::optional<Certificate> certificate;
     solvers::SolverSummary solver;
     int pairs = 0;
+    bool solved = false;
+    int round = -1;  // of the log
     ReplanReason reason = ReplanReason::kNone;
   };
 
@@ -86,8 +92,7 @@ class PlanAttempt {
   Prepared* now_ = nullptr;
   int expansions_left_ = 0;
   bool previous_clear_ = false;  // the committed curve can serve as a guide
-  Eigen::VectorXd first_y_;      // before any pair
-  UniformBspline first_curve_;
+  UniformBspline first_curve_;   // before any pair
   std::vector<BlockedRun> first_runs_, runs_;
   Candidate best_, other_;
   std::vector<ObstaclePair> pairs_;

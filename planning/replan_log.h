@@ -30,7 +30,8 @@ struct AttemptLog {
   ArrivalMode arrival = ArrivalMode::kFixed;
   int segments = 0;
   std::vector<RoundLog> rounds;
-  std::optional<Certificate> certificate;  ///< if it came to that
+  int best = -1;                           ///< the round that the answer is from; -1: none
+  std::optional<Certificate> certificate;  ///< of that round, if it came to one
   ReplanReason reason = ReplanReason::kNone;
 };
 

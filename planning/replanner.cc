@@ -97,7 +97,11 @@ void Validate(const ReplannerOptions& o) {
 class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-      : options_(options), attempt_(options, backends) {}
+      : options_(options), attempt_(options, backends) {
+    for (UniformBspline* curve : {&current_, &next_, &braking_, &result_.curve}) {
+      curve->Reserve(PlanAttempt::kMostControlPoints);
+    }
+  }
 
   void Commit(const UniformBspline& curve) {
     current_ = next_;
@@ -135,6 +139,7 @@ class Replanner::Impl {
 
   PlanAttempt attempt_;
   ReplanResult result_;
+  UniformBspline braking_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
@@ -326,7 +331,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
 
 bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
                               const FreeSpace& space) {
-  result_.curve = MakeRestTrajectory(start, t0, shift, options_.limits);
+  MakeRestTrajectory(start, t0, shift, options_.limits, &result_.curve);
   StageTimer timer(&result_.times.certificate);
   result_.certificate =
       Certify(result_.curve, t0, nullptr, nullptr, options_.limits, options_.reaction, space);
@@ -347,12 +352,11 @@ bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState&
   const bool leaves = now.escaping && now.passed();
   if (!at_rest && !leaves) {
     if (!now.stops_in_observed_space) return false;
-    const double braking =
-        MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits).duration();
+    MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits, &braking_);
     const double never = std::numeric_limits<double>::infinity();
     const double hit = now.clear ? never : now.first_hit_t;
     const double end = moves_at_end ? next_.t_end() : never;
-    if (std::min(hit, end) <= input.t_start + braking + options_.reaction) return false;
+    if (std::min(hit, end) <= input.t_start + braking_.duration() + options_.reaction) return false;
   }
   result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
   result_.curve = next_;

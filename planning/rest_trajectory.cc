@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "touchdown/planning/boundary_lift.h"
 
@@ -19,27 +18,39 @@ constexpr double kGrowth = 1.15;
 constexpr int kMaxTries = 24;  // up to 0.4 s * 1.15^24 = 11 s
 }  // namespace
 
-UniformBspline MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
-                                  const Limits& limits) {
+void MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
+                        const Limits& limits, UniformBspline* trajectory) {
   const double speed = std::max(limits.speed, start.v.norm());
   const double acceleration = std::max(limits.acceleration, start.a.norm());
-  UniformBspline best;
+  Eigen::Matrix<double, 3, kSegments + 3> points;
+  const auto make = [&](double T) {
+    SplineState end;
+    end.p = start.p + 0.5 * T * start.v + T * T / 12.0 * start.a + shift;
+    HermiteControlPoints(start, end, T, points);
+    trajectory->Assign(points, T / kSegments, t0);
+  };
+  double best_T = kShortest;
   double least_excess = std::numeric_limits<double>::infinity();
   double T = kShortest;
   for (int i = 0; i <= kMaxTries; ++i, T *= kGrowth) {
-    SplineState end;
-    end.p = start.p + 0.5 * T * start.v + T * T / 12.0 * start.a + shift;
-    UniformBspline curve(HermiteControlPoints(start, end, kSegments, T), T / kSegments, t0);
-    const DerivativeBounds bounds = BoundDerivatives(curve);
+    make(T);
+    const DerivativeBounds bounds = BoundDerivatives(*trajectory);
     const double excess = std::max(bounds.speed / speed, bounds.acceleration / acceleration);
-    if (excess <= 1.0 + 1e-9) return curve;
-    // A start that still speeds up at its limit cannot keep it: then the least excess has to do.
+    if (excess <= 1.0 + 1e-9) return;
     if (excess < least_excess) {
       least_excess = excess;
-      best = std::move(curve);
+      best_T = T;
     }
   }
-  return best;
+  // A start that still speeds up at its limit cannot keep it: then the least excess has to do.
+  make(best_T);
+}
+
+UniformBspline MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
+                                  const Limits& limits) {
+  UniformBspline trajectory;
+  MakeRestTrajectory(start, t0, shift, limits, &trajectory);
+  return trajectory;
 }
 
 }  // namespace touchdown::planning

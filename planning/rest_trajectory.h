@@ -9,8 +9,11 @@ namespace touchdown::planning {
 /// A trajectory from `start` at t0 to rest, `shift` away from where it would stop otherwise: with
 /// no shift a braking trajectory with its real braking distance. The shortest duration of a
 /// geometric series whose derivative hulls keep the limits (or the start's own excess of them).
-/// Allocates its control points.
 UniformBspline MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
                                   const Limits& limits);
+
+/// The same into a spline that is there already: does not allocate if it has held one before.
+void MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector3d& shift,
+                        const Limits& limits, UniformBspline* trajectory);
 
 }  // namespace touchdown::planning

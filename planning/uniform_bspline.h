@@ -30,8 +30,12 @@ class UniformBspline {
   /// and finite, or if a number is not finite. Allocates.
   UniformBspline(const Eigen::Ref<const ControlPoints>& control_points, double interval, double t0);
 
-  /// As the constructor. Does not allocate if it has had this many control points before; neither
-  /// does an assignment.
+  /// Room for this many control points: up to it neither Assign nor an assignment allocates.
+  void Reserve(int control_points) {
+    numbers_.reserve(3 * static_cast<std::size_t>(control_points));
+  }
+
+  /// As the constructor. Does not allocate if it has had this many control points before.
   void Assign(const Eigen::Ref<const ControlPoints>& control_points, double interval, double t0);
 
   /// One per column. A view of the spline.

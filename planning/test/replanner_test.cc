@@ -92,7 +92,7 @@ TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
 }
 
 TEST(Replanner, TheSameQuestionTwiceGivesTheSameBits) {
-  const auto run = [] {
+  const auto run = []() -> ControlPoints {
     OccupancyMap map = ObservedMap();
     AddPillar(0.0, 0.2, &map);
     const ArcPad pad({5.0, 0.0, 0.3}, 0.8, 0.3, 0.1);
@@ -136,10 +136,11 @@ TEST(Replanner, AStepIsRepeatedFromItsState) {
     if (wanted.status == ReplanStatus::kPlanned) {
       const AttemptLog& last = log.attempts.back();
       EXPECT_EQ(last.reason, ReplanReason::kNone);
-      EXPECT_EQ(last.rounds.back().curve.control_points(), wanted.curve.control_points());
-      EXPECT_TRUE(last.rounds.back().blocked.empty());
-      EXPECT_EQ(static_cast<int>(last.rounds.back().pairs.size()), wanted.pairs);
-      EXPECT_EQ(last.rounds.back().solver.trace.size(),
+      const RoundLog& best = last.rounds.at(last.best);
+      EXPECT_EQ(best.curve.control_points(), wanted.curve.control_points());
+      EXPECT_TRUE(best.blocked.empty());
+      EXPECT_EQ(static_cast<int>(best.pairs.size()), wanted.pairs);
+      EXPECT_EQ(best.solver.trace.size(),
                 static_cast<std::size_t>(wanted.solver.iterations));
     }
     p = flown.Reference(input.t_now + 0.1).p_WB;
