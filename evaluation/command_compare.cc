@@ -104,14 +104,6 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   return settings;
 }
 
-void CheckOutputs(const CompareArguments& arguments) {
-  if (!arguments.db.empty() && arguments.db == arguments.picture) {
-    throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
-  }
-  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
-  if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
-}
-
 // The picture is drawn from a table; without --db that one is not kept.
 void Draw(const CompareArguments& arguments, const CompareResult& result,
           const MachineState& machine) {
@@ -140,7 +132,7 @@ int Compare(CompareArguments arguments, const Registries& registries) {
       arguments.limits == "hard" ? planning::LimitsMode::kHard : planning::LimitsMode::kSoft;
   problem.endpoint = arguments.endpoint == "explicit" ? planning::EndpointMode::kExplicit
                                                       : planning::EndpointMode::kEliminated;
-  CheckOutputs(arguments);
+  CheckOutputs(arguments.db, arguments.picture);
   MachineState machine;
   machine.pinned = arguments.pin;
   if (arguments.pin) PinToCpu(*arguments.pin);

@@ -9,10 +9,14 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/replan_report.h"
 #include "touchdown/evaluation/replan_study.h"
+#include "touchdown/evaluation/report_program.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -26,6 +30,7 @@ struct StudyArguments {
   ReplanStudyOptions options;
   std::optional<int> pin;
   std::string db;
+  std::string picture;
   bool json = false;
   bool allow_debug = false;
 };
@@ -61,9 +66,42 @@ void RunSafety(const StudyArguments& arguments, const Registries& registries,
   }
 }
 
+void RunGrowth(const StudyArguments& arguments, const Registries& registries,
+               std::vector<ReplanStudyPart>* parts) {
+  ReplanStudyOptions usual = arguments.options;
+  usual.scenes.kind = SceneKindNamed(arguments.kinds.size() == 1 ? arguments.kinds.front() : "C");
+  for (const GrowthPoint& point : GrowthPoints(usual)) {
+    ReplanStudyPart part;
+    part.part = "growth";
+    part.varied = point.varied;
+    part.options = point.options;
+    const double value = VariedValue(point.varied, point.options.scenes);
+    part.rows = RunReplanStudy(part.options, registries.backends,
+                               Progress(fmt::format("{} = {:.4g}", point.varied, value)));
+    parts->push_back(std::move(part));
+  }
+}
+
+bool Asked(const StudyArguments& arguments, const char* part) {
+  const std::vector<std::string>& parts = arguments.parts;
+  return std::find(parts.begin(), parts.end(), part) != parts.end();
+}
+
+// The picture is drawn from a table; without --db that one is not kept.
+void Draw(const StudyArguments& arguments, const std::vector<ReplanStudyPart>& parts,
+          const MachineState& machine) {
+  if (!arguments.db.empty()) return DrawGrowth(arguments.db, arguments.picture);
+  const AtomicFile unkept(arguments.picture + ".db");
+  WriteReplanStudy(unkept.working_path(), parts, machine);
+  DrawGrowth(unkept.working_path(), arguments.picture);
+}
+
 int Study(StudyArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
-  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+  CheckOutputs(arguments.db, arguments.picture);
+  if (!arguments.picture.empty() && !Asked(arguments, "growth")) {
+    throw BadInput("--picture shows the part growth: name it in --parts.");
+  }
   planning::ReplannerOptions& replanner = arguments.options.replanner;
   replanner.problem.terms = registries.terms;
   replanner.arrival =
@@ -75,7 +113,8 @@ int Study(StudyArguments arguments, const Registries& registries) {
   if (arguments.pin) PinToCpu(*arguments.pin);
   machine.load_before = LoadAverage();
   std::vector<ReplanStudyPart> parts;
-  RunSafety(arguments, registries, &parts);
+  if (Asked(arguments, "safety")) RunSafety(arguments, registries, &parts);
+  if (Asked(arguments, "growth")) RunGrowth(arguments, registries, &parts);
   machine.load_after = LoadAverage();
   if (arguments.json) {
     std::cout << ReplanStudyJson(parts, machine).dump(2) << std::endl;
@@ -83,6 +122,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
     std::cout << ReplanStudyText(parts) << std::flush;
   }
   if (!arguments.db.empty()) WriteReplanStudy(arguments.db, parts, machine);
+  if (!arguments.picture.empty()) Draw(arguments, parts, machine);
   return kDone;
 }
 
@@ -95,6 +135,13 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       "replan", "Latency, success and safety of replanning steps in random forests");
   const auto arguments = std::make_shared<StudyArguments>();
   ReplanStudyOptions& options = arguments->options;
+  command
+      ->add_option("--parts", arguments->parts,
+                   "Parts of the study; growth: of one kind, C unless --kinds names one alone")
+      ->delimiter(',')
+      ->type_name("safety,growth,...")
+      ->check(CLI::IsMember({"safety", "growth"}))
+      ->capture_default_str();
   command->add_option("--scenes", options.count, "Scenes of each kind")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -129,6 +176,7 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       ->capture_default_str();
   command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
   AddFileOption(*command, "--db", &arguments->db, "Write every step, an SQLite file", "F.db");
+  AddFileOption(*command, "--picture", &arguments->picture, "Draw the part growth", "F.png");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
   command->callback([arguments, &registries, run] {

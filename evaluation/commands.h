@@ -58,6 +58,9 @@ void CheckTimings(bool allow_debug);
 /// CheckOutputPath for a study, which is never overwritten. @throws BadInput
 void CheckNewStudy(const std::string& option, const std::string& path);
 
+/// The same for a study's --db and the --picture of it, where they are not empty. @throws BadInput
+void CheckOutputs(const std::string& db, const std::string& picture);
+
 /// Names of the registry's backends.
 std::vector<std::string> BackendNames(const Registries& registries);
 

@@ -16,18 +16,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAgreement = 1e-4;
 
-// Statistics' quantile interpolates; next to an infinite value there is nothing to interpolate.
-std::optional<double> QuantileWithFailures(const std::vector<double>& values, double q) {
-  std::vector<double> capped = values;
-  const double huge = 1e300;
-  for (double& value : capped) {
-    if (!std::isfinite(value)) value = huge;
-  }
-  const std::optional<double> quantile = Quantile(capped, q);
-  return quantile && *quantile > 1e290 ? kInfinity : quantile;
-}
-
-double Median(const std::vector<double>& values) { return *QuantileWithFailures(values, 0.5); }
+double Median(const std::vector<double>& values) { return *QuantilesOf(values).median; }
 
 using ProblemKey = std::pair<int, int>;  // points, problem
 
@@ -134,11 +123,6 @@ BackendSummary SummariseOne(const std::vector<const SolveRow*>& solves,
 }
 
 }  // namespace
-
-Quantiles QuantilesOf(const std::vector<double>& values) {
-  return {QuantileWithFailures(values, 0.5), QuantileWithFailures(values, 0.95),
-          QuantileWithFailures(values, 0.99), QuantileWithFailures(values, 1.0)};
-}
 
 std::vector<BackendSummary> Summarise(const CompareResult& result, int points) {
   const std::set<ProblemKey> rated = Rated(result);

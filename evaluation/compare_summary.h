@@ -10,13 +10,6 @@
 
 namespace touchdown::evaluation {
 
-/// Four figures of a sample. A value that is infinite (a failure's time) makes the quantiles that
-/// reach it infinite; a sample without values has none.
-struct Quantiles {
-  std::optional<double> median, p95, p99, max;
-};
-Quantiles QuantilesOf(const std::vector<double>& values);
-
 /// Parts of the wall time of a solve; they add up to 1.
 struct ShareSummary {
   double evaluation = 0.0;

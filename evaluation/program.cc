@@ -88,6 +88,14 @@ void CheckNewStudy(const std::string& option, const std::string& path) {
   }
 }
 
+void CheckOutputs(const std::string& db, const std::string& picture) {
+  if (!db.empty() && db == picture) {
+    throw BadInput(fmt::format("--db and --picture are the same file, {}.", db));
+  }
+  if (!db.empty()) CheckNewStudy("--db", db);
+  if (!picture.empty()) CheckPicturePath("--picture", picture);
+}
+
 std::vector<std::string> BackendNames(const Registries& registries) {
   std::vector<std::string> names;
   for (const solvers::BackendEntry& entry : registries.backends) names.push_back(entry.name);

@@ -8,6 +8,7 @@
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr char kSchema[] = R"sql(
 CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, kind TEXT, backend TEXT, arrival TEXT,
+CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, varied TEXT, kind TEXT, backend TEXT, arrival TEXT,
   limits TEXT, guides INTEGER, horizon_m REAL, resolution_m REAL, inflation_m REAL,
   density_per_m2 REAL, speed_limit_mps REAL, acceleration_limit_mps2 REAL, seed INTEGER);
 CREATE TABLE step(part INTEGER, scene INTEGER, feasible INTEGER, straight_blocked INTEGER,
@@ -36,15 +37,26 @@ const char* Limits(const ReplanStudyOptions& options) {
   return options.replanner.problem.limits_mode == planning::LimitsMode::kHard ? "hard" : "soft";
 }
 
-std::string LatencyText(const char* name, const LatencyQuantiles& q) {
-  if (q.count == 0) return fmt::format("  {:<22}{:>6}\n", name, 0);
-  return fmt::format("  {:<22}{:>6}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}\n", name, q.count, q.median,
-                     q.p95, q.p99, q.max);
+std::string TimesHead(const std::string& name) {
+  return fmt::format("{:<24}{:>6}{:>10}{:>10}{:>10}{:>10}\n", name, "n", "median", "p95", "p99",
+                     "max");
 }
 
-Json LatencyJson(const LatencyQuantiles& q) {
-  if (q.count == 0) return {{"count", 0}};
-  return {{"count", q.count}, {"median", q.median}, {"p95", q.p95}, {"p99", q.p99}, {"max", q.max}};
+std::string LatencyText(const std::string& name, const RowTimes& times) {
+  if (times.count == 0) return fmt::format("{:<24}{:>6}\n", name, 0);
+  const Quantiles& q = times.ms;
+  return fmt::format("{:<24}{:>6}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}\n", name, times.count,
+                     *q.median, *q.p95, *q.p99, *q.max);
+}
+
+Json LatencyJson(const RowTimes& times) {
+  if (times.count == 0) return {{"count", 0}};
+  const Quantiles& q = times.ms;
+  return {{"count", times.count},
+          {"median", *q.median},
+          {"p95", *q.p95},
+          {"p99", *q.p99},
+          {"max", *q.max}};
 }
 
 std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows) {
@@ -55,38 +67,67 @@ std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows) 
   return count;
 }
 
+std::string SceneText(const ReplanStudyPart& part) {
+  const SceneOptions& scenes = part.options.scenes;
+  return fmt::format(
+      "{}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m, horizon {:.4g} m, {} arrival, {} limits, "
+      "{}, {} guide(s), seed {}\n",
+      scenes.kind.name, scenes.kind.limits.speed, scenes.kind.limits.acceleration,
+      scenes.kind.inflation, scenes.horizon, Arrival(part.options), Limits(part.options),
+      part.options.replanner.backend, part.options.replanner.max_guides, scenes.seed);
+}
+
+std::string SafetyText(const ReplanStudyPart& part) {
+  const ReplanSummary s = Summarise(part.rows);
+  std::string text = "kind " + SceneText(part);
+  text += fmt::format(
+      "  first step planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
+      "all\n",
+      s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi, s.scenes);
+  for (const auto& [reason, count] : FailuresByReason(part.rows)) {
+    text += fmt::format("    not planned: {} x {}\n", count, reason);
+  }
+  text += fmt::format(
+      "  of {} accepted plans {} collide (at 1 cm), {} beyond a limit; checkers disagree on {}\n",
+      s.accepted, s.colliding, s.beyond_limits, s.disagreeing);
+  text += TimesHead("  thread CPU time [ms]");
+  text += LatencyText("  all scenes", s.all);
+  text += LatencyText("  straight way free", s.clear);
+  text += LatencyText("  obstacle in the way", s.blocked);
+  return text;
+}
+
+std::string GrowthText(const std::vector<const ReplanStudyPart*>& parts) {
+  std::string text = "growth of the thread CPU time [ms] of a step\nkind " + SceneText(*parts[0]);
+  std::string varied;
+  std::vector<ReplanRow> rows;
+  for (const ReplanStudyPart* part : parts) {
+    if (part->varied != varied) text += TimesHead("  " + part->varied);
+    varied = part->varied;
+    text += LatencyText(fmt::format("  {:.4g}", VariedValue(varied, part->options.scenes)),
+                        Summarise(part->rows).all);
+    rows.insert(rows.end(), part->rows.begin(), part->rows.end());
+  }
+  text += TimesHead("  pairs");
+  for (const PairClass& one : TimesByPairs(rows)) {
+    text += LatencyText(fmt::format("  {} to {}", one.from, one.to), one.time);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string ReplanStudyText(const std::vector<ReplanStudyPart>& parts) {
   std::string text;
+  std::vector<const ReplanStudyPart*> growth;
   for (const ReplanStudyPart& part : parts) {
-    const ReplanSummary s = Summarise(part.rows);
-    const SceneOptions& scenes = part.options.scenes;
-    text += fmt::format(
-        "kind {}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m, horizon {:.4g} m, {} arrival, {} "
-        "limits, {}, seed {}\n",
-        scenes.kind.name, scenes.kind.limits.speed, scenes.kind.limits.acceleration,
-        scenes.kind.inflation, scenes.horizon, Arrival(part.options), Limits(part.options),
-        part.options.replanner.backend, scenes.seed);
-    text += fmt::format(
-        "  first step planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
-        "all\n",
-        s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi, s.scenes);
-    for (const auto& [reason, count] : FailuresByReason(part.rows)) {
-      text += fmt::format("    not planned: {} x {}\n", count, reason);
+    if (part.varied.empty()) {
+      text += SafetyText(part);
+    } else {
+      growth.push_back(&part);
     }
-    if (part.options.check) {
-      text += fmt::format(
-          "  of {} accepted plans {} collide (at 1 cm), {} beyond a limit; checkers disagree on "
-          "{}\n",
-          s.accepted, s.colliding, s.beyond_limits, s.disagreeing);
-    }
-    text += fmt::format("  {:<22}{:>6}{:>10}{:>10}{:>10}{:>10}\n", "thread CPU time [ms]", "n",
-                        "median", "p95", "p99", "max");
-    text += LatencyText("all scenes", s.all);
-    text += LatencyText("straight way free", s.clear);
-    text += LatencyText("obstacle in the way", s.blocked);
   }
+  if (!growth.empty()) text += GrowthText(growth);
   return text;
 }
 
@@ -96,6 +137,7 @@ Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineSta
   for (const ReplanStudyPart& part : parts) {
     const ReplanSummary s = Summarise(part.rows);
     json["parts"].push_back({{"part", part.part},
+                             {"varied", part.varied.empty() ? Json() : Json(part.varied)},
                              {"kind", part.options.scenes.kind.name},
                              {"backend", part.options.replanner.backend},
                              {"arrival", Arrival(part.options)},
@@ -103,6 +145,7 @@ Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineSta
                              {"guides", part.options.replanner.max_guides},
                              {"horizon_m", part.options.scenes.horizon},
                              {"resolution_m", part.options.scenes.resolution},
+                             {"density_per_m2", part.options.scenes.density},
                              {"seed", part.options.scenes.seed},
                              {"scenes", s.scenes},
                              {"feasible", s.feasible},
@@ -140,16 +183,17 @@ void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart
     manifest.Run("load_after", std::to_string(machine.load_after));
     for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
     SqliteStatement insert_part =
-        db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+        db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement insert = db.Prepare(
         "INSERT INTO step VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
         "?, ?, ?, ?)");
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const int number = static_cast<int>(i);
       const ReplanStudyOptions& o = parts[i].options;
-      insert_part.Run(number, parts[i].part, o.scenes.kind.name, o.replanner.backend, Arrival(o),
-                      Limits(o), o.replanner.max_guides, o.scenes.horizon, o.scenes.resolution,
-                      o.scenes.kind.inflation, o.scenes.density, o.scenes.kind.limits.speed,
+      insert_part.Run(number, parts[i].part, parts[i].varied, o.scenes.kind.name,
+                      o.replanner.backend, Arrival(o), Limits(o), o.replanner.max_guides,
+                      o.scenes.horizon, o.scenes.resolution, o.scenes.kind.inflation,
+                      o.scenes.density, o.scenes.kind.limits.speed,
                       o.scenes.kind.limits.acceleration, static_cast<std::int64_t>(o.scenes.seed));
       for (const ReplanRow& row : parts[i].rows) {
         const planning::StageTimes& t = row.times;

@@ -13,12 +13,13 @@ namespace touchdown::evaluation {
 
 /// Steps of one kind of scenes under one set of options.
 struct ReplanStudyPart {
-  std::string part;  ///< safety, growth
+  std::string part;    ///< safety, growth
+  std::string varied;  ///< growth: what is not as usual here
   ReplanStudyOptions options;
   std::vector<ReplanRow> rows;
 };
 
-/// A table for people.
+/// Tables for people.
 std::string ReplanStudyText(const std::vector<ReplanStudyPart>& parts);
 
 nlohmann::ordered_json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The moving end is the one difference from the published scenes: theirs is a point and a velocity,
-// whenever it is reached. Here it moves with that velocity and passes the point when the replanner's
-// own guess of the duration says, so that a plan that is on time ends there.
+// The moving end is the one difference from the published scenes: theirs is a point and a velocity
+// near the speed limit, whenever it is reached. Here the point is where a pad will be: it moves in any
+// direction with up to half the speed limit, and passes the point when the replanner's own guess of the
+// duration says, so that a plan that is on time ends there.
 #include "touchdown/evaluation/replan_scene.h"
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include "touchdown/evaluation/field_map.h"
 #include "touchdown/planning/curve_check.h"
@@ -31,11 +33,14 @@ constexpr double kCeiling = 2.5;      // [m]
 constexpr double kKeepOut = 2.0;      // of pillars around start and goal [m]
 constexpr double kSquare = 8.0;       // half side of the square of starts [m]
 constexpr double kGoal = 11.0 / 7.5;  // of the horizon
+constexpr double kEndSpeed = 0.5;     // largest, of the speed limit
 constexpr double kMostMoved = 1.0;    // of a target, in a feasible scene [m]
 constexpr double kMostDetour = 1.3;
 constexpr int kExpansions = 2000000;
 constexpr int kDraws = 100;
-constexpr int kGuesses = 20;
+constexpr double kShortest = 0.1;  // flight to the end [s]
+constexpr double kLongest = 60.0;  // [s]
+constexpr double kMissed = 1e-6;   // of the target by an end that is on time [m]
 
 planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
   planning::OccupancyMapOptions map;
@@ -51,22 +56,21 @@ planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
   return map;
 }
 
-/// Speed of a flight to rest at the goal, `left` before it.
-double SpeedBefore(double left, const planning::Limits& limits) {
-  return std::min(limits.speed, std::sqrt(2.0 * limits.acceleration * left)) * 0.8;
-}
-
-// The duration and the place where the end is at the start depend on each other.
-void SetEnd(const Eigen::Vector3d& v_end, const planning::Limits& limits, ReplanScene* scene) {
-  double T = 1.0;
-  for (int i = 0; i < kGuesses; ++i) {
+// Where the end is at the start and how long the flight takes depend on each other. False if they do not
+// come together.
+bool SetEnd(const Eigen::Vector3d& v_end, const planning::Limits& limits, ReplanScene* scene) {
+  const auto guess_for = [&](double T) {
     const MovingTarget end(scene->target, v_end, T);
-    const double guess = planning::GuessDuration(scene->start, 0.0, end, {}, limits, 1.0);
-    if (std::abs(guess - T) < 1e-9) break;
-    T = guess;
-  }
-  scene->duration = T;
-  scene->end = std::make_unique<MovingTarget>(scene->target, v_end, T);
+    return planning::GuessDuration(scene->start, 0.0, end, {}, limits, 1.0);
+  };
+  const auto late = [&](double T) { return std::min(guess_for(T), kLongest) - T; };
+  if (!(late(kShortest) > 0.0) || !(late(0.99 * kLongest) < 0.0)) return false;
+  std::uintmax_t steps = 100;
+  const auto [low, high] = boost::math::tools::toms748_solve(
+      late, kShortest, 0.99 * kLongest, boost::math::tools::eps_tolerance<double>(40), steps);
+  scene->end = std::make_unique<MovingTarget>(scene->target, v_end, 0.5 * (low + high));
+  scene->duration = guess_for(0.5 * (low + high));
+  return (scene->end->At(scene->duration).p_WP - scene->target).norm() < kMissed;
 }
 
 bool BrakesFreely(const ReplanScene& scene, const planning::FreeSpace& space,
@@ -163,7 +167,10 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
     const bool found = planning::GridSearch::NearestFree(space, &cell);
     scene.target = blocked && found ? scene.map->CentreOf(cell) : wanted;
     scene.target_moved = (scene.target - wanted).norm();
-    SetEnd(SpeedBefore(distance - options.horizon, limits) * ahead, limits, &scene);
+    const double end_speed = stream.Uniform(0.0, kEndSpeed * limits.speed);
+    const double end_course = stream.Uniform(-std::numbers::pi, std::numbers::pi);
+    const Eigen::Vector3d end_ahead(std::cos(end_course), std::sin(end_course), 0.0);
+    if (!SetEnd(end_speed * end_ahead, limits, &scene)) continue;
     scene.straight_blocked = false;
     planning::TraverseCells(scene.start.p, scene.target, scene.map->resolution(),
                             [&](const planning::CellIndex& passed) {

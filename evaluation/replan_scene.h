@@ -69,9 +69,9 @@ planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
                                                  planning::ReplannerOptions base);
 
 /// Draws scene `index`: start at 1 m height with up to 0.8 of the speed limit within 0.4 rad of the
-/// way to a goal 1.5 horizons ahead; the end passes a point one horizon ahead at the speed that a
-/// flight to rest at the goal would have there. Scenes whose start is blocked are drawn again. The
-/// same options and index give the same scene. Throws std::invalid_argument for an option out of
+/// way ahead; the end passes a point one horizon ahead with up to half the speed limit in any
+/// direction. Scenes whose start is blocked are drawn again. The same options and index give the
+/// same scene. Throws std::invalid_argument for an option out of
 /// range.
 ReplanScene DrawReplanScene(const SceneOptions& options, int index);
 

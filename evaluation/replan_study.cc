@@ -31,8 +31,9 @@ void MeasureShape(const UniformBspline& curve, ReplanRow* row) {
   }
 }
 
-/// Also the length.
-void CheckAlong(const UniformBspline& curve, const ReplanScene& scene, ReplanRow* row) {
+}  // namespace
+
+void CheckPlan(const UniformBspline& curve, const ReplanScene& scene, ReplanRow* row) {
   estimation::VehicleModel point;
   point.hull_radius = point.hull_top = point.foot_depth = kPoint;
   const sim::TrueClearance truth(scene.field, point);
@@ -48,6 +49,7 @@ void CheckAlong(const UniformBspline& curve, const ReplanScene& scene, ReplanRow
     const Eigen::Vector3d p = curve.Evaluate(curve.t0() + curve.duration() * i / steps).p_WB;
     row->length += (p - last).norm();
     last = p;
+    if (!scene.map->InWindow(scene.map->CellOf(p))) continue;  // unknown space
     blocked = blocked || scene.map->IsBlocked(p);
     estimation::VehicleState vehicle;
     vehicle.p_WB = p;
@@ -57,18 +59,11 @@ void CheckAlong(const UniformBspline& curve, const ReplanScene& scene, ReplanRow
   row->truly_near = row->true_clearance < inflation - kRounding;
 }
 
-LatencyQuantiles Quantiles(const std::vector<double>& ms) {
-  LatencyQuantiles q;
-  q.count = static_cast<int>(ms.size());
-  if (ms.empty()) return q;
-  q.median = *Quantile(ms, 0.5);
-  q.p95 = *Quantile(ms, 0.95);
-  q.p99 = *Quantile(ms, 0.99);
-  q.max = *Quantile(ms, 1.0);
-  return q;
+RowTimes TimesOf(const std::vector<const ReplanRow*>& rows) {
+  std::vector<double> ms;
+  for (const ReplanRow* row : rows) ms.push_back(1e3 * row->times.total.cpu);
+  return {static_cast<int>(ms.size()), QuantilesOf(ms)};
 }
-
-}  // namespace
 
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
@@ -99,7 +94,7 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
       row.limits_kept = result.certificate.limits_kept;
       MeasureShape(result.curve, &row);
       row.stretch = row.duration / scene.duration;
-      if (options.check && row.planned()) CheckAlong(result.curve, scene, &row);
+      if (options.check && row.planned()) CheckPlan(result.curve, scene, &row);
     }
     std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end(),
                      [](const auto& a, const auto& b) { return a.total.cpu < b.total.cpu; });
@@ -113,11 +108,10 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
 ReplanSummary Summarise(const std::vector<ReplanRow>& rows) {
   ReplanSummary summary;
   summary.scenes = static_cast<int>(rows.size());
-  std::vector<double> all, clear, blocked;
+  std::vector<const ReplanRow*> all, clear, blocked;
   for (const ReplanRow& row : rows) {
-    const double ms = 1e3 * row.times.total.cpu;
-    all.push_back(ms);
-    (row.straight_blocked ? blocked : clear).push_back(ms);
+    all.push_back(&row);
+    (row.straight_blocked ? blocked : clear).push_back(&row);
     if (row.feasible) {
       ++summary.feasible;
       if (row.planned()) ++summary.succeeded;
@@ -129,9 +123,9 @@ ReplanSummary Summarise(const std::vector<ReplanRow>& rows) {
     if (!row.limits_kept) ++summary.beyond_limits;
   }
   if (summary.feasible > 0) summary.success = ClopperPearson(summary.succeeded, summary.feasible);
-  summary.all = Quantiles(all);
-  summary.clear = Quantiles(clear);
-  summary.blocked = Quantiles(blocked);
+  summary.all = TimesOf(all);
+  summary.clear = TimesOf(clear);
+  summary.blocked = TimesOf(blocked);
   return summary;
 }
 

@@ -48,11 +48,12 @@ struct ReplanRow {
   bool planned() const { return status == planning::ReplanStatus::kPlanned; }
 };
 
-/// Quantiles of a time over rows [ms, thread CPU].
-struct LatencyQuantiles {
+/// Times of rows [ms, thread CPU].
+struct RowTimes {
   int count = 0;
-  double median = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
+  Quantiles ms;
 };
+RowTimes TimesOf(const std::vector<const ReplanRow*>& rows);
 
 /// One kind of scenes in figures.
 struct ReplanSummary {
@@ -64,13 +65,16 @@ struct ReplanSummary {
   int colliding = 0;      ///< of these
   int disagreeing = 0;    ///< accepted plans that one checker takes for colliding and one does not
   int beyond_limits = 0;  ///< of the accepted
-  LatencyQuantiles all, clear, blocked;  ///< all scenes; straight way free; not free
+  RowTimes all, clear, blocked;  ///< all scenes; straight way free; not free
 };
 
 /// Runs the first step in every scene; deterministic but for the times. `report` is told of progress.
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
                                       const std::function<void(int done, int all)>& report);
+
+/// Looks at a plan at points 1 cm apart where the map knows the space: fills length and the last three members of the row.
+void CheckPlan(const planning::UniformBspline& plan, const ReplanScene& scene, ReplanRow* row);
 
 ReplanSummary Summarise(const std::vector<ReplanRow>& rows);
 

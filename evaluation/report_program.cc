@@ -85,6 +85,10 @@ void DrawComparison(const std::string& table_path, const std::string& picture_pa
   Draw("touchdown_report.compare", "--picture", table_path, picture_path);
 }
 
+void DrawGrowth(const std::string& table_path, const std::string& picture_path) {
+  Draw("touchdown_report.growth", "--picture", table_path, picture_path);
+}
+
 void DrawPlan(const std::string& document_path, const std::string& picture_path) {
   Draw("touchdown_report.plan", "--picture", document_path, picture_path);
 }

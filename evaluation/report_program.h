@@ -12,6 +12,9 @@ void DrawLanding(const std::string& record_path, const std::string& picture_path
 /// Draws the pictures of a comparison's table (compare_table.h). @throws as DrawLanding
 void DrawComparison(const std::string& table_path, const std::string& picture_path);
 
+/// Draws the picture of a replanning study's part growth (replan_report.h). @throws as DrawLanding
+void DrawGrowth(const std::string& table_path, const std::string& picture_path);
+
 /// Draws the picture of a solved step from its document (plan_report.h). @throws as DrawLanding
 void DrawPlan(const std::string& document_path, const std::string& picture_path);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <boost/math/distributions/binomial.hpp>
@@ -34,6 +35,26 @@ std::optional<double> Quantile(std::vector<double> values, double q) {
   const std::size_t above = std::min(below + 1, values.size() - 1);
   const double share = rank - static_cast<double>(below);
   return values[below] + share * (values[above] - values[below]);
+}
+
+namespace {
+
+// Statistics' quantile interpolates; next to an infinite value there is nothing to interpolate.
+std::optional<double> QuantileWithFailures(const std::vector<double>& values, double q) {
+  std::vector<double> capped = values;
+  const double huge = 1e300;
+  for (double& value : capped) {
+    if (!std::isfinite(value)) value = huge;
+  }
+  const std::optional<double> quantile = Quantile(capped, q);
+  return quantile && *quantile > 1e290 ? std::numeric_limits<double>::infinity() : quantile;
+}
+
+}  // namespace
+
+Quantiles QuantilesOf(const std::vector<double>& values) {
+  return {QuantileWithFailures(values, 0.5), QuantileWithFailures(values, 0.95),
+          QuantileWithFailures(values, 0.99), QuantileWithFailures(values, 1.0)};
 }
 
 }  // namespace touchdown::evaluation

@@ -22,4 +22,11 @@ Interval ClopperPearson(int successes, int trials, double confidence = 0.95);
 /// 1].
 std::optional<double> Quantile(std::vector<double> values, double q);
 
+/// Four figures of a sample. A value that is infinite (a failure's time) makes the quantiles that
+/// reach it infinite; a sample without values has none.
+struct Quantiles {
+  std::optional<double> median, p95, p99, max;
+};
+Quantiles QuantilesOf(const std::vector<double>& values);
+
 }  // namespace touchdown::evaluation

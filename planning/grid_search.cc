@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A* (P. Hart, N. Nilsson and B. Raphael 1968; eq. 16 of the paper) on the cells of the rolling
-// map. Arrays are indexed by the position in the window; a search number in `seen_` spares clearing
-// them.
+// map. What is known of a cell is indexed by its position in the window; the number of the search
+// that it is from spares clearing it.
 
 #include "touchdown/planning/grid_search.h"
 
@@ -17,6 +17,10 @@ namespace {
 /// A path of neighbouring cells cannot pass a plane without a cell this near to it.
 constexpr double kHalfThickness = 0.9;  // [cells]
 constexpr double kCosFan = 0.5;
+
+/// Of the many ways of one length the search follows one instead of all: cells nearer to the goal
+/// come first, and a path is at most this much longer than the shortest.
+constexpr float kGreed = 1.001f;
 
 bool InBarrier(const Eigen::Vector3d& centre, double resolution,
                std::span<const Barrier> barriers) {
@@ -68,38 +72,45 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
   if (!space.Blocked(*cell)) return true;
   const CellIndex centre = *cell;
   const double reach = kEndSearchRadius / space.map->resolution();
-  const int n = static_cast<int>(std::ceil(reach));
-  double best = reach * reach;
+  double best = reach * reach;  // squared distance [cells]
   bool found = false;
-  CellIndex offset;
-  for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
-    for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
-      for (offset.x() = -n; offset.x() <= n; ++offset.x()) {
-        const double distance2 = offset.squaredNorm();
-        const CellIndex candidate = centre + offset;
-        if (distance2 >= best || !space.map->InWindow(candidate) || space.Blocked(candidate)) {
-          continue;
+  // Cube by cube outwards; a cell of the next one is at least its half side away.
+  for (int n = 1; n <= reach && n * n < best; ++n) {
+    CellIndex offset;
+    for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
+      for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
+        const bool face = std::abs(offset.z()) == n || std::abs(offset.y()) == n;
+        for (offset.x() = -n; offset.x() <= n; offset.x() += face ? 1 : 2 * n) {
+          const double distance2 = offset.squaredNorm();
+          const CellIndex candidate = centre + offset;
+          if (distance2 >= best || !space.map->InWindow(candidate) || space.Blocked(candidate)) {
+            continue;
+          }
+          best = distance2;
+          *cell = candidate;
+          found = true;
         }
-        best = distance2;
-        *cell = candidate;
-        found = true;
       }
     }
   }
   return found;
 }
 
-void GridSearch::Reset(const FreeSpace& space) {
-  const CellIndex& n = space.map->size();
+void GridSearch::Reserve(const OccupancyMap& map) {
+  const CellIndex& n = map.size();
   const auto cells = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) *
                      static_cast<std::size_t>(n.z());
-  if (seen_.size() != cells) {
-    g_.assign(cells, 0.0f);
-    parent_.assign(cells, 0);
-    seen_.assign(cells, 0);
-    search_ = 0;
+  if (cells_.size() == cells) return;
+  cells_.assign(cells, Cell());
+  search_ = 0;
+}
+
+void GridSearch::Begin(const OccupancyMap& map) {
+  Reserve(map);
+  if (++search_ > kMostSearches) {
+    std::fill(cells_.begin(), cells_.end(), Cell());
+    search_ = 1;
   }
-  search_ += 2;
   heap_.clear();
   expansions_ = 0;
 }
@@ -113,7 +124,7 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   CellIndex start = map.CellOf(from), goal = map.CellOf(to);
   if (!map.InWindow(start) || !map.InWindow(goal)) return SearchStatus::kEndsOutside;
   if (!NearestFree(space, &start) || !NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
-  Reset(space);
+  Begin(map);
 
   const CellIndex origin = map.origin(), size = map.size();
   const auto address = [&](const CellIndex& cell) {
@@ -128,25 +139,24 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   const auto later = [](const Node& a, const Node& b) {
     return a.f != b.f ? a.f > b.f : a.order > b.order;
   };
+  const auto estimate = [&](const CellIndex& cell) { return kGreed * LatticeDistance(cell, goal); };
   std::uint32_t order = 0;
   const std::uint32_t goal_address = address(goal);
   const std::uint32_t start_address = address(start);
-  g_[start_address] = 0.0f;
-  parent_[start_address] = 26;
-  seen_[start_address] = search_;
-  heap_.push_back({LatticeDistance(start, goal), order++, start_address});
+  cells_[start_address] = Cell(0.0f, search_, kNoParent, false);
+  heap_.push_back({estimate(start), order++, start_address});
 
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
     const std::uint32_t here = heap_.back().address;
     heap_.pop_back();
-    if (seen_[here] == search_ + 1) continue;  // an older, longer entry of the same cell
-    seen_[here] = search_ + 1;
+    if (cells_[here].closed) continue;  // an older, longer entry of the same cell
+    cells_[here].closed = true;
     if (here == goal_address) {
       for (CellIndex cell = goal;;) {
         path->push_back(map.CentreOf(cell));
-        const std::uint8_t by = parent_[address(cell)];
-        if (by == 26) break;
+        const unsigned by = cells_[address(cell)].parent;
+        if (by == kNoParent) break;
         cell -= steps_[by].offset;
       }
       std::reverse(path->begin(), path->end());
@@ -154,19 +164,24 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     }
     if (++expansions_ > max_expansions) return SearchStatus::kExpansionLimit;
     const CellIndex cell = cell_at(here);
-    for (std::uint8_t s = 0; s < 26; ++s) {
+    const float g_here = cells_[here].g;
+    for (unsigned s = 0; s < steps_.size(); ++s) {
       const CellIndex next = cell + steps_[s].offset;
       if (!map.InWindow(next)) continue;
-      const std::uint32_t there = address(next);
-      const bool seen = (seen_[there] & ~1u) == search_;
-      const float g = g_[here] + steps_[s].length;
-      if (seen && ((seen_[there] & 1u) != 0u || g >= g_[there])) continue;
-      if (space.Blocked(next)) continue;
-      if (!barriers.empty() && InBarrier(map.CentreOf(next), map.resolution(), barriers)) continue;
-      g_[there] = g;
-      parent_[there] = s;
-      seen_[there] = search_;
-      heap_.push_back({g + LatticeDistance(next, goal), order++, there});
+      Cell& there = cells_[address(next)];
+      const float g = g_here + steps_[s].length;
+      if (there.search == search_ && (there.closed || g >= there.g)) continue;
+      if (there.search != search_) {
+        const bool barred =
+            !barriers.empty() && InBarrier(map.CentreOf(next), map.resolution(), barriers);
+        if (barred || space.Blocked(next)) {
+          // Looked at once: closed without having been opened.
+          there = Cell(0.0f, search_, kNoParent, true);
+          continue;
+        }
+      }
+      there = Cell(g, search_, s, false);
+      heap_.push_back({g + estimate(next), order++, address(next)});
       std::push_heap(heap_.begin(), heap_.end(), later);
     }
   }

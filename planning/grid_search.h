@@ -29,7 +29,7 @@ struct Barrier {
 };
 
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance
-/// on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
+/// on the empty lattice, times 1.001). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
 /// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
 /// nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the order of
 /// insertion. Its arrays have the size of the map's window and are kept between searches.
@@ -39,6 +39,9 @@ class GridSearch {
 
   /// Throws std::invalid_argument unless vertical_cost >= 1.
   explicit GridSearch(double vertical_cost = 1.0);
+
+  /// Makes room for searches on maps with this one's window, which the first search does otherwise.
+  void Reserve(const OccupancyMap& map);
 
   /// Finds a path of cell centres from `from` to `to`, the (moved) ends included. Expands at most
   /// `max_expansions` cells. Allocates only to grow to a high-water mark.
@@ -59,7 +62,21 @@ class GridSearch {
     std::uint32_t address;
   };
 
-  void Reset(const FreeSpace& space);
+  static constexpr std::uint32_t kMostSearches = (1u << 26) - 1;
+  static constexpr std::uint32_t kNoParent = 26;
+
+  // What a search knows of a cell, if it has seen it.
+  struct Cell {
+    Cell() : Cell(0.0f, 0, 0, false) {}
+    Cell(float length, std::uint32_t number, std::uint32_t step, bool done)
+        : g(length), search(number & kMostSearches), parent(step & 31u), closed(done) {}
+
+    float g;
+    std::uint32_t search : 26;
+    std::uint32_t parent : 5;  // the step that we came by
+    std::uint32_t closed : 1;
+  };
+  void Begin(const OccupancyMap& map);
 
   struct Step {
     CellIndex offset;
@@ -69,9 +86,7 @@ class GridSearch {
 
   float vertical_cost_;
   std::array<Step, 26> steps_;
-  std::vector<float> g_;
-  std::vector<std::uint8_t> parent_;  // direction we came by
-  std::vector<std::uint32_t> seen_;   // search number; lowest bit: closed
+  std::vector<Cell> cells_;
   std::vector<Node> heap_;
   std::uint32_t search_ = 0;
   int expansions_ = 0;

@@ -69,15 +69,15 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
   // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
   // arrival falls back to a fixed one.
   for (int segments = kFewestSegments; segments <= kMostSegments; segments += kSegmentStep) {
-    Prepare(segments, ArrivalMode::kFixed);
-    if (options.arrival == ArrivalMode::kFree) Prepare(segments, ArrivalMode::kFree);
+    PrepareProblem(segments, ArrivalMode::kFixed);
+    if (options.arrival == ArrivalMode::kFree) PrepareProblem(segments, ArrivalMode::kFree);
   }
   for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
     curve->Reserve(kMostControlPoints);
   }
 }
 
-void PlanAttempt::Prepare(int segments, ArrivalMode arrival) {
+void PlanAttempt::PrepareProblem(int segments, ArrivalMode arrival) {
   Prepared& prepared = prepared_[{segments, arrival}];
   prepared.problem = std::make_unique<LandingProblem>(segments, ProblemOptions(options_, arrival));
   prepared.backend = solvers::MakeBackend(backends_, options_.backend);

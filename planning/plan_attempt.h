@@ -44,6 +44,9 @@ class PlanAttempt {
 
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
 
+  /// Makes room for searches on maps with this one's window.
+  void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
+
   /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
   /// does not allocate it does not either, once its buffers have grown.
@@ -68,7 +71,7 @@ class PlanAttempt {
     ReplanReason reason = ReplanReason::kNone;
   };
 
-  void Prepare(int segments, ArrivalMode arrival);
+  void PrepareProblem(int segments, ArrivalMode arrival);
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
   ReplanReason SolveAndCheck(const AttemptRequest& request, double pressure, Candidate* candidate,

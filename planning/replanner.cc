@@ -103,6 +103,8 @@ class Replanner::Impl {
     }
   }
 
+  void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }
+
   void Commit(const UniformBspline& curve) {
     current_ = next_;
     next_ = curve;
@@ -393,6 +395,8 @@ Replanner::Replanner(const ReplannerOptions& options, const solvers::BackendRegi
 Replanner::~Replanner() = default;
 Replanner::Replanner(Replanner&&) noexcept = default;
 Replanner& Replanner::operator=(Replanner&&) noexcept = default;
+
+void Replanner::Prepare(const OccupancyMap& map) { impl_->Prepare(map); }
 
 void Replanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
   ControlPoints points(3, 4);

@@ -39,6 +39,10 @@ class Replanner {
   Replanner(Replanner&&) noexcept;
   Replanner& operator=(Replanner&&) noexcept;
 
+  /// Makes room for maps with this one's window; else the first step that searches does, which takes
+  /// it long.
+  void Prepare(const OccupancyMap& map);
+
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   void CommitHover(const Eigen::Vector3d& p_W, double t);
 

@@ -14,6 +14,7 @@
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_object.h>
@@ -35,21 +36,53 @@ using Object = fcl::CollisionObjectd;
 
 constexpr double kGjkTolerance = 1.0e-12;  // change of the distance at which GJK stops [m]
 
-struct MakeObject {
-  std::unique_ptr<Object> operator()(const Box& box) const {
+/// The shapes that make up an obstacle.
+class ObjectMaker {
+ public:
+  explicit ObjectMaker(std::vector<std::unique_ptr<Object>>* objects) : objects_(objects) {}
+
+  void operator()(const Box& box) {
     const Eigen::Vector3d sides = 2.0 * box.half_extents;
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(box.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    return std::make_unique<Object>(std::make_shared<fcl::Boxd>(sides), turn, box.center);
+    Add(std::make_shared<fcl::Boxd>(sides), turn, box.center);
   }
-  std::unique_ptr<Object> operator()(const Cylinder& cylinder) const {
-    return std::make_unique<Object>(
-        std::make_shared<fcl::Cylinderd>(cylinder.radius, cylinder.height),
+  void operator()(const Cylinder& cylinder) {
+    Add(std::make_shared<fcl::Cylinderd>(cylinder.radius, cylinder.height),
         Eigen::Matrix3d::Identity(), cylinder.center);
   }
-  // Refused by CheckGeom before.
-  std::unique_ptr<Object> operator()(const VoxelColumns&) const { return nullptr; }
-  std::unique_ptr<Object> operator()(const Ring&) const { return nullptr; }
+  // Neighbours along x of one height are one box.
+  void operator()(const VoxelColumns& columns) {
+    for (int y = 0; y < columns.count_y; ++y) {
+      const double* heights = columns.heights.data() + y * columns.count_x;
+      for (int from = 0, to; from < columns.count_x; from = to) {
+        const double height = heights[from];
+        to = from + 1;
+        while (to < columns.count_x && heights[to] == height) ++to;
+        if (height <= 0.0) continue;
+        const Eigen::Vector3d sides((to - from) * columns.cell, columns.cell, height);
+        const Eigen::Vector3d low = columns.corner + columns.cell * Eigen::Vector3d(from, y, 0.0);
+        Add(std::make_shared<fcl::Boxd>(sides), Eigen::Matrix3d::Identity(), low + 0.5 * sides);
+      }
+    }
+  }
+  void operator()(const Ring& ring) {
+    for (int i = 0; i < Ring::kSides; ++i) {
+      const Eigen::Vector3d side = ring.Corner(i + 1) - ring.Corner(i);
+      const Eigen::Matrix3d turn =
+          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), side).toRotationMatrix();
+      Add(std::make_shared<fcl::Capsuled>(ring.tube_radius, side.norm()), turn,
+          ring.Corner(i) + 0.5 * side);
+    }
+  }
+
+ private:
+  void Add(const std::shared_ptr<fcl::CollisionGeometryd>& shape, const Eigen::Matrix3d& R,
+           const Eigen::Vector3d& p) {
+    objects_->push_back(std::make_unique<Object>(shape, R, p));
+  }
+
+  std::vector<std::unique_ptr<Object>>* objects_;
 };
 
 int IndexOf(const Object& object) { return *static_cast<const int*>(object.getUserData()); }
@@ -105,12 +138,14 @@ class TrueClearance::Impl {
                                                model.hull_top + model.foot_depth)) {
     indices_.reserve(obstacles.size());
     for (const Obstacle& obstacle : obstacles.obstacles()) {
-      CheckGeom(obstacle, "obstacle " + std::to_string(indices_.size()), "the clearance check");
       indices_.push_back(static_cast<int>(indices_.size()));
-      objects_.push_back(std::visit(MakeObject(), obstacle));
-      objects_.back()->setUserData(&indices_.back());
-      objects_.back()->computeAABB();
-      tree_.registerObject(objects_.back().get());
+      const std::size_t first = objects_.size();
+      std::visit(ObjectMaker(&objects_), obstacle);
+      for (std::size_t i = first; i < objects_.size(); ++i) {
+        objects_[i]->setUserData(&indices_.back());
+        objects_[i]->computeAABB();
+        tree_.registerObject(objects_[i].get());
+      }
     }
     tree_.setup();
   }

@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "touchdown/sim/forest.h"
 #include "touchdown/sim/test/scenes.h"
 #include "touchdown/sim/vehicle_file.h"
 
@@ -97,6 +98,28 @@ TEST(TrueClearance, AgreesWithAnalyticDistancesOnRandomScenes) {
   }
   EXPECT_GT(apart, 100);
   EXPECT_GT(collided, 50);
+}
+
+// Columns and rings are many shapes each: a vehicle as small as a point is as far as the field says.
+TEST(TrueClearance, ColumnsAndRingsAreExact) {
+  RandomStream random(29, "forest points");
+  ForestConfig forest = ForestOfKind("A");
+  const ObstacleField field = MakeForest(forest, 3);
+  estimation::VehicleModel point = Model();
+  point.hull_radius = point.hull_top = point.foot_depth = 1e-5;
+  const TrueClearance clearance(field, point);
+  int near = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const VehicleState vehicle = At(test::RandomPoint({-18, -18, 0.1}, {18, 18, 2.9}, &random));
+    const double wanted = field.SignedDistance(vehicle.p_WB);
+    if (wanted < 1e-3) continue;
+    near += wanted < 0.3;
+    const Clearance found = clearance.Nearest(vehicle);
+    EXPECT_NEAR(found.distance, wanted, 3e-5);
+    const Obstacle& nearest = field.obstacles()[static_cast<std::size_t>(found.obstacle)];
+    EXPECT_NEAR(SignedDistance(nearest, vehicle.p_WB), wanted, 3e-5);
+  }
+  EXPECT_GT(near, 300);
 }
 
 TEST(TrueClearance, PenetrationIsNegativeAndDeepens) {

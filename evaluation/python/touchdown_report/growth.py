@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the time of a replanning step grows (docs/replan_study.md): with the horizon, the clutter, the
+map's cells and the pairs that were bound.
+
+    /usr/bin/python3 -m touchdown_report.growth STUDY.db OUT.png
+"""
+import os
+import sqlite3
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+from touchdown_report import command_line  # noqa: E402
+
+SUPPORTED_VERSION = "1"
+STAGES = ["predict", "check", "search", "pairs", "solve", "certificate"]
+COLOURS = ["#999999", "#56B4E9", "#E69F00", "#CC79A7", "#0072B2", "#009E73"]
+# Column of table `part`, label of the axis.
+VARIED = {
+    "horizon_m": "horizon [m]",
+    "density_per_m2": "pillars per square metre",
+    "resolution_m": "side of a map cell [m]",
+}
+PAIR_EDGES = [0, 1, 5, 9, 17, 33, 65, 129, 257]
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.edgecolor": "#BBBBBB",
+    "axes.titlesize": 10,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#EEEEEE",
+    "axes.axisbelow": True,
+}
+
+
+class GrowthError(Exception):
+    """The file holds no growth of replanning times; the message is one sentence."""
+
+
+class Growth:
+    """One file: `manifest`, `usual` (what the steps were made with), and per axis the steps' times:
+    `times[name]` is {value: array of a step per row, the stages and the total in the columns}."""
+
+    def __init__(self, path):
+        if not os.path.isfile(path):
+            raise GrowthError(f"{path}: there is no such file.")
+        try:
+            with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+                self._read(db, path)
+        except sqlite3.Error as error:
+            raise GrowthError(f"{path}: not a replanning study ({error}).") from error
+
+    def _read(self, db, path):
+        self.manifest = dict(db.execute("SELECT key, value FROM manifest"))
+        if self.manifest.get("version") != SUPPORTED_VERSION:
+            raise GrowthError(
+                f"{path}: study version {self.manifest.get('version')}, "
+                f"this package reads version {SUPPORTED_VERSION}."
+            )
+        columns = ", ".join(f"{stage}_ms" for stage in STAGES + ["total"])
+        self.times = {}
+        pairs = []
+        for name in VARIED:
+            rows = db.execute(
+                f"SELECT {name}, pairs, {columns} FROM step JOIN part USING(part) "
+                "WHERE varied = ? ORDER BY part, scene",
+                (name,),
+            ).fetchall()
+            if not rows:
+                raise GrowthError(f"{path}: the study has no part growth.")
+            pairs += [row[1:] for row in rows]
+            values = sorted({row[0] for row in rows})
+            self.times[name] = {v: np.array([r[2:] for r in rows if r[0] == v]) for v in values}
+        self.by_pairs = by_pairs(np.array(pairs))
+        self.usual = db.execute(
+            "SELECT kind, backend, arrival, limits, guides, seed FROM part WHERE varied = 'horizon_m'"
+        ).fetchone()
+
+
+def by_pairs(rows):
+    """Rows (pairs, times ...) in classes of the number of pairs: {(from, to): times}."""
+    classes = {}
+    for low, end in zip(PAIR_EDGES, PAIR_EDGES[1:]):
+        inside = rows[(rows[:, 0] >= low) & (rows[:, 0] < end), 1:]
+        if len(inside):
+            classes[(low, end - 1)] = inside
+    return classes
+
+
+def draw_axes(axes, classes, labels):
+    """Stacked means of the stages as bars, quantiles of the total over them."""
+    places = np.arange(len(classes))
+    floor = np.zeros(len(classes))
+    for i, stage in enumerate(STAGES):
+        mean = np.array([times[:, i].mean() for times in classes])
+        axes.bar(places, mean, 0.6, floor, color=COLOURS[i], label=f"{stage}, mean")
+        floor += mean
+    total = [times[:, -1] for times in classes]
+    for quantile, marker in ((0.5, "_"), (0.95, "^"), (0.99, "x")):
+        axes.plot(
+            places,
+            [np.quantile(t, quantile) for t in total],
+            ls="none",
+            marker=marker,
+            ms=9 if marker == "_" else 5,
+            mew=2 if marker == "_" else 1.2,
+            color="#000000",
+            label="total, median" if quantile == 0.5 else f"total, p{quantile * 100:.0f}",
+        )
+    axes.set_xticks(places, labels)
+    axes.set_ylim(0.0, None)
+    axes.set_ylabel("thread CPU time [ms]")
+
+
+def draw(growth, path):
+    kind, backend, arrival, limits, guides, seed = growth.usual
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(2, 2, figsize=(11.0, 7.5), layout="constrained")
+        for panel, (name, label) in zip(axes.flat, VARIED.items()):
+            times = growth.times[name]
+            draw_axes(panel, list(times.values()), [f"{value:g}" for value in times])
+            panel.set_xlabel(label)
+        classes = growth.by_pairs
+        labels = [f"{low}" if low == high else f"{low}–{high}" for low, high in classes]
+        counts = [len(times) for times in classes.values()]
+        draw_axes(axes[1, 1], list(classes.values()), [f"{a}\n({n})" for a, n in zip(labels, counts)])
+        axes[1, 1].set_xlabel("pairs bound (steps)")
+        handles, names = axes[0, 0].get_legend_handles_labels()
+        figure.legend(handles, names, loc="outside lower center", ncols=5, fontsize=7.5, frameon=False)
+        figure.suptitle(
+            f"Replanning step in forests of kind {kind}: {backend}, {arrival} arrival, "
+            f"{limits} limits, {guides} guide path{'s' if guides > 1 else ''}, seed {seed}",
+            x=0.01,
+            ha="left",
+            fontsize=11,
+            fontweight="bold",
+        )
+        figure.savefig(path, dpi=150)
+        plt.close(figure)
+
+
+def main(arguments):
+    """Command line; returns the exit status."""
+    return command_line.run(
+        arguments,
+        "touchdown_report.growth STUDY OUT.png",
+        lambda source, picture: draw(Growth(source), picture),
+        (GrowthError,),
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/replan_study.h"
+
+#include <array>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/replan_growth.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+ReplanStudyOptions Options(const std::string& kind, int count) {
+  ReplanStudyOptions options;
+  options.scenes.kind = SceneKindNamed(kind);
+  options.replanner.problem.terms = planning::StandardTerms();
+  options.count = count;
+  options.repeats = 1;
+  return options;
+}
+
+std::vector<ReplanRow> Run(const ReplanStudyOptions& options) {
+  return RunReplanStudy(options, solvers::StandardBackends(), [](int, int) {});
+}
+
+TEST(ReplanStudy, NoAcceptedPlanCollidesOrExceedsALimit) {
+  for (const char* kind : {"A", "B", "C", "D"}) {
+    const ReplanSummary summary = Summarise(Run(Options(kind, 15)));
+    EXPECT_EQ(summary.scenes, 15);
+    EXPECT_GE(summary.accepted, 10) << kind;
+    EXPECT_GE(summary.feasible, 10) << kind;
+    EXPECT_LE(summary.succeeded, summary.feasible) << kind;
+    EXPECT_EQ(summary.colliding, 0) << kind;
+    EXPECT_EQ(summary.disagreeing, 0) << kind;
+    EXPECT_EQ(summary.beyond_limits, 0) << kind;
+    EXPECT_EQ(summary.clear.count + summary.blocked.count, summary.all.count);
+  }
+}
+
+TEST(ReplanStudy, BothCheckersSeeAPlanThroughAnObstacle) {
+  const ReplanStudyOptions options = Options("B", 1);
+  int through = 0;
+  for (int index = 0; index < 30; ++index) {
+    const ReplanScene scene = DrawReplanScene(options.scenes, index);
+    planning::ControlPoints points(3, 4);
+    for (int i = 0; i < 4; ++i) {
+      points.col(i) = scene.start.p + (i - 1) * (scene.target - scene.start.p);
+    }
+    ReplanRow row;
+    CheckPlan(planning::UniformBspline(points, 5.0, 0.0), scene, &row);
+    EXPECT_NEAR(row.length, (scene.target - scene.start.p).norm(), 1e-6);
+    EXPECT_EQ(row.map_blocked, scene.straight_blocked) << index;
+    // A cell is at most its diagonal larger than what stands in it.
+    if (row.truly_near) {
+      EXPECT_TRUE(row.map_blocked) << index;
+    } else if (row.map_blocked) {
+      EXPECT_LT(row.true_clearance, options.scenes.kind.inflation + 0.18) << index;
+    }
+    through += row.truly_near;
+  }
+  EXPECT_GE(through, 5);
+}
+
+TEST(ReplanStudy, RepeatsButForItsTimes) {
+  const std::vector<ReplanRow> a = Run(Options("C", 6)), b = Run(Options("C", 6));
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].status, b[i].status);
+    EXPECT_EQ(a[i].pairs, b[i].pairs);
+    EXPECT_EQ(a[i].solves, b[i].solves);
+    EXPECT_EQ(a[i].jerk, b[i].jerk);
+    EXPECT_EQ(a[i].length, b[i].length);
+    EXPECT_EQ(a[i].true_clearance, b[i].true_clearance);
+  }
+}
+
+TEST(ReplanGrowth, VariesOneThingAtATime) {
+  const ReplanStudyOptions usual = Options("C", 7);
+  for (const GrowthPoint& point : GrowthPoints(usual)) {
+    const SceneOptions& scenes = point.options.scenes;
+    EXPECT_GT(VariedValue(point.varied, scenes), 0.0);
+    const int changed = (scenes.horizon != usual.scenes.horizon) +
+                        (scenes.density != usual.scenes.density) +
+                        (scenes.resolution != usual.scenes.resolution);
+    EXPECT_LE(changed, 1);
+    EXPECT_EQ(point.options.count, 7);
+  }
+  EXPECT_THROW(VariedValue("wind", usual.scenes), std::invalid_argument);
+}
+
+TEST(ReplanGrowth, ClassesOfPairsHoldEveryRow) {
+  std::vector<ReplanRow> rows;
+  for (const int pairs : {0, 1, 4, 5, 8, 9, 40}) rows.emplace_back().pairs = pairs;
+  const std::vector<PairClass> classes = TimesByPairs(rows);
+  std::vector<std::array<int, 3>> found;
+  for (const PairClass& one : classes) found.push_back({one.from, one.to, one.time.count});
+  using Class = std::array<int, 3>;
+  EXPECT_THAT(found, ::testing::ElementsAre(Class{0, 0, 1}, Class{1, 4, 2}, Class{5, 8, 2},
+                                            Class{9, 16, 1}, Class{33, 64, 1}));
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
