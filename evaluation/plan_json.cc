@@ -56,6 +56,7 @@ Json RoundJson(const planning::RoundLog& round) {
   const solvers::SolverResult& solver = round.solver;
   Json json = {{"guide", round.guide},
                {"pressure", round.pressure},
+               {"limit_pressure", round.limit_pressure},
                {"status", solvers::ToString(solver.status)},
                {"message", solver.message},
                {"iterations", solver.iterations},

@@ -38,9 +38,10 @@ std::string QuestionText(const SolvedStep& solved) {
 std::string RoundText(const planning::RoundLog& round, int number) {
   const solvers::SolverResult& solver = round.solver;
   std::string text = fmt::format(
-      "    round {}{}: {} pairs with weight x {:.2f}; {} after {} iterations, cost {:.6g}{}\n",
+      "    round {}{}: {} pairs with weight x {:.2f}, limits x {:.0f}; {} after {} iterations, "
+      "cost {:.6g}{}\n",
       number, round.guide > 0 ? ", another way around" : "", round.pairs.size(), round.pressure,
-      solvers::ToString(solver.status), solver.iterations, solver.cost,
+      round.limit_pressure, solvers::ToString(solver.status), solver.iterations, solver.cost,
       solver.message.empty() ? "" : fmt::format(" ({})", solver.message));
   std::string costs;
   for (const solvers::TermCost& term : solver.cost_by_term) {

@@ -56,12 +56,19 @@ planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
   return map;
 }
 
+/// The end itself: no height above it.
+planning::EndpointTarget Target() {
+  planning::EndpointTarget target;
+  target.height = 0.0;
+  return target;
+}
+
 // Where the end is at the start and how long the flight takes depend on each other. False if they do not
 // come together.
 bool SetEnd(const Eigen::Vector3d& v_end, const planning::Limits& limits, ReplanScene* scene) {
   const auto guess_for = [&](double T) {
     const MovingTarget end(scene->target, v_end, T);
-    return planning::GuessDuration(scene->start, 0.0, end, {}, limits, 1.0);
+    return planning::GuessDuration(scene->start, 0.0, end, Target(), limits, 1.0);
   };
   const auto late = [&](double T) { return std::min(guess_for(T), kLongest) - T; };
   if (!(late(kShortest) > 0.0) || !(late(0.99 * kLongest) < 0.0)) return false;
@@ -198,7 +205,7 @@ planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* repla
   input.vehicle.p_WB = scene.start.p;
   input.vehicle.v_WB = scene.start.v;
   input.pad = scene.end.get();
-  input.endpoint.height = 0.0;
+  input.endpoint = Target();
   return input;
 }
 

@@ -5,13 +5,11 @@
 
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/free_space.h"
+#include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/landing_term.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {
-
-/// A free path around an obstacle, as a polyline in W [m].
-using GuidePath = std::vector<Eigen::Vector3d>;
 
 /// Binds {p, v} pairs to the control points that shape the blocked run of `curve`: each is pushed
 /// from the curve towards where the guide path crosses the plane normal to the curve there; p is

@@ -18,10 +18,6 @@ namespace {
 constexpr double kHalfThickness = 0.9;  // [cells]
 constexpr double kCosFan = 0.5;
 
-/// Of the many ways of one length the search follows one instead of all: cells nearer to the goal
-/// come first, and a path is at most this much longer than the shortest.
-constexpr float kGreed = 1.001f;
-
 bool InBarrier(const Eigen::Vector3d& centre, double resolution,
                std::span<const Barrier> barriers) {
   for (const Barrier& barrier : barriers) {
@@ -36,9 +32,14 @@ bool InBarrier(const Eigen::Vector3d& centre, double resolution,
 
 }  // namespace
 
-GridSearch::GridSearch(double vertical_cost) : vertical_cost_(static_cast<float>(vertical_cost)) {
+GridSearch::GridSearch(double vertical_cost, double greed)
+    : vertical_cost_(static_cast<float>(vertical_cost)), greed_(static_cast<float>(greed)) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
+                                ", it must be >= 1");
+  }
+  if (!(greed >= 1.0)) {
+    throw std::invalid_argument("GridSearch: greed is " + std::to_string(greed) +
                                 ", it must be >= 1");
   }
   int n = 0;
@@ -116,8 +117,7 @@ void GridSearch::Begin(const OccupancyMap& map) {
 }
 
 SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
-                                const Eigen::Vector3d& to, int max_expansions,
-                                std::vector<Eigen::Vector3d>* path,
+                                const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                                 std::span<const Barrier> barriers) {
   path->clear();
   const OccupancyMap& map = *space.map;
@@ -139,7 +139,7 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   const auto later = [](const Node& a, const Node& b) {
     return a.f != b.f ? a.f > b.f : a.order > b.order;
   };
-  const auto estimate = [&](const CellIndex& cell) { return kGreed * LatticeDistance(cell, goal); };
+  const auto estimate = [&](const CellIndex& cell) { return greed_ * LatticeDistance(cell, goal); };
   std::uint32_t order = 0;
   const std::uint32_t goal_address = address(goal);
   const std::uint32_t start_address = address(start);

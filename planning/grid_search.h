@@ -12,6 +12,9 @@
 
 namespace touchdown::planning {
 
+/// A free path around an obstacle, as a polyline in W [m].
+using GuidePath = std::vector<Eigen::Vector3d>;
+
 enum class SearchStatus {
   kFound,
   kEndsOutside,     ///< an end lies outside the map's window
@@ -28,8 +31,8 @@ struct Barrier {
   Eigen::Vector3d side = Eigen::Vector3d::UnitY();    ///< unit vector in the plane
 };
 
-/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + h, h the exact distance
-/// on the empty lattice, times 1.001). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
+/// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + greed h, h the exact
+/// distance on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
 /// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
 /// nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the order of
 /// insertion. Its arrays have the size of the map's window and are kept between searches.
@@ -37,8 +40,9 @@ class GridSearch {
  public:
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]
 
-  /// Throws std::invalid_argument unless vertical_cost >= 1.
-  explicit GridSearch(double vertical_cost = 1.0);
+  /// With `greed` > 1 cells near the goal come first: a path costs at most so many times the least, and
+  /// is found after far fewer expansions. Throws std::invalid_argument unless both are >= 1.
+  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0);
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
@@ -46,8 +50,8 @@ class GridSearch {
   /// Finds a path of cell centres from `from` to `to`, the (moved) ends included. Expands at most
   /// `max_expansions` cells. Allocates only to grow to a high-water mark.
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
-                      const Eigen::Vector3d& to, int max_expansions,
-                      std::vector<Eigen::Vector3d>* path, std::span<const Barrier> barriers = {});
+                      const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
+                      std::span<const Barrier> barriers = {});
 
   /// Moves `cell` to the nearest free one within kEndSearchRadius; false if there is none. Does not
   /// allocate.
@@ -85,6 +89,7 @@ class GridSearch {
   float LatticeDistance(const CellIndex& a, const CellIndex& b) const;
 
   float vertical_cost_;
+  float greed_;
   std::array<Step, 26> steps_;
   std::vector<Cell> cells_;
   std::vector<Node> heap_;

@@ -85,7 +85,11 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
   if (setup.hard && !(setup.weight > 0.0)) setup.weight = 1.0;
   const std::shared_ptr<solvers::Term> term = entry.make(setup);
   problem_.AddTerm(term, setup.hard ? solvers::Role::kConstraint : solvers::Role::kCost);
-  if (auto* user = dynamic_cast<ContextUser*>(term.get())) context_users_.push_back(user);
+  auto* const user = dynamic_cast<ContextUser*>(term.get());
+  if (user == nullptr) return;
+  context_users_.push_back(user);
+  if (entry.is_clearance) clearances_.push_back(user);
+  if (entry.is_limit && !setup.hard) soft_limits_.push_back(user);
 }
 
 void LandingProblem::Update() {
@@ -126,8 +130,11 @@ void LandingProblem::SetPairs(std::span<const ObstaclePair> pairs) {
 }
 
 void LandingProblem::SetPairWeightScale(double scale) {
-  context_.pair_weight_scale = scale;
-  Update();
+  for (ContextUser* term : clearances_) term->ScaleWeight(scale);
+}
+
+void LandingProblem::SetLimitWeightScale(double scale) {
+  for (ContextUser* term : soft_limits_) term->ScaleWeight(scale);
 }
 
 void LandingProblem::SetObstacles(std::span<const MovingObstacle> obstacles) {

@@ -32,8 +32,8 @@ struct LandingProblemOptions {
   std::vector<TermSettings> settings;    ///< ... where it shall differ from the entries' defaults
   double max_duration = 30.0;            ///< upper bound of a free arrival [s]
   double min_duration = 0.5;             ///< lower bound of a free arrival [s]
-  int max_pairs_per_point = 6;
-  int max_obstacles = 8;  ///< moving ones
+  int max_pairs_per_point = 6;           ///< at least 2 to keep clear of floor and ceiling
+  int max_obstacles = 8;                 ///< moving ones
 };
 
 /// What the boundary fixes whatever the solver does: no rows, but facts to look at first.
@@ -66,8 +66,10 @@ class LandingProblem {
   void SetDuration(double T);
   /// Throws std::invalid_argument if there are more than max_pairs() or one is out of range.
   void SetPairs(std::span<const ObstaclePair> pairs);
-  /// Multiplies the weight of every pair.
+  /// Multiplies the weight of every pair (of the terms that keep clear of obstacles).
   void SetPairWeightScale(double scale);
+  /// Multiplies the weight of every limit that is a cost.
+  void SetLimitWeightScale(double scale);
   int max_pairs() const { return max_pairs_; }
   /// Throws std::invalid_argument if there are more than the option says.
   void SetObstacles(std::span<const MovingObstacle> obstacles);
@@ -99,10 +101,11 @@ class LandingProblem {
   int max_obstacles_;
   std::shared_ptr<BoundaryLift> lift_;
   LandingContext context_;
-  std::vector<ObstaclePair> pairs_;          // what context_ points to
-  std::vector<MovingObstacle> obstacles_;    // alike
-  std::vector<ContextUser*> context_users_;  // among the problem's terms
-  std::vector<double> x_;                    // all control points
+  std::vector<ObstaclePair> pairs_;                     // what context_ points to
+  std::vector<MovingObstacle> obstacles_;               // alike
+  std::vector<ContextUser*> context_users_;             // among the problem's terms
+  std::vector<ContextUser*> clearances_, soft_limits_;  // among these
+  std::vector<double> x_;                               // all control points
   solvers::Problem problem_;
   std::unique_ptr<solvers::View> view_;
 };

@@ -9,6 +9,7 @@
 // entry. docs/adding_a_term.md shows whole examples.
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -51,7 +52,6 @@ struct LandingContext {
   const UniformBspline* previous = nullptr;   ///< plan to stay near to; may be null
   std::span<const MovingObstacle> obstacles;  ///< at most TermSetup::max_obstacles
   std::span<const ObstaclePair> pairs;        ///< at most TermSetup::max_pairs
-  double pair_weight_scale = 1.0;             ///< re-binding rounds press harder
 
   EndState End(double h) const { return EndStateAt(*pad, target, t0 + segments * h); }
 };
@@ -99,6 +99,7 @@ struct TermEntry {
   std::vector<TermParameter> parameters;  ///< with their defaults
   bool can_be_hard = true;                ///< its u can stand as rows
   bool is_limit = false;                  ///< where it is used it becomes rows with hard limits
+  bool is_clearance = false;              ///< rounds that find the curve blocked press it harder
   TermUse use = TermUse::kAlways;
   std::function<std::shared_ptr<solvers::Term>(const TermSetup&)> make;
 };
@@ -111,11 +112,13 @@ struct TermSettings {
   std::vector<std::pair<std::string, double>> parameters;
 };
 
-/// A term that wants to know of every solve before it begins.
+/// A term that wants to know of every solve before it begins, or that can be pressed harder.
 class ContextUser {
  public:
   virtual ~ContextUser() = default;
   virtual void Update(const LandingContext& context) = 0;
+  /// Multiplies the weight that it was made with.
+  virtual void ScaleWeight(double factor) = 0;
 };
 
 template <class Inner>
@@ -123,12 +126,27 @@ concept UsesContext = requires(Inner& inner, const LandingContext& context) {
   inner.Update(context);
 };
 
-/// A WindowTerm that hands the context to its inner map.
+template <class Loss>
+concept Scalable = requires(const Loss& loss) {
+  { loss.Scaled(1.0) } -> std::same_as<Loss>;
+};
+
+/// A WindowTerm that hands the context to its inner map, and whose loss can be scaled.
 template <class Inner, class Loss>
 class ContextWindowTerm : public solvers::WindowTerm<Inner, Loss>, public ContextUser {
  public:
-  using solvers::WindowTerm<Inner, Loss>::WindowTerm;
-  void Update(const LandingContext& context) override { this->inner().Update(context); }
+  ContextWindowTerm(const solvers::TermInfo& info, Inner inner, const Loss& loss, int max_windows)
+      : solvers::WindowTerm<Inner, Loss>(info, std::move(inner), loss, max_windows), loss_(loss) {}
+
+  void Update(const LandingContext& context) override {
+    if constexpr (UsesContext<Inner>) this->inner().Update(context);
+  }
+  void ScaleWeight(double factor) override {
+    if constexpr (Scalable<Loss>) this->set_loss(loss_.Scaled(factor));
+  }
+
+ private:
+  Loss loss_;  // with the weight it was made with
 };
 
 /// The term of an inner map, told of every solve if the map has an Update. `max_windows`: the most
@@ -136,7 +154,7 @@ class ContextWindowTerm : public solvers::WindowTerm<Inner, Loss>, public Contex
 template <class Inner, class Loss>
 std::shared_ptr<solvers::Term> MakeLandingTerm(const solvers::TermInfo& info, Inner inner,
                                                const Loss& loss, int max_windows) {
-  if constexpr (UsesContext<Inner>) {
+  if constexpr (UsesContext<Inner> || Scalable<Loss>) {
     return std::make_shared<ContextWindowTerm<Inner, Loss>>(info, std::move(inner), loss,
                                                             max_windows);
   } else {

@@ -260,4 +260,21 @@ void OccupancyMap::AddToRow(int y, int z, int x_begin, int x_end, int increment)
   add(0, to - size_.x());
 }
 
+std::pair<int, int> OccupancyMap::BlockedBeside(const CellIndex& cell, int reach) const {
+  const CellIndex end = origin_ + size_;
+  const int none = reach + 1;
+  if (cell.y() < origin_.y() || cell.y() >= end.y() || cell.z() < origin_.z() ||
+      cell.z() >= end.z()) {
+    return {none, none};
+  }
+  const std::uint16_t* row = &inflation_[RowAddress(cell.y(), cell.z())];
+  const auto blocked = [&](int x) { return row[x & mask_.x()] > 0; };
+  const int most_below = std::min(reach, cell.x() - origin_.x());
+  const int most_above = std::min(reach, end.x() - 1 - cell.x());
+  int below = 0, above = 0;
+  while (below <= most_below && !blocked(cell.x() - below)) ++below;
+  while (above <= most_above && !blocked(cell.x() + above)) ++above;
+  return {below <= most_below ? below : none, above <= most_above ? above : none};
+}
+
 }  // namespace touchdown::planning

@@ -17,16 +17,29 @@ namespace touchdown::planning {
 
 namespace {
 
+// Not the last digits of an optimum make a plan, but its certificate: where the caller does not say
+// otherwise, solves end this near to it, as shares of the cost.
+constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 1e-3},
+                                                           {"function_tolerance", 1e-5}};
+constexpr char kPairTerm[] = "obstacle_pair";
 constexpr double kSegmentDuration = 0.20;  // [s], aimed at
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = PlanAttempt::kMostControlPoints - 3;
 constexpr int kSegmentStep = 4;         // keeps the number of prepared problems small
-constexpr double kPressure = 1.6;       // weight of the pairs grows by this every round
+constexpr double kPressure = 2.5;       // weight of the pairs grows by this every round
+constexpr double kProgress = 0.8;       // of the blocked time that a round leaves at most
+constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded grows by this ...
+constexpr int kLimitRounds = 2;         // ... so often
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
 constexpr double kGuideStep = 0.05;     // sampling of the committed curve as a guide [s]
 constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
 constexpr double kStill = 1e-3;         // a slower curve has no direction [m/s]
 constexpr double kNoSide = 1e-2;        // from the curve to the guide [m]
+constexpr int kFirstFree = 3;           // control points that both boundaries fix
+constexpr int kLevels = 2;              // pairs of a control point for floor and ceiling
+constexpr int kBoundBeside = 3;         // control points beside a blocked stretch that are bound
+constexpr double kGreed = 1.5;          // of A*: a guide only tells the side
+constexpr double kFloorMargin = 0.05;   // kept from floor and ceiling [m]
 /// A way that is found only after so many cells is a long one.
 constexpr int kOtherWayExpansions = 3000;
 
@@ -40,17 +53,56 @@ int SegmentsFor(double duration) {
 double CostOfShape(const solvers::SolverSummary& solver) {
   double cost = solver.cost;
   for (const solvers::TermCost& term : solver.cost_by_term) {
-    if (term.name == "obstacle_pair") cost -= term.cost;
+    if (term.name == kPairTerm) cost -= term.cost;
   }
   return cost;
 }
 
-void SampleGuide(const UniformBspline& curve, double t_from, GuidePath* guide) {
+void SampleGuide(const UniformBspline& curve, const BlockedRun& span, GuidePath* guide) {
   guide->clear();
-  for (double t = std::max(t_from, curve.t0()); t < curve.t_end(); t += kGuideStep) {
-    guide->push_back(curve.Evaluate(t).p_WB);
+  const int steps = std::max(1, static_cast<int>(std::ceil((span.t_out - span.t_in) / kGuideStep)));
+  for (int i = 0; i <= steps; ++i) {
+    guide->push_back(curve.Evaluate(span.t_in + (span.t_out - span.t_in) * i / steps).p_WB);
   }
-  guide->push_back(curve.Evaluate(curve.t_end()).p_WB);
+}
+
+/// Walks along a polyline at constant speed.
+class PathWalk {
+ public:
+  explicit PathWalk(const GuidePath& path) : path_(path) {
+    for (std::size_t i = 1; i < path.size(); ++i) length_ += (path[i] - path[i - 1]).norm();
+  }
+  /// At this share of the length; shares must not fall from call to call.
+  Eigen::Vector3d At(double share) {
+    while (next_ + 1 < path_.size() && before_ + Side() < share * length_)
+      before_ += Side(), ++next_;
+    if (path_.size() == 1) return path_.front();
+    const double side = Side();
+    const double along =
+        side > 0.0 ? std::clamp((share * length_ - before_) / side, 0.0, 1.0) : 0.0;
+    return path_[next_ - 1] + along * (path_[next_] - path_[next_ - 1]);
+  }
+
+ private:
+  double Side() const { return (path_[next_] - path_[next_ - 1]).norm(); }
+
+  const GuidePath& path_;
+  double length_ = 0.0;
+  double before_ = 0.0;   // length before the present side
+  std::size_t next_ = 1;  // its end
+};
+
+/// s_f of the term obstacle_pair.
+double PairClearance(const LandingProblemOptions& options) {
+  for (const TermEntry& entry : options.terms) {
+    if (entry.info.name != kPairTerm) continue;
+    TermSetup setup = DefaultSetup(entry, PlanAttempt::kMostControlPoints);
+    for (const TermSettings& settings : options.settings) {
+      if (settings.name == kPairTerm) ApplySettings(entry, settings, &setup);
+    }
+    return setup.Get("clearance");
+  }
+  return 0.0;
 }
 
 }  // namespace
@@ -65,7 +117,10 @@ LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMod
 }
 
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-    : options_(options), backends_(backends), search_(options.vertical_cost) {
+    : options_(options),
+      backends_(backends),
+      search_(options.vertical_cost, kGreed),
+      corridor_(PairClearance(options.problem), kFloorMargin) {
   // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
   // arrival falls back to a fixed one.
   for (int segments = kFewestSegments; segments <= kMostSegments; segments += kSegmentStep) {
@@ -81,6 +136,11 @@ void PlanAttempt::PrepareProblem(int segments, ArrivalMode arrival) {
   Prepared& prepared = prepared_[{segments, arrival}];
   prepared.problem = std::make_unique<LandingProblem>(segments, ProblemOptions(options_, arrival));
   prepared.backend = solvers::MakeBackend(backends_, options_.backend);
+  for (const solvers::OptionSpec& option : prepared.backend->options().specs()) {
+    for (const auto& [name, value] : kCloseEnough) {
+      if (option.name == name) prepared.backend->options().Set(name, value);
+    }
+  }
   for (const auto& [name, value] : options_.solver_options) {
     prepared.backend->options().Set(name, value);
   }
@@ -131,68 +191,98 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   pairs_.clear();
   barriers_.clear();
   problem.Guess(&now_->start.y);
-  const ReplanReason reason = SolveAndCheck(request, 1.0, &best_, result);
+  pressure_ = {};
+  const ReplanReason reason = SolveAndCheck(request, &best_, result);
   if (reason != ReplanReason::kNone) return reason;
-  if (runs_.empty() || options_.max_rebinds == 0) return Finish(request, &best_, result);
-  return TryGuides(request, result);
+  if (!runs_.empty() && options_.max_rebinds > 0) return TryGuides(request, result);
+  return KeepLimits(request, &best_, result);
 }
 
 // The way around the first obstacle makes the difference: behind it the usual choices follow.
 ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult* result) {
   now_->y_without_pairs = now_->start.y;
   first_curve_ = best_.curve;
-  first_runs_ = runs_;
-  const BlockedRun run = first_runs_.front();
-  if (run.at_end) return ReplanReason::kGoalBlocked;
+  const BlockedRun first = runs_.front();
+  if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
   {
     StageTimer timer(&result->times.check);
     previous_clear_ = request.previous && !std::isfinite(FirstBlockedTime(
                                               *request.previous, request.t0, *request.space));
   }
-  const bool keeps_side = Keeps(request, run);
-  const int guides = run.at_start ? 1 : options_.max_guides;
+  // One path past everything that is in the way, so that one detour does not lead into the next.
+  const BlockedRun span = {first.t_in, runs_.back().t_out, first.at_start, false};
+  const bool keeps_side = Keeps(request, span);
+  const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
   for (int i = 0; i < guides; ++i) {
-    const ReplanReason found = FindGuide(request, first_curve_, run, &guide_, result);
+    if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;
+    const ReplanReason found = FindGuide(request, first_curve_, span, result);
     if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
     if (found != ReplanReason::kNone) return found;
+    first_guide_ = guide_;
     Candidate* candidate = i == 0 ? &best_ : &other_;
     candidate->curve = first_curve_;
     candidate->certificate.reset();
     now_->start.y = now_->y_without_pairs;
-    runs_ = first_runs_;
-    first_guide_ = guide_;
+    runs_.assign(1, span);
     candidate->reason = Follow(request, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
-    if (i + 1 < guides && !CloseWay(run)) break;
+    if (i + 1 < guides && !CloseWay(first)) break;
   }
   return best_.reason;
 }
 
-/// Binds pairs to the guide and solves again until the curve is clear.
+/// Binds pairs along the guide and solves again until the curve is clear, or no clearer than before.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
-  pairs_.clear();
-  double pressure = 1.0;
-  for (int round = 1;; ++round) {
+  bound_.assign(static_cast<std::size_t>(candidate->curve.segments()) + 3, false);
+  pressure_ = {};
+  double blocked = std::numeric_limits<double>::infinity();
+  for (int round = 1; round <= options_.max_rebinds; ++round) {
     const ReplanReason bound = Bind(request, candidate->curve, round == 1, result);
     if (bound != ReplanReason::kNone) return bound;
-    if (round > 1) pressure *= kPressure;
+    if (round > 1) pressure_.pairs *= kPressure;
     ++result->rebinds;
-    const ReplanReason solved = SolveAndCheck(request, pressure, candidate, result);
-    if (solved != ReplanReason::kNone) return solved;
+    ReplanReason reason = SolveAndCheck(request, candidate, result);
+    if (reason != ReplanReason::kNone) return reason;
     // A blocked start alone is for the certificate: it may be an escape.
     const bool only_start = runs_.size() == 1 && runs_.front().at_start;
-    if (runs_.empty() || only_start || round == options_.max_rebinds) {
-      return Finish(request, candidate, result);
+    if (runs_.empty() || only_start) {
+      reason = KeepLimits(request, candidate, result);
+      if (runs_.empty() || only_start) return reason;
     }
+    const double before = std::exchange(blocked, BlockedTime());
+    if (blocked > kProgress * before) break;
+  }
+  return Finish(request, candidate, result);
+}
+
+/// Of the latest curve [s].
+double PlanAttempt::BlockedTime() const {
+  double sum = 0.0;
+  for (const BlockedRun& run : runs_) sum += run.t_out - run.t_in;
+  return sum;
+}
+
+/// Certifies a clear candidate; where only limits are exceeded, presses these harder and solves
+/// again.
+ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, Candidate* candidate,
+                                     ReplanResult* result) {
+  for (int round = 0;; ++round) {
+    const ReplanReason reason = Finish(request, candidate, result);
+    const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
+    if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
+    pressure_.limits *= kLimitPressure;
+    const ReplanReason solved = SolveAndCheck(request, candidate, result);
+    if (solved != ReplanReason::kNone) return solved;
   }
 }
 
-ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, double pressure,
-                                        Candidate* candidate, ReplanResult* result) {
+ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
+                                        ReplanResult* result) {
   LandingProblem& problem = *now_->problem;
   problem.SetPairs(pairs_);
-  problem.SetPairWeightScale(pressure);
+  problem.SetPairWeightScale(pressure_.pairs);
+  problem.SetLimitWeightScale(pressure_.limits);
   solvers::Stop stop;
   stop.max_iterations = options_.max_iterations;
   stop.trace = request.log != nullptr;
@@ -206,7 +296,8 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, double pr
   if (request.log) {
     const int guide = static_cast<int>(barriers_.size());
     candidate->round = static_cast<int>(request.log->rounds.size());
-    request.log->rounds.push_back({pressure, pairs_, now_->solver, {}, {}, guide});
+    request.log->rounds.push_back(
+        {pressure_.pairs, pressure_.limits, pairs_, now_->solver, {}, {}, guide});
   }
   if (!now_->solver.usable()) return ReplanReason::kSolverFailed;
   now_->start.y = now_->solver.x;
@@ -246,23 +337,37 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
                                               : ReplanReason::kLimitsExceeded;
 }
 
+/// Where the curve is blocked the control points are wanted on a guide path, elsewhere on the curve.
+/// Those near to what was blocked in this round or an earlier one get the half-spaces around there.
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
-                               bool first_is_known, ReplanResult* result) {
-  const auto max_pairs = static_cast<std::size_t>(now_->problem->max_pairs());
-  int bound = 0;
+                               bool guide_is_known, ReplanResult* result) {
+  const int n = static_cast<int>(bound_.size());
+  const auto time_of = [&](int i) { return curve.t0() + (i - 1) * curve.interval(); };
+  for (int i = 0; i < n; ++i) reference_[i] = curve.Evaluate(time_of(i)).p_WB;
   for (const BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
-    const bool known = first_is_known && &run == &runs_.front();
-    if (!known) {
-      const ReplanReason reason = FindGuide(request, curve, run, &guide_, result);
+    if (!guide_is_known) {
+      const ReplanReason reason = FindGuide(request, curve, run, result);
       if (reason != ReplanReason::kNone) return reason;
     }
-    StageTimer timer(&result->times.pairs);
-    bound +=
-        BindPairs(curve, run, known ? first_guide_ : guide_, *request.space, max_pairs, &pairs_);
+    PathWalk walk(guide_);
+    for (int i = kFirstFree; i < n - kFirstFree; ++i) {
+      const double t = time_of(i);
+      const double margin = kBoundBeside * curve.interval();
+      if (t < run.t_in - margin || t > run.t_out + margin) continue;
+      bound_[i] = true;
+      if (t < run.t_in || t > run.t_out) continue;
+      reference_[i] = walk.At((t - run.t_in) / (run.t_out - run.t_in));
+    }
   }
-  // Without a new pair the next solve would be the last one again.
-  return bound > 0 ? ReplanReason::kNone : ReplanReason::kCollisionRemains;
+  StageTimer timer(&result->times.pairs);
+  pairs_.clear();
+  const int planes = std::max(0, options_.problem.max_pairs_per_point - kLevels);
+  for (int i = kFirstFree; i < n - kFirstFree; ++i) {
+    if (bound_[i])
+      corridor_.Bind(i, reference_[i], *request.space, static_cast<std::size_t>(planes), &pairs_);
+  }
+  return ReplanReason::kNone;
 }
 
 /// The committed curve leads past this stretch, and no way was closed yet.
@@ -272,22 +377,22 @@ bool PlanAttempt::Keeps(const AttemptRequest& request, const BlockedRun& run) co
 }
 
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                                    const BlockedRun& run, GuidePath* guide, ReplanResult* result) {
+                                    const BlockedRun& run, ReplanResult* result) {
   StageTimer timer(&result->times.search);
   if (Keeps(request, run)) {
-    SampleGuide(*request.previous, request.t0, guide);
+    SampleGuide(*request.previous, run, &guide_);
     return ReplanReason::kNone;
   }
   const int budget =
       barriers_.empty() ? expansions_left_ : std::min(expansions_left_, kOtherWayExpansions);
   const SearchStatus status =
       search_.Search(*request.space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
-                     budget, guide, barriers_);
+                     budget, &guide_, barriers_);
   expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
   // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (run.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   if (status != SearchStatus::kFound) return ReplanReason::kSearchFailed;
-  result->guide_paths.Add(*guide);
+  result->guide_paths.Add(guide_);
   return ReplanReason::kNone;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,7 +9,7 @@
 #include <vector>
 
 #include "touchdown/planning/certificate.h"
-#include "touchdown/planning/collision_pairs.h"
+#include "touchdown/planning/corridor.h"
 #include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/replan_log.h"
@@ -29,6 +30,7 @@ struct AttemptRequest {
   double duration = 1.0;  ///< T, or its first guess [s]
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
+  int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice while clear
   AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };
@@ -71,17 +73,26 @@ class PlanAttempt {
     ReplanReason reason = ReplanReason::kNone;
   };
 
+  /// Factors on weights.
+  struct Pressure {
+    double pairs = 1.0;
+    double limits = 1.0;
+  };
+
   void PrepareProblem(int segments, ArrivalMode arrival);
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason SolveAndCheck(const AttemptRequest& request, double pressure, Candidate* candidate,
+  ReplanReason SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
                              ReplanResult* result);
+  ReplanReason KeepLimits(const AttemptRequest& request, Candidate* candidate,
+                          ReplanResult* result);
   ReplanReason Follow(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
-  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool first_is_known,
+  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool guide_is_known,
                     ReplanResult* result);
   ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                         const BlockedRun& run, GuidePath* guide, ReplanResult* result);
+                         const BlockedRun& run, ReplanResult* result);
+  double BlockedTime() const;
   bool CloseWay(const BlockedRun& run);
   bool Keeps(const AttemptRequest& request, const BlockedRun& run) const;
   static bool Better(const Candidate& a, const Candidate& b, bool keeps_side);
@@ -90,17 +101,21 @@ class PlanAttempt {
   solvers::BackendRegistry backends_;
   std::map<std::pair<int, ArrivalMode>, Prepared> prepared_;
   GridSearch search_;
+  Corridor corridor_;
 
   // Of the attempt under way.
   Prepared* now_ = nullptr;
   int expansions_left_ = 0;
+  Pressure pressure_;
   bool previous_clear_ = false;  // the committed curve can serve as a guide
   UniformBspline first_curve_;   // before any pair
-  std::vector<BlockedRun> first_runs_, runs_;
+  std::vector<BlockedRun> runs_;
   Candidate best_, other_;
   std::vector<ObstaclePair> pairs_;
   std::vector<Barrier> barriers_;  // ways around the first obstacle that were taken
   GuidePath first_guide_, guide_;
+  std::array<Eigen::Vector3d, kMostControlPoints> reference_;  // where control points are wanted
+  std::vector<char> bound_;                                    // control points that get pairs
 };
 
 }  // namespace touchdown::planning

@@ -17,6 +17,7 @@ namespace touchdown::planning {
 /// One solve and the check of its curve.
 struct RoundLog {
   double pressure = 1.0;            ///< factor on the weight of the pairs
+  double limit_pressure = 1.0;      ///< factor on the weight of soft limits
   std::vector<ObstaclePair> pairs;  ///< that were bound in the solve
   solvers::SolverResult solver;     ///< with its trace
   UniformBspline curve;             ///< if the solver's point was usable

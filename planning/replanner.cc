@@ -22,7 +22,8 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kMaxAttempts = 6;
-constexpr double kStretch = 1.2;         // of the duration after an attempt that failed
+constexpr double kStretch = 1.3;         // of the duration after an attempt that failed
+constexpr int kRescueGuides = 2;         // ways around an obstacle that later attempts try
 constexpr double kReTimeBelow = 0.75;    // a fresh guess this much shorter replaces the arrival
 constexpr double kStripMemory = 2.0;     // the strip over a pad that was lost holds this long [s]
 constexpr double kMoving = 1e-6;         // [m/s]
@@ -88,6 +89,7 @@ void Validate(const ReplannerOptions& o) {
   Require(o.reaction >= 0.0, "reaction", o.reaction, ">= 0 s");
   Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");
   Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
+  Require(o.max_solves >= 1, "max_solves", o.max_solves, ">= 1");
   Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
   Require(o.max_expansions >= 1, "max_expansions", o.max_expansions, ">= 1");
 }
@@ -309,9 +311,11 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.arrival = options_.arrival;
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
+    if (i > 0 && result_.solves >= options_.max_solves) return reason;
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     request.duration = T;
     request.space = &space;
+    request.rescue_guides = i > 0 ? kRescueGuides : 1;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;

@@ -63,6 +63,8 @@ class HingeLoss {
   /// Curvature at a typical excess, a tenth of the width; zero more than a width inside the limit.
   double NominalCurvature(double u) const { return u > -s_ ? 0.6 * w_ * s_ : 0.0; }
   LossBounds bounds() const { return {-std::numeric_limits<double>::infinity(), 0.0}; }
+  /// The same with `factor` times the weight.
+  HingeLoss Scaled(double factor) const { return HingeLoss(factor * w_, s_); }
 
  private:
   double w_;

@@ -20,13 +20,13 @@ ReplanStudyOptions Options(const std::string& kind, int count) {
   return options;
 }
 
-std::vector<ReplanRow> Run(const ReplanStudyOptions& options) {
+std::vector<ReplanRow> Steps(const ReplanStudyOptions& options) {
   return RunReplanStudy(options, solvers::StandardBackends(), [](int, int) {});
 }
 
 TEST(ReplanStudy, NoAcceptedPlanCollidesOrExceedsALimit) {
   for (const char* kind : {"A", "B", "C", "D"}) {
-    const ReplanSummary summary = Summarise(Run(Options(kind, 15)));
+    const ReplanSummary summary = Summarise(Steps(Options(kind, 15)));
     EXPECT_EQ(summary.scenes, 15);
     EXPECT_GE(summary.accepted, 10) << kind;
     EXPECT_GE(summary.feasible, 10) << kind;
@@ -63,7 +63,7 @@ TEST(ReplanStudy, BothCheckersSeeAPlanThroughAnObstacle) {
 }
 
 TEST(ReplanStudy, RepeatsButForItsTimes) {
-  const std::vector<ReplanRow> a = Run(Options("C", 6)), b = Run(Options("C", 6));
+  const std::vector<ReplanRow> a = Steps(Options("C", 6)), b = Steps(Options("C", 6));
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].status, b[i].status);

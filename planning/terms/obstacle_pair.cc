@@ -35,26 +35,6 @@ struct HalfSpaces {
   }
 };
 
-/// Its weight grows with the re-binding rounds.
-class ObstaclePairs : public ContextWindowTerm<HalfSpaces, solvers::HingeLoss> {
- public:
-  ObstaclePairs(const solvers::TermInfo& info, const TermSetup& setup)
-      : ContextWindowTerm(info, {setup.Get("clearance"), {}},
-                          solvers::HingeLoss(setup.weight, setup.Get("clearance")),
-                          setup.max_pairs),
-        weight_(setup.weight),
-        clearance_(setup.Get("clearance")) {}
-
-  void Update(const LandingContext& context) override {
-    ContextWindowTerm::Update(context);
-    set_loss(solvers::HingeLoss(context.pair_weight_scale * weight_, clearance_));
-  }
-
- private:
-  double weight_;
-  double clearance_;
-};
-
 }  // namespace
 
 TermEntry ObstaclePairTerm() {
@@ -63,8 +43,11 @@ TermEntry ObstaclePairTerm() {
                 true};
   entry.default_weight = 3000.0;
   entry.parameters = {{"clearance", 0.30, 0.01, 5.0, "s_f, beyond the inflation radius [m]"}};
+  entry.is_clearance = true;
   entry.make = [info = entry.info](const TermSetup& setup) {
-    return std::make_shared<ObstaclePairs>(info, setup);
+    const double clearance = setup.Get("clearance");
+    return MakeLandingTerm(info, HalfSpaces{clearance, {}},
+                           solvers::HingeLoss(setup.weight, clearance), setup.max_pairs);
   };
   return entry;
 }

@@ -10,7 +10,6 @@
 
 #include "touchdown/sim/depth_camera.h"
 #include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/true_clearance.h"
 #include "touchdown/sim/world_mjcf.h"
 
 namespace touchdown::sim {
@@ -188,7 +187,6 @@ TEST(Forest, VoxelShapesAreRefusedWhereAWorldIsAsked) {
   world.obstacles = MakeForest(ForestOfKind("A"), 1);
   EXPECT_THAT(MessageOf<std::invalid_argument>([&] { WorldMjcf(world); }),
               AllOf(HasSubstr("obstacle 0"), HasSubstr("voxel columns"), HasSubstr("MuJoCo")));
-  EXPECT_THROW(TrueClearance(world.obstacles, estimation::VehicleModel{}), std::invalid_argument);
   const ObstacleField ring({Ring{}});
   EXPECT_THAT(MessageOf<std::invalid_argument>(
                   [&] { DepthCamera(DepthCameraConfig{}, ring, PadGeometry{}, 1); }),

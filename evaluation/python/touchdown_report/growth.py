@@ -113,7 +113,7 @@ def draw_axes(axes, classes, labels):
             color="#000000",
             label="total, median" if quantile == 0.5 else f"total, p{quantile * 100:.0f}",
         )
-    axes.set_xticks(places, labels)
+    axes.set_xticks(places, labels=labels)
     axes.set_ylim(0.0, None)
     axes.set_ylabel("thread CPU time [ms]")
 
@@ -132,7 +132,7 @@ def draw(growth, path):
         draw_axes(axes[1, 1], list(classes.values()), [f"{a}\n({n})" for a, n in zip(labels, counts)])
         axes[1, 1].set_xlabel("pairs bound (steps)")
         handles, names = axes[0, 0].get_legend_handles_labels()
-        figure.legend(handles, names, loc="outside lower center", ncols=5, fontsize=7.5, frameon=False)
+        axes[0, 0].legend(handles, names, loc="upper left", ncol=2, fontsize=7.5, frameon=False)
         figure.suptitle(
             f"Replanning step in forests of kind {kind}: {backend}, {arrival} arrival, "
             f"{limits} limits, {guides} guide path{'s' if guides > 1 else ''}, seed {seed}",
