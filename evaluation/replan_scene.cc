@@ -19,25 +19,18 @@
 #include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/rest_trajectory.h"
 #include "touchdown/planning/voxel_traversal.h"
-#include "touchdown/sim/forest.h"
-#include "touchdown/sim/random_stream.h"
 
 namespace touchdown::evaluation {
 namespace {
 
 using sim::RandomStream;
 
-constexpr double kHeight = 1.0;       // of start and goal [m]
-constexpr double kFloor = 0.2;        // [m]
-constexpr double kCeiling = 2.5;      // [m]
-constexpr double kKeepOut = 2.0;      // of pillars around start and goal [m]
-constexpr double kSquare = 8.0;       // half side of the square of starts [m]
-constexpr double kGoal = 11.0 / 7.5;  // of the horizon
-constexpr double kEndSpeed = 0.5;     // largest, of the speed limit
-constexpr double kMostMoved = 1.0;    // of a target, in a feasible scene [m]
+constexpr double kFloor = 0.2;      // [m]
+constexpr double kCeiling = 2.5;    // [m]
+constexpr double kEndSpeed = 0.5;   // largest, of the speed limit
+constexpr double kMostMoved = 1.0;  // of a target, in a feasible scene [m]
 constexpr double kMostDetour = 1.3;
 constexpr int kExpansions = 2000000;
-constexpr int kDraws = 100;
 constexpr double kShortest = 0.1;  // flight to the end [s]
 constexpr double kLongest = 60.0;  // [s]
 constexpr double kMissed = 1e-6;   // of the target by an end that is on time [m]
@@ -108,21 +101,6 @@ estimation::PadState MovingTarget::At(double t) const noexcept {
   return state;
 }
 
-const std::vector<SceneKind>& SceneKinds() {
-  static const std::vector<SceneKind> kinds = {{"A", "A", {2.0, 3.0}, 0.1},
-                                               {"B", "B", {2.0, 3.0}, 0.1},
-                                               {"C", "C", {3.0, 6.0}, 0.1},
-                                               {"D", "B", {3.0, 6.0}, 0.3}};
-  return kinds;
-}
-
-const SceneKind& SceneKindNamed(const std::string& name) {
-  for (const SceneKind& kind : SceneKinds()) {
-    if (kind.name == name) return kind;
-  }
-  throw std::invalid_argument(fmt::format("scene kind {}: the kinds are A, B, C and D", name));
-}
-
 planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
                                                  planning::ReplannerOptions base) {
   base.limits = options.kind.limits;
@@ -134,33 +112,14 @@ planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
 
 ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
   const planning::Limits& limits = options.kind.limits;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    RandomStream stream(options.seed, fmt::format("replan scene {} {}", index, draw));
+  for (int draw = 0; draw < kForestSceneDraws; ++draw) {
+    RandomStream stream = SceneStream(options, index, draw);
+    ForestScene forest = DrawForestScene(options, &stream);
     ReplanScene scene;
-    const double x = stream.Uniform(-kSquare, kSquare);
-    const double y = stream.Uniform(-kSquare, kSquare);
-    const double heading = stream.Uniform(-std::numbers::pi, std::numbers::pi);
-    const double speed = stream.Uniform(0.0, 0.8 * limits.speed);
-    const double course = heading + stream.Uniform(-0.4, 0.4);
-    const Eigen::Vector3d ahead(std::cos(heading), std::sin(heading), 0.0);
-    scene.start.p = {x, y, kHeight};
-    scene.start.v = speed * Eigen::Vector3d(std::cos(course), std::sin(course), 0.0);
-    const double distance = kGoal * options.horizon;
-    const Eigen::Vector3d goal = scene.start.p + distance * ahead;
-
-    sim::ForestConfig forest = sim::ForestOfKind(options.kind.forest);
-    // The published forest reaches a metre beyond the farthest goal.
-    const double density =
-        options.density > 0.0 ? options.density : forest.pillars / forest.size.prod();
-    const double rings = forest.rings / forest.size.prod();
-    forest.size = forest.size.cwiseMax(2.0 * (kSquare + distance + 1.0));
-    forest.rings = static_cast<int>(std::lround(rings * forest.size.prod()));
-    sim::SetDensity(density, &forest);
-    forest.keep_out = {{scene.start.p.head<2>(), kKeepOut}, {goal.head<2>(), kKeepOut}};
-    scene.field =
-        sim::MakeForest(forest, static_cast<std::uint64_t>(stream.Uniform(0.0, 0x1.0p53)));
+    scene.start = forest.start;
+    scene.field = std::move(forest.field);
     scene.map = std::make_unique<planning::OccupancyMap>(MapOptions(options));
-    scene.map->Recentre({x, y, 0.5 * forest.height});
+    scene.map->Recentre({scene.start.p.x(), scene.start.p.y(), 0.5 * forest.height});
     FillMap(scene.field, scene.map.get());
     planning::FreeSpace space;
     space.map = scene.map.get();
@@ -168,7 +127,7 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
     space.ceiling = kCeiling;
     if (space.Blocked(scene.start.p)) continue;
 
-    const Eigen::Vector3d wanted = scene.start.p + options.horizon * ahead;
+    const Eigen::Vector3d wanted = scene.start.p + options.horizon * forest.ahead;
     planning::CellIndex cell = scene.map->CellOf(wanted);
     const bool blocked = space.Blocked(cell);
     const bool found = planning::GridSearch::NearestFree(space, &cell);
@@ -189,7 +148,7 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
     return scene;
   }
   throw std::runtime_error(
-      fmt::format("replan scene {}: the start was blocked in {} draws", index, kDraws));
+      fmt::format("replan scene {}: the start was blocked in {} draws", index, kForestSceneDraws));
 }
 
 planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* replanner) {

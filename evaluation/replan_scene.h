@@ -3,39 +3,15 @@
 // project's replanner.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "touchdown/estimation/pad_prediction.h"
-#include "touchdown/planning/limits.h"
+#include "touchdown/evaluation/forest_scene.h"
 #include "touchdown/planning/occupancy_map.h"
 #include "touchdown/planning/replanner.h"
 #include "touchdown/sim/obstacle_field.h"
 
 namespace touchdown::evaluation {
-
-/// A kind of scenes: forest, limits and inflation.
-struct SceneKind {
-  std::string name;    ///< A, B, C, D
-  std::string forest;  ///< as sim::ForestOfKind
-  planning::Limits limits;
-  double inflation = 0.1;  ///< of the map [m]
-};
-
-/// The kinds A to D of the published measurements. Throws std::invalid_argument naming them.
-const SceneKind& SceneKindNamed(const std::string& name);
-const std::vector<SceneKind>& SceneKinds();
-
-/// What is varied for the growth study.
-struct SceneOptions {
-  SceneKind kind;
-  double horizon = 7.5;     ///< start to target [m]
-  double resolution = 0.1;  ///< of the map [m]
-  double density = 0.0;     ///< pillars per square metre; 0: the kind's own
-  std::uint64_t seed = 1;
-};
 
 /// An end that moves at a constant velocity: at `p` at the time `t` [s].
 class MovingTarget : public estimation::PadPrediction {
@@ -68,10 +44,9 @@ struct ReplanScene {
 planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
                                                  planning::ReplannerOptions base);
 
-/// Draws scene `index`: start at 1 m height with up to 0.8 of the speed limit within 0.4 rad of the
-/// way ahead; the end passes a point one horizon ahead with up to half the speed limit in any
-/// direction. Scenes whose start is blocked are drawn again. The same options and index give the
-/// same scene. Throws std::invalid_argument for an option out of
+/// Scene `index`: a forest scene whose end passes a point one horizon ahead with up to half the speed
+/// limit in any direction. Scenes whose start is blocked are drawn again. The same options and index
+/// give the same scene. Throws std::invalid_argument for an option out of
 /// range.
 ReplanScene DrawReplanScene(const SceneOptions& options, int index);
 
