@@ -33,7 +33,8 @@ class Trial {
         perception_(scenario, world_, seed),
         pilot_(scenario, world_.model(), world_.pad_motion(), registries, world_.vehicle()),
         clearance_(world_.config().obstacles, world_.model()),
-        judge_(LandingRule{}, scenario.timeout),
+        follow_(scenario.descent == DescentKind::kNone),
+        judge_(LandingRule{}, scenario.timeout, follow_),
         mission_clock_(kMissionRate),
         replan_clock_(scenario.planning.rate),
         sample_clock_(kSampleRate),
@@ -216,13 +217,14 @@ class Trial {
     result_.outcome = *judge_.outcome();
     result_.touchdown = judge_.touchdown();
     result_.simulated_s = world_.time();
-    if (!result_.landed()) {
+    if (!result_.succeeded()) {
       result_.detail = Explain(result_.outcome);
       if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
       if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
       result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
     }
     metrics_.Fill(&result_);
+    if (follow_) result_.following = metrics_.LastFollowing();
     result_.timing.simulated_s = world_.time();
     result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
     result_.timing.mapping_cpu_s = perception_.mapping_cpu_s();
@@ -233,6 +235,7 @@ class Trial {
   Perception perception_;
   Pilot pilot_;
   sim::TrueClearance clearance_;
+  bool follow_;  ///< no landing is asked for
   LandingJudge judge_;
   Metrics metrics_;
   SlidingMean through_air_;

@@ -41,9 +41,18 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
         fmt::format("  tilt over equilibrium  {:.1f} deg\n", t.tilt_over_equilibrium * kDegPerRad);
     text += fmt::format("  mean |error|, last 5 s {:.3f} m in x, {:.3f} m in y\n",
                         r.mean_abs_error_x_m.value_or(0.0), r.mean_abs_error_y_m.value_or(0.0));
+  } else if (r.succeeded()) {
+    text = fmt::format("followed the pad of {} for {:.2f} s (seed {})\n", scenario.name,
+                       r.simulated_s, r.seed);
   } else {
     text = fmt::format("{}: not landed on {} within {:.2f} s (seed {}). {}\n", ToString(r.outcome),
                        scenario.name, r.simulated_s, r.seed, r.detail);
+  }
+  if (r.following) {
+    text += fmt::format("  error, last 10 s       {:.3f} m in the mean, {:.3f} m at most\n",
+                        r.following->mean_error_m, r.following->max_error_m);
+    text += fmt::format("  relative speed         {:.3f} m/s in the mean\n",
+                        r.following->relative_speed_mps);
   }
   if (r.min_clearance_m) {
     text += fmt::format("  least true clearance   {:.3f} m\n", *r.min_clearance_m);
@@ -102,7 +111,7 @@ int Land(const LandArguments& arguments, const Registries& registries) {
   if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
   if (map) WriteMapFile(arguments.save_map, &*map);
   if (!arguments.plot.empty()) Draw(arguments, scenario, result, record);
-  return result.landed() ? kDone : kFellShort;
+  return result.succeeded() ? kDone : kFellShort;
 }
 
 }  // namespace

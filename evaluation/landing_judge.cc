@@ -44,6 +44,8 @@ const char* ToString(Outcome outcome) {
       return "lost_pad";
     case Outcome::kInfeasible:
       return "infeasible";
+    case Outcome::kFollowed:
+      return "followed";
     case Outcome::kTimeout:
       return "timeout";
     case Outcome::kUnstable:
@@ -76,6 +78,8 @@ const char* Explain(Outcome outcome) {
       return "Time ran out while the pad's position was not known.";
     case Outcome::kInfeasible:
       return "Time ran out while no certified plan to the pad was found.";
+    case Outcome::kFollowed:
+      return "The vehicle stayed above the pad until the time was up.";
     case Outcome::kTimeout:
       return "Time ran out before the vehicle had landed.";
     case Outcome::kUnstable:
@@ -91,8 +95,8 @@ Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::
   return pad.v_WP + pad.yaw_rate * Eigen::Vector3d(-p_PB.y(), p_PB.x(), 0.0);
 }
 
-LandingJudge::LandingJudge(const LandingRule& rule, double timeout)
-    : rule_(rule), timeout_(timeout) {}
+LandingJudge::LandingJudge(const LandingRule& rule, double timeout, bool follow)
+    : rule_(rule), timeout_(timeout), follow_(follow) {}
 
 std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   if (outcome_) return outcome_;
@@ -101,6 +105,8 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   const double forget = std::min(1.0, dt / rule_.loss_window);
   without_pad_ += forget * ((sample.pad_known ? 0.0 : 1.0) - without_pad_);
   without_plan_ += forget * ((sample.plan_valid ? 0.0 : 1.0) - without_plan_);
+  const double distance = (sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm();
+  distance_ = distance_ ? *distance_ + forget * (distance - *distance_) : distance;
 
   if (!sample.simulated || !Finite(sample)) {
     outcome_ = Outcome::kUnstable;
@@ -166,6 +172,7 @@ Outcome LandingJudge::TimeoutClass() const {
   if (touchdown_) return Outcome::kTimeout;
   if (without_pad_ > rule_.loss_share) return Outcome::kLostPad;
   if (without_plan_ > rule_.loss_share) return Outcome::kInfeasible;
+  if (follow_ && *distance_ <= rule_.following_distance) return Outcome::kFollowed;
   return Outcome::kTimeout;
 }
 

@@ -23,9 +23,10 @@ enum class Outcome {
   kDisarmedInAir,    ///< rotors stopped without contact
   kLostPad,          ///< time ran out while the vehicle did not know where the pad was
   kInfeasible,       ///< time ran out while no certified plan to the pad existed
-  kTimeout,          ///< time ran out otherwise
-  kUnstable,         ///< the simulated physics failed
-  kError,            ///< the program failed in this trial; never set by the judge
+  kFollowed,  ///< time ran out as it should: nothing more was asked than to stay above the pad
+  kTimeout,   ///< time ran out otherwise
+  kUnstable,  ///< the simulated physics failed
+  kError,     ///< the program failed in this trial; never set by the judge
 };
 
 const char* ToString(Outcome outcome);
@@ -40,13 +41,15 @@ struct LandingRule {
   double tilt = 0.698131700797731805;                   ///< 40 degrees [rad]
   double upright_tilt = 0.261799387799149431;           ///< at rest on the pad [rad]
   double tip_over_tilt = 1.04719755119659775;           ///< 60 degrees [rad]
-  double rest = 1.0;              ///< upright on the pad, disarmed, without a break [s]
-  double contact_gap = 0.1;       ///< a shorter loss of contact does not interrupt the rest [s]
-  double bounce_gap = 0.5;        ///< a longer loss of contact has left the pad [s]
-  double off_pad_distance = 2.0;  ///< a fall farther than this from the pad is a collision [m]
-  double loss_share = 0.5;        ///< share of the time without pad or plan, recent time weighted
-  double loss_window = 5.0;       ///< by exp(-age / this) [s], that turns a timeout into lost_pad
-                                  ///< or infeasible
+  double rest = 1.0;                ///< upright on the pad, disarmed, without a break [s]
+  double contact_gap = 0.1;         ///< a shorter loss of contact does not interrupt the rest [s]
+  double bounce_gap = 0.5;          ///< a longer loss of contact has left the pad [s]
+  double off_pad_distance = 2.0;    ///< a fall farther than this from the pad is a collision [m]
+  double loss_share = 0.5;          ///< share of the time without pad or plan, recent time weighted
+  double loss_window = 5.0;         ///< by exp(-age / this) [s], that turns a timeout into lost_pad
+                                    ///< or infeasible
+  double following_distance = 2.0;  ///< horizontal distance to the pad's centre, averaged with the
+                                    ///< same weights, up to which the pad was followed [m]
 };
 
 /// What the judge sees at one physics step: only truth.
@@ -85,7 +88,9 @@ Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::
 /// allocate.
 class LandingJudge {
  public:
-  LandingJudge(const LandingRule& rule, double timeout);
+  /// `timeout` in [s]. With `follow` no landing is asked for: a flight that stays above the pad until
+  /// the time-out is `kFollowed`.
+  LandingJudge(const LandingRule& rule, double timeout, bool follow = false);
 
   /// Takes the next sample (t rising). Returns the outcome once it is decided, and from then on.
   std::optional<Outcome> Observe(const JudgeSample& sample);
@@ -101,6 +106,7 @@ class LandingJudge {
 
   LandingRule rule_;
   double timeout_;
+  bool follow_;
   std::optional<Outcome> outcome_;
   std::optional<Touchdown> touchdown_;
   double t_previous_ = 0.0;
@@ -108,6 +114,7 @@ class LandingJudge {
   std::optional<double> rest_since_;
   double without_pad_ = 0.0;  // exponentially weighted shares over loss_window
   double without_plan_ = 0.0;
+  std::optional<double> distance_;  // averaged with the same weights [m]
 };
 
 }  // namespace touchdown::evaluation

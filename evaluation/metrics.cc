@@ -11,7 +11,9 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kErrorWindow = 5.0;  // the paper's [s]
+constexpr double kErrorWindow = 5.0;       // the paper's [s]
+constexpr double kFollowingWindow = 10.0;  // [s]
+constexpr double kClockSlack = 1e-6;       // [s]
 
 }  // namespace
 
@@ -25,8 +27,10 @@ void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, d
 
 void Metrics::Sample(double t, const estimation::VehicleState& vehicle,
                      const estimation::PadState& pad) {
-  recent_.push_back({t, (vehicle.p_WB - pad.p_WP).head<2>().cwiseAbs()});
-  while (recent_.front().t < t - kErrorWindow) recent_.pop_front();
+  if (!v_previous_) t_first_ = t;
+  recent_.push_back(
+      {t, (vehicle.p_WB - pad.p_WP).head<2>().cwiseAbs(), (vehicle.v_WB - pad.v_WP).norm()});
+  while (recent_.front().t < t - kFollowingWindow) recent_.pop_front();
   max_speed_ = std::max(max_speed_, vehicle.v_WB.norm());
   if (v_previous_ && t > t_previous_) {
     const double acceleration = (vehicle.v_WB - *v_previous_).norm() / (t - t_previous_);
@@ -58,9 +62,28 @@ void Metrics::Fill(TrialResult* result) const {
   }
   if (!result->touchdown || recent_.empty()) return;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const ErrorSample& sample : recent_) sum += sample.abs_error;
-  result->mean_abs_error_x_m = sum.x() / static_cast<double>(recent_.size());
-  result->mean_abs_error_y_m = sum.y() / static_cast<double>(recent_.size());
+  int count = 0;
+  for (const ErrorSample& sample : recent_) {
+    if (sample.t < recent_.back().t - kErrorWindow) continue;
+    sum += sample.abs_error;
+    ++count;
+  }
+  result->mean_abs_error_x_m = sum.x() / count;
+  result->mean_abs_error_y_m = sum.y() / count;
+}
+
+std::optional<Following> Metrics::LastFollowing() const {
+  if (t_previous_ - t_first_ < kFollowingWindow - kClockSlack) return std::nullopt;
+  Following following;
+  for (const ErrorSample& sample : recent_) {
+    const double error = sample.abs_error.norm();
+    following.mean_error_m += error;
+    following.max_error_m = std::max(following.max_error_m, error);
+    following.relative_speed_mps += sample.relative_speed;
+  }
+  following.mean_error_m /= static_cast<double>(recent_.size());
+  following.relative_speed_mps /= static_cast<double>(recent_.size());
+  return following;
 }
 
 }  // namespace touchdown::evaluation

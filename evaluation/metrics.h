@@ -31,17 +31,22 @@ class Metrics {
   /// Writes the figures into `result`; those at contact only if `touchdown` is set there.
   void Fill(TrialResult* result) const;
 
+  /// Over the last 10 s; empty if the samples span less.
+  std::optional<Following> LastFollowing() const;
+
  private:
   struct ErrorSample {
     double t;
     Eigen::Vector2d abs_error;  ///< vehicle minus pad, world axes [m]
+    double relative_speed;      ///< [m/s]
   };
-  std::deque<ErrorSample> recent_;  ///< of the last 5 s
+  std::deque<ErrorSample> recent_;  ///< of the last 10 s
   double effort_ = 0.0;
   long steps_ = 0;
   long saturated_ = 0;
   std::optional<double> clearance_;
   std::optional<Eigen::Vector3d> v_previous_;
+  double t_first_ = 0.0;
   double t_previous_ = 0.0;
   double max_speed_ = 0.0;
   double max_acceleration_ = 0.0;

@@ -32,7 +32,9 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
                                  {"mean_abs_error_x_m", "mean |error| x, last 5 s", "m", {}},
                                  {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m", {}},
                                  {"min_clearance_m", "least true clearance", "m", {}},
-                                 {"estimator_nees_position", "pad NEES (2 expected)", "", {}}};
+                                 {"estimator_nees_position", "pad NEES (2 expected)", "", {}},
+                                 {"following_error_m", "following error, last 10 s", "m", {}},
+                                 {"following_speed_mps", "relative speed, last 10 s", "m/s", {}}};
   for (const SweepRow& row : rows) {
     const TrialResult& r = row.result;
     if (r.landed()) {
@@ -44,13 +46,26 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
     }
     if (r.min_clearance_m) columns[5].values.push_back(*r.min_clearance_m);
     if (r.estimator) columns[6].values.push_back(r.estimator->nees_position_mean);
+    if (r.following && r.succeeded()) {
+      columns[7].values.push_back(r.following->mean_error_m);
+      columns[8].values.push_back(r.following->relative_speed_mps);
+    }
   }
   return columns;
 }
 
-int Landed(const std::vector<SweepRow>& rows) {
-  return static_cast<int>(
-      std::count_if(rows.begin(), rows.end(), [](const SweepRow& r) { return r.result.landed(); }));
+int Count(const std::vector<SweepRow>& rows, bool (TrialResult::*holds)() const) {
+  return static_cast<int>(std::count_if(rows.begin(), rows.end(),
+                                        [&](const SweepRow& r) { return (r.result.*holds)(); }));
+}
+
+/// What success is called: `descent` may differ from trial to trial.
+const char* SuccessWord(const std::vector<SweepRow>& rows) {
+  const auto lands = [](const SweepRow& r) {
+    return r.trial.scenario.descent != DescentKind::kNone;
+  };
+  if (std::all_of(rows.begin(), rows.end(), lands)) return "landed";
+  return std::any_of(rows.begin(), rows.end(), lands) ? "landed or followed" : "followed";
 }
 
 std::vector<double> ReplanTimes(const std::vector<SweepRow>& rows) {
@@ -75,12 +90,12 @@ Json TrialJson(const SweepRow& row) {
 
 std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& rows) {
   const int n = static_cast<int>(rows.size());
-  const int k = Landed(rows);
+  const int k = Count(rows, &TrialResult::succeeded);
   const Interval interval = ClopperPearson(k, n);
   std::string text =
-      fmt::format("{}: {} of {} landed, 95 % Clopper-Pearson [{:.1f} %, {:.1f} %], sweep seed {}\n",
-                  rows.front().trial.scenario.name, k, n, 100.0 * interval.lo, 100.0 * interval.hi,
-                  options.seed);
+      fmt::format("{}: {} of {} {}, 95 % Clopper-Pearson [{:.1f} %, {:.1f} %], sweep seed {}\n",
+                  rows.front().trial.scenario.name, k, n, SuccessWord(rows), 100.0 * interval.lo,
+                  100.0 * interval.hi, options.seed);
   text += fmt::format("  {:<28}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "", "median", "p95", "min", "max",
                       "n");
   for (const Column& column : Columns(rows)) {
@@ -94,7 +109,7 @@ std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& 
   }
   std::map<std::string, std::vector<const SweepRow*>> failures;
   for (const SweepRow& row : rows) {
-    if (!row.result.landed()) failures[ToString(row.result.outcome)].push_back(&row);
+    if (!row.result.succeeded()) failures[ToString(row.result.outcome)].push_back(&row);
   }
   for (const auto& [outcome, failed] : failures) {
     text += fmt::format("  {} x {}: {}\n", failed.size(), outcome,
@@ -109,7 +124,7 @@ std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& 
 
 Json SweepJson(const SweepOptions& options, const std::vector<SweepRow>& rows) {
   const int n = static_cast<int>(rows.size());
-  const int k = Landed(rows);
+  const int k = Count(rows, &TrialResult::landed);
   const Interval interval = ClopperPearson(k, n);
   Json json;
   json["scenario"] = rows.front().trial.scenario.name;
@@ -118,6 +133,7 @@ Json SweepJson(const SweepOptions& options, const std::vector<SweepRow>& rows) {
   json["landed"] = k;
   json["landed_fraction"] = static_cast<double>(k) / n;
   json["landed_interval_95"] = {interval.lo, interval.hi};
+  json["succeeded"] = Count(rows, &TrialResult::succeeded);
   Json summary = Json::object();
   for (const Column& column : Columns(rows)) {
     summary[column.key] = QuantilesJson(column.values);

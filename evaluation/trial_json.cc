@@ -38,6 +38,13 @@ Json EstimatorJson(const std::optional<EstimatorQuality>& quality) {
           {"samples", quality->samples}};
 }
 
+Json FollowingJson(const std::optional<Following>& following) {
+  if (!following) return nullptr;
+  return {{"mean_error_m", following->mean_error_m},
+          {"max_error_m", following->max_error_m},
+          {"relative_speed_mps", following->relative_speed_mps}};
+}
+
 Json WallClockJson(const TrialTiming& timing) {
   Json json;
   json["replan_latency_ms"] = QuantilesJson(timing.replan_wall_ms);
@@ -78,6 +85,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["mean_abs_error_last_5s_m"] = {
       {"x", OrNull(result.landed() ? result.mean_abs_error_x_m : std::nullopt)},
       {"y", OrNull(result.landed() ? result.mean_abs_error_y_m : std::nullopt)}};
+  json["following"] = FollowingJson(result.following);
   json["min_clearance_m"] = OrNull(result.min_clearance_m);
   json["simulated_s"] = result.simulated_s;
   json["effort_n2s"] = result.effort_n2s;

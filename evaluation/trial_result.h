@@ -22,6 +22,13 @@ struct EstimatorQuality {
   int samples = 0;
 };
 
+/// How well the vehicle kept above the pad over the last 10 s of a flight.
+struct Following {
+  double mean_error_m = 0.0;        ///< horizontal distance of B to the pad's centre
+  double max_error_m = 0.0;         ///< the same
+  double relative_speed_mps = 0.0;  ///< mean norm of the velocity relative to the pad
+};
+
 /// Wall-clock figures of one trial. Nothing else depends on them.
 struct TrialTiming {
   double wall_s = 0.0;         ///< the whole trial
@@ -56,9 +63,12 @@ struct TrialResult {
   std::map<std::string, int> replans_by_status;
   std::map<std::string, int> replans_by_reason;  ///< of those that made no new plan
   std::optional<EstimatorQuality> estimator;
+  std::optional<Following> following;  ///< of trials without a descent that lasted 10 s
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }
+  /// It came to what the scenario asks for: a landing, or without a descent to follow the pad.
+  bool succeeded() const { return landed() || outcome == Outcome::kFollowed; }
 };
 
 }  // namespace touchdown::evaluation

@@ -21,7 +21,8 @@ CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outc
   mean_abs_error_x_m REAL, mean_abs_error_y_m REAL, min_clearance_m REAL, simulated_s REAL,
   effort_n2s REAL, saturation_share REAL, max_speed_mps REAL, max_acceleration_mps2 REAL,
   replans INTEGER, replans_planned INTEGER, estimator_rmse_position_m REAL,
-  estimator_rmse_velocity_mps REAL, estimator_nees_position REAL);
+  estimator_rmse_velocity_mps REAL, estimator_nees_position REAL, following_mean_error_m REAL,
+  following_max_error_m REAL, following_relative_speed_mps REAL);
 CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT);
 CREATE TABLE timing(trial INTEGER PRIMARY KEY, wall_s REAL, cpu_s REAL, physics_cpu_s REAL,
   sensing_cpu_s REAL, mapping_cpu_s REAL, planning_cpu_s REAL, control_cpu_s REAL,
@@ -52,13 +53,19 @@ void WriteTrial(SqliteStatement& insert, const SweepRow& row) {
     rmse_velocity = r.estimator->rmse_velocity_mps;
     nees = r.estimator->nees_position_mean;
   }
+  OptionalReal following_mean, following_max, following_speed;
+  if (r.following) {
+    following_mean = r.following->mean_error_m;
+    following_max = r.following->max_error_m;
+    following_speed = r.following->relative_speed_mps;
+  }
   const auto planned = r.replans_by_status.find("planned");
   insert.Run(row.trial.index, static_cast<std::int64_t>(r.seed), r.landed(), ToString(r.outcome),
              r.detail, time, error, vx, vy, vz, tilt, over, mean_x, mean_y, r.min_clearance_m,
              r.simulated_s, r.effort_n2s, r.saturation_share, r.max_speed_mps,
              r.max_acceleration_mps2, r.replans,
              planned == r.replans_by_status.end() ? 0 : planned->second, rmse_position,
-             rmse_velocity, nees);
+             rmse_velocity, nees, following_mean, following_max, following_speed);
 }
 
 void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
@@ -98,7 +105,7 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
     WriteManifest(db, options, rows);
     SqliteStatement trial = db.Prepare(
         "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-        "?, ?, ?, ?)");
+        "?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement variation = db.Prepare("INSERT INTO variation VALUES(?, ?, ?)");
     SqliteStatement timing =
         db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");

@@ -249,6 +249,26 @@ TEST_F(LandingJudgeTest, TimeRunsOutWithoutAPlan) {
   EXPECT_EQ(judge_.outcome(), Outcome::kInfeasible);
 }
 
+TEST_F(LandingJudgeTest, FollowingUntilTheTimeIsUpIsWhatWasAskedFor) {
+  judge_ = LandingJudge(LandingRule{}, 20.0, true);
+  Run(30.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kFollowed);
+}
+
+TEST_F(LandingJudgeTest, FollowingFromFarOffIsNone) {
+  judge_ = LandingJudge(LandingRule{}, 20.0, true);
+  sample_.vehicle.p_WB.x() = 4.0;
+  Run(30.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kTimeout);
+}
+
+TEST_F(LandingJudgeTest, FollowingWithoutAPlanIsInfeasible) {
+  judge_ = LandingJudge(LandingRule{}, 20.0, true);
+  sample_.plan_valid = false;
+  Run(30.0);
+  EXPECT_EQ(judge_.outcome(), Outcome::kInfeasible);
+}
+
 TEST_F(LandingJudgeTest, StayingArmedOnThePadIsNoLanding) {
   Touch();
   Run(30.0);

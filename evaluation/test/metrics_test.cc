@@ -28,6 +28,25 @@ TEST(Metrics, TheErrorIsAveragedOverTheLastFiveSecondsOnly) {
   EXPECT_NEAR(*result.min_clearance_m, -7.0, 1e-12);
 }
 
+TEST(Metrics, FollowingIsOverTheLastTenSecondsAndNotLess) {
+  Metrics metrics;
+  estimation::VehicleState vehicle;
+  estimation::PadState pad;
+  pad.v_WP = {1.0, 0.0, 0.0};
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.02 * i;
+    // 100 m away at first; then 0.3 m, once 0.5 m, at half a metre per second too slow.
+    vehicle.p_WB = {t < 9.97 ? 100.0 : 0.0, i == 800 ? -0.5 : -0.3, 1.7};
+    vehicle.v_WB = {0.5, 0.0, 0.0};
+    metrics.Sample(t, vehicle, pad);
+    EXPECT_EQ(metrics.LastFollowing().has_value(), i >= 500) << t;
+  }
+  const Following following = *metrics.LastFollowing();
+  EXPECT_NEAR(following.mean_error_m, 0.3 + 0.2 / 501.0, 1e-9);
+  EXPECT_NEAR(following.max_error_m, 0.5, 1e-12);
+  EXPECT_NEAR(following.relative_speed_mps, 0.5, 1e-12);
+}
+
 TEST(Metrics, FieldsAtContactStayEmptyWithoutContact) {
   Metrics metrics;
   metrics.Sample(0.0, {}, {});

@@ -155,6 +155,17 @@ def test_land_json_is_one_document_with_every_field(run):
         assert key in document["wall_clock"]
 
 
+def test_following_is_status_0_and_says_how_well(run):
+    follow = ("land", "open", "--set", "descent=none", "--set", "timeout=25", "--set", "pad.motion=line")
+    done = run(*follow, "--json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    document = json.loads(done.stdout)
+    assert document["landed"] is False and document["outcome"] == "followed"
+    following = document["following"]
+    assert 0.0 < following["mean_error_m"] <= following["max_error_m"] < 0.05
+    assert "followed the pad of open" in run(*follow).stdout
+
+
 def test_the_same_seed_twice_is_the_same_document(run):
     documents = []
     for _ in range(2):
