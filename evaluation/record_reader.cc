@@ -74,7 +74,7 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
                  static_cast<std::int64_t>(plans->size()));
     ReplanOutcome& r = plans->emplace_back().result;
     r.status = rows.Named(planning::ReplanStatus::kUnsafe, planning::ToString);
-    r.reason = rows.Named(planning::ReplanReason::kLimitsExceeded, planning::ToString);
+    r.reason = rows.Named(planning::ReplanReason::kAtGoal, planning::ToString);
     r.from_odometry = rows.Flag();
     knots.push_back({rows.Number(), 0.0, {}});
     knots.back().h = rows.Number();

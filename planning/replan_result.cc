@@ -49,6 +49,8 @@ const char* ToString(ReplanReason reason) {
       return "end_too_fast";
     case ReplanReason::kLimitsExceeded:
       return "limits_exceeded";
+    case ReplanReason::kAtGoal:
+      return "at_goal";
   }
   return "unknown";
 }
@@ -99,6 +101,8 @@ const char* Explain(ReplanReason reason) {
              "interior.";
     case ReplanReason::kLimitsExceeded:
       return "The curve still exceeds a limit after every re-timing.";
+    case ReplanReason::kAtGoal:
+      return "The goal is nearer than the baseline makes plans for.";
   }
   return "unknown";
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -74,6 +75,7 @@ enum class ReplanReason {
   kUnobserved,        ///< too fast to stop before space that was never observed
   kEndTooFast,        ///< hard limits leave no interior: the pad moves near the speed limit
   kLimitsExceeded,    ///< still beyond a limit after every re-timing round
+  kAtGoal,            ///< the baseline only: nearer to the goal than it makes plans for
 };
 
 const char* ToString(ReplanStatus status);
@@ -125,6 +127,9 @@ class PathList {
 struct ReplanResult {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
+  /// How the EGO-Planner baseline calls the outcome of its plan call; empty if it made none, and
+  /// with the landing planner.
+  std::string_view detail;
   bool from_odometry = false;  ///< started at the vehicle, not at the old plan
   UniformBspline curve;        ///< what is flown from t_start on
   Certificate certificate;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "touchdown/planning/flatness.h"
+#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/replan_result.h"
+
+namespace touchdown::planning {
+
+/// What a vehicle that lands asks of a planner: it plans, re-plans and holds the committed
+/// trajectory. One instance per vehicle; not thread-safe; different instances are independent.
+class Planner {
+ public:
+  virtual ~Planner() = default;
+
+  /// The vehicle hovers at p_W from t on: the first committed trajectory.
+  virtual void CommitHover(const Eigen::Vector3d& p_W, double t) = 0;
+
+  /// One replanning step against the map. The result stays valid until the next call.
+  virtual const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) = 0;
+
+  /// Comes to rest and stays, for want of a pad to go to, or with `climb` > 0 [m] that much higher.
+  /// `input.pad` and `input.endpoint` are not used.
+  virtual const ReplanResult& Rest(const ReplanInput& input, double climb,
+                                   const OccupancyMap& map) = 0;
+
+  /// The committed reference at time t (yaw fields zero). Does not allocate.
+  virtual FlatState Reference(double t) const = 0;
+};
+
+}  // namespace touchdown::planning
