@@ -15,6 +15,7 @@
 #include "touchdown/evaluation/metrics.h"
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/pilot.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/sim/true_clearance.h"
 #include "touchdown/solvers/thread_clock.h"
@@ -36,7 +37,7 @@ class Trial {
         follow_(scenario.descent == DescentKind::kNone),
         judge_(LandingRule{}, scenario.timeout, follow_),
         mission_clock_(kMissionRate),
-        replan_clock_(scenario.planning.rate),
+        replan_clock_(PlannerRate(scenario)),
         sample_clock_(kSampleRate),
         record_(record),
         samples_(samples) {
@@ -118,7 +119,8 @@ class Trial {
     ++result_.replans;
     ++result_.replans_by_status[planning::ToString(plan->status)];
     if (plan->reason != planning::ReplanReason::kNone) {
-      ++result_.replans_by_reason[planning::ToString(plan->reason)];
+      const std::string reason(plan->detail);
+      ++result_.replans_by_reason[reason.empty() ? planning::ToString(plan->reason) : reason];
     }
     const planning::StageTimes::Span& total = plan->times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);

@@ -98,9 +98,20 @@ void PrintBackends(const Json& list) {
 }
 
 Json ListPlanners() {
-  const Scenario defaults;
-  return Json::array({{{"name", FindScenarioKey("planner")->get(defaults)},
-                       {"description", "moving-endpoint B-spline landing planner"}}});
+  const std::pair<PlannerKind, const char*> planners[] = {
+      {PlannerKind::kLanding, "moving-endpoint B-spline landing planner"},
+      {PlannerKind::kEgo,
+       "EGO-Planner baseline as published; the pad's position as a goal at rest"},
+      {PlannerKind::kEgoVelocity, "the same with the pad's velocity at the goal"},
+  };
+  Json list = Json::array();
+  Scenario scenario;
+  for (const auto& [kind, description] : planners) {
+    scenario.planner = kind;
+    list.push_back(
+        {{"name", FindScenarioKey("planner")->get(scenario)}, {"description", description}});
+  }
+  return list;
 }
 
 Json ListTerms(const Registries& registries) {

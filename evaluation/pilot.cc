@@ -59,12 +59,12 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
     : scenario_(scenario),
       model_(model),
       oracle_(truth),
-      replanner_(PlannerOptions(scenario, model, registries.terms), registries.backends),
+      planner_(MakePlanner(scenario, model, registries)),
       controller_(control::MakeController(
           scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
           TrackingOptions(scenario))),
       mixer_(model) {
-  replanner_.CommitHover(start.p_WB, start.t);
+  planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
   yaw_t_ = start.t;
   heading_wanted_ = yaw_.yaw;
@@ -125,9 +125,13 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
   const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
+  const bool idle = scenario_.planner != PlannerKind::kLanding && result.detail.empty();
+  if (idle) return nullptr;
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  last_planned_ = result.status == planning::ReplanStatus::kPlanned;
+  // Where there is nothing left to plan, no plan is missing.
+  last_planned_ = result.status == planning::ReplanStatus::kPlanned ||
+                  result.reason == planning::ReplanReason::kAtGoal;
   has_plan_ = last_planned_ || result.status == planning::ReplanStatus::kKept;
   if (last_planned_) planned_t_ = vehicle.t;
   return &result;
@@ -154,7 +158,7 @@ const planning::ReplanResult& Pilot::PlanToPad(const estimation::PadFilter& filt
   request.input.pad =
       oracle ? static_cast<const estimation::PadPrediction*>(&oracle_) : &prediction;
   replan_.pad = request.input.pad->At(request.input.t_now);
-  const planning::ReplanResult& result = replanner_.Replan(request.input, map);
+  const planning::ReplanResult& result = planner_->Replan(request.input, map);
   request.input.pad = nullptr;  // the prediction ends with this call
   return result;
 }
@@ -162,7 +166,7 @@ const planning::ReplanResult& Pilot::PlanToPad(const estimation::PadFilter& filt
 const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& map) {
   replan_.request.rest_climb = RestClimb();
   replan_.request.prediction.source = PredictionSource::kNone;
-  return replanner_.Rest(replan_.request.input, *replan_.request.rest_climb, map);
+  return planner_->Rest(replan_.request.input, *replan_.request.rest_climb, map);
 }
 
 control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) const {
@@ -171,21 +175,28 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) con
 }
 
 planning::FlatState Pilot::Reference(double t) const {
-  planning::FlatState reference = replanner_.Reference(t);
+  planning::FlatState reference = planner_->Reference(t);
   // The heading was stepped to the end of the mission's period: go back from there.
   reference.yaw = estimation::WrapAngle(yaw_.yaw - yaw_.rate * (yaw_t_ - t));
   reference.yaw_rate = yaw_.rate;
   return reference;
 }
 
+planning::ReplannerState Pilot::replanner_state() const {
+  const auto* replanner = dynamic_cast<const planning::Replanner*>(planner_.get());
+  return replanner != nullptr ? replanner->state() : planning::ReplannerState{};
+}
+
 bool Pilot::plan_valid(double t) const {
-  return !requested_t_ || (planned_t_ && t - *planned_t_ <= parameters_.plan_timeout);
+  if (!requested_t_) return true;
+  // A planner that is not asked for a new plan all the time still flies its last one.
+  return planned_t_ && (last_planned_ || t - *planned_t_ <= parameters_.plan_timeout);
 }
 
 double Pilot::DesiredHeading(const estimation::VehicleState& vehicle,
                              const estimation::PadFilter& filter) const {
   const Eigen::Vector3d ahead =
-      replanner_.Reference(vehicle.t + kLookAhead).p_WB - replanner_.Reference(vehicle.t).p_WB;
+      planner_->Reference(vehicle.t + kLookAhead).p_WB - planner_->Reference(vehicle.t).p_WB;
   if (ahead.head<2>().norm() > kLookDistance) return std::atan2(ahead.y(), ahead.x());
   if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
     return heading_wanted_;

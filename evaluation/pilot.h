@@ -13,7 +13,7 @@
 #include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/evaluation/replan_request.h"
 #include "touchdown/evaluation/scenario.h"
-#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/planner.h"
 #include "touchdown/sim/pad_motion.h"
 
 namespace touchdown::evaluation {
@@ -39,7 +39,8 @@ class Pilot {
                    double foot_force, double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
-  /// hovering or disarmed. The result is the replanner's until the next.
+  /// hovering or disarmed, and where the planner had nothing to do. Call at PlannerRate. The result
+  /// is the planner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
                                        const planning::OccupancyMap& map);
@@ -52,8 +53,8 @@ class Pilot {
 
   const control::MissionOutputs& mission() const { return mission_; }
   const PilotReplan& last_replan() const { return replan_; }
-  /// What the replanner remembers before its next step. Allocates.
-  planning::ReplannerState replanner_state() const { return replanner_.state(); }
+  /// What the landing planner remembers before its next step; empty with the baseline. Allocates.
+  planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;
 
  private:
@@ -70,7 +71,7 @@ class Pilot {
   Scenario scenario_;
   estimation::VehicleModel model_;
   sim::OraclePadPrediction oracle_;
-  planning::Replanner replanner_;
+  std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
   control::Mixer mixer_;
   control::MissionParameters parameters_;
@@ -81,7 +82,7 @@ class Pilot {
   double heading_wanted_ = 0.0;
   PilotReplan replan_;
   bool has_plan_ = false;
-  bool last_planned_ = false;          ///< the last replanning step made a new plan
+  bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
   std::optional<double> planned_t_;    ///< when the last new plan was made
   std::optional<double> requested_t_;  ///< since when plans are asked for without a break
   double measured_latency_ = 0.0;      ///< of the last replanning step [s]

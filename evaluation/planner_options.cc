@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a scenario's keys to the replanner's options.
+// From a scenario's keys to the planner's options.
 #include "touchdown/evaluation/planner_options.h"
 
 #include <algorithm>
@@ -12,6 +12,11 @@ namespace {
 
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kFeetAboveGround = 0.3;  // away from the pad [m]
+
+planning::Limits LimitsOf(const Scenario& scenario) {
+  const double of_tilt = estimation::kGravity * std::tan(scenario.limits.tilt_deg * kRadPerDeg);
+  return {scenario.limits.speed, std::min(scenario.limits.acceleration, of_tilt)};
+}
 
 }  // namespace
 
@@ -56,8 +61,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   problem.vehicle.tilt_max = scenario.limits.tilt_deg * kRadPerDeg;
   options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
                                                                   : planning::ArrivalMode::kFixed;
-  const double of_tilt = estimation::kGravity * std::tan(scenario.limits.tilt_deg * kRadPerDeg);
-  options.limits = {scenario.limits.speed, std::min(scenario.limits.acceleration, of_tilt)};
+  options.limits = LimitsOf(scenario);
   options.ceiling_height = scenario.planning.ceiling;
   // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
   const double period = 1.0 / scenario.planning.rate;
@@ -65,6 +69,40 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
       period + (scenario.planning.latency.measured ? period : 1e-3 * scenario.planning.latency.ms);
   options.floor_height = LowestPlan(model);
   return options;
+}
+
+planning::EgoPlannerOptions EgoPlannerOptionsOf(const Scenario& scenario,
+                                                const estimation::VehicleModel& model) {
+  planning::EgoPlannerOptions options;
+  const planning::Limits limits = LimitsOf(scenario);
+  options.plan.max_speed = limits.speed;
+  options.plan.max_acceleration = limits.acceleration;
+  options.plan.horizon = scenario.ego.horizon;
+  options.plan.control_point_distance = scenario.ego.control_point_distance;
+  options.plan.clearance = scenario.ego.clearance;
+  options.plan.replan_distance = scenario.ego.replan_distance;
+  options.plan.no_replan_distance = scenario.ego.no_replan_distance;
+  options.plan.emergency_time = scenario.ego.emergency_time;
+  options.goal_rate = scenario.ego.goal_rate;
+  options.goal_velocity = scenario.planner == PlannerKind::kEgoVelocity;
+  options.floor_height = LowestPlan(model);
+  options.ceiling_height = scenario.planning.ceiling;
+  return options;
+}
+
+std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
+                                               const estimation::VehicleModel& model,
+                                               const Registries& registries) {
+  if (scenario.planner != PlannerKind::kLanding) {
+    return std::make_unique<planning::EgoPlanner>(EgoPlannerOptionsOf(scenario, model));
+  }
+  return std::make_unique<planning::Replanner>(PlannerOptions(scenario, model, registries.terms),
+                                               registries.backends);
+}
+
+double PlannerRate(const Scenario& scenario) {
+  return scenario.planner == PlannerKind::kLanding ? scenario.planning.rate
+                                                   : planning::EgoPlanner::kRate;
 }
 
 double LongestLatency(const Scenario& scenario) {

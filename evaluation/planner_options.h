@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+
 #include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/evaluation/scenario.h"
+#include "touchdown/planning/ego/ego_planner.h"
 #include "touchdown/planning/replanner.h"
 
 namespace touchdown::evaluation {
@@ -11,6 +14,20 @@ namespace touchdown::evaluation {
 planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                                           const estimation::VehicleModel& model,
                                           const planning::TermRegistry& terms);
+
+/// What the EGO-Planner baseline is told: its own parameters, the vehicle's limits per axis, and the
+/// floor and ceiling that the replanner has.
+planning::EgoPlannerOptions EgoPlannerOptionsOf(const Scenario& scenario,
+                                                const estimation::VehicleModel& model);
+
+/// The planner that the scenario asks for.
+std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
+                                               const estimation::VehicleModel& model,
+                                               const Registries& registries);
+
+/// How often it is to be called [Hz]: the landing planner at planning.rate, the baseline at the rate
+/// of its state machine.
+double PlannerRate(const Scenario& scenario);
 
 /// The scenario's terms.<name>.* as the planner takes them.
 planning::TermSettings TermSettingsOf(const std::string& name,

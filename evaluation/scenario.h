@@ -18,7 +18,7 @@ enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };
 enum class DescentKind { kNone, kVertical };
-enum class PlannerKind { kLanding };
+enum class PlannerKind { kLanding, kEgo, kEgoVelocity };
 enum class SensingKind { kFast };
 enum class OwnStateKind { kTrue };
 enum class ArrivalKind { kFixed, kFree };
@@ -96,6 +96,17 @@ struct Scenario {
     double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
     double ceiling = 10.0;    ///< the body's origin stays below this [m]
   } planning;
+
+  /// Of the EGO-Planner baseline; defaults as published.
+  struct Ego {
+    double goal_rate = 5.0;               ///< the pad's position is sent as a goal so often [Hz]
+    double horizon = 7.5;                 ///< [m]
+    double control_point_distance = 0.4;  ///< [m]
+    double clearance = 0.5;               ///< beyond the inflated surface [m]
+    double replan_distance = 1.5;         ///< [m]
+    double no_replan_distance = 2.0;      ///< [m]
+    double emergency_time = 1.0;          ///< [s]
+  } ego;
 
   struct Solver {
     std::string backend = "banded";

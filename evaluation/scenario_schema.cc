@@ -151,7 +151,11 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Choice("descent", {"none", "vertical"},
                         "none follows above the pad, vertical approaches and then sinks over it",
                         AT(descent)));
-  keys.push_back(Choice("planner", {"landing"}, "planner", AT(planner)));
+  keys.push_back(
+      Choice("planner", {"landing", "ego", "ego-velocity"},
+             "landing: this project's; ego: the EGO-Planner baseline, at rest at the pad; "
+             "ego-velocity: the same with the pad's velocity at the end",
+             AT(planner)));
   keys.push_back(Number<Scenario>("planning.rate", Above(0, 100, "Hz"), "rate of replanning",
                                   AT(planning.rate)));
   const ValueRange latency = In(0, 1000, "ms");
@@ -179,8 +183,8 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
                                   "flight ceiling of the vehicle's centre above the ground; above "
                                   "the start and the height at which the pad is followed",
                                   AT(planning.ceiling)));
-  keys.push_back(Text("solver.backend", "a name of `touchdown list backends`", "optimiser",
-                      AT(solver.backend)));
+  keys.push_back(Text("solver.backend", "a name of `touchdown list backends`",
+                      "optimiser of planner landing; the baseline has lbfgs", AT(solver.backend)));
   keys.push_back(Choice("solver.arrival", {"fixed", "free"},
                         "arrival time chosen before the solve or optimised in it",
                         AT(solver.arrival)));
@@ -202,6 +206,29 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
                                   AT(limits.tilt_deg)));
 }
 
+void AddEgoKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(Number<Scenario>("ego.goal_rate", In(0.1, 100, "Hz"),
+                                  "planner ego: the pad's position is sent as a new goal so often",
+                                  AT(ego.goal_rate)));
+  keys.push_back(Number<Scenario>("ego.horizon", In(1, 50, "m"),
+                                  "planner ego: distance of the local target", AT(ego.horizon)));
+  keys.push_back(Number<Scenario>("ego.control_point_distance", In(0.05, 2, "m"),
+                                  "planner ego: nominal spacing of control points",
+                                  AT(ego.control_point_distance)));
+  keys.push_back(Number<Scenario>("ego.clearance", In(0, 3, "m"),
+                                  "planner ego: wanted beyond the grown obstacles",
+                                  AT(ego.clearance)));
+  keys.push_back(Number<Scenario>("ego.replan_distance", In(0, 50, "m"),
+                                  "planner ego: flown before it replans for no other reason",
+                                  AT(ego.replan_distance)));
+  keys.push_back(Number<Scenario>("ego.no_replan_distance", In(0, 50, "m"),
+                                  "planner ego: to the goal, nearer it replans for none",
+                                  AT(ego.no_replan_distance)));
+  keys.push_back(Number<Scenario>("ego.emergency_time", In(0, 10, "s"),
+                                  "planner ego: a collision sooner than this stops the vehicle",
+                                  AT(ego.emergency_time)));
+}
+
 void AddTrialKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(
       Number<Scenario>("timeout", In(1, 600, "s"), "a trial ends here at the latest", AT(timeout)));
@@ -220,6 +247,7 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
     AddVehicleKeys(list);
     AddSensorKeys(list);
     AddPlanningKeys(list);
+    AddEgoKeys(list);
     AddTrialKeys(list);
     return list;
   }();

@@ -97,7 +97,9 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["replans_by_reason"] = result.replans_by_reason;
   json["estimator"] = EstimatorJson(result.estimator);
   json["planner"] = FindScenarioKey("planner")->get(scenario);
-  json["backend"] = scenario.solver.backend;
+  // The baseline has a solver of its own.
+  json["backend"] =
+      scenario.planner == PlannerKind::kLanding ? scenario.solver.backend : std::string("lbfgs");
   json["scenario"] = scenario.name;
   json["seed"] = result.seed;
   json["wall_clock"] = WallClockJson(result.timing);

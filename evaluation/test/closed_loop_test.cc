@@ -113,6 +113,22 @@ TEST(ClosedLoop, TheSameSeedGivesTheSameBitsRecordedOrNot) {
   EXPECT_NE(Deterministic(scenario, a), Deterministic(scenario, other));
 }
 
+TEST(ClosedLoop, TheBaselinesFlyAndNameTheirOutcomes) {
+  for (const std::string planner : {"ego", "ego-velocity"}) {
+    const Scenario scenario = Shipped("straight_turn", {"planner=" + planner, "timeout=30"});
+    TrialRecord record;
+    const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
+    EXPECT_GT(result.replans_by_status.at("planned"), 10);
+    // Only steps with a plan call count: not all of 100 a second.
+    EXPECT_LT(result.replans, 50 * result.simulated_s);
+    EXPECT_EQ(static_cast<int>(record.plans.size()), result.replans);
+    const TrialResult again = RunTrial(scenario, 1, StandardRegistries());
+    EXPECT_EQ(Deterministic(scenario, result), Deterministic(scenario, again));
+    EXPECT_EQ(LandJson(scenario, result)["planner"], planner);
+    EXPECT_EQ(LandJson(scenario, result)["backend"], "lbfgs");
+  }
+}
+
 TEST(ClosedLoop, DescentNoneFollowsAndNeverLands) {
   const Scenario scenario = Shipped("open", {"descent=none", "timeout=25"});
   TrialRecord record;

@@ -163,7 +163,17 @@ def test_following_is_status_0_and_says_how_well(run):
     assert document["landed"] is False and document["outcome"] == "followed"
     following = document["following"]
     assert 0.0 < following["mean_error_m"] <= following["max_error_m"] < 0.05
+    baseline = json.loads(run(*follow, "--json", "--planner", "ego").stdout)
+    assert baseline["following"]["mean_error_m"] > following["mean_error_m"]
     assert "followed the pad of open" in run(*follow).stdout
+
+
+def test_a_flight_of_the_baseline_cannot_be_asked_again(run, tmp_path):
+    run("land", "open", "--planner", "ego", "--record", "x.db", *SHORT, cwd=tmp_path)
+    for command in (("plan", "--from", "x.db:0"), ("profile", "--from", "x.db")):
+        done = run(*command, cwd=tmp_path)
+        assert done.returncode == 2
+        assert one_sentence(done.stderr) and "landing" in done.stderr, done.stderr
 
 
 def test_the_same_seed_twice_is_the_same_document(run):
@@ -229,7 +239,7 @@ def test_a_sweep_is_repeated_from_its_file(run, tmp_path):
 
 @pytest.mark.parametrize(
     "what, name",
-    [("backends", "ceres"), ("planners", "landing"), ("terms", ""), ("scenarios", "straight_turn")],
+    [("backends", "ceres"), ("planners", "ego-velocity"), ("terms", ""), ("scenarios", "straight_turn")],
 )
 def test_list(run, what, name):
     entries = json.loads(run("list", what, "--json").stdout)
