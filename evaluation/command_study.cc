@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown study: the standing studies. `replan`: the replanner's latency, success and safety in
-// random forests.
+// random forests, and how faithful its baseline is.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -12,6 +12,7 @@
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/replan_report.h"
@@ -82,6 +83,41 @@ void RunGrowth(const StudyArguments& arguments, const Registries& registries,
   }
 }
 
+/// The first calls of the EGO-Planner baseline beside those of the released program.
+int RunFidelity(const StudyArguments& arguments) {
+  const std::string path = EgoQuantilesPath();
+  std::vector<EgoFidelityRow> rows;
+  for (const std::string& name : arguments.kinds) {
+    const SceneKind& kind = SceneKindNamed(name);
+    const auto results = RunEgoScenes(kind, arguments.options.count, arguments.options.scenes.seed,
+                                      Progress("kind " + name));
+    const auto compared = CompareWithUpstream(kind, results, path);
+    rows.insert(rows.end(), compared.begin(), compared.end());
+  }
+  if (arguments.json) {
+    std::cout << EgoFidelityJson(rows, arguments.options.scenes.seed).dump(2) << std::endl;
+  } else {
+    std::cout << EgoFidelityText(rows) << std::flush;
+  }
+  return Faithful(rows) ? kDone : kFellShort;
+}
+
+/// Options that say how the landing planner is set up, timed and written down.
+constexpr const char* kNotOfFidelity[] = {"--backend", "--arrival",    "--limits",     "--guides",
+                                          "--horizon", "--resolution", "--repeats",    "--pin",
+                                          "--db",      "--picture",    "--allow-debug"};
+
+void CheckFidelity(const StudyArguments& arguments, const CLI::App& command) {
+  if (arguments.parts.size() > 1) throw BadInput("--parts: fidelity stands alone.");
+  for (const char* option : kNotOfFidelity) {
+    if (command.count(option) == 0) continue;
+    throw BadInput(
+        fmt::format("{} does not go with --parts fidelity, which goes with --scenes, "
+                    "--kinds, --seed and --json.",
+                    option));
+  }
+}
+
 bool Asked(const StudyArguments& arguments, const char* part) {
   const std::vector<std::string>& parts = arguments.parts;
   return std::find(parts.begin(), parts.end(), part) != parts.end();
@@ -137,10 +173,11 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   ReplanStudyOptions& options = arguments->options;
   command
       ->add_option("--parts", arguments->parts,
-                   "Parts of the study; growth: of one kind, C unless --kinds names one alone")
+                   "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
+                   "fidelity: of the EGO-Planner baseline to the released program, stands alone")
       ->delimiter(',')
       ->type_name("safety,growth,...")
-      ->check(CLI::IsMember({"safety", "growth"}))
+      ->check(CLI::IsMember({"safety", "growth", "fidelity"}))
       ->capture_default_str();
   command->add_option("--scenes", options.count, "Scenes of each kind")
       ->check(CLI::Range(1, 100000))
@@ -179,8 +216,12 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   AddFileOption(*command, "--picture", &arguments->picture, "Draw the part growth", "F.png");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
-  command->callback([arguments, &registries, run] {
-    *run = [arguments, &registries] { return Study(*arguments, registries); };
+  command->callback([arguments, &registries, run, command] {
+    *run = [arguments, &registries, command] {
+      if (!Asked(*arguments, "fidelity")) return Study(*arguments, registries);
+      CheckFidelity(*arguments, *command);
+      return RunFidelity(*arguments);
+    };
   });
 }
 

@@ -44,6 +44,11 @@ std::vector<std::string> PythonDirectories() {
                               fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "python"});
 }
 
+std::vector<std::string> DataDirectories() {
+  return ExistingDirectories({ProgramDirectory() / "../share/touchdown/data",
+                              fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "data"});
+}
+
 std::string FindScenario(const std::string& name_or_path) {
   std::error_code ignored;
   if (fs::is_regular_file(name_or_path, ignored)) return name_or_path;

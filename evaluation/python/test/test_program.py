@@ -176,6 +176,16 @@ def test_a_flight_of_the_baseline_cannot_be_asked_again(run, tmp_path):
         assert one_sentence(done.stderr) and "landing" in done.stderr, done.stderr
 
 
+def test_fidelity_of_the_baseline_is_a_part_of_its_own(run):
+    done = run("study", "replan", "--parts", "fidelity", "--kinds", "B", "--scenes", "40", "--json")
+    document = json.loads(done.stdout)
+    assert done.returncode == (0 if document["met"] else 1)
+    assert {row["kind"] for row in document["rows"]} == {"B"}
+    for wrong in (("--db", "x.db"), ("--parts", "fidelity,safety")):
+        done = run("study", "replan", "--parts", "fidelity", *wrong)
+        assert done.returncode == 2 and one_sentence(done.stderr), done.stderr
+
+
 def test_the_same_seed_twice_is_the_same_document(run):
     documents = []
     for _ in range(2):
