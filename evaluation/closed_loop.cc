@@ -32,7 +32,8 @@ class Trial {
         TrialRecord* record, TrialSamples* samples)
       : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
         perception_(scenario, world_, seed),
-        pilot_(scenario, world_.model(), world_.pad_motion(), registries, world_.vehicle()),
+        pilot_(scenario, world_.model(), world_.pad_motion(), registries, world_.vehicle(),
+               perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
         follow_(scenario.descent == DescentKind::kNone),
         judge_(LandingRule{}, scenario.timeout, follow_),

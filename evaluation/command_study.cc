@@ -13,6 +13,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
+#include "touchdown/evaluation/forest_flight_report.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/replan_report.h"
@@ -26,6 +27,8 @@ struct StudyArguments {
   std::string study;
   std::vector<std::string> parts = {"safety"};
   std::vector<std::string> kinds = {"A", "B", "C", "D"};
+  std::vector<std::string> planners = {"landing", "ego"};
+  int flights = 100;
   std::string arrival = "fixed";
   std::string limits = "soft";
   ReplanStudyOptions options;
@@ -38,19 +41,21 @@ struct StudyArguments {
 
 class Progress {
  public:
-  explicit Progress(std::string what) : what_(std::move(what)) {}
+  explicit Progress(std::string what, const char* of = "scenes")
+      : what_(std::move(what)), of_(of) {}
   void operator()(int done, int all) {
     const auto now = Clock::now();
     if (now - last_ < std::chrono::seconds(2) && done < all) return;
     last_ = now;
     const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{}: {} of {} scenes, {:.0f} s left", what_, done, all,
+    spdlog::info("{}: {} of {} {}, {:.0f} s left", what_, done, all, of_,
                  elapsed / done * (all - done));
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   std::string what_;
+  const char* of_;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;
 };
@@ -102,19 +107,62 @@ int RunFidelity(const StudyArguments& arguments) {
   return Faithful(rows) ? kDone : kFellShort;
 }
 
-/// Options that say how the landing planner is set up, timed and written down.
-constexpr const char* kNotOfFidelity[] = {"--backend", "--arrival",    "--limits",     "--guides",
-                                          "--horizon", "--resolution", "--repeats",    "--pin",
-                                          "--db",      "--picture",    "--allow-debug"};
+/// Whole flights, of this project's planner and of the baseline.
+int RunFlights(const StudyArguments& arguments, const Registries& registries) {
+  CheckOutputs(arguments.db, "");
+  std::vector<ForestFlightPart> parts;
+  bool all_reached = true;
+  for (const std::string& kind : arguments.kinds) {
+    for (const std::string& planner : arguments.planners) {
+      ForestFlightPart part;
+      part.options.kind = SceneKindNamed(kind);
+      part.options.ego = planner == "ego";
+      part.options.replanner = arguments.options.replanner;
+      part.options.replanner.problem.terms = registries.terms;
+      part.options.seed = arguments.options.scenes.seed;
+      Progress progress(fmt::format("kind {}, {}", kind, planner), "flights");
+      for (int index = 0; index < arguments.flights; ++index) {
+        part.flights.push_back(FlyThroughForest(part.options, registries.backends, index));
+        const bool reached = part.flights.back().outcome == FlightOutcome::kReached;
+        all_reached = all_reached && (reached || part.options.ego);
+        progress(index + 1, arguments.flights);
+      }
+      parts.push_back(std::move(part));
+    }
+  }
+  if (arguments.json) {
+    std::cout << ForestFlightJson(parts).dump(2) << std::endl;
+  } else {
+    std::cout << ForestFlightText(parts) << std::flush;
+  }
+  if (!arguments.db.empty()) WriteForestFlights(arguments.db, parts);
+  return all_reached ? kDone : kFellShort;
+}
 
-void CheckFidelity(const StudyArguments& arguments, const CLI::App& command) {
-  if (arguments.parts.size() > 1) throw BadInput("--parts: fidelity stands alone.");
-  for (const char* option : kNotOfFidelity) {
-    if (command.count(option) == 0) continue;
-    throw BadInput(
-        fmt::format("{} does not go with --parts fidelity, which goes with --scenes, "
-                    "--kinds, --seed and --json.",
-                    option));
+/// A part that stands alone, and the options that go with it.
+struct LonePart {
+  const char* name;
+  std::vector<const char*> options;
+};
+
+const std::vector<LonePart>& LoneParts() {
+  static const std::vector<LonePart> parts = {
+      {"fidelity", {"--parts", "--scenes", "--kinds", "--seed", "--json"}},
+      {"flights",
+       {"--parts", "--flights", "--planners", "--kinds", "--seed", "--backend", "--guides", "--db",
+        "--json"}}};
+  return parts;
+}
+
+void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const CLI::App& command) {
+  if (arguments.parts.size() > 1)
+    throw BadInput(fmt::format("--parts: {} stands alone.", part.name));
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    const bool fits =
+        std::find(part.options.begin(), part.options.end(), name) != part.options.end();
+    if (option->count() == 0 || fits) continue;
+    throw BadInput(fmt::format("{} does not go with --parts {}.", name, part.name));
   }
 }
 
@@ -172,12 +220,14 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   const auto arguments = std::make_shared<StudyArguments>();
   ReplanStudyOptions& options = arguments->options;
   command
-      ->add_option("--parts", arguments->parts,
-                   "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
-                   "fidelity: of the EGO-Planner baseline to the released program, stands alone")
+      ->add_option(
+          "--parts", arguments->parts,
+          "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
+          "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
+          "stand alone")
       ->delimiter(',')
       ->type_name("safety,growth,...")
-      ->check(CLI::IsMember({"safety", "growth", "fidelity"}))
+      ->check(CLI::IsMember({"safety", "growth", "flights", "fidelity"}))
       ->capture_default_str();
   command->add_option("--scenes", options.count, "Scenes of each kind")
       ->check(CLI::Range(1, 100000))
@@ -186,6 +236,14 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       ->delimiter(',')
       ->type_name("A,B,...")
       ->check(CLI::IsMember({"A", "B", "C", "D"}))
+      ->capture_default_str();
+  command->add_option("--flights", arguments->flights, "Flights of each kind and planner")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--planners", arguments->planners, "Whose flights")
+      ->delimiter(',')
+      ->type_name("landing,ego")
+      ->check(CLI::IsMember({"landing", "ego"}))
       ->capture_default_str();
   command->add_option("--backend", options.replanner.backend, "Solver backend")
       ->check(CLI::IsMember(BackendNames(registries)))
@@ -218,9 +276,16 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
   command->callback([arguments, &registries, run, command] {
     *run = [arguments, &registries, command] {
-      if (!Asked(*arguments, "fidelity")) return Study(*arguments, registries);
-      CheckFidelity(*arguments, *command);
-      return RunFidelity(*arguments);
+      for (const char* option : {"--flights", "--planners"}) {
+        if (command->count(option) == 0 || Asked(*arguments, "flights")) continue;
+        throw BadInput(fmt::format("{} goes with --parts flights.", option));
+      }
+      for (const LonePart& part : LoneParts()) {
+        if (Asked(*arguments, part.name)) CheckLonePart(part, *arguments, *command);
+      }
+      if (Asked(*arguments, "fidelity")) return RunFidelity(*arguments);
+      if (Asked(*arguments, "flights")) return RunFlights(*arguments, registries);
+      return Study(*arguments, registries);
     };
   });
 }

@@ -55,7 +55,7 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
              const sim::PadMotion& truth, const Registries& registries,
-             const estimation::VehicleState& start)
+             const estimation::VehicleState& start, const planning::OccupancyMap& map)
     : scenario_(scenario),
       model_(model),
       oracle_(truth),
@@ -64,6 +64,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
           scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
           TrackingOptions(scenario))),
       mixer_(model) {
+  planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
   yaw_t_ = start.t;

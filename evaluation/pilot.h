@@ -32,7 +32,7 @@ class Pilot {
   /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
   Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
         const sim::PadMotion& truth, const Registries& registries,
-        const estimation::VehicleState& start);
+        const estimation::VehicleState& start, const planning::OccupancyMap& map);
 
   /// Mission and heading. Call at a fixed rate.
   void StepMission(const estimation::VehicleState& vehicle, const estimation::PadFilter& filter,

@@ -15,6 +15,10 @@ class Planner {
  public:
   virtual ~Planner() = default;
 
+  /// Makes room for maps with this one's window; else the first step that searches does, which takes
+  /// it long.
+  virtual void Prepare(const OccupancyMap& /*map*/) {}
+
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   virtual void CommitHover(const Eigen::Vector3d& p_W, double t) = 0;
 

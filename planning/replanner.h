@@ -37,9 +37,7 @@ class Replanner : public Planner {
   Replanner(Replanner&&) noexcept;
   Replanner& operator=(Replanner&&) noexcept;
 
-  /// Makes room for maps with this one's window; else the first step that searches does, which takes
-  /// it long.
-  void Prepare(const OccupancyMap& map);
+  void Prepare(const OccupancyMap& map) override;
 
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
