@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "touchdown/planning/warm_start.h"
+
 namespace touchdown::planning {
 
 namespace {
@@ -40,7 +42,10 @@ LandingProblem::LandingProblem(int segments, const LandingProblemOptions& option
     : segments_(segments),
       max_pairs_(options.max_pairs_per_point * (segments + 3)),
       max_obstacles_(options.max_obstacles),
+      free_end_acceleration_(options.free_end_acceleration),
       lift_(std::make_shared<BoundaryLift>(segments, options.free_end_acceleration)),
+      shifted_(3, segments + 3),
+      between_(3, segments + 3),
       problem_(Shape(segments, options)) {
   context_.segments = segments;
   context_.limits = options.limits;
@@ -176,6 +181,28 @@ void LandingProblem::Guess(Eigen::VectorXd* y) const {
   y->setZero(view_->num_variables());
   if (!view_->lift().offset) lift_->At(context_.interval, y->data(), nullptr, nullptr);
   if (view_->free_interval()) (*y)[y->size() - 1] = context_.interval;
+}
+
+// What is left of the previous curve without the quintic between its own ends is put on the quintic
+// between the new ones, which the view's lift adds.
+void LandingProblem::WarmGuess(const UniformBspline& previous, Eigen::VectorXd* y) {
+  Guess(y);
+  const solvers::AffineLift& lift = view_->lift();
+  if (!lift.offset) return;
+  const double h = context_.interval;
+  const int n = segments_ + 3;
+  ShiftedControlPoints(previous, context_.t0, segments_ * h, shifted_);
+  const auto at_knot = [&](int k) -> SplineState {
+    const auto q0 = shifted_.col(k), q1 = shifted_.col(k + 1), q2 = shifted_.col(k + 2);
+    return {(q0 + 4.0 * q1 + q2) / 6.0, (q2 - q0) / (2.0 * h), (q0 - 2.0 * q1 + q2) / (h * h)};
+  };
+  SplineState end = at_knot(segments_);
+  if (free_end_acceleration_) end.a.setZero();  // its block holds all of it
+  HermiteControlPoints(at_knot(0), end, segments_ * h, between_);
+  for (int i = 0; i < n; ++i) {
+    if (lift.block[i] < 0 || lift.coefficient[i] != 1.0) continue;
+    y->segment<3>(3 * lift.block[i]) = shifted_.col(i) - between_.col(i);
+  }
 }
 
 UniformBspline LandingProblem::Curve(const Eigen::VectorXd& y) const {

@@ -86,6 +86,10 @@ class LandingProblem {
   Eigen::VectorXd Guess() const;
   /// The same without allocation, once `y` has this size.
   void Guess(Eigen::VectorXd* y) const;
+  /// The variables at the rest of `previous`, stretched to the present duration and moved to the present
+  /// ends (planning/warm_start.h): the shape stays, wherever start and pad are now. With an explicit
+  /// endpoint as Guess. Does not allocate once `y` has this size.
+  void WarmGuess(const UniformBspline& previous, Eigen::VectorXd* y);
   /// The spline at the view's variables y. Allocates its control points.
   UniformBspline Curve(const Eigen::VectorXd& y) const;
   /// The same without allocation, once `curve` has had this many control points.
@@ -99,6 +103,7 @@ class LandingProblem {
   int segments_;
   int max_pairs_;
   int max_obstacles_;
+  bool free_end_acceleration_;
   std::shared_ptr<BoundaryLift> lift_;
   LandingContext context_;
   std::vector<ObstaclePair> pairs_;                     // what context_ points to
@@ -106,6 +111,7 @@ class LandingProblem {
   std::vector<ContextUser*> context_users_;             // among the problem's terms
   std::vector<ContextUser*> clearances_, soft_limits_;  // among these
   std::vector<double> x_;                               // all control points
+  ControlPoints shifted_, between_;  // of a warm guess: the curve, the quintic between its ends
   solvers::Problem problem_;
   std::unique_ptr<solvers::View> view_;
 };

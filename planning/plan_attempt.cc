@@ -43,12 +43,6 @@ constexpr double kFloorMargin = 0.05;   // kept from floor and ceiling [m]
 /// A way that is found only after so many cells is a long one.
 constexpr int kOtherWayExpansions = 3000;
 
-int SegmentsFor(double duration) {
-  const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
-  const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
-  return std::clamp(rounded, kFewestSegments, kMostSegments);
-}
-
 /// Without what the pairs themselves cost: their weight grows from round to round.
 double CostOfShape(const solvers::SolverSummary& solver) {
   double cost = solver.cost;
@@ -107,6 +101,12 @@ double PairClearance(const LandingProblemOptions& options) {
 
 }  // namespace
 
+int SegmentsFor(double duration) {
+  const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
+  const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
+  return std::clamp(rounded, kFewestSegments, kMostSegments);
+}
+
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival) {
   LandingProblemOptions problem = options.problem;
   problem.arrival = arrival;
@@ -127,6 +127,13 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
     PrepareProblem(segments, ArrivalMode::kFixed);
     if (options.arrival == ArrivalMode::kFree) PrepareProblem(segments, ArrivalMode::kFree);
   }
+  // Room for all that usually comes.
+  for (GuidePath* guide : {&first_guide_, &guide_}) guide->reserve(1024);
+  pairs_.reserve(static_cast<std::size_t>(options.problem.max_pairs_per_point) *
+                 kMostControlPoints);
+  bound_.reserve(kMostControlPoints);
+  runs_.reserve(64);
+  barriers_.reserve(8);
   for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
     curve->Reserve(kMostControlPoints);
   }
@@ -146,7 +153,7 @@ void PlanAttempt::PrepareProblem(int segments, ArrivalMode arrival) {
   }
   prepared.backend->Prepare(prepared.problem->view());
   prepared.start.y.resize(prepared.problem->view().num_variables());
-  prepared.solver.x = prepared.y_without_pairs = prepared.start.y;
+  prepared.solver.x = prepared.first_guess = prepared.start.y;
 }
 
 bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) {
@@ -171,7 +178,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   if (request.log) {
     request.log->duration = request.duration;
     request.log->arrival = request.arrival;
-    request.log->segments = SegmentsFor(request.duration);
+    request.log->segments = request.segments;
     request.log->best = best_.round;
     request.log->certificate = best_.certificate;
     request.log->reason = best_.reason;
@@ -180,7 +187,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 }
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
-  now_ = &prepared_.at({SegmentsFor(request.duration), request.arrival});
+  now_ = &prepared_.at({request.segments, request.arrival});
   LandingProblem& problem = *now_->problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
   problem.SetDuration(request.duration);
@@ -190,7 +197,12 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   expansions_left_ = options_.max_expansions;
   pairs_.clear();
   barriers_.clear();
-  problem.Guess(&now_->start.y);
+  if (request.previous) {
+    problem.WarmGuess(*request.previous, &now_->start.y);
+  } else {
+    problem.Guess(&now_->start.y);
+  }
+  now_->first_guess = now_->start.y;
   pressure_ = {};
   const ReplanReason reason = SolveAndCheck(request, &best_, result);
   if (reason != ReplanReason::kNone) return reason;
@@ -200,7 +212,7 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
 
 // The way around the first obstacle makes the difference: behind it the usual choices follow.
 ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult* result) {
-  now_->y_without_pairs = now_->start.y;
+  if (!request.previous) now_->first_guess = now_->start.y;
   first_curve_ = best_.curve;
   const BlockedRun first = runs_.front();
   if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
@@ -222,7 +234,7 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
     Candidate* candidate = i == 0 ? &best_ : &other_;
     candidate->curve = first_curve_;
     candidate->certificate.reset();
-    now_->start.y = now_->y_without_pairs;
+    now_->start.y = now_->first_guess;
     runs_.assign(1, span);
     candidate->reason = Follow(request, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);

@@ -21,6 +21,9 @@ namespace touchdown::planning {
 /// The options of the landing problems that a replanner with these options solves.
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
 
+/// Number of segments of a plan that takes so long [s].
+int SegmentsFor(double duration);
+
 /// What one attempt is made with.
 struct AttemptRequest {
   SplineState start;
@@ -28,6 +31,7 @@ struct AttemptRequest {
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget target;
   double duration = 1.0;  ///< T, or its first guess [s]
+  int segments = 0;       ///< as SegmentsFor gives them
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
@@ -60,7 +64,7 @@ class PlanAttempt {
     std::unique_ptr<solvers::SolverBackend> backend;
     solvers::WarmStart start{Eigen::VectorXd()};  // of the next solve
     solvers::SolverResult solver;                 // of the last
-    Eigen::VectorXd y_without_pairs;
+    Eigen::VectorXd first_guess;                  // of the solves with pairs
   };
   /// A plan that was tried, and how it ended.
   struct Candidate {

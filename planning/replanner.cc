@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kMaxAttempts = 6;
 constexpr double kStretch = 1.3;         // of the duration after an attempt that failed
+constexpr double kFinest = 1.5;          // attempts after the first have so many times its segments
 constexpr int kRescueGuides = 2;         // ways around an obstacle that later attempts try
 constexpr double kReTimeBelow = 0.75;    // a fresh guess this much shorter replaces the arrival
 constexpr double kStripMemory = 2.0;     // the strip over a pad that was lost holds this long [s]
@@ -303,6 +304,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
   double T = std::clamp(promised ? left : fresh, options_.min_duration, options_.max_duration);
 
+  const double first = T;
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
@@ -314,6 +316,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (i > 0 && result_.solves >= options_.max_solves) return reason;
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     request.duration = T;
+    // A stretched plan is slower, not longer: it needs hardly more control points.
+    request.segments = SegmentsFor(std::min(T, kFinest * first));
     request.space = &space;
     request.rescue_guides = i > 0 ? kRescueGuides : 1;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
@@ -405,9 +409,9 @@ void Replanner::Prepare(const OccupancyMap& map) { impl_->Prepare(map); }
 void Replanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
   ControlPoints points(3, 4);
   points.colwise() = p_W;
-  const UniformBspline hover(points, 1.0, t);
-  impl_->current_ = hover;
-  impl_->next_ = hover;
+  ReplannerState hover;
+  hover.current = hover.next = UniformBspline(points, 1.0, t);
+  impl_->Restore(hover);
 }
 
 const ReplanResult& Replanner::Replan(const ReplanInput& input, const OccupancyMap& map) {

@@ -15,8 +15,9 @@
 
 namespace touchdown::planning {
 
-UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double duration,
-                             int segments) {
+void ShiftedControlPoints(const UniformBspline& previous, double t0, double duration,
+                          Eigen::Ref<ControlPoints> q) {
+  const int segments = static_cast<int>(q.cols()) - 3;
   if (segments < 1 || !(duration > 0.0) || !std::isfinite(duration)) {
     throw std::invalid_argument("ShiftedSpline: " + std::to_string(segments) + " segments in " +
                                 std::to_string(duration) +
@@ -25,7 +26,6 @@ UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double d
   const double from = std::clamp(t0, previous.t0(), previous.t_end());
   const double rate = (previous.t_end() - from) / duration;  // previous seconds per new second
   const double h = duration / segments;
-  ControlPoints q(3, segments + 3);
   for (int k = 0; k <= segments; ++k) {
     const FlatState at = previous.Evaluate(from + rate * (k * h));
     q.col(k + 1) = at.p_WB - h * h / 6.0 * rate * rate * at.a_WB;
@@ -34,7 +34,13 @@ UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double d
   const Eigen::Vector3d v_end = rate * previous.Evaluate(previous.t_end()).v_WB;
   q.col(0) = q.col(2) - 2.0 * h * v_start;
   q.col(segments + 2) = q.col(segments) + 2.0 * h * v_end;
-  return UniformBspline(q, h, t0);
+}
+
+UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double duration,
+                             int segments) {
+  ControlPoints q(3, std::max(0, segments) + 3);
+  ShiftedControlPoints(previous, t0, duration, q);
+  return UniformBspline(q, duration / segments, t0);
 }
 
 namespace {

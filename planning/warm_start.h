@@ -13,6 +13,11 @@ namespace touchdown::planning {
 UniformBspline ShiftedSpline(const UniformBspline& previous, double t0, double duration,
                              int segments);
 
+/// Its control points alone, as many as `points` has columns (at least 4). Throws std::invalid_argument
+/// unless duration is positive and finite. Does not allocate.
+void ShiftedControlPoints(const UniformBspline& previous, double t0, double duration,
+                          Eigen::Ref<ControlPoints> points);
+
 /// The curve moved so that it starts and ends in the given states: what is missing at the ends is
 /// spread over it as a quintic, so that a small step at an end makes no jolt beside it. Allocates.
 UniformBspline WithEnds(const UniformBspline& curve, const SplineState& start,

@@ -54,6 +54,42 @@ TEST(LandingProblem, BothEndsAreMetExactlyAtAnyPoint) {
   }
 }
 
+// The same problem: the point itself. A pad that went elsewhere: the same shape between the new ends.
+TEST(LandingProblem, AWarmGuessKeepsTheShapeOfThePreviousCurve) {
+  Draw draw(17);
+  for (int trial = 0; trial < 200; ++trial) {
+    const ArrivalMode arrival = trial % 2 ? ArrivalMode::kFree : ArrivalMode::kFixed;
+    const int segments = 8 + trial % 20;
+    LandingProblem problem(segments, Options(arrival, trial % 4 < 2));
+    const ArcPad pad = draw.Pad(), elsewhere = draw.Pad();
+    const SplineState start = draw.State(10.0, 3.0, 4.0), moved = draw.State(10.0, 3.0, 4.0);
+    const EndpointTarget target{5.0, 1.0, 0.0, 0.2};
+    problem.SetBoundary(start, 5.0, pad, target);
+    problem.SetDuration(draw.Uniform(1.0, 8.0));
+    Eigen::VectorXd y = problem.Guess(), warm = y, other = y;
+    for (int i = 0; i < y.size(); ++i) y[i] += draw.Uniform(-0.02, 0.02) * (i + 1 < y.size());
+    const UniformBspline curve = problem.Curve(y);
+    problem.WarmGuess(curve, &warm);
+    EXPECT_LT((warm - y).norm(), 1e-7);
+
+    problem.SetBoundary(moved, 5.0, elsewhere, target);
+    problem.WarmGuess(curve, &other);
+    EXPECT_LT((other - warm).norm(), 1e-7);
+    EXPECT_LT((problem.Curve(other).AtKnot(0).p - moved.p).norm(), kExact);
+
+    // Later on the way, with the time that is left, it goes where the curve went.
+    const double t = 5.0 + 0.3 * curve.duration();
+    const FlatState at = curve.Evaluate(t);
+    problem.SetBoundary({at.p_WB, at.v_WB, at.a_WB}, t, pad, target);
+    problem.SetDuration(curve.t_end() - t);
+    problem.WarmGuess(curve, &other);
+    const UniformBspline rest = problem.Curve(other);
+    for (double s = t; s < curve.t_end(); s += 0.1) {
+      EXPECT_LT((rest.Evaluate(s).p_WB - curve.Evaluate(s).p_WB).norm(), 0.1);
+    }
+  }
+}
+
 TEST(LandingProblem, FixedArrivalIsConvexAndHasOneOptimum) {
   Draw draw(5);
   const solvers::BackendRegistry backends = solvers::StandardBackends();
