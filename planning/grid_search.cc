@@ -16,7 +16,7 @@ namespace {
 
 /// A path of neighbouring cells cannot pass a plane without a cell this near to it.
 constexpr double kHalfThickness = 0.9;  // [cells]
-constexpr double kCosFan = 0.5;
+constexpr double kCosHalf = 0.1;  // a little less than half of the plane
 
 bool InBarrier(const Eigen::Vector3d& centre, double resolution,
                std::span<const Barrier> barriers) {
@@ -25,21 +25,27 @@ bool InBarrier(const Eigen::Vector3d& centre, double resolution,
     const double along = offset.dot(barrier.normal);
     if (std::abs(along) > kHalfThickness * resolution) continue;
     const Eigen::Vector3d across = offset - along * barrier.normal;
-    if (across.dot(barrier.side) > kCosFan * across.norm()) return true;
+    if (across.dot(barrier.side) > kCosHalf * across.norm()) return true;
   }
   return false;
 }
 
 }  // namespace
 
-GridSearch::GridSearch(double vertical_cost, double greed)
-    : vertical_cost_(static_cast<float>(vertical_cost)), greed_(static_cast<float>(greed)) {
+GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
+    : vertical_cost_(static_cast<float>(vertical_cost)),
+      greed_(static_cast<float>(greed)),
+      tight_cost_(static_cast<float>(tight_cost)) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
                                 ", it must be >= 1");
   }
   if (!(greed >= 1.0)) {
     throw std::invalid_argument("GridSearch: greed is " + std::to_string(greed) +
+                                ", it must be >= 1");
+  }
+  if (!(tight_cost >= 1.0)) {
+    throw std::invalid_argument("GridSearch: tight_cost is " + std::to_string(tight_cost) +
                                 ", it must be >= 1");
   }
   int n = 0;
@@ -140,6 +146,10 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     return a.f != b.f ? a.f > b.f : a.order > b.order;
   };
   const auto estimate = [&](const CellIndex& cell) { return greed_ * LatticeDistance(cell, goal); };
+  const auto closed_to = [&](const CellIndex& cell) {
+    return space.Blocked(cell) ||
+           (!barriers.empty() && InBarrier(map.CentreOf(cell), map.resolution(), barriers));
+  };
   std::uint32_t order = 0;
   const std::uint32_t goal_address = address(goal);
   const std::uint32_t start_address = address(start);
@@ -164,22 +174,21 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     }
     if (++expansions_ > max_expansions) return SearchStatus::kExpansionLimit;
     const CellIndex cell = cell_at(here);
+    float factor = 1.0f;
+    for (const Step& step : steps_) {
+      const CellIndex next = cell + step.offset;
+      if (!map.InWindow(next)) continue;
+      Cell& there = cells_[address(next)];
+      if (there.search != search_ && closed_to(next)) there = Cell(0.0f, search_, kBlocked, true);
+      if (there.search == search_ && there.parent == kBlocked) factor = tight_cost_;
+    }
     const float g_here = cells_[here].g;
     for (unsigned s = 0; s < steps_.size(); ++s) {
       const CellIndex next = cell + steps_[s].offset;
       if (!map.InWindow(next)) continue;
       Cell& there = cells_[address(next)];
-      const float g = g_here + steps_[s].length;
+      const float g = g_here + factor * steps_[s].length;
       if (there.search == search_ && (there.closed || g >= there.g)) continue;
-      if (there.search != search_) {
-        const bool barred =
-            !barriers.empty() && InBarrier(map.CentreOf(next), map.resolution(), barriers);
-        if (barred || space.Blocked(next)) {
-          // Looked at once: closed without having been opened.
-          there = Cell(0.0f, search_, kNoParent, true);
-          continue;
-        }
-      }
       there = Cell(g, search_, s, false);
       heap_.push_back({g + estimate(next), order++, address(next)});
       std::push_heap(heap_.begin(), heap_.end(), later);

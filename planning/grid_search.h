@@ -23,7 +23,7 @@ enum class SearchStatus {
   kExpansionLimit,  ///< the budget of expansions was used up
 };
 
-/// A fan of the plane through `p` across `normal`: what lies in it within 60 deg of `side` may not be
+/// The half of the plane through `p` across `normal`: what lies on that `side` of it may not be
 /// crossed. Closes one way around an obstacle at p, so that the search finds another.
 struct Barrier {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();        ///< in W [m]
@@ -41,8 +41,9 @@ class GridSearch {
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]
 
   /// With `greed` > 1 cells near the goal come first: a path costs at most so many times the least, and
-  /// is found after far fewer expansions. Throws std::invalid_argument unless both are >= 1.
-  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0);
+  /// is found after far fewer expansions. A step from a cell beside a blocked one costs `tight_cost`
+  /// times as much: wide passages are preferred. Throws std::invalid_argument unless all are >= 1.
+  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0);
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
@@ -68,6 +69,7 @@ class GridSearch {
 
   static constexpr std::uint32_t kMostSearches = (1u << 26) - 1;
   static constexpr std::uint32_t kNoParent = 26;
+  static constexpr std::uint32_t kBlocked = 27;
 
   // What a search knows of a cell, if it has seen it.
   struct Cell {
@@ -90,6 +92,7 @@ class GridSearch {
 
   float vertical_cost_;
   float greed_;
+  float tight_cost_;
   std::array<Step, 26> steps_;
   std::vector<Cell> cells_;
   std::vector<Node> heap_;

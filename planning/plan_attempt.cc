@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "touchdown/planning/stage_timer.h"
+#include "touchdown/planning/voxel_traversal.h"
 
 namespace touchdown::planning {
 
@@ -38,7 +39,9 @@ constexpr double kNoSide = 1e-2;        // from the curve to the guide [m]
 constexpr int kFirstFree = 3;           // control points that both boundaries fix
 constexpr int kLevels = 2;              // pairs of a control point for floor and ceiling
 constexpr int kBoundBeside = 3;         // control points beside a blocked stretch that are bound
-constexpr double kGreed = 1.5;          // of A*: a guide only tells the side
+constexpr double kGreed = 2.5;          // of A*: a guide only tells the side
+constexpr double kTightCost = 3.0;      // of A*, beside obstacles
+constexpr double kStandOff = 0.3;       // of reference points from what is in the way [m]
 constexpr double kFloorMargin = 0.05;   // kept from floor and ceiling [m]
 /// A way that is found only after so many cells is a long one.
 constexpr int kOtherWayExpansions = 3000;
@@ -58,6 +61,22 @@ void SampleGuide(const UniformBspline& curve, const BlockedRun& span, GuidePath*
   for (int i = 0; i <= steps; ++i) {
     guide->push_back(curve.Evaluate(span.t_in + (span.t_out - span.t_in) * i / steps).p_WB);
   }
+}
+
+/// From a free point on a guide towards the curve, until an obstacle is near: a guide that keeps far off
+/// what is in the way shall not make it forgotten. The guide's point if nothing is between.
+Eigen::Vector3d BesideObstacle(const FreeSpace& space, const Eigen::Vector3d& guide,
+                               const Eigen::Vector3d& curve) {
+  const double length = (curve - guide).norm();
+  if (!(length > kStandOff)) return guide;
+  const Eigen::Vector3d ahead = (curve - guide) / length;
+  double hit = 0.0;
+  const bool free =
+      TraverseCells(guide, curve, space.map->resolution(), [&](const CellIndex& cell) {
+        hit = std::clamp((space.map->CentreOf(cell) - guide).dot(ahead), 0.0, length);
+        return !space.Blocked(cell);
+      });
+  return free ? guide : Eigen::Vector3d(guide + std::max(0.0, hit - kStandOff) * ahead);
 }
 
 /// Walks along a polyline at constant speed.
@@ -119,7 +138,7 @@ LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMod
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options),
       backends_(backends),
-      search_(options.vertical_cost, kGreed),
+      search_(options.vertical_cost, kGreed, kTightCost),
       corridor_(PairClearance(options.problem), kFloorMargin) {
   // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
   // arrival falls back to a fixed one.
@@ -369,7 +388,8 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
       if (t < run.t_in - margin || t > run.t_out + margin) continue;
       bound_[i] = true;
       if (t < run.t_in || t > run.t_out) continue;
-      reference_[i] = walk.At((t - run.t_in) / (run.t_out - run.t_in));
+      const Eigen::Vector3d guided = walk.At((t - run.t_in) / (run.t_out - run.t_in));
+      reference_[i] = BesideObstacle(*request.space, guided, reference_[i]);
     }
   }
   StageTimer timer(&result->times.pairs);

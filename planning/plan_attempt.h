@@ -46,7 +46,7 @@ struct AttemptRequest {
 /// and backend per number of segments.
 class PlanAttempt {
  public:
-  static constexpr int kMostControlPoints = 67;  ///< of a plan
+  static constexpr int kMostControlPoints = 131;  ///< of a plan
 
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
 

@@ -413,7 +413,7 @@ TEST(Replanner, OneAnswerIsPendingAtATime) {
   EXPECT_EQ(replanner.Reference(1.0).p_WB, promised);
 }
 
-TEST(Replanner, AStartInTheInflatedZoneEscapesAndThenPlans) {
+TEST(Replanner, AStartInTheInflatedZoneIsLedOut) {
   OccupancyMap map = ObservedMap(0.4);
   AddPillar(-3.4, 0.0, &map);  // its face is 0.3 m ahead of the start
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
@@ -430,7 +430,8 @@ TEST(Replanner, AStartInTheInflatedZoneEscapesAndThenPlans) {
     status = result.status;
     EXPECT_TRUE(result.certificate.passed()) << ToString(result.reason) << " at step " << step;
     if (step == 0) {
-      EXPECT_EQ(status, ReplanStatus::kEscaping);
+      // Out of the zone and to rest, or out of it and to the pad at once.
+      EXPECT_TRUE(status == ReplanStatus::kEscaping || status == ReplanStatus::kPlanned);
       EXPECT_TRUE(result.certificate.escaping);
       EXPECT_GT(result.certificate.clearance, 0.2);
     }
