@@ -38,7 +38,9 @@ Replay::Replay(const RecordedFlight& flight, const Registries& registries)
     : flight_(flight),
       oracle_(TruthOf(flight.scenario)),
       replanner_(MakeReplanner(flight, registries)),
-      map_(MapOptions(flight.scenario)) {}
+      map_(MapOptions(flight.scenario)) {
+  replanner_.Prepare(map_);
+}
 
 void Replay::Seek(int step) {
   if (step < step_) {
