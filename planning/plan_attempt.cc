@@ -375,6 +375,7 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
   const int n = static_cast<int>(bound_.size());
   const auto time_of = [&](int i) { return curve.t0() + (i - 1) * curve.interval(); };
   for (int i = 0; i < n; ++i) reference_[i] = curve.Evaluate(time_of(i)).p_WB;
+  corners_.clear();
   for (const BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
     if (!guide_is_known) {
@@ -382,6 +383,11 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
       if (reason != ReplanReason::kNone) return reason;
     }
     PathWalk walk(guide_);
+    if (!guide_is_known) {
+      const double t_mid = 0.5 * (run.t_in + run.t_out);
+      corners_.push_back({t_mid, BesideObstacle(*request.space, PathWalk(guide_).At(0.5),
+                                                curve.Evaluate(t_mid).p_WB)});
+    }
     for (int i = kFirstFree; i < n - kFirstFree; ++i) {
       const double t = time_of(i);
       const double margin = kBoundBeside * curve.interval();
@@ -396,8 +402,19 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
   pairs_.clear();
   const int planes = std::max(0, options_.problem.max_pairs_per_point - kLevels);
   for (int i = kFirstFree; i < n - kFirstFree; ++i) {
-    if (bound_[i])
+    if (bound_[i]) {
       corridor_.Bind(i, reference_[i], *request.space, static_cast<std::size_t>(planes), &pairs_);
+    }
+  }
+  // What is blocked still is a corner that the curve cuts between its control points: both beside it
+  // get the plane there.
+  for (const Corner& corner : corners_) {
+    const int before = static_cast<int>((corner.t - curve.t0()) / curve.interval()) + 1;
+    for (const int i : {before, before + 1}) {
+      if (i < kFirstFree || i >= n - kFirstFree) continue;
+      if (pairs_.size() + 1 + kLevels > static_cast<std::size_t>(now_->problem->max_pairs())) break;
+      corridor_.Bind(i, corner.p, *request.space, planes > 0 ? 1 : 0, &pairs_);
+    }
   }
   return ReplanReason::kNone;
 }

@@ -119,7 +119,12 @@ class PlanAttempt {
   std::vector<Barrier> barriers_;  // ways around the first obstacle that were taken
   GuidePath first_guide_, guide_;
   std::array<Eigen::Vector3d, kMostControlPoints> reference_;  // where control points are wanted
-  std::vector<char> bound_;                                    // control points that get pairs
+  struct Corner {
+    double t;
+    Eigen::Vector3d p;
+  };
+  std::vector<Corner> corners_;  // that the curve cuts, seen from the guide
+  std::vector<char> bound_;      // control points that get pairs
 };
 
 }  // namespace touchdown::planning
