@@ -21,6 +21,16 @@ constexpr double kStep = 0.01;      // between samples [m]
 constexpr double kPoint = 1e-4;     // radius of what stands for a point in FCL [m]
 constexpr double kRounding = 1e-3;  // of FCL's distance and of that point [m]
 
+/// In a blocked cell by more than the curve may leave its chords, for which the inflation makes up.
+bool DeepInBlocked(const planning::OccupancyMap& map, const Eigen::Vector3d& p) {
+  constexpr double s = planning::kChordSagitta;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d off((corner & 1) ? s : -s, (corner & 2) ? s : -s, (corner & 4) ? s : -s);
+    if (!map.IsBlocked(Eigen::Vector3d(p + off))) return false;
+  }
+  return true;
+}
+
 void MeasureShape(const UniformBspline& curve, ReplanRow* row) {
   const auto& q = curve.control_points();
   row->duration = curve.duration();
@@ -55,7 +65,7 @@ void CheckPlan(const UniformBspline& curve, const ReplanScene& scene, ReplanRow*
     row->length += (p - last).norm();
     last = p;
     if (!known(p)) continue;
-    blocked = blocked || scene.map->IsBlocked(p);
+    blocked = blocked || DeepInBlocked(*scene.map, p);
     estimation::VehicleState vehicle;
     vehicle.p_WB = p;
     row->true_clearance = std::min(row->true_clearance, truth.Distance(vehicle));
