@@ -24,7 +24,6 @@ namespace touchdown::evaluation {
 namespace {
 
 struct StudyArguments {
-  std::string study;
   std::vector<std::string> parts = {"safety"};
   std::vector<std::string> kinds = {"A", "B", "C", "D"};
   std::vector<std::string> planners = {"landing", "ego"};

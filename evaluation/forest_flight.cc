@@ -127,6 +127,7 @@ class Flight {
   }
 
   ForestFlight Run() {
+    planner_->Prepare(*map_);
     planner_->CommitHover(course_.start, 0.0);
     last_ = course_.start;
     try {

@@ -53,10 +53,12 @@ def load(path):
     return plan
 
 
-def last_round(plan):
+def best_round(plan):
     """The round that gave the result; None where nothing was solved."""
-    rounds = plan["attempts"][-1]["rounds"] if plan["attempts"] else []
-    return rounds[-1] if rounds else None
+    attempt = plan["attempts"][-1] if plan["attempts"] else None
+    if attempt is None or attempt["best"] is None:
+        return None
+    return attempt["rounds"][attempt["best"]]
 
 
 def costs_by_iteration(plan):
@@ -88,7 +90,7 @@ def draw_view(axes, plan, down):
     axes.plot(old[:, 0], old[:, down], color=OLD, lw=2.0, ls="--", label="committed before")
     new = bspline.sample(plan["result"]["curve"]["control_points"])
     axes.plot(new[:, 0], new[:, down], color=NEW, lw=2.2, label=plan["result"]["status"])
-    solve = last_round(plan)
+    solve = best_round(plan)
     if solve and solve["pairs"]:
         p = np.array([pair["p"] for pair in solve["pairs"]])
         v = np.array([pair["v"] for pair in solve["pairs"]])
