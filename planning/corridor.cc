@@ -7,7 +7,9 @@
 #include "touchdown/planning/corridor.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "touchdown/planning/grid_search.h"
 
@@ -17,6 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kMostCells = 31;      // within reach along an axis: both sides fit into one word
 constexpr double kTouching = 1e-6;  // [m^2], no direction can be told
 
 }  // namespace
@@ -31,7 +34,7 @@ void Corridor::Collect(const Vector3d& point, const FreeSpace& space) {
   near_.clear();
   const OccupancyMap& map = *space.map;
   const Vector3d half = Vector3d::Constant(0.5 * map.resolution());
-  const int reach = static_cast<int>(std::ceil(kReach / map.resolution()));
+  const int reach = std::min(kMostCells, static_cast<int>(std::ceil(kReach / map.resolution())));
   const CellIndex at = map.CellOf(point);
   const auto offer = [&](const CellIndex& cell) {
     const Vector3d centre = map.CentreOf(cell);
@@ -39,11 +42,24 @@ void Corridor::Collect(const Vector3d& point, const FreeSpace& space) {
     const double distance2 = (p - point).squaredNorm();
     if (distance2 < kReach * kReach) near_.push_back({p, distance2});
   };
-  for (int z = at.z() - reach; z <= at.z() + reach; ++z) {
-    for (int y = at.y() - reach; y <= at.y() + reach; ++y) {
-      const auto [below, above] = map.BlockedBeside({at.x(), y, z}, reach);
-      if (below <= reach) offer({at.x() - below, y, z});
-      if (above <= reach && above > 0) offer({at.x() + above, y, z});
+  const auto gap = [&](int cells) { return std::max(0, std::abs(cells) - 1) * map.resolution(); };
+  const CellBox window = {map.origin(), map.origin() + map.size()};
+  const int from = std::max(at.x() - reach, window.low.x());
+  const int to = std::min(at.x() + reach + 1, window.high.x());
+  if (from > at.x() || to <= at.x()) return;
+  for (int z = std::max(at.z() - reach, window.low.z());
+       z < std::min(at.z() + reach + 1, window.high.z()); ++z) {
+    for (int y = std::max(at.y() - reach, window.low.y());
+         y < std::min(at.y() + reach + 1, window.high.y()); ++y) {
+      const double gap_y = gap(y - at.y()), gap_z = gap(z - at.z());
+      if (gap_y * gap_y + gap_z * gap_z >= kReach * kReach) continue;
+      const std::uint64_t row = map.BlockedRow({from, y, z}, to - from);
+      const std::uint64_t above = row >> (at.x() - from);  // from the point's own cell on
+      const std::uint64_t below = row ^ (above << (at.x() - from));
+      if (above != 0) offer({at.x() + std::countr_zero(above), y, z});
+      if (below != 0 && (above & 1u) == 0) {
+        offer({from + static_cast<int>(std::bit_width(below)) - 1, y, z});
+      }
     }
   }
 }
@@ -67,7 +83,7 @@ void Corridor::Bind(int control_point, const Vector3d& wanted, const FreeSpace& 
     // What lies beyond the plane is kept off by it.
     std::erase_if(near_, [&](const Near& cell) { return (cell.p - nearest.p).dot(v) <= 1e-9; });
   }
-  const double floor = space.OverPad(point) ? space.pad_floor : space.floor;
+  const double floor = space.FloorAt(point);
   if (point.z() - floor < kReach) {
     pairs->push_back({control_point, {point.x(), point.y(), floor - beyond_}, Vector3d::UnitZ()});
   }

@@ -29,11 +29,12 @@ struct FreeSpace {
     return (offset - s * axis).squaredNorm() <= pad_radius * pad_radius;
   }
 
+  double FloorAt(const Eigen::Vector3d& p_W) const { return OverPad(p_W) ? pad_floor : floor; }
+
   bool Blocked(const CellIndex& cell) const {
     if (map->IsBlocked(cell)) return true;
     const Eigen::Vector3d centre = map->CentreOf(cell);
-    if (centre.z() > ceiling) return true;
-    return centre.z() < (OverPad(centre) ? pad_floor : floor);
+    return centre.z() > ceiling || centre.z() < FloorAt(centre);
   }
   bool Blocked(const Eigen::Vector3d& p_W) const { return Blocked(map->CellOf(p_W)); }
 };

@@ -6,7 +6,9 @@
 #include "touchdown/planning/grid_search.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -14,26 +16,26 @@ namespace touchdown::planning {
 
 namespace {
 
-/// A path of neighbouring cells cannot pass a plane without a cell this near to it.
-constexpr double kHalfThickness = 0.9;  // [cells]
-constexpr double kCosHalf = 0.1;  // a little less than half of the plane
-
-bool InBarrier(const Eigen::Vector3d& centre, double resolution,
-               std::span<const Barrier> barriers) {
-  for (const Barrier& barrier : barriers) {
-    const Eigen::Vector3d offset = centre - barrier.p;
-    const double along = offset.dot(barrier.normal);
-    if (std::abs(along) > kHalfThickness * resolution) continue;
-    const Eigen::Vector3d across = offset - along * barrier.normal;
-    if (across.dot(barrier.side) > kCosHalf * across.norm()) return true;
+/// Bits of the steps that lead to one side: the offset along `axis` is `side`.
+constexpr std::uint32_t StepsTo(int axis, int side) {
+  std::uint32_t bits = 0;
+  constexpr int kStride[] = {1, 3, 9};
+  for (int s = 0; s < 27; ++s) {
+    if (s / kStride[axis] % 3 - 1 == side) bits |= 1u << s;
   }
-  return false;
+  return bits;
 }
+
+constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
+constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
+constexpr std::uint32_t kAbove[] = {StepsTo(0, 1), StepsTo(1, 1), StepsTo(2, 1)};
 
 }  // namespace
 
 GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
     : vertical_cost_(static_cast<float>(vertical_cost)),
+      slanted_(std::sqrt(1.0f + vertical_cost_ * vertical_cost_)),
+      cubic_(std::sqrt(2.0f + vertical_cost_ * vertical_cost_)),
       greed_(static_cast<float>(greed)),
       tight_cost_(static_cast<float>(tight_cost)) {
   if (!(vertical_cost >= 1.0)) {
@@ -52,10 +54,9 @@ GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
   for (int z = -1; z <= 1; ++z) {
     for (int y = -1; y <= 1; ++y) {
       for (int x = -1; x <= 1; ++x) {
-        if (x == 0 && y == 0 && z == 0) continue;
         const auto flat2 = static_cast<float>(x * x + y * y);
         const float up = vertical_cost_ * static_cast<float>(z);
-        steps_[n++] = {CellIndex(x, y, z), std::sqrt(flat2 + up * up)};
+        steps_[n++] = {CellIndex(x, y, z), std::sqrt(flat2 + up * up), 0};
       }
     }
   }
@@ -64,15 +65,14 @@ GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
 /// Length of the shortest path between two cells of an empty lattice: the longest diagonals first.
 float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const {
   const CellIndex d = (a - b).cwiseAbs();
-  const float w = vertical_cost_;
   const auto lo = static_cast<float>(std::min(d.x(), d.y()));
   const auto hi = static_cast<float>(std::max(d.x(), d.y()));
   const auto up = static_cast<float>(d.z());
   const float cubic = std::min(up, lo);                 // steps (1, 1, 1)
   const float slanted = std::min(up - cubic, hi - lo);  // steps (1, 0, 1)
   const float flat_diagonal = lo - cubic;               // steps (1, 1, 0)
-  return cubic * std::sqrt(2.0f + w * w) + slanted * std::sqrt(1.0f + w * w) +
-         flat_diagonal * std::sqrt(2.0f) + (hi - lo - slanted) + (up - cubic - slanted) * w;
+  return cubic * cubic_ + slanted * slanted_ + flat_diagonal * std::numbers::sqrt2_v<float> +
+         (hi - lo - slanted) + (up - cubic - slanted) * vertical_cost_;
 }
 
 bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
@@ -104,12 +104,26 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
 }
 
 void GridSearch::Reserve(const OccupancyMap& map) {
-  const CellIndex& n = map.size();
-  const auto cells = static_cast<std::size_t>(n.x()) * static_cast<std::size_t>(n.y()) *
-                     static_cast<std::size_t>(n.z());
-  if (cells_.size() == cells) return;
+  if (map.size() == size_) return;
+  size_ = map.size();
+  blocked_.Reserve(map);
+  const auto cells = static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
+                     static_cast<std::size_t>(size_.z());
   cells_.assign(cells, Cell());
   search_ = 0;
+  for (Step& step : steps_) {
+    step.address = (step.offset.z() * size_.y() + step.offset.y()) * size_.x() + step.offset.x();
+  }
+}
+
+/// The steps that leave the window.
+std::uint32_t GridSearch::Outside(const CellIndex& cell) const {
+  std::uint32_t outside = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (cell[axis] == 0) outside |= kBelow[axis];
+    if (cell[axis] == size_[axis] - 1) outside |= kAbove[axis];
+  }
+  return outside;
 }
 
 void GridSearch::Begin(const OccupancyMap& map) {
@@ -131,30 +145,30 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   if (!map.InWindow(start) || !map.InWindow(goal)) return SearchStatus::kEndsOutside;
   if (!NearestFree(space, &start) || !NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
   Begin(map);
+  blocked_.Begin(space, barriers);
 
-  const CellIndex origin = map.origin(), size = map.size();
+  // From here on cells are counted from the window's lowest one.
+  start -= map.origin();
+  goal -= map.origin();
   const auto address = [&](const CellIndex& cell) {
-    const CellIndex i = cell - origin;
-    return static_cast<std::uint32_t>((i.z() * size.y() + i.y()) * size.x() + i.x());
+    return static_cast<std::uint32_t>((cell.z() * size_.y() + cell.y()) * size_.x() + cell.x());
   };
   const auto cell_at = [&](std::uint32_t a) {
     const int i = static_cast<int>(a);
-    return CellIndex(origin +
-                     CellIndex(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y())));
+    return CellIndex(i % size_.x(), i / size_.x() % size_.y(), i / (size_.x() * size_.y()));
   };
-  const auto later = [](const Node& a, const Node& b) {
-    return a.f != b.f ? a.f > b.f : a.order > b.order;
-  };
+  const auto later = [](const Node& a, const Node& b) { return a.key > b.key; };
   const auto estimate = [&](const CellIndex& cell) { return greed_ * LatticeDistance(cell, goal); };
-  const auto closed_to = [&](const CellIndex& cell) {
-    return space.Blocked(cell) ||
-           (!barriers.empty() && InBarrier(map.CentreOf(cell), map.resolution(), barriers));
-  };
   std::uint32_t order = 0;
+  const auto push = [&](float f, std::uint32_t at) {
+    const auto key = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(f)) << 32 | order++;
+    heap_.push_back({key, at});
+    std::push_heap(heap_.begin(), heap_.end(), later);
+  };
   const std::uint32_t goal_address = address(goal);
   const std::uint32_t start_address = address(start);
-  cells_[start_address] = Cell(0.0f, search_, kNoParent, false);
-  heap_.push_back({estimate(start), order++, start_address});
+  cells_[start_address] = Cell(0.0f, search_, kSelf, false);
+  push(estimate(start), start_address);
 
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), later);
@@ -164,9 +178,9 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     cells_[here].closed = true;
     if (here == goal_address) {
       for (CellIndex cell = goal;;) {
-        path->push_back(map.CentreOf(cell));
+        path->push_back(map.CentreOf(cell + map.origin()));
         const unsigned by = cells_[address(cell)].parent;
-        if (by == kNoParent) break;
+        if (by == kSelf) break;
         cell -= steps_[by].offset;
       }
       std::reverse(path->begin(), path->end());
@@ -174,24 +188,19 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     }
     if (++expansions_ > max_expansions) return SearchStatus::kExpansionLimit;
     const CellIndex cell = cell_at(here);
-    float factor = 1.0f;
-    for (const Step& step : steps_) {
-      const CellIndex next = cell + step.offset;
-      if (!map.InWindow(next)) continue;
-      Cell& there = cells_[address(next)];
-      if (there.search != search_ && closed_to(next)) there = Cell(0.0f, search_, kBlocked, true);
-      if (there.search == search_ && there.parent == kBlocked) factor = tight_cost_;
-    }
+    const std::uint32_t blocked = blocked_.Around(cell) & ~(1u << kSelf);
+    const float factor = blocked != 0 ? tight_cost_ : 1.0f;
     const float g_here = cells_[here].g;
-    for (unsigned s = 0; s < steps_.size(); ++s) {
-      const CellIndex next = cell + steps_[s].offset;
-      if (!map.InWindow(next)) continue;
-      Cell& there = cells_[address(next)];
-      const float g = g_here + factor * steps_[s].length;
+    std::uint32_t open = ~(blocked | Outside(cell) | 1u << kSelf) & kAllSteps;
+    for (; open != 0; open &= open - 1) {
+      const auto s = static_cast<unsigned>(std::countr_zero(open));
+      const Step& step = steps_[s];
+      const std::uint32_t next = here + static_cast<std::uint32_t>(step.address);
+      Cell& there = cells_[next];
+      const float g = g_here + factor * step.length;
       if (there.search == search_ && (there.closed || g >= there.g)) continue;
       there = Cell(g, search_, s, false);
-      heap_.push_back({g + estimate(next), order++, address(next)});
-      std::push_heap(heap_.begin(), heap_.end(), later);
+      push(g + estimate(cell + step.offset), next);
     }
   }
   return SearchStatus::kNoPath;

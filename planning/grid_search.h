@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/planning/barrier.h"
+#include "touchdown/planning/blocked_bits.h"
 #include "touchdown/planning/free_space.h"
 
 namespace touchdown::planning {
@@ -21,14 +23,6 @@ enum class SearchStatus {
   kEndsBlocked,     ///< no free cell near a blocked end
   kNoPath,          ///< everything reachable was expanded
   kExpansionLimit,  ///< the budget of expansions was used up
-};
-
-/// The half of the plane through `p` across `normal`: what lies on that `side` of it may not be
-/// crossed. Closes one way around an obstacle at p, so that the search finds another.
-struct Barrier {
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();        ///< in W [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< unit vector, along the way
-  Eigen::Vector3d side = Eigen::Vector3d::UnitY();    ///< unit vector in the plane
 };
 
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + greed h, h the exact
@@ -62,14 +56,12 @@ class GridSearch {
 
  private:
   struct Node {
-    float f;
-    std::uint32_t order;
+    std::uint64_t key;  // f, and the order of insertion: the bits of positive floats are ordered as they are
     std::uint32_t address;
   };
 
   static constexpr std::uint32_t kMostSearches = (1u << 26) - 1;
-  static constexpr std::uint32_t kNoParent = 26;
-  static constexpr std::uint32_t kBlocked = 27;
+  static constexpr std::uint32_t kSelf = 13;  // the middle of 27 steps: no step at all
 
   // What a search knows of a cell, if it has seen it.
   struct Cell {
@@ -79,7 +71,7 @@ class GridSearch {
 
     float g;
     std::uint32_t search : 26;
-    std::uint32_t parent : 5;  // the step that we came by
+    std::uint32_t parent : 5;  // the step that it was reached by; kSelf: the start
     std::uint32_t closed : 1;
   };
   void Begin(const OccupancyMap& map);
@@ -87,13 +79,18 @@ class GridSearch {
   struct Step {
     CellIndex offset;
     float length;
+    int address;  // difference of the addresses
   };
   float LatticeDistance(const CellIndex& a, const CellIndex& b) const;
+  std::uint32_t Outside(const CellIndex& cell) const;
 
   float vertical_cost_;
+  float slanted_, cubic_;  // lengths of steps up and along one axis, up and along both
   float greed_;
   float tight_cost_;
-  std::array<Step, 26> steps_;
+  std::array<Step, 27> steps_;  // in the order of BlockedBits::Around
+  BlockedBits blocked_;
+  CellIndex size_ = CellIndex::Zero();  // of the window
   std::vector<Cell> cells_;
   std::vector<Node> heap_;
   std::uint32_t search_ = 0;

@@ -260,21 +260,29 @@ void OccupancyMap::AddToRow(int y, int z, int x_begin, int x_end, int increment)
   add(0, to - size_.x());
 }
 
-std::pair<int, int> OccupancyMap::BlockedBeside(const CellIndex& cell, int reach) const {
-  const CellIndex end = origin_ + size_;
-  const int none = reach + 1;
-  if (cell.y() < origin_.y() || cell.y() >= end.y() || cell.z() < origin_.z() ||
-      cell.z() >= end.z()) {
-    return {none, none};
+std::uint64_t OccupancyMap::BlockedRow(const CellIndex& first, int count) const {
+  constexpr int kLanes = 4;  // counts looked at in one go
+  constexpr std::uint64_t kLow15 = 0x7fff'7fff'7fff'7fff;
+  constexpr std::uint64_t kTop = 0x8000'8000'8000'8000;
+  constexpr std::uint64_t kGather = 0x0001'0002'0004'0008;  // lane j to bit 48 + j
+  const std::uint16_t* row = &inflation_[RowAddress(first.y(), first.z())];
+  std::uint64_t bits = 0;
+  int i = 0;
+  while (i < count) {
+    const int x = (first.x() + i) & mask_.x();
+    if (count - i < kLanes || size_.x() - x < kLanes) {
+      bits |= static_cast<std::uint64_t>(row[x] > 0) << i++;
+      continue;
+    }
+    std::uint64_t lanes;
+    std::memcpy(&lanes, row + x, sizeof(lanes));
+    // The top bit of each lane that is not zero, brought together.
+    const std::uint64_t set = (((lanes & kLow15) + kLow15) | lanes) & kTop;
+    const std::uint64_t four = ((set >> 15) * kGather >> 48) & 0xf;
+    bits |= four << i;
+    i += kLanes;
   }
-  const std::uint16_t* row = &inflation_[RowAddress(cell.y(), cell.z())];
-  const auto blocked = [&](int x) { return row[x & mask_.x()] > 0; };
-  const int most_below = std::min(reach, cell.x() - origin_.x());
-  const int most_above = std::min(reach, end.x() - 1 - cell.x());
-  int below = 0, above = 0;
-  while (below <= most_below && !blocked(cell.x() - below)) ++below;
-  while (above <= most_above && !blocked(cell.x() + above)) ++above;
-  return {below <= most_below ? below : none, above <= most_above ? above : none};
+  return bits;
 }
 
 }  // namespace touchdown::planning

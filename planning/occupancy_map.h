@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -131,9 +130,8 @@ class OccupancyMap {
     return InWindow(cell) && inflation_[Address(cell)] > 0;
   }
   bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
-  /// How many cells below and above `cell` along x the nearest blocked one is, 0 for itself; beyond
-  /// `reach`: none.
-  std::pair<int, int> BlockedBeside(const CellIndex& cell, int reach) const;
+  /// Bit i: the cell i beyond `first` along x is blocked. `count` (at most 64) cells, all in the window.
+  std::uint64_t BlockedRow(const CellIndex& first, int count) const;
   /// Occupied itself, without inflation.
   bool IsOccupied(const CellIndex& cell) const;
   /// Observed at least once, free or occupied.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One attempt at a plan: solve without obstacles, then check / bind / solve until the whole curve
-// is clear. Pairs start empty at every attempt, so that none outlives the obstacle it was made for;
-// the side of an obstacle is kept by taking the committed curve, while it is clear, as the guide
-// path, and only else a new A* path.
+// One attempt at a plan: solve without obstacles, then find a guide past what is in the way, bind the
+// control points to free space along it, solve and check, until the whole curve is clear. Pairs start
+// empty at every attempt, so that none outlives the obstacle it was made for; the side of an obstacle is
+// kept by taking the committed curve, while it is clear, as the guide, and only else a new A* path.
 
 #include "touchdown/planning/plan_attempt.h"
 
@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "touchdown/planning/stage_timer.h"
-#include "touchdown/planning/voxel_traversal.h"
 
 namespace touchdown::planning {
 
@@ -22,37 +21,33 @@ namespace {
 // otherwise, solves end this near to it, as shares of the cost.
 constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 1e-3},
                                                            {"function_tolerance", 1e-5}};
-constexpr char kPairTerm[] = "obstacle_pair";
-constexpr double kSegmentDuration = 0.20;  // [s], aimed at
+constexpr double kLongestSegment = 0.75;  // at full speed [m]
+constexpr double kSlowestSegment = 0.30;  // [s]
+constexpr double kFine = 0.67;            // of these, where an attempt failed before
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = PlanAttempt::kMostControlPoints - 3;
 constexpr int kSegmentStep = 4;         // keeps the number of prepared problems small
 constexpr double kPressure = 2.5;       // weight of the pairs grows by this every round
-constexpr double kProgress = 0.8;       // of the blocked time that a round leaves at most
-constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded grows by this ...
-constexpr int kLimitRounds = 2;         // ... so often
+constexpr double kProgress = 0.7;       // of the blocked time that a round leaves at most
+constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded grows by this, ...
+constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit, ...
+constexpr double kTooFarBeyond = 1.3;   // and beyond this only more time helps
+constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
 constexpr double kGuideStep = 0.05;     // sampling of the committed curve as a guide [s]
 constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
-constexpr double kStill = 1e-3;         // a slower curve has no direction [m/s]
-constexpr double kNoSide = 1e-2;        // from the curve to the guide [m]
-constexpr int kFirstFree = 3;           // control points that both boundaries fix
-constexpr int kLevels = 2;              // pairs of a control point for floor and ceiling
-constexpr int kBoundBeside = 3;         // control points beside a blocked stretch that are bound
-constexpr double kGreed = 2.5;          // of A*: a guide only tells the side
-constexpr double kTightCost = 3.0;      // of A*, beside obstacles
-constexpr double kStandOff = 0.3;       // of reference points from what is in the way [m]
-constexpr double kFloorMargin = 0.05;   // kept from floor and ceiling [m]
+constexpr double kGreed = 4.0;          // of A*: a guide only tells the side
+constexpr double kTightCost = 8.0;      // of A*, beside obstacles
+constexpr double kLevelMargin = 0.3;    // of a guide from floor and ceiling, out of the window [m]
 /// A way that is found only after so many cells is a long one.
 constexpr int kOtherWayExpansions = 3000;
+constexpr int kOtherWayAtRest = 12000;
 
-/// Without what the pairs themselves cost: their weight grows from round to round.
-double CostOfShape(const solvers::SolverSummary& solver) {
-  double cost = solver.cost;
-  for (const solvers::TermCost& term : solver.cost_by_term) {
-    if (term.name == kPairTerm) cost -= term.cost;
-  }
-  return cost;
+/// Of the limits, the largest that a plan uses; that of a recovery is not told.
+double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
+  if (certificate.recovering) return 1.0;
+  return std::max(certificate.speed_bound / limits.speed,
+                  certificate.acceleration_bound / limits.acceleration);
 }
 
 void SampleGuide(const UniformBspline& curve, const BlockedRun& span, GuidePath* guide) {
@@ -63,65 +58,12 @@ void SampleGuide(const UniformBspline& curve, const BlockedRun& span, GuidePath*
   }
 }
 
-/// From a free point on a guide towards the curve, until an obstacle is near: a guide that keeps far off
-/// what is in the way shall not make it forgotten. The guide's point if nothing is between.
-Eigen::Vector3d BesideObstacle(const FreeSpace& space, const Eigen::Vector3d& guide,
-                               const Eigen::Vector3d& curve) {
-  const double length = (curve - guide).norm();
-  if (!(length > kStandOff)) return guide;
-  const Eigen::Vector3d ahead = (curve - guide) / length;
-  double hit = 0.0;
-  const bool free =
-      TraverseCells(guide, curve, space.map->resolution(), [&](const CellIndex& cell) {
-        hit = std::clamp((space.map->CentreOf(cell) - guide).dot(ahead), 0.0, length);
-        return !space.Blocked(cell);
-      });
-  return free ? guide : Eigen::Vector3d(guide + std::max(0.0, hit - kStandOff) * ahead);
-}
-
-/// Walks along a polyline at constant speed.
-class PathWalk {
- public:
-  explicit PathWalk(const GuidePath& path) : path_(path) {
-    for (std::size_t i = 1; i < path.size(); ++i) length_ += (path[i] - path[i - 1]).norm();
-  }
-  /// At this share of the length; shares must not fall from call to call.
-  Eigen::Vector3d At(double share) {
-    while (next_ + 1 < path_.size() && before_ + Side() < share * length_)
-      before_ += Side(), ++next_;
-    if (path_.size() == 1) return path_.front();
-    const double side = Side();
-    const double along =
-        side > 0.0 ? std::clamp((share * length_ - before_) / side, 0.0, 1.0) : 0.0;
-    return path_[next_ - 1] + along * (path_[next_] - path_[next_ - 1]);
-  }
-
- private:
-  double Side() const { return (path_[next_] - path_[next_ - 1]).norm(); }
-
-  const GuidePath& path_;
-  double length_ = 0.0;
-  double before_ = 0.0;   // length before the present side
-  std::size_t next_ = 1;  // its end
-};
-
-/// s_f of the term obstacle_pair.
-double PairClearance(const LandingProblemOptions& options) {
-  for (const TermEntry& entry : options.terms) {
-    if (entry.info.name != kPairTerm) continue;
-    TermSetup setup = DefaultSetup(entry, PlanAttempt::kMostControlPoints);
-    for (const TermSettings& settings : options.settings) {
-      if (settings.name == kPairTerm) ApplySettings(entry, settings, &setup);
-    }
-    return setup.Get("clearance");
-  }
-  return 0.0;
-}
-
 }  // namespace
 
-int SegmentsFor(double duration) {
-  const int wanted = static_cast<int>(std::ceil(duration / kSegmentDuration));
+int SegmentsFor(double duration, const Limits& limits, bool fine) {
+  const double coarse = std::min(kSlowestSegment, kLongestSegment / limits.speed);
+  const double interval = fine ? kFine * coarse : coarse;
+  const int wanted = static_cast<int>(std::ceil(duration / interval));
   const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
   return std::clamp(rounded, kFewestSegments, kMostSegments);
 }
@@ -139,7 +81,10 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
     : options_(options),
       backends_(backends),
       search_(options.vertical_cost, kGreed, kTightCost),
-      corridor_(PairClearance(options.problem), kFloorMargin) {
+      binder_(options.problem) {
+  for (const TermEntry& entry : options.problem.terms) {
+    if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
+  }
   // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
   // arrival falls back to a fixed one.
   for (int segments = kFewestSegments; segments <= kMostSegments; segments += kSegmentStep) {
@@ -150,7 +95,6 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
   for (GuidePath* guide : {&first_guide_, &guide_}) guide->reserve(1024);
   pairs_.reserve(static_cast<std::size_t>(options.problem.max_pairs_per_point) *
                  kMostControlPoints);
-  bound_.reserve(kMostControlPoints);
   runs_.reserve(64);
   barriers_.reserve(8);
   for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
@@ -175,7 +119,16 @@ void PlanAttempt::PrepareProblem(int segments, ArrivalMode arrival) {
   prepared.solver.x = prepared.first_guess = prepared.start.y;
 }
 
-bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) {
+/// Without the terms whose weights grow from round to round.
+double PlanAttempt::CostOfShape(const solvers::SolverSummary& solver) const {
+  double cost = 0.0;
+  for (const solvers::TermCost& term : solver.cost_by_term) {
+    if (std::find(pressed_.begin(), pressed_.end(), term.name) == pressed_.end()) cost += term.cost;
+  }
+  return cost;
+}
+
+bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) const {
   if (a.reason != ReplanReason::kNone) return false;
   if (b.reason != ReplanReason::kNone) return true;
   const double share = keeps_side ? kMuchCheaper : 1.0;
@@ -213,6 +166,11 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   problem.SetPrevious(request.previous);
   const bool hard = options_.problem.limits_mode == LimitsMode::kHard;
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
+  const double t_end = request.t0 + request.duration;
+  const bool fixed = request.arrival == ArrivalMode::kFixed;
+  if (fixed && request.space->Blocked(EndStateAt(*request.pad, request.target, t_end).state.p)) {
+    return ReplanReason::kGoalBlocked;
+  }
   expansions_left_ = options_.max_expansions;
   pairs_.clear();
   barriers_.clear();
@@ -257,7 +215,11 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
     runs_.assign(1, span);
     candidate->reason = Follow(request, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
-    if (i + 1 < guides && !CloseWay(first)) break;
+    if (i + 1 == guides) break;
+    const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
+    const std::optional<Barrier> barrier = CloseWay(first_guide_, through);
+    if (!barrier) break;
+    barriers_.push_back(*barrier);
   }
   return best_.reason;
 }
@@ -265,7 +227,7 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
 /// Binds pairs along the guide and solves again until the curve is clear, or no clearer than before.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
-  bound_.assign(static_cast<std::size_t>(candidate->curve.segments()) + 3, false);
+  binder_.Begin(candidate->curve.segments() + 3);
   pressure_ = {};
   double blocked = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= options_.max_rebinds; ++round) {
@@ -302,7 +264,9 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, Candidate* c
     const ReplanReason reason = Finish(request, candidate, result);
     const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
     if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
-    pressure_.limits *= kLimitPressure;
+    const double share = ShareOfLimits(*candidate->certificate, options_.limits);
+    if (share > kTooFarBeyond) return reason;
+    pressure_.limits *= share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
     const ReplanReason solved = SolveAndCheck(request, candidate, result);
     if (solved != ReplanReason::kNone) return solved;
   }
@@ -368,54 +332,22 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
                                               : ReplanReason::kLimitsExceeded;
 }
 
-/// Where the curve is blocked the control points are wanted on a guide path, elsewhere on the curve.
-/// Those near to what was blocked in this round or an earlier one get the half-spaces around there.
+/// In the first round guide_ is the way past all that is in the way. What is blocked later gets guides
+/// of its own: corners that the curve cuts.
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
                                bool guide_is_known, ReplanResult* result) {
-  const int n = static_cast<int>(bound_.size());
-  const auto time_of = [&](int i) { return curve.t0() + (i - 1) * curve.interval(); };
-  for (int i = 0; i < n; ++i) reference_[i] = curve.Evaluate(time_of(i)).p_WB;
-  corners_.clear();
+  binder_.Start(curve);
   for (const BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
     if (!guide_is_known) {
       const ReplanReason reason = FindGuide(request, curve, run, result);
       if (reason != ReplanReason::kNone) return reason;
+      binder_.AddCorner(curve, run, guide_, *request.space);
     }
-    PathWalk walk(guide_);
-    if (!guide_is_known) {
-      const double t_mid = 0.5 * (run.t_in + run.t_out);
-      corners_.push_back({t_mid, BesideObstacle(*request.space, PathWalk(guide_).At(0.5),
-                                                curve.Evaluate(t_mid).p_WB)});
-    }
-    for (int i = kFirstFree; i < n - kFirstFree; ++i) {
-      const double t = time_of(i);
-      const double margin = kBoundBeside * curve.interval();
-      if (t < run.t_in - margin || t > run.t_out + margin) continue;
-      bound_[i] = true;
-      if (t < run.t_in || t > run.t_out) continue;
-      const Eigen::Vector3d guided = walk.At((t - run.t_in) / (run.t_out - run.t_in));
-      reference_[i] = BesideObstacle(*request.space, guided, reference_[i]);
-    }
+    binder_.Follow(curve, run, guide_, *request.space);
   }
   StageTimer timer(&result->times.pairs);
-  pairs_.clear();
-  const int planes = std::max(0, options_.problem.max_pairs_per_point - kLevels);
-  for (int i = kFirstFree; i < n - kFirstFree; ++i) {
-    if (bound_[i]) {
-      corridor_.Bind(i, reference_[i], *request.space, static_cast<std::size_t>(planes), &pairs_);
-    }
-  }
-  // What is blocked still is a corner that the curve cuts between its control points: both beside it
-  // get the plane there.
-  for (const Corner& corner : corners_) {
-    const int before = static_cast<int>((corner.t - curve.t0()) / curve.interval()) + 1;
-    for (const int i : {before, before + 1}) {
-      if (i < kFirstFree || i >= n - kFirstFree) continue;
-      if (pairs_.size() + 1 + kLevels > static_cast<std::size_t>(now_->problem->max_pairs())) break;
-      corridor_.Bind(i, corner.p, *request.space, planes > 0 ? 1 : 0, &pairs_);
-    }
-  }
+  binder_.Bind(*request.space, &pairs_);
   return ReplanReason::kNone;
 }
 
@@ -432,39 +364,26 @@ ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const Uniform
     SampleGuide(*request.previous, run, &guide_);
     return ReplanReason::kNone;
   }
-  const int budget =
-      barriers_.empty() ? expansions_left_ : std::min(expansions_left_, kOtherWayExpansions);
+  const int other_way = request.at_rest ? kOtherWayAtRest : kOtherWayExpansions;
+  const int budget = barriers_.empty() ? expansions_left_ : std::min(expansions_left_, other_way);
   const SearchStatus status =
       search_.Search(*request.space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
                      budget, &guide_, barriers_);
   expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
+  if (status == SearchStatus::kEndsOutside) {
+    // Out of the window only floor and ceiling block: between them leads the way.
+    SampleGuide(curve, run, &guide_);
+    for (Eigen::Vector3d& p : guide_) {
+      p.z() = std::max(std::min(p.z(), request.space->ceiling - kLevelMargin),
+                       request.space->FloorAt(p) + kLevelMargin);
+    }
+    return ReplanReason::kNone;
+  }
   // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (run.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   if (status != SearchStatus::kFound) return ReplanReason::kSearchFailed;
   result->guide_paths.Add(guide_);
   return ReplanReason::kNone;
-}
-
-/// Closes the way that first_guide_ takes around the obstacle in the middle of the run, so that the
-/// next search finds another. False if it passes too near to tell a side.
-bool PlanAttempt::CloseWay(const BlockedRun& run) {
-  const FlatState at = first_curve_.Evaluate(0.5 * (run.t_in + run.t_out));
-  Barrier barrier;
-  barrier.p = at.p_WB;
-  barrier.normal = at.v_WB.norm() > kStill ? at.v_WB : first_guide_.back() - first_guide_.front();
-  barrier.normal.normalize();
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& p : first_guide_) {
-    const Eigen::Vector3d offset = p - at.p_WB;
-    const double along = offset.dot(barrier.normal);
-    if (std::abs(along) >= nearest) continue;
-    nearest = std::abs(along);
-    barrier.side = offset - along * barrier.normal;
-  }
-  if (!(barrier.side.norm() > kNoSide) || !barrier.normal.allFinite()) return false;
-  barrier.side.normalize();
-  barriers_.push_back(barrier);
-  return true;
 }
 
 }  // namespace touchdown::planning

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "touchdown/planning/certificate.h"
-#include "touchdown/planning/corridor.h"
 #include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/pair_binder.h"
 #include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/replan_result.h"
 #include "touchdown/solvers/backend_registry.h"
@@ -21,8 +20,8 @@ namespace touchdown::planning {
 /// The options of the landing problems that a replanner with these options solves.
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
 
-/// Number of segments of a plan that takes so long [s].
-int SegmentsFor(double duration);
+/// Number of segments of a plan that takes so long [s] at these limits: few, or `fine` half as many again.
+int SegmentsFor(double duration, const Limits& limits, bool fine);
 
 /// What one attempt is made with.
 struct AttemptRequest {
@@ -35,6 +34,7 @@ struct AttemptRequest {
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
+  bool at_rest = false;   ///< there is time to look for long ways round
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice while clear
   AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };
@@ -46,7 +46,7 @@ struct AttemptRequest {
 /// and backend per number of segments.
 class PlanAttempt {
  public:
-  static constexpr int kMostControlPoints = 131;  ///< of a plan
+  static constexpr int kMostControlPoints = PairBinder::kMostControlPoints;  ///< of a plan
 
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
 
@@ -97,15 +97,16 @@ class PlanAttempt {
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,
                          const BlockedRun& run, ReplanResult* result);
   double BlockedTime() const;
-  bool CloseWay(const BlockedRun& run);
   bool Keeps(const AttemptRequest& request, const BlockedRun& run) const;
-  static bool Better(const Candidate& a, const Candidate& b, bool keeps_side);
+  double CostOfShape(const solvers::SolverSummary& solver) const;
+  bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
 
   ReplannerOptions options_;
   solvers::BackendRegistry backends_;
   std::map<std::pair<int, ArrivalMode>, Prepared> prepared_;
   GridSearch search_;
-  Corridor corridor_;
+  PairBinder binder_;
+  std::vector<std::string> pressed_;  // terms whose weights are scaled
 
   // Of the attempt under way.
   Prepared* now_ = nullptr;
@@ -118,13 +119,6 @@ class PlanAttempt {
   std::vector<ObstaclePair> pairs_;
   std::vector<Barrier> barriers_;  // ways around the first obstacle that were taken
   GuidePath first_guide_, guide_;
-  std::array<Eigen::Vector3d, kMostControlPoints> reference_;  // where control points are wanted
-  struct Corner {
-    double t;
-    Eigen::Vector3d p;
-  };
-  std::vector<Corner> corners_;  // that the curve cuts, seen from the guide
-  std::vector<char> bound_;      // control points that get pairs
 };
 
 }  // namespace touchdown::planning

@@ -36,7 +36,7 @@ struct ReplannerOptions {
   double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]
   double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
   int max_guides = 2;               ///< ways around the first obstacle that are tried
-  int max_rebinds = 6;              ///< solve / check / re-bind rounds per attempt
+  int max_rebinds = 3;              ///< solve / check / re-bind rounds per attempt
   int max_solves = 14;              ///< no further arrival time is tried after so many in a step
   int max_iterations = 50;          ///< solver iterations per solve
   int max_expansions = 200000;      ///< A* expansions per attempt

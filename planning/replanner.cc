@@ -25,6 +25,7 @@ constexpr int kMaxAttempts = 6;
 constexpr double kStretch = 1.3;         // of the duration after an attempt that failed
 constexpr double kFinest = 1.5;          // attempts after the first have so many times its segments
 constexpr int kRescueGuides = 2;         // ways around an obstacle that later attempts try
+constexpr int kGuidesAtRest = 4;         // ... and from rest
 constexpr double kReTimeBelow = 0.75;    // a fresh guess this much shorter replaces the arrival
 constexpr double kStripMemory = 2.0;     // the strip over a pad that was lost holds this long [s]
 constexpr double kMoving = 1e-6;         // [m/s]
@@ -91,6 +92,8 @@ void Validate(const ReplannerOptions& o) {
   Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");
   Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
   Require(o.max_solves >= 1, "max_solves", o.max_solves, ">= 1");
+  Require(o.problem.max_pairs_per_point >= 2, "problem.max_pairs_per_point",
+          o.problem.max_pairs_per_point, ">= 2, for floor and ceiling");
   Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
   Require(o.max_expansions >= 1, "max_expansions", o.max_expansions, ">= 1");
 }
@@ -139,6 +142,7 @@ class Replanner::Impl {
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
   void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
+  bool NoTimeToBrake(const SplineState& start, const FreeSpace& space);
   bool TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
                const FreeSpace& space);
 
@@ -311,19 +315,21 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pad = input.pad;
   request.target = input.endpoint;
   request.arrival = options_.arrival;
+  request.at_rest = start.v.norm() <= kAtRest;
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
-    if (i > 0 && result_.solves >= options_.max_solves) return reason;
+    if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
-    request.segments = SegmentsFor(std::min(T, kFinest * first));
+    request.segments = SegmentsFor(std::min(T, kFinest * first), options_.limits, i > 0);
     request.space = &space;
-    request.rescue_guides = i > 0 ? kRescueGuides : 1;
+    request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
+    if (reason == ReplanReason::kCollisionRemains && NoTimeToBrake(start, space)) return reason;
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
@@ -337,6 +343,12 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     T = std::max(kStretch * T, fresh);
   }
   return reason;
+}
+
+/// The start itself leads into an obstacle: arriving later does not change that.
+bool Replanner::Impl::NoTimeToBrake(const SplineState& start, const FreeSpace& space) {
+  MakeRestTrajectory(start, 0.0, kNoShift, options_.limits, &braking_);
+  return std::isfinite(FirstBlockedTime(braking_, 0.0, space));
 }
 
 bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,

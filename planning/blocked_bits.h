@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "touchdown/planning/barrier.h"
+#include "touchdown/planning/free_space.h"
+
+namespace touchdown::planning {
+
+/// The blocked cells of a window as bits, 64 along x to a word. A word is made when it is first asked for:
+/// a search asks for the same cell from up to 26 sides, and only where it comes.
+class BlockedBits {
+ public:
+  /// Makes room for this map's window, which Begin does otherwise.
+  void Reserve(const OccupancyMap& map);
+
+  /// From now on of this space and these barriers, which must outlive the calls of Around. Allocates only
+  /// to grow to a high-water mark.
+  void Begin(const FreeSpace& space, std::span<const Barrier> barriers);
+
+  /// The 3 x 3 x 3 cells around a cell of the window, given from the window's lowest one: bit
+  /// 9 (z + 1) + 3 (y + 1) + x + 1 for the cell at the offset (x, y, z). Out of the window: not set.
+  std::uint32_t Around(const CellIndex& cell);
+
+ private:
+  std::uint64_t Word(int row, int word) {
+    const auto i = static_cast<std::size_t>(row * words_per_row_ + word);
+    if (made_[i] != number_) Make(row, word);
+    return words_[i];
+  }
+  void Make(int row, int word);
+
+  FreeSpace space_;
+  std::span<const Barrier> barriers_;
+  CellIndex size_ = CellIndex::Zero();
+  int words_per_row_ = 0;
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> made_;  // with which number; 0: never
+  std::uint32_t number_ = 0;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "touchdown/planning/corridor.h"
+#include "touchdown/planning/curve_check.h"
+#include "touchdown/planning/grid_search.h"
+#include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/uniform_bspline.h"
+
+namespace touchdown::planning {
+
+/// Chooses the half-spaces {p, v} of the control points of a curve that is blocked: those along a guide
+/// past what blocks it get the convex piece of free space around their place on the guide, those beside
+/// it the piece around their place on the curve. What was bound in one round stays bound in the next,
+/// around where the curve is then.
+class PairBinder {
+ public:
+  static constexpr int kMostControlPoints = 131;  ///< of a curve
+
+  explicit PairBinder(const LandingProblemOptions& options);
+
+  /// Nothing is bound any more.
+  void Begin(int control_points);
+
+  /// A round begins: the control points are wanted on this curve.
+  void Start(const UniformBspline& curve);
+
+  /// Where the curve is blocked in `run`, its control points are wanted along the guide.
+  void Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
+              const FreeSpace& space);
+
+  /// The guide leads past a corner that the curve cuts between two control points in `run`: both get the
+  /// plane there.
+  void AddCorner(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
+                 const FreeSpace& space);
+
+  /// The pairs of this round, at most LandingProblem::max_pairs(). Does not allocate once `pairs` has
+  /// room.
+  void Bind(const FreeSpace& space, std::vector<ObstaclePair>* pairs);
+
+ private:
+  struct Corner {
+    int before;  // the control point that comes before it
+    Eigen::Vector3d p;
+  };
+
+  Corridor corridor_;
+  int planes_;     // of a control point, besides those for floor and ceiling
+  int per_point_;  // with those
+  std::vector<char> bound_;
+  std::array<Eigen::Vector3d, kMostControlPoints> reference_;  // where control points are wanted
+  std::vector<Corner> corners_;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/planning/pair_binder.h"
+
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/test/planning_fixtures.h"
+#include "touchdown/planning/test/small_map.h"
+
+namespace touchdown::planning {
+namespace {
+
+constexpr int kPoints = 23;
+constexpr double kInterval = 0.2;
+
+/// Along x through the origin at 1 m/s, from t = 0 on.
+UniformBspline Straight() {
+  ControlPoints points(3, kPoints);
+  for (int i = 0; i < kPoints; ++i) points.col(i) << (i - 11) * kInterval, 0.03, 0.05;
+  return UniformBspline(points, kInterval, 0.0);
+}
+
+struct Wall {
+  Wall() : map(SmallMap(0.1)), space(SpaceOf(map)), curve(Straight()) {
+    for (double y = -0.25; y <= 0.3; y += 0.1) {
+      for (double z = -0.75; z < 0.8; z += 0.1) map.SetOccupied({0.05, y, z});
+    }
+    FindBlockedRuns(curve, 0.0, space, &runs);
+    guide = {{-1.0, 0.03, 0.05}, {0.05, 0.9, 0.05}, {1.0, 0.03, 0.05}};
+  }
+  OccupancyMap map;
+  FreeSpace space;
+  UniformBspline curve;
+  std::vector<BlockedRun> runs;
+  GuidePath guide;
+};
+
+TEST(PairBinder, BindsWhatIsBlockedAndBesideItToTheGuidesSide) {
+  Wall wall;
+  ASSERT_EQ(wall.runs.size(), 1u);
+  PairBinder binder{LandingProblemOptions()};
+  binder.Begin(kPoints);
+  binder.Start(wall.curve);
+  binder.Follow(wall.curve, wall.runs.front(), wall.guide, wall.space);
+  std::vector<ObstaclePair> pairs;
+  binder.Bind(wall.space, &pairs);
+  ASSERT_FALSE(pairs.empty());
+  std::set<int> bound;
+  for (const ObstaclePair& pair : pairs) {
+    bound.insert(pair.control_point);
+    const double t = (pair.control_point - 1) * kInterval;
+    EXPECT_GT(t, wall.runs.front().t_in - 3 * kInterval);
+    EXPECT_LT(t, wall.runs.front().t_out + 3 * kInterval);
+    // Where the curve is blocked it must go left: some plane keeps it off the wall's middle.
+  }
+  for (const int i : bound) {
+    const double t = (i - 1) * kInterval;
+    if (t < wall.runs.front().t_in || t > wall.runs.front().t_out) continue;
+    bool pushed_left = false;
+    for (const ObstaclePair& pair : pairs) {
+      pushed_left = pushed_left || (pair.control_point == i && pair.v.y() > 0.5 &&
+                                    (wall.curve.Evaluate(t).p_WB - pair.p).dot(pair.v) < 0.0);
+    }
+    EXPECT_TRUE(pushed_left) << "control point " << i;
+  }
+  // What was bound stays bound, around the new curve.
+  std::vector<ObstaclePair> again;
+  binder.Start(wall.curve);
+  binder.Bind(wall.space, &again);
+  std::set<int> still;
+  for (const ObstaclePair& pair : again) still.insert(pair.control_point);
+  EXPECT_TRUE(std::includes(still.begin(), still.end(), bound.begin(), bound.end()));
+  binder.Begin(kPoints);
+  binder.Start(wall.curve);
+  binder.Bind(wall.space, &again);
+  EXPECT_TRUE(again.empty());
+}
+
+TEST(PairBinder, ACornerBindsBothControlPointsBesideIt) {
+  Wall wall;
+  PairBinder binder{LandingProblemOptions()};
+  binder.Begin(kPoints);
+  binder.Start(wall.curve);
+  binder.AddCorner(wall.curve, wall.runs.front(), wall.guide, wall.space);
+  std::vector<ObstaclePair> pairs;
+  binder.Bind(wall.space, &pairs);
+  std::set<int> bound;
+  for (const ObstaclePair& pair : pairs) bound.insert(pair.control_point);
+  ASSERT_EQ(bound.size(), 2u);
+  EXPECT_EQ(*bound.rbegin(), *bound.begin() + 1);
+}
+
+TEST(PairBinder, NeverGivesMorePairsThanTheProblemHolds) {
+  Wall wall;
+  for (const int per_point : {2, 3}) {
+    LandingProblemOptions options;
+    options.max_pairs_per_point = per_point;
+    const LandingProblem problem(kPoints - 3, options);
+    PairBinder binder(options);
+    binder.Begin(kPoints);
+    binder.Start(wall.curve);
+    for (int i = 0; i < 40; ++i) {
+      binder.AddCorner(wall.curve, wall.runs.front(), wall.guide, wall.space);
+    }
+    binder.Follow(wall.curve, {0.0, 4.0, false, false}, wall.guide, wall.space);
+    std::vector<ObstaclePair> pairs;
+    binder.Bind(wall.space, &pairs);
+    EXPECT_LE(static_cast<int>(pairs.size()), problem.max_pairs());
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::planning
