@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/evaluation/field_map.h"
 #include "touchdown/evaluation/replan_scene.h"
 #include "touchdown/planning/ego/ego_planner.h"
@@ -36,9 +35,6 @@ constexpr double kLatency = 0.02;    // of its answers [s]
 constexpr double kThere = 0.3;       // from the goal [m] ...
 constexpr double kSlow = 0.2;        // ... at most this fast [m/s]
 constexpr double kTimeout = 120.0;   // [s]
-constexpr double kFloor = 0.2;       // [m]
-constexpr double kCeiling = 2.5;     // [m]
-constexpr double kPoint = 1e-4;      // radius of what stands for a point in FCL [m]
 constexpr int kDraws = 100;
 
 /// The forest, all of it known; start and goal are free in it.
@@ -64,8 +60,7 @@ Course DrawCourse(const ForestFlightOptions& options, int index) {
     course.goal = {0.5 * kDistance, y, kHeight};
     sim::ForestConfig forest = sim::ForestOfKind(options.kind.forest);
     forest.keep_out = {{course.start.head<2>(), kKeepOut}, {course.goal.head<2>(), kKeepOut}};
-    course.field =
-        sim::MakeForest(forest, static_cast<std::uint64_t>(stream.Uniform(0.0, 0x1.0p53)));
+    course.field = sim::MakeForest(forest, stream.Seed());
     course.truth = MakeMap(options.kind, {9, 9, 5});
     course.truth->Recentre({0.0, 0.0, 0.5 * forest.height});
     FillMap(course.field, course.truth.get());
@@ -98,15 +93,13 @@ std::unique_ptr<planning::Planner> MakePlanner(const ForestFlightOptions& option
     ego.plan.max_speed = limits.speed;
     ego.plan.max_acceleration = limits.acceleration;
     ego.goal_rate = 1.0 / (2.0 * kTimeout);  // once
-    ego.floor_height = kFloor;
-    ego.ceiling_height = kCeiling;
+    ego.floor_height = kForestFloor;
+    ego.ceiling_height = kForestCeiling;
     return std::make_unique<planning::EgoPlanner>(ego);
   }
-  planning::ReplannerOptions landing = options.replanner;
-  landing.limits = limits;
-  landing.floor_height = kFloor;
-  landing.ceiling_height = kCeiling;
-  landing.pad_radius = 0.0;  // there is no vehicle under the goal
+  SceneOptions scene;
+  scene.kind = options.kind;
+  planning::ReplannerOptions landing = SceneReplannerOptions(scene, options.replanner);
   landing.max_duration = kTimeout;
   landing.reaction = kPeriod + kLatency;
   return std::make_unique<planning::Replanner>(landing, backends);
@@ -140,12 +133,6 @@ class Flight {
   }
 
  private:
-  static estimation::VehicleModel PointVehicle() {
-    estimation::VehicleModel point;
-    point.hull_radius = point.hull_top = point.foot_depth = kPoint;
-    return point;
-  }
-
   void End(FlightOutcome outcome) {
     flight_.outcome = outcome;
     over_ = true;

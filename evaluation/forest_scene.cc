@@ -61,8 +61,14 @@ ForestScene DrawForestScene(const SceneOptions& options, sim::RandomStream* stre
   sim::SetDensity(density, &forest);
   forest.keep_out = {{scene.start.p.head<2>(), kKeepOut}, {scene.goal.head<2>(), kKeepOut}};
   scene.height = forest.height;
-  scene.field = sim::MakeForest(forest, static_cast<std::uint64_t>(stream->Uniform(0.0, 0x1.0p53)));
+  scene.field = sim::MakeForest(forest, stream->Seed());
   return scene;
+}
+
+estimation::VehicleModel PointVehicle() {
+  estimation::VehicleModel point;
+  point.hull_radius = point.hull_top = point.foot_depth = kPointRadius;
+  return point;
 }
 
 }  // namespace touchdown::evaluation

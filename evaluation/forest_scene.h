@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/planning/limits.h"
 #include "touchdown/planning/uniform_bspline.h"
 #include "touchdown/sim/obstacle_field.h"
@@ -44,6 +45,14 @@ struct ForestScene {
   double height = 3.0;                               ///< of the forest [m]
   sim::ObstacleField field;
 };
+
+/// Floor and ceiling of every flight through a forest [m].
+inline constexpr double kForestFloor = 0.2;
+inline constexpr double kForestCeiling = 2.5;
+
+/// What stands for a point where distances to obstacles are measured, and its radius [m].
+inline constexpr double kPointRadius = 1e-4;
+estimation::VehicleModel PointVehicle();
 
 /// Scenes whose start is blocked are drawn again: this many draws at most before that is an error.
 inline constexpr int kForestSceneDraws = 100;

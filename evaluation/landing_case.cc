@@ -153,7 +153,7 @@ CaseMaker::Scene CaseMaker::DrawScene(int index, int draw) const {
   scene.pad.mean(2) = pad.Uniform(0.25 * fastest, fastest);
   scene.pad.mean(3) = pad.Uniform(-std::numbers::pi, std::numbers::pi);
   scene.pad.mean(4) = pad.Uniform(-0.2, 0.2);
-  scene.forest_seed = static_cast<std::uint64_t>(world.Uniform(0.0, 0x1.0p53));
+  scene.forest_seed = world.Seed();
 
   const auto foretold = Foretold(scene.pad);
   scene.target.height = kArrivalHeight;

@@ -63,6 +63,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                                                                   : planning::ArrivalMode::kFixed;
   options.limits = LimitsOf(scenario);
   options.ceiling_height = scenario.planning.ceiling;
+  options.max_guides = scenario.planning.guides;
   // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
   const double period = 1.0 / scenario.planning.rate;
   options.reaction =

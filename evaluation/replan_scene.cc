@@ -25,8 +25,6 @@ namespace {
 
 using sim::RandomStream;
 
-constexpr double kFloor = 0.2;      // [m]
-constexpr double kCeiling = 2.5;    // [m]
 constexpr double kEndSpeed = 0.5;   // largest, of the speed limit
 constexpr double kMostMoved = 1.0;  // of a target, in a feasible scene [m]
 constexpr double kMostDetour = 1.3;
@@ -104,8 +102,8 @@ estimation::PadState MovingTarget::At(double t) const noexcept {
 planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
                                                  planning::ReplannerOptions base) {
   base.limits = options.kind.limits;
-  base.floor_height = kFloor;
-  base.ceiling_height = kCeiling;
+  base.floor_height = kForestFloor;
+  base.ceiling_height = kForestCeiling;
   base.pad_radius = 0.0;  // there is no vehicle under the end
   return base;
 }
@@ -123,8 +121,8 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
     FillMap(scene.field, scene.map.get());
     planning::FreeSpace space;
     space.map = scene.map.get();
-    space.floor = kFloor;
-    space.ceiling = kCeiling;
+    space.floor = kForestFloor;
+    space.ceiling = kForestCeiling;
     if (space.Blocked(scene.start.p)) continue;
 
     const Eigen::Vector3d wanted = scene.start.p + options.horizon * forest.ahead;

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/sim/true_clearance.h"
 
 namespace touchdown::evaluation {
@@ -18,7 +17,6 @@ using planning::ReplanResult;
 using planning::UniformBspline;
 
 constexpr double kStep = 0.01;      // between samples [m]
-constexpr double kPoint = 1e-4;     // radius of what stands for a point in FCL [m]
 constexpr double kRounding = 1e-3;  // of FCL's distance and of that point [m]
 
 /// In a blocked cell by more than the curve may leave its chords, for which the inflation makes up.
@@ -44,9 +42,7 @@ void MeasureShape(const UniformBspline& curve, ReplanRow* row) {
 }  // namespace
 
 void CheckPlan(const UniformBspline& curve, const ReplanScene& scene, ReplanRow* row) {
-  estimation::VehicleModel point;
-  point.hull_radius = point.hull_top = point.foot_depth = kPoint;
-  const sim::TrueClearance truth(scene.field, point);
+  const sim::TrueClearance truth(scene.field, PointVehicle());
   const double inflation = scene.map->options().inflation_radius;
   row->true_clearance = std::numeric_limits<double>::infinity();
   row->length = 0.0;

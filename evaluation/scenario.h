@@ -95,6 +95,7 @@ struct Scenario {
     PlanningLatency latency;
     double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
     double ceiling = 10.0;    ///< the body's origin stays below this [m]
+    int guides = 2;           ///< most ways around the first obstacle that a step tries
   } planning;
 
   /// Of the EGO-Planner baseline; defaults as published.

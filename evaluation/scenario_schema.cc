@@ -24,6 +24,20 @@ SchemaKey<Owner> Number(std::string name, ValueRange range, std::string doc, At 
       [=](const Owner& o) { return WriteNumber(at(o)); }};
 }
 
+template <typename At>
+SchemaKey<Scenario> Whole(std::string name, int lowest, int highest, std::string doc, At at) {
+  const std::string range = fmt::format("[{}, {}]", lowest, highest);
+  return {name,
+          "whole number",
+          "",
+          range,
+          std::move(doc),
+          [=](Scenario& s, const YAML::Node& n, const Where& w) {
+            at(s) = ReadWhole(n, w, name, lowest, highest);
+          },
+          [=](const Scenario& s) { return std::to_string(at(s)); }};
+}
+
 template <int kSize, typename Owner, typename At>
 SchemaKey<Owner> Vector(std::string name, ValueRange range, std::string doc, At at) {
   return {name,
@@ -183,6 +197,11 @@ void AddPlanningKeys(std::vector<SchemaKey<Scenario>>& keys) {
                                   "flight ceiling of the vehicle's centre above the ground; above "
                                   "the start and the height at which the pad is followed",
                                   AT(planning.ceiling)));
+  keys.push_back(
+      Whole("planning.guides", 1, 8,
+            "most ways around the first obstacle that a step of the landing planner tries; "
+            "the cheapest plan wins",
+            AT(planning.guides)));
   keys.push_back(Text("solver.backend", "a name of `touchdown list backends`",
                       "optimiser of planner landing; the baseline has lbfgs", AT(solver.backend)));
   keys.push_back(Choice("solver.arrival", {"fixed", "free"},

@@ -61,6 +61,15 @@ double ReadNumber(const YAML::Node& node, const Where& where, const std::string&
   return *value;
 }
 
+int ReadWhole(const YAML::Node& node, const Where& where, const std::string& key, int lowest,
+              int highest) {
+  const std::optional<double> value = Number(node);
+  if (!value || *value < lowest || *value > highest || *value != std::floor(*value)) {
+    RefuseValue(where, key, fmt::format("a whole number in [{}, {}]", lowest, highest), node);
+  }
+  return static_cast<int>(*value);
+}
+
 std::uint64_t ReadSeed(const YAML::Node& node, const Where& where, const std::string& key) {
   // SQLite and JSON readers keep integers exactly up to 2^53.
   constexpr std::uint64_t kLargest = std::uint64_t{1} << 53;

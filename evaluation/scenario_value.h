@@ -33,6 +33,9 @@ struct ValueRange {
 
 double ReadNumber(const YAML::Node& node, const Where& where, const std::string& key,
                   const ValueRange& range);
+/// A whole number from `lowest` to `highest`.
+int ReadWhole(const YAML::Node& node, const Where& where, const std::string& key, int lowest,
+              int highest);
 std::uint64_t ReadSeed(const YAML::Node& node, const Where& where, const std::string& key);
 bool ReadBool(const YAML::Node& node, const Where& where, const std::string& key);
 std::string ReadText(const YAML::Node& node, const Where& where, const std::string& key);

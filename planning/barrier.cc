@@ -11,9 +11,9 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStill = 1e-3;    // a slower curve has no direction [m/s]
-constexpr double kNoSide = 1e-2;   // from the curve to the path [m]
-constexpr double kCosHalf = 0.1;   // a little less than half of the plane
+constexpr double kStill = 1e-3;   // a slower curve has no direction [m/s]
+constexpr double kNoSide = 1e-2;  // from the curve to the path [m]
+constexpr double kCosHalf = 0.1;  // a little less than half of the plane
 
 }  // namespace
 

@@ -58,8 +58,7 @@ std::uint32_t BlockedBits::Around(const CellIndex& cell) {
 /// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
 void BlockedBits::Make(int row, int word) {
   const OccupancyMap& map = *space_.map;
-  const CellIndex first =
-      map.origin() + CellIndex(word * kWord, row % size_.y(), row / size_.y());
+  const CellIndex first = map.origin() + CellIndex(word * kWord, row % size_.y(), row / size_.y());
   const int count = std::min(kWord, size_.x() - word * kWord);
   std::uint64_t bits = map.BlockedRow(first, count);
   Eigen::Vector3d centre = map.CentreOf(first);
@@ -70,8 +69,10 @@ void BlockedBits::Make(int row, int word) {
       if (blocked(at)) bits |= std::uint64_t{1} << i;
     }
   };
-  const double low = space_.pad_radius > 0.0 ? std::min(space_.floor, space_.pad_floor) : space_.floor;
-  const double high = space_.pad_radius > 0.0 ? std::max(space_.floor, space_.pad_floor) : space_.floor;
+  const double low =
+      space_.pad_radius > 0.0 ? std::min(space_.floor, space_.pad_floor) : space_.floor;
+  const double high =
+      space_.pad_radius > 0.0 ? std::max(space_.floor, space_.pad_floor) : space_.floor;
   if (centre.z() > space_.ceiling || centre.z() < low) {
     bits = ~std::uint64_t{0} >> (kWord - count);
   } else if (centre.z() < high) {

@@ -56,7 +56,8 @@ class GridSearch {
 
  private:
   struct Node {
-    std::uint64_t key;  // f, and the order of insertion: the bits of positive floats are ordered as they are
+    std::uint64_t
+        key;  // f, and the order of insertion: the bits of positive floats are ordered as they are
     std::uint32_t address;
   };
 

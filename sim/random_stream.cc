@@ -46,6 +46,8 @@ double RandomStream::Uniform(double low, double high) {
   return draw < high ? draw : low;  // rounding must not reach the open end
 }
 
+std::uint64_t RandomStream::Seed() { return static_cast<std::uint64_t>(Uniform(0.0, 0x1.0p53)); }
+
 double RandomStream::Normal(double sigma) {
   CheckWithin("Normal: sigma", sigma, 0.0, std::numeric_limits<double>::max());
   if (has_spare_) {

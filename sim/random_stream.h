@@ -17,6 +17,9 @@ class RandomStream {
   /// Uniform in [low, high). Throws std::invalid_argument unless low <= high, both finite.
   double Uniform(double low, double high);
 
+  /// A seed for another generator, below 2^53.
+  std::uint64_t Seed();
+
   /// Normal with mean 0 and standard deviation `sigma` >= 0. A draw is used even when sigma is 0,
   /// so that a sensor made exact keeps its later draws where they were.
   double Normal(double sigma);

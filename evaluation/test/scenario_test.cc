@@ -266,6 +266,16 @@ TEST_F(ScenarioTest, AClearanceBelowTheHullOrBeyondTheMapIsRefused) {
   EXPECT_EQ(Refusal("planning: {clearance: 1}\n"), "accepted");
 }
 
+TEST_F(ScenarioTest, AWholeNumberIsWholeAndInItsRange) {
+  EXPECT_EQ(Refusal("planning: {guides: 3}\n"), "accepted");
+  for (const char* value : {"0", "9", "1.5", "two", "[2]"}) {
+    EXPECT_THAT(Refusal(std::string("planning: {guides: ") + value + "}\n"),
+                AllOf(HasSubstr(path_ + ":1"),
+                      HasSubstr("planning.guides must be a whole number in [1, 8]")))
+        << value;
+  }
+}
+
 TEST_F(ScenarioTest, ACeilingBelowWhatIsFlownIsRefused) {
   EXPECT_THAT(Refusal("planning: {ceiling: 2.5}\n"),
               AllOf(HasSubstr(path_ + ":1"), HasSubstr("planning.ceiling must be in (2.5, 1000] m"),

@@ -22,9 +22,9 @@ TEST(BlockedBits, SayWhatTheSpaceAndTheBarriersSay) {
     const Eigen::Vector3d low = map.CentreOf(map.origin());
     const Eigen::Vector3d extent = map.size().cast<double>() * map.resolution();
     const auto anywhere = [&] {
-      return Eigen::Vector3d(low + Eigen::Vector3d(draw.Uniform(0, 1), draw.Uniform(0, 1),
-                                                   draw.Uniform(0, 1))
-                                       .cwiseProduct(extent));
+      return Eigen::Vector3d(
+          low + Eigen::Vector3d(draw.Uniform(0, 1), draw.Uniform(0, 1), draw.Uniform(0, 1))
+                    .cwiseProduct(extent));
     };
     for (int i = 0; i < 40; ++i) map.SetOccupied(anywhere());
     FreeSpace space = SpaceOf(map);

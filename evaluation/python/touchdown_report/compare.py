@@ -5,8 +5,6 @@ with several numbers also the time per iteration over them.
 
     /usr/bin/python3 -m touchdown_report.compare COMPARISON.db OUT.png
 """
-import os
-import sqlite3
 import sys
 
 import matplotlib
@@ -15,7 +13,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from touchdown_report import command_line  # noqa: E402
+from touchdown_report import command_line, database  # noqa: E402
+from touchdown_report.style import STYLE  # noqa: E402
 
 SUPPORTED_VERSION = "1"
 # A line style for each backend: colour alone does not tell ten of them apart.
@@ -24,17 +23,6 @@ DASHES = ["-", "--", ":", "-."]
 MOST_ROWS = 3
 # Beside the axes: curves fill all of them.
 LEGEND = {"fontsize": 7.5, "loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.edgecolor": "#BBBBBB",
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.grid": True,
-    "grid.color": "#EEEEEE",
-    "axes.axisbelow": True,
-}
 
 
 class CompareError(Exception):
@@ -45,21 +33,10 @@ class Comparison:
     """One file: `manifest` (dict), `points` and `backends` in order, and their times."""
 
     def __init__(self, path):
-        if not os.path.isfile(path):
-            raise CompareError(f"{path}: there is no such file.")
-        try:
-            with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
-                self._read(db, path)
-        except sqlite3.Error as error:
-            raise CompareError(f"{path}: not a comparison ({error}).") from error
+        database.read(path, "comparison", "manifest", SUPPORTED_VERSION, CompareError, self._read)
 
-    def _read(self, db, path):
-        self.manifest = dict(db.execute("SELECT key, value FROM manifest"))
-        if self.manifest.get("version") != SUPPORTED_VERSION:
-            raise CompareError(
-                f"{path}: comparison version {self.manifest.get('version')}, "
-                f"this package reads version {SUPPORTED_VERSION}."
-            )
+    def _read(self, db, manifest):
+        self.manifest = manifest
         self.points = [n for n, in db.execute("SELECT DISTINCT points FROM problem ORDER BY 1")]
         backend_order = "SELECT backend FROM summary GROUP BY backend ORDER BY MIN(rowid)"
         self.backends = [name for name, in db.execute(backend_order)]

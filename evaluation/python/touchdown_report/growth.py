@@ -4,8 +4,6 @@ map's cells and the pairs that were bound.
 
     /usr/bin/python3 -m touchdown_report.growth STUDY.db OUT.png
 """
-import os
-import sqlite3
 import sys
 
 import matplotlib
@@ -14,7 +12,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from touchdown_report import command_line  # noqa: E402
+from touchdown_report import command_line, database  # noqa: E402
+from touchdown_report.style import STYLE  # noqa: E402
 
 SUPPORTED_VERSION = "1"
 STAGES = ["predict", "check", "search", "pairs", "solve", "certificate"]
@@ -26,17 +25,6 @@ VARIED = {
     "resolution_m": "side of a map cell [m]",
 }
 PAIR_EDGES = [0, 1, 5, 9, 17, 33, 65, 129, 257]
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.edgecolor": "#BBBBBB",
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.grid": True,
-    "grid.color": "#EEEEEE",
-    "axes.axisbelow": True,
-}
 
 
 class GrowthError(Exception):
@@ -48,21 +36,13 @@ class Growth:
     `times[name]` is {value: array of a step per row, the stages and the total in the columns}."""
 
     def __init__(self, path):
-        if not os.path.isfile(path):
-            raise GrowthError(f"{path}: there is no such file.")
-        try:
-            with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
-                self._read(db, path)
-        except sqlite3.Error as error:
-            raise GrowthError(f"{path}: not a replanning study ({error}).") from error
+        self._path = path
+        database.read(
+            path, "replanning study", "manifest", SUPPORTED_VERSION, GrowthError, self._read
+        )
 
-    def _read(self, db, path):
-        self.manifest = dict(db.execute("SELECT key, value FROM manifest"))
-        if self.manifest.get("version") != SUPPORTED_VERSION:
-            raise GrowthError(
-                f"{path}: study version {self.manifest.get('version')}, "
-                f"this package reads version {SUPPORTED_VERSION}."
-            )
+    def _read(self, db, manifest):
+        self.manifest = manifest
         columns = ", ".join(f"{stage}_ms" for stage in STAGES + ["total"])
         self.times = {}
         pairs = []
@@ -73,7 +53,7 @@ class Growth:
                 (name,),
             ).fetchall()
             if not rows:
-                raise GrowthError(f"{path}: the study has no part growth.")
+                raise GrowthError(f"{self._path}: the study has no part growth.")
             pairs += [row[1:] for row in rows]
             values = sorted({row[0] for row in rows})
             self.times[name] = {v: np.array([r[2:] for r in rows if r[0] == v]) for v in values}

@@ -18,21 +18,11 @@ from matplotlib.collections import PatchCollection  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
 
 from touchdown_report import bspline, command_line  # noqa: E402
+from touchdown_report.style import STYLE  # noqa: E402
 
 # Okabe and Ito's palette.
 NEW, OLD, GUIDE, PAIR, PAD = "#0072B2", "#999999", "#009E73", "#D55E00", "#2B2B2B"
 TERMS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000"]
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.edgecolor": "#BBBBBB",
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.grid": True,
-    "grid.color": "#EEEEEE",
-    "axes.axisbelow": True,
-}
 
 
 class PlanError(Exception):

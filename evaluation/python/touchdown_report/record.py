@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reading a recorded landing (docs/record.md)."""
 import json
-import os
-import sqlite3
 
 import numpy as np
+
+from touchdown_report import database
 
 SUPPORTED_VERSION = "2"
 
@@ -17,22 +17,11 @@ class Record:
     """One landing: `meta`, `result` (the land --json document) and the tables as arrays."""
 
     def __init__(self, path):
-        if not os.path.isfile(path):
-            raise RecordError(f"{path}: there is no such record.")
         self._path = path
-        try:
-            with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
-                self._read(db)
-        except sqlite3.Error as error:
-            raise RecordError(f"{path}: not a record ({error}).") from error
+        database.read(path, "record", "meta", SUPPORTED_VERSION, RecordError, self._read)
 
-    def _read(self, db):
-        self.meta = dict(db.execute("SELECT key, value FROM meta"))
-        if self.meta.get("version") != SUPPORTED_VERSION:
-            raise RecordError(
-                f"{self._path}: record version {self.meta.get('version')}, "
-                f"this package reads version {SUPPORTED_VERSION}."
-            )
+    def _read(self, db, meta):
+        self.meta = meta
         self.result = json.loads(self.meta["result_json"])
         self.vehicle = self._array(
             db, "SELECT t, px, py, pz, vx, vy, vz FROM vehicle WHERE source = 'true' ORDER BY t"
