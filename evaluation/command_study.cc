@@ -108,6 +108,7 @@ int RunFidelity(const StudyArguments& arguments) {
 
 /// Whole flights, of this project's planner and of the baseline.
 int RunFlights(const StudyArguments& arguments, const Registries& registries) {
+  CheckTimings(arguments.allow_debug);
   CheckOutputs(arguments.db, "");
   std::vector<ForestFlightPart> parts;
   bool all_reached = true;
@@ -149,7 +150,7 @@ const std::vector<LonePart>& LoneParts() {
       {"fidelity", {"--parts", "--scenes", "--kinds", "--seed", "--json"}},
       {"flights",
        {"--parts", "--flights", "--planners", "--kinds", "--seed", "--backend", "--guides", "--db",
-        "--json"}}};
+        "--json", "--allow-debug"}}};
   return parts;
 }
 
@@ -179,6 +180,14 @@ void Draw(const StudyArguments& arguments, const std::vector<ReplanStudyPart>& p
   DrawGrowth(unkept.working_path(), arguments.picture);
 }
 
+/// No accepted plan that was looked at collides or is beyond a limit.
+bool AllSafe(const std::vector<ReplanStudyPart>& parts) {
+  return std::all_of(parts.begin(), parts.end(), [](const ReplanStudyPart& part) {
+    const ReplanSummary summary = Summarise(part.rows);
+    return summary.colliding == 0 && summary.beyond_limits == 0;
+  });
+}
+
 int Study(StudyArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CheckOutputs(arguments.db, arguments.picture);
@@ -206,7 +215,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
   }
   if (!arguments.db.empty()) WriteReplanStudy(arguments.db, parts, machine);
   if (!arguments.picture.empty()) Draw(arguments, parts, machine);
-  return kDone;
+  return AllSafe(parts) ? kDone : kFellShort;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <sstream>
 
@@ -33,9 +34,7 @@ Interval BootstrapMedian(const std::vector<double>& values) {
     for (double& value : sample) {
       value = values[static_cast<std::size_t>(draw.Uniform(0.0, 1.0) * values.size())];
     }
-    const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-    std::nth_element(sample.begin(), middle, sample.end());
-    medians.push_back(*middle);
+    medians.push_back(*Quantile(sample, 0.5));
   }
   return {*Quantile(medians, 0.025), *Quantile(medians, 0.975)};
 }
@@ -134,15 +133,19 @@ std::vector<EgoFidelityRow> CompareWithUpstream(const SceneKind& kind,
       if (!quantity.of_plans || r.status == EgoStatus::kPlanned)
         values.push_back(quantity.value(r));
     }
-    if (values.empty()) continue;
     EgoFidelityRow row;
     row.kind = kind.name;
     row.quantity = quantity.name;
     row.scenes = static_cast<int>(values.size());
     row.upstream = file.Value(kind.name, quantity.name);
+    row.judged = quantity.judged;
+    if (values.empty()) {  // nothing to compare with is no agreement
+      row.ours = std::numeric_limits<double>::quiet_NaN();
+      rows.push_back(row);
+      continue;
+    }
     row.ours = *Quantile(values, 0.5);
     row.interval = BootstrapMedian(values);
-    row.judged = quantity.judged;
     if (row.upstream != 0.0) {
       row.interval = {row.interval.lo / row.upstream, row.interval.hi / row.upstream};
       row.met = row.interval.lo <= kRatioHigh && row.interval.hi >= kRatioLow;

@@ -175,6 +175,7 @@ class Flight {
     input.endpoint.height = 0.0;
     const planning::ReplanResult& result = planner_->Replan(input, *map_);
     const bool planned = result.status == planning::ReplanStatus::kPlanned;
+    ++flight_.steps;
     if (result.solves > 0) flight_.step_ms.push_back(1e3 * result.times.total.cpu);
     if (planned) {
       ++flight_.plans;
@@ -230,14 +231,15 @@ FlightSummary Summarise(const std::vector<ForestFlight>& flights) {
     plans.push_back(flight.plans);
     step_ms.insert(step_ms.end(), flight.step_ms.begin(), flight.step_ms.end());
     for (const auto& [what, count] : flight.others) summary.failed += count;
-    if (flight.outcome != FlightOutcome::kReached) continue;
-    time.push_back(flight.time);
-    length.push_back(flight.length);
+    summary.steps += flight.steps;
+    // A flight that does not arrive takes for ever.
+    const bool arrived = flight.outcome == FlightOutcome::kReached;
+    time.push_back(arrived ? flight.time : std::numeric_limits<double>::infinity());
+    if (arrived) length.push_back(flight.length);
   }
   if (!flights.empty()) {
     summary.reached = ClopperPearson(summary.outcomes[FlightOutcome::kReached], summary.flights);
   }
-  summary.steps = static_cast<int>(step_ms.size());
   summary.time = QuantilesOf(time);
   summary.length = QuantilesOf(length);
   summary.clearance = QuantilesOf(clearance);

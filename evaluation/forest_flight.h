@@ -43,6 +43,7 @@ struct ForestFlight {
   double max_speed = 0.0;             ///< norm [m/s]
   double max_acceleration = 0.0;      ///< norm [m/s^2]
   int plans = 0;                      ///< replanning steps that made a plan
+  int steps = 0;                      ///< of the planner
   std::map<std::string, int> others;  ///< steps that did not, by status and reason
   std::vector<double> step_ms;        ///< thread CPU time of each step that called a solver
 };

@@ -60,17 +60,18 @@ std::string ForestFlightText(const std::vector<ForestFlightPart>& parts) {
         100.0 * s.reached.lo, 100.0 * s.reached.hi, s.outcomes[FlightOutcome::kCollided],
         s.outcomes[FlightOutcome::kStuck], s.outcomes[FlightOutcome::kCrashed]);
     text += fmt::format(
-        "  median time {} s, length {} m, largest speed {} m/s; clearance median {}, least {:.3f} "
+        "  median time {} s (of those that arrive, length {} m), largest speed {} m/s; clearance "
+        "median {}, least {:.3f} "
         "m\n",
         Number(s.time.median, "{:.1f}"), Number(s.length.median, "{:.1f}"),
         Number(s.max_speed.median, "{:.2f}"), Number(s.clearance.median, "{:.3f}"),
         s.least_clearance);
     text += fmt::format(
-        "  step, thread CPU time: median {}, p95 {}, p99 {}, max {} ms over {} steps; {} steps "
-        "made no "
-        "plan\n",
+        "  step, thread CPU time: median {}, p95 {}, p99 {}, max {} ms where a solver was asked; "
+        "{} of {} "
+        "steps made no plan\n",
         Number(s.step_ms.median, "{:.3f}"), Number(s.step_ms.p95, "{:.3f}"),
-        Number(s.step_ms.p99, "{:.3f}"), Number(s.step_ms.max, "{:.3f}"), s.steps, s.failed);
+        Number(s.step_ms.p99, "{:.3f}"), Number(s.step_ms.max, "{:.3f}"), s.failed, s.steps);
     for (const auto& [what, count] : AllOthers(part.flights)) {
       text += fmt::format("    {} x {}\n", count, what);
     }

@@ -23,7 +23,7 @@ CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, varied TEXT, kind TEXT, b
   density_per_m2 REAL, speed_limit_mps REAL, acceleration_limit_mps2 REAL, seed INTEGER);
 CREATE TABLE step(part INTEGER, scene INTEGER, feasible INTEGER, straight_blocked INTEGER,
   target_moved_m REAL, status TEXT, reason TEXT, solves INTEGER, pairs INTEGER, guides INTEGER,
-  duration_s REAL, stretch REAL, length_m REAL, jerk_m2ps5 REAL, limits_kept INTEGER,
+  duration_s REAL, stretch REAL, jerk_m2ps5 REAL, length_m REAL, beyond_limits INTEGER,
   map_blocked INTEGER, truly_near INTEGER, true_clearance_m REAL, predict_ms REAL, check_ms REAL,
   search_ms REAL, pairs_ms REAL, solve_ms REAL, certificate_ms REAL, total_ms REAL,
   total_wall_ms REAL, PRIMARY KEY(part, scene));
@@ -59,6 +59,11 @@ Json LatencyJson(const RowTimes& times) {
           {"max", *q.max}};
 }
 
+/// Nothing is said of plans that were not looked at.
+Json OfChecked(const ReplanSummary& summary, int count) {
+  return summary.checked > 0 ? Json(count) : Json();
+}
+
 std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows) {
   std::map<std::string, int> count;
   for (const ReplanRow& row : rows) {
@@ -69,17 +74,21 @@ std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows) 
 
 std::string SceneText(const ReplanStudyPart& part) {
   const SceneOptions& scenes = part.options.scenes;
-  return fmt::format(
-      "{}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m, horizon {:.4g} m, {} arrival, {} limits, "
-      "{}, {} guide(s), seed {}\n",
-      scenes.kind.name, scenes.kind.limits.speed, scenes.kind.limits.acceleration,
-      scenes.kind.inflation, scenes.horizon, Arrival(part.options), Limits(part.options),
-      part.options.replanner.backend, part.options.replanner.max_guides, scenes.seed);
+  return fmt::format("{}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m", scenes.kind.name,
+                     scenes.kind.limits.speed, scenes.kind.limits.acceleration,
+                     scenes.kind.inflation);
+}
+
+std::string PlannerText(const ReplanStudyPart& part) {
+  return fmt::format("{} arrival, {} limits, {}, {} guide(s), seed {}\n", Arrival(part.options),
+                     Limits(part.options), part.options.replanner.backend,
+                     part.options.replanner.max_guides, part.options.scenes.seed);
 }
 
 std::string SafetyText(const ReplanStudyPart& part) {
   const ReplanSummary s = Summarise(part.rows);
-  std::string text = "kind " + SceneText(part);
+  std::string text = fmt::format("kind {}, horizon {:.4g} m, {}", SceneText(part),
+                                 part.options.scenes.horizon, PlannerText(part));
   text += fmt::format(
       "  first step planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
       "all\n",
@@ -88,8 +97,10 @@ std::string SafetyText(const ReplanStudyPart& part) {
     text += fmt::format("    not planned: {} x {}\n", count, reason);
   }
   text += fmt::format(
-      "  of {} accepted plans {} collide (at 1 cm), {} beyond a limit; checkers disagree on {}\n",
-      s.accepted, s.colliding, s.beyond_limits, s.disagreeing);
+      "  {} plans accepted; of {} checked at 1 cm {} collide, {} beyond a limit; checkers disagree "
+      "on "
+      "{}\n",
+      s.accepted, s.checked, s.colliding, s.beyond_limits, s.disagreeing);
   text += TimesHead("  thread CPU time [ms]");
   text += LatencyText("  all scenes", s.all);
   text += LatencyText("  straight way free", s.clear);
@@ -98,7 +109,8 @@ std::string SafetyText(const ReplanStudyPart& part) {
 }
 
 std::string GrowthText(const std::vector<const ReplanStudyPart*>& parts) {
-  std::string text = "growth of the thread CPU time [ms] of a step\nkind " + SceneText(*parts[0]);
+  std::string text = fmt::format("growth of the thread CPU time [ms] of a step\nkind {}, {}",
+                                 SceneText(*parts[0]), PlannerText(*parts[0]));
   std::string varied;
   std::vector<ReplanRow> rows;
   for (const ReplanStudyPart* part : parts) {
@@ -153,9 +165,10 @@ Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineSta
                              {"success_interval_95", {s.success.lo, s.success.hi}},
                              {"failures", FailuresByReason(part.rows)},
                              {"accepted", s.accepted},
-                             {"colliding", s.colliding},
-                             {"disagreeing", s.disagreeing},
-                             {"beyond_limits", s.beyond_limits},
+                             {"checked", s.checked},
+                             {"colliding", OfChecked(s, s.colliding)},
+                             {"disagreeing", OfChecked(s, s.disagreeing)},
+                             {"beyond_limits", OfChecked(s, s.beyond_limits)},
                              {"time_ms",
                               {{"all", LatencyJson(s.all)},
                                {"straight_free", LatencyJson(s.clear)},
@@ -197,13 +210,18 @@ void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart
                       o.scenes.kind.limits.acceleration, static_cast<std::int64_t>(o.scenes.seed));
       for (const ReplanRow& row : parts[i].rows) {
         const planning::StageTimes& t = row.times;
+        const auto checked = [&row](auto member) {
+          using Value = std::decay_t<decltype(row.check.value().*member)>;
+          return row.check ? std::optional<Value>(row.check.value().*member) : std::nullopt;
+        };
         insert.Run(number, row.index, row.feasible, row.straight_blocked, row.target_moved,
                    planning::ToString(row.status), planning::ToString(row.reason), row.solves,
-                   row.pairs, row.guides, row.duration, row.stretch, row.length, row.jerk,
-                   row.limits_kept, row.map_blocked, row.truly_near, row.true_clearance,
-                   1e3 * t.predict.cpu, 1e3 * t.check.cpu, 1e3 * t.search.cpu, 1e3 * t.pairs.cpu,
-                   1e3 * t.solve.cpu, 1e3 * t.certificate.cpu, 1e3 * t.total.cpu,
-                   1e3 * t.total.wall);
+                   row.pairs, row.guides, row.duration, row.stretch, row.jerk,
+                   checked(&PlanCheck::length), checked(&PlanCheck::beyond_limits),
+                   checked(&PlanCheck::map_blocked), checked(&PlanCheck::truly_near),
+                   checked(&PlanCheck::true_clearance), 1e3 * t.predict.cpu, 1e3 * t.check.cpu,
+                   1e3 * t.search.cpu, 1e3 * t.pairs.cpu, 1e3 * t.solve.cpu,
+                   1e3 * t.certificate.cpu, 1e3 * t.total.cpu, 1e3 * t.total.wall);
       }
     }
     transaction.Commit();

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/field_map.h"
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/duration_guess.h"
@@ -25,8 +26,9 @@ namespace {
 
 using sim::RandomStream;
 
-constexpr double kEndSpeed = 0.5;   // largest, of the speed limit
-constexpr double kMostMoved = 1.0;  // of a target, in a feasible scene [m]
+constexpr double kBeyondTarget = 4.0;  // that is known [m]
+constexpr double kEndSpeed = 0.5;      // largest, of the speed limit
+constexpr double kMostMoved = 1.0;     // of a target, in a feasible scene [m]
 constexpr double kMostDetour = 1.3;
 constexpr int kExpansions = 2000000;
 constexpr double kShortest = 0.1;  // flight to the end [s]
@@ -38,10 +40,17 @@ planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
   map.resolution = options.resolution;
   map.inflation_radius = options.kind.inflation;
   // Known 12 m around the start at the usual horizon; a window is a power of two.
-  const double half = std::max(12.8, options.horizon + 4.0);
+  const double half = std::max(12.8, options.horizon + kBeyondTarget);
+  constexpr int kLargest = 10;  // of a window's side, as a power of two of cells
   const auto log2_of = [&](double extent) {
-    return std::clamp(static_cast<int>(std::ceil(std::log2(extent / options.resolution - 1e-9))), 4,
-                      10);
+    const int needed = static_cast<int>(std::ceil(std::log2(extent / options.resolution - 1e-9)));
+    if (needed > kLargest) {
+      throw BadInput(
+          fmt::format("horizon {:.4g} m: a map of cells of {:.4g} m holds no more than {:.4g} m",
+                      options.horizon, options.resolution,
+                      0.5 * options.resolution * (1 << kLargest) - kBeyondTarget));
+    }
+    return std::max(needed, 4);
   };
   map.size_log2 = {log2_of(2.0 * half), log2_of(2.0 * half), log2_of(3.2)};
   return map;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every accepted plan is looked at again by two checkers that share nothing with the certificate: the
-// map's blocked cells at points 1 cm apart, and FCL's distance from these points to the obstacles
-// themselves. Cells hold their obstacles, so that a plan that is clear of the inflated cells is at
+// Every accepted plan is looked at again at points 1 cm apart: its speed and acceleration; whether it is
+// in one of the map's blocked cells, which the certificate has asked along chords; and, sharing nothing with
+// the certificate, FCL's distance from these points to the obstacles themselves. Cells hold their obstacles, so that a plan that is clear of the inflated cells is at
 // least the inflation away from every obstacle.
 #include "touchdown/evaluation/replan_study.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "touchdown/sim/true_clearance.h"
 
@@ -16,8 +17,9 @@ namespace {
 using planning::ReplanResult;
 using planning::UniformBspline;
 
-constexpr double kStep = 0.01;      // between samples [m]
-constexpr double kRounding = 1e-3;  // of FCL's distance and of that point [m]
+constexpr double kStep = 0.01;          // between samples [m]
+constexpr double kWithin = 1.0 + 1e-6;  // of a limit
+constexpr double kRounding = 1e-3;      // of FCL's distance and of that point [m]
 
 /// In a blocked cell by more than the curve may leave its chords, for which the inflation makes up.
 bool DeepInBlocked(const planning::OccupancyMap& map, const Eigen::Vector3d& p) {
@@ -29,24 +31,25 @@ bool DeepInBlocked(const planning::OccupancyMap& map, const Eigen::Vector3d& p) 
   return true;
 }
 
-void MeasureShape(const UniformBspline& curve, ReplanRow* row) {
+/// Integral of the squared jerk: constant on every segment.
+double SquaredJerk(const UniformBspline& curve) {
   const auto& q = curve.control_points();
-  row->duration = curve.duration();
-  row->jerk = row->length = 0.0;
+  double sum = 0.0;
   for (int i = 0; i + 3 < q.cols(); ++i) {
-    row->jerk += (q.col(i + 3) - 3.0 * q.col(i + 2) + 3.0 * q.col(i + 1) - q.col(i)).squaredNorm() /
-                 std::pow(curve.interval(), 5);
+    sum += (q.col(i + 3) - 3.0 * q.col(i + 2) + 3.0 * q.col(i + 1) - q.col(i)).squaredNorm() /
+           std::pow(curve.interval(), 5);
   }
+  return sum;
 }
 
 }  // namespace
 
-void CheckPlan(const UniformBspline& curve, const ReplanScene& scene, ReplanRow* row) {
+PlanCheck CheckPlan(const UniformBspline& curve, const ReplanScene& scene,
+                    const planning::Limits& limits) {
+  PlanCheck check;
   const sim::TrueClearance truth(scene.field, PointVehicle());
   const double inflation = scene.map->options().inflation_radius;
-  row->true_clearance = std::numeric_limits<double>::infinity();
-  row->length = 0.0;
-  bool blocked = false;
+  check.true_clearance = std::numeric_limits<double>::infinity();
   // An obstacle beyond the window's edge is not known either.
   const auto known = [&](const Eigen::Vector3d& p) {
     return scene.map->InWindow(scene.map->CellOf(p.array() - inflation)) &&
@@ -57,17 +60,20 @@ void CheckPlan(const UniformBspline& curve, const ReplanScene& scene, ReplanRow*
   const double fastest = std::max(1e-3, BoundDerivatives(curve).speed);
   const int steps = static_cast<int>(std::ceil(curve.duration() * fastest / kStep));
   for (int i = 0; i <= steps; ++i) {
-    const Eigen::Vector3d p = curve.Evaluate(curve.t0() + curve.duration() * i / steps).p_WB;
-    row->length += (p - last).norm();
+    const planning::FlatState at = curve.Evaluate(curve.t0() + curve.duration() * i / steps);
+    const Eigen::Vector3d p = at.p_WB;
+    check.beyond_limits = check.beyond_limits || at.v_WB.norm() > kWithin * limits.speed ||
+                          at.a_WB.norm() > kWithin * limits.acceleration;
+    check.length += (p - last).norm();
     last = p;
     if (!known(p)) continue;
-    blocked = blocked || DeepInBlocked(*scene.map, p);
+    check.map_blocked = check.map_blocked || DeepInBlocked(*scene.map, p);
     estimation::VehicleState vehicle;
     vehicle.p_WB = p;
-    row->true_clearance = std::min(row->true_clearance, truth.Distance(vehicle));
+    check.true_clearance = std::min(check.true_clearance, truth.Distance(vehicle));
   }
-  row->map_blocked = blocked;
-  row->truly_near = row->true_clearance < inflation - kRounding;
+  check.truly_near = check.true_clearance < inflation - kRounding;
+  return check;
 }
 
 RowTimes TimesOf(const std::vector<const ReplanRow*>& rows) {
@@ -103,12 +109,14 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
       row.solves = result.solves;
       row.pairs = result.pairs;
       row.guides = static_cast<int>(result.guide_paths.size());
-      row.limits_kept = result.certificate.limits_kept;
-      MeasureShape(result.curve, &row);
-      row.stretch = row.duration / scene.duration;
       plan = result.curve;
     }
-    if (options.check && row.planned()) CheckPlan(plan, scene, &row);
+    if (row.planned()) {
+      row.duration = plan.duration();
+      row.stretch = plan.duration() / scene.duration;
+      row.jerk = SquaredJerk(plan);
+      if (options.check) row.check = CheckPlan(plan, scene, options.scenes.kind.limits);
+    }
     std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end(),
                      [](const auto& a, const auto& b) { return a.total.cpu < b.total.cpu; });
     row.times = times[times.size() / 2];
@@ -131,9 +139,11 @@ ReplanSummary Summarise(const std::vector<ReplanRow>& rows) {
     }
     if (!row.planned()) continue;
     ++summary.accepted;
-    if (row.map_blocked || row.truly_near) ++summary.colliding;
-    if (row.map_blocked != row.truly_near) ++summary.disagreeing;
-    if (!row.limits_kept) ++summary.beyond_limits;
+    if (!row.check) continue;
+    ++summary.checked;
+    if (row.check->map_blocked || row.check->truly_near) ++summary.colliding;
+    if (row.check->map_blocked != row.check->truly_near) ++summary.disagreeing;
+    if (row.check->beyond_limits) ++summary.beyond_limits;
   }
   if (summary.feasible > 0) summary.success = ClopperPearson(summary.succeeded, summary.feasible);
   summary.all = TimesOf(all);

@@ -23,6 +23,15 @@ struct ReplanStudyOptions {
   bool check = true;  ///< look for collisions at 1 cm, by map and by FCL
 };
 
+/// A plan seen at points 1 cm apart.
+struct PlanCheck {
+  double length = 0.0;         ///< [m]
+  bool map_blocked = false;    ///< a point lies in a blocked cell
+  bool truly_near = false;     ///< a point is nearer to an obstacle than the inflation, by FCL
+  double true_clearance = 0;   ///< least distance to an obstacle, by FCL [m]; infinite: none known
+  bool beyond_limits = false;  ///< a point is faster, or accelerates more, than the limits
+};
+
 /// The first step in one scene.
 struct ReplanRow {
   int index = 0;
@@ -34,16 +43,12 @@ struct ReplanRow {
   planning::StageTimes times;  ///< of the repeat whose total is the median
   int solves = 0;
   int pairs = 0;
-  int guides = 0;         ///< guide paths searched
-  double duration = 0.0;  ///< of the plan [s]
-  double stretch = 0.0;   ///< duration over the guessed one
-  double length = 0.0;    ///< [m]
-  double jerk = 0.0;      ///< integral of squared jerk [m^2/s^5]
-  bool limits_kept = false;
-  // Of the accepted plan, sampled at 1 cm.
-  bool map_blocked = false;     ///< a sample lies in a blocked cell
-  bool truly_near = false;      ///< a sample is nearer to an obstacle than the inflation, by FCL
-  double true_clearance = 0.0;  ///< least distance to an obstacle, by FCL [m]
+  int guides = 0;  ///< guide paths searched
+  // Of the accepted plan; none: there is none.
+  std::optional<double> duration;  ///< [s]
+  std::optional<double> stretch;   ///< duration over the guessed one
+  std::optional<double> jerk;      ///< integral of squared jerk [m^2/s^5]
+  std::optional<PlanCheck> check;  ///< none also where it was not asked for
 
   bool planned() const { return status == planning::ReplanStatus::kPlanned; }
 };
@@ -62,9 +67,10 @@ struct ReplanSummary {
   int succeeded = 0;      ///< first steps in feasible scenes
   Interval success;       ///< 95 % Clopper-Pearson
   int accepted = 0;       ///< in all scenes
-  int colliding = 0;      ///< of these
-  int disagreeing = 0;    ///< accepted plans that one checker takes for colliding and one does not
-  int beyond_limits = 0;  ///< of the accepted
+  int checked = 0;        ///< of these
+  int colliding = 0;      ///< of the checked
+  int disagreeing = 0;    ///< of the checked: one checker takes it for colliding and one does not
+  int beyond_limits = 0;  ///< of the checked
   RowTimes all, clear, blocked;  ///< all scenes; straight way free; not free
 };
 
@@ -73,8 +79,9 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
                                       const std::function<void(int done, int all)>& report);
 
-/// Looks at a plan at points 1 cm apart where the map knows the space: fills length and the last three members of the row.
-void CheckPlan(const planning::UniformBspline& plan, const ReplanScene& scene, ReplanRow* row);
+/// Looks at a plan at points 1 cm apart; for obstacles where the map knows the space.
+PlanCheck CheckPlan(const planning::UniformBspline& plan, const ReplanScene& scene,
+                    const planning::Limits& limits);
 
 ReplanSummary Summarise(const std::vector<ReplanRow>& rows);
 

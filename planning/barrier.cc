@@ -11,7 +11,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStill = 1e-3;   // a slower curve has no direction [m/s]
+constexpr double kStill = 1e-3;   // a slower curve, or a shorter path, has no direction [m/s, m]
 constexpr double kNoSide = 1e-2;  // from the curve to the path [m]
 constexpr double kCosHalf = 0.1;  // a little less than half of the plane
 
@@ -20,7 +20,9 @@ constexpr double kCosHalf = 0.1;  // a little less than half of the plane
 std::optional<Barrier> CloseWay(std::span<const Eigen::Vector3d> path, const FlatState& through) {
   Barrier barrier;
   barrier.p = through.p_WB;
+  if (path.empty()) return std::nullopt;
   barrier.normal = through.v_WB.norm() > kStill ? through.v_WB : path.back() - path.front();
+  if (!(barrier.normal.norm() > kStill)) return std::nullopt;
   barrier.normal.normalize();
   double nearest = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& p : path) {
@@ -29,7 +31,7 @@ std::optional<Barrier> CloseWay(std::span<const Eigen::Vector3d> path, const Fla
     nearest = std::abs(along);
     barrier.side = p - barrier.p - along * barrier.normal;
   }
-  if (!(barrier.side.norm() > kNoSide) || !barrier.normal.allFinite()) return std::nullopt;
+  if (!(barrier.side.norm() > kNoSide)) return std::nullopt;
   barrier.side.normalize();
   return barrier;
 }

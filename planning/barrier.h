@@ -19,7 +19,7 @@ struct Barrier {
 };
 
 /// Closes the way that a path takes around an obstacle, which a curve that heads through it passes with
-/// this state. None if the path passes too near to the state to tell a side.
+/// this state. None if the path passes too near to the state to tell a side, or there is no direction.
 std::optional<Barrier> CloseWay(std::span<const Eigen::Vector3d> path, const FlatState& through);
 
 /// Distance from the plane of the barrier, positive along its normal [m].

@@ -25,7 +25,8 @@ constexpr double kTouching = 1e-6;  // [m^2], no direction can be told
 }  // namespace
 
 Corridor::Corridor(double clearance, double margin) : beyond_(clearance - margin) {
-  near_.reserve(1024);
+  constexpr std::size_t kRows = (2 * kMostCells + 1) * (2 * kMostCells + 1);
+  near_.reserve(2 * kRows);
 }
 
 /// Blocked cells within reach, as their points nearest to `point`. Of a row of cells along x the
@@ -73,11 +74,16 @@ void Corridor::Bind(int control_point, const Vector3d& wanted, const FreeSpace& 
     point = space.map->CentreOf(cell);
   }
   Collect(point, space);
-  for (std::size_t bound = 0; bound < most && !near_.empty(); ++bound) {
-    const Near nearest =
-        *std::min_element(near_.begin(), near_.end(),
-                          [](const Near& a, const Near& b) { return a.distance2 < b.distance2; });
-    if (nearest.distance2 < kTouching) return;
+  for (std::size_t bound = 0; bound < most && !near_.empty();) {
+    const auto at = std::min_element(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
+      return a.distance2 < b.distance2;
+    });
+    const Near nearest = *at;
+    if (nearest.distance2 < kTouching) {
+      near_.erase(at);
+      continue;
+    }
+    ++bound;
     const Vector3d v = (point - nearest.p).normalized();
     pairs->push_back({control_point, nearest.p, v});
     // What lies beyond the plane is kept off by it.

@@ -133,13 +133,13 @@ void GridSearch::Begin(const OccupancyMap& map) {
     search_ = 1;
   }
   heap_.clear();
-  expansions_ = 0;
 }
 
 SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
                                 const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                                 std::span<const Barrier> barriers) {
   path->clear();
+  expansions_ = 0;
   const OccupancyMap& map = *space.map;
   CellIndex start = map.CellOf(from), goal = map.CellOf(to);
   if (!map.InWindow(start) || !map.InWindow(goal)) return SearchStatus::kEndsOutside;

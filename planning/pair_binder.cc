@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "touchdown/planning/voxel_traversal.h"
 
@@ -87,11 +89,19 @@ PairBinder::PairBinder(const LandingProblemOptions& options)
     : corridor_(PairClearance(options), kFloorMargin),
       planes_(std::max(0, options.max_pairs_per_point - kLevels)),
       per_point_(options.max_pairs_per_point) {
+  if (per_point_ < kLevels) {
+    throw std::invalid_argument("PairBinder: max_pairs_per_point is " + std::to_string(per_point_) +
+                                ", it must be >= 2, for floor and ceiling");
+  }
   bound_.reserve(kMostControlPoints);
   corners_.reserve(kMostControlPoints);
 }
 
 void PairBinder::Begin(int control_points) {
+  if (control_points > kMostControlPoints) {
+    throw std::invalid_argument("PairBinder: control_points is " + std::to_string(control_points) +
+                                ", it must be <= " + std::to_string(kMostControlPoints));
+  }
   bound_.assign(static_cast<std::size_t>(control_points), false);
 }
 

@@ -20,15 +20,17 @@ class PairBinder {
  public:
   static constexpr int kMostControlPoints = 131;  ///< of a curve
 
+  /// Throws std::invalid_argument unless options.max_pairs_per_point >= 2: floor and ceiling need them.
   explicit PairBinder(const LandingProblemOptions& options);
 
-  /// Nothing is bound any more.
+  /// Nothing is bound any more. Throws std::invalid_argument for more than kMostControlPoints.
   void Begin(int control_points);
 
   /// A round begins: the control points are wanted on this curve.
   void Start(const UniformBspline& curve);
 
-  /// Where the curve is blocked in `run`, its control points are wanted along the guide.
+  /// Where the curve is blocked in `run`, its control points are wanted along the guide, which has one
+  /// point at least.
   void Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
               const FreeSpace& space);
 

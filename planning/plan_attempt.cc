@@ -50,12 +50,19 @@ double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
                   certificate.acceleration_bound / limits.acceleration);
 }
 
-void SampleGuide(const UniformBspline& curve, const BlockedRun& span, GuidePath* guide) {
+void SampleGuide(const UniformBspline& curve, double from, double to, GuidePath* guide) {
   guide->clear();
-  const int steps = std::max(1, static_cast<int>(std::ceil((span.t_out - span.t_in) / kGuideStep)));
+  const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kGuideStep)));
   for (int i = 0; i <= steps; ++i) {
-    guide->push_back(curve.Evaluate(span.t_in + (span.t_out - span.t_in) * i / steps).p_WB);
+    guide->push_back(curve.Evaluate(from + (to - from) * i / steps).p_WB);
   }
+}
+
+/// Ends a run that leaves the map's window before it does: the search knows no more.
+void EndInWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
+  const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Evaluate(t).p_WB)); };
+  if (!in_window(run->t_in)) return;
+  while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kGuideStep);
 }
 
 }  // namespace
@@ -195,12 +202,14 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
   if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
   {
     StageTimer timer(&result->times.check);
-    previous_clear_ = request.previous && !std::isfinite(FirstBlockedTime(
-                                              *request.previous, request.t0, *request.space));
+    previous_clear_ =
+        request.previous && request.previous->t_end() > request.t0 &&
+        !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space));
   }
   // One path past everything that is in the way, so that one detour does not lead into the next.
-  const BlockedRun span = {first.t_in, runs_.back().t_out, first.at_start, false};
-  const bool keeps_side = Keeps(request, span);
+  BlockedRun span = {first.t_in, runs_.back().t_out, first.at_start, false};
+  EndInWindow(first_curve_, *request.space->map, &span);
+  const bool keeps_side = Keeps(span);
   const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
   for (int i = 0; i < guides; ++i) {
     if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;
@@ -337,9 +346,10 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
                                bool guide_is_known, ReplanResult* result) {
   binder_.Start(curve);
-  for (const BlockedRun& run : runs_) {
+  for (BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
     if (!guide_is_known) {
+      EndInWindow(curve, *request.space->map, &run);
       const ReplanReason reason = FindGuide(request, curve, run, result);
       if (reason != ReplanReason::kNone) return reason;
       binder_.AddCorner(curve, run, guide_, *request.space);
@@ -352,16 +362,19 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
 }
 
 /// The committed curve leads past this stretch, and no way was closed yet.
-bool PlanAttempt::Keeps(const AttemptRequest& request, const BlockedRun& run) const {
-  return barriers_.empty() && !run.at_start && previous_clear_ &&
-         request.previous->t_end() > run.t_out;
+bool PlanAttempt::Keeps(const BlockedRun& run) const {
+  return barriers_.empty() && !run.at_start && previous_clear_;
 }
 
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
                                     const BlockedRun& run, ReplanResult* result) {
   StageTimer timer(&result->times.search);
-  if (Keeps(request, run)) {
-    SampleGuide(*request.previous, run, &guide_);
+  if (Keeps(run)) {
+    // The same share of the way that is left, wherever the arrival is now.
+    const UniformBspline& previous = *request.previous;
+    const double rate = (previous.t_end() - request.t0) / (curve.t_end() - request.t0);
+    const auto then = [&](double t) { return request.t0 + rate * (t - request.t0); };
+    SampleGuide(previous, then(run.t_in), then(run.t_out), &guide_);
     return ReplanReason::kNone;
   }
   const int other_way = request.at_rest ? kOtherWayAtRest : kOtherWayExpansions;
@@ -372,7 +385,7 @@ ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const Uniform
   expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
   if (status == SearchStatus::kEndsOutside) {
     // Out of the window only floor and ceiling block: between them leads the way.
-    SampleGuide(curve, run, &guide_);
+    SampleGuide(curve, run.t_in, run.t_out, &guide_);
     for (Eigen::Vector3d& p : guide_) {
       p.z() = std::max(std::min(p.z(), request.space->ceiling - kLevelMargin),
                        request.space->FloorAt(p) + kLevelMargin);

@@ -97,7 +97,7 @@ class PlanAttempt {
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,
                          const BlockedRun& run, ReplanResult* result);
   double BlockedTime() const;
-  bool Keeps(const AttemptRequest& request, const BlockedRun& run) const;
+  bool Keeps(const BlockedRun& run) const;
   double CostOfShape(const solvers::SolverSummary& solver) const;
   bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
 

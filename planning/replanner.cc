@@ -140,6 +140,7 @@ class Replanner::Impl {
   SplineState Start(const ReplanInput& input);
   bool InTime(const ReplanInput& input) const;
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
+  bool Stays(const SplineState& start) const;
   bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
   void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
   bool NoTimeToBrake(const SplineState& start, const FreeSpace& space);
@@ -169,9 +170,10 @@ FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineSt
   space.pad_from = input.pad->At(input.t_start).p_WP.head<2>();
   space.pad_to = input.pad->At(t_end).p_WP.head<2>();
   space.pad_radius = options_.pad_radius;
-  // Over the pad a plan goes no lower than where it starts or ends: the pad vehicle is there.
+  // Over the pad a plan goes no lower than where it ends, or starts if that is over the pad: the pad
+  // vehicle is there.
   const double end = EndStateAt(*input.pad, input.endpoint, t_end).state.p.z();
-  space.pad_floor = std::min(start.p.z(), end) - kPadSlack;
+  space.pad_floor = (space.OverPad(start.p) ? std::min(start.p.z(), end) : end) - kPadSlack;
   return space;
 }
 
@@ -315,7 +317,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pad = input.pad;
   request.target = input.endpoint;
   request.arrival = options_.arrival;
-  request.at_rest = start.v.norm() <= kAtRest;
+  request.at_rest = Stays(start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
@@ -360,6 +362,13 @@ bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::
   return result_.certificate.passed();
 }
 
+/// The vehicle is at rest, and so it remains on the committed curve.
+bool Replanner::Impl::Stays(const SplineState& start) const {
+  const SplineState last = next_.AtKnot(next_.segments());
+  return start.v.norm() <= kAtRest && last.v.norm() <= kMoving &&
+         (last.p - start.p).norm() <= kAtRest;
+}
+
 /// True if the committed curve may go on: at rest and free, or clear for longer than braking takes
 /// and slow enough for what was observed.
 bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState& start,
@@ -367,10 +376,8 @@ bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState&
   if (result_.from_odometry) return false;
   const Certificate now =
       Certify(next_, input.t_start, nullptr, nullptr, options_.limits, options_.reaction, space);
-  const SplineState last = next_.AtKnot(next_.segments());
-  const bool moves_at_end = last.v.norm() > kMoving;
-  const bool at_rest = !space.Blocked(start.p) && start.v.norm() <= kAtRest && !moves_at_end &&
-                       (last.p - start.p).norm() <= kAtRest;
+  const bool moves_at_end = next_.AtKnot(next_.segments()).v.norm() > kMoving;
+  const bool at_rest = !space.Blocked(start.p) && Stays(start);
   const bool leaves = now.escaping && now.passed();
   if (!at_rest && !leaves) {
     if (!now.stops_in_observed_space) return false;

@@ -29,6 +29,7 @@ TEST(ReplanStudy, NoAcceptedPlanCollidesOrExceedsALimit) {
     const ReplanSummary summary = Summarise(Steps(Options(kind, 15)));
     EXPECT_EQ(summary.scenes, 15);
     EXPECT_GE(summary.accepted, 10) << kind;
+    EXPECT_EQ(summary.checked, summary.accepted) << kind;
     EXPECT_GE(summary.feasible, 10) << kind;
     EXPECT_LE(summary.succeeded, summary.feasible) << kind;
     EXPECT_EQ(summary.colliding, 0) << kind;
@@ -47,8 +48,8 @@ TEST(ReplanStudy, BothCheckersSeeAPlanThroughAnObstacle) {
     for (int i = 0; i < 4; ++i) {
       points.col(i) = scene.start.p + (i - 1) * (scene.target - scene.start.p);
     }
-    ReplanRow row;
-    CheckPlan(planning::UniformBspline(points, 5.0, 0.0), scene, &row);
+    const PlanCheck row =
+        CheckPlan(planning::UniformBspline(points, 5.0, 0.0), scene, options.scenes.kind.limits);
     EXPECT_NEAR(row.length, (scene.target - scene.start.p).norm(), 1e-6);
     EXPECT_EQ(row.map_blocked, scene.straight_blocked) << index;
     // A cell is at most its diagonal larger than what stands in it.
@@ -62,6 +63,29 @@ TEST(ReplanStudy, BothCheckersSeeAPlanThroughAnObstacle) {
   EXPECT_GE(through, 5);
 }
 
+TEST(ReplanStudy, LimitsAreLookedAtOnTheCurveItself) {
+  const ReplanStudyOptions options = Options("B", 1);
+  const ReplanScene scene = DrawReplanScene(options.scenes, 0);
+  planning::ControlPoints points(3, 8);  // at 1 m/s along x, but for a jump in the middle
+  for (int i = 0; i < 8; ++i) points.col(i) << scene.start.p.x() + i, scene.start.p.y(), 1.0;
+  const auto check = [&](const planning::Limits& limits) {
+    return CheckPlan(planning::UniformBspline(points, 1.0, 0.0), scene, limits).beyond_limits;
+  };
+  EXPECT_FALSE(check({1.0, 0.1}));
+  EXPECT_TRUE(check({0.9, 0.1}));
+  points(1, 4) += 0.5;
+  EXPECT_TRUE(check({5.0, 0.1}));
+  EXPECT_FALSE(check({5.0, 5.0}));
+}
+
+TEST(ReplanStudy, NothingIsSaidOfPlansThatWereNotLookedAt) {
+  ReplanStudyOptions options = Options("B", 4);
+  options.check = false;
+  const ReplanSummary summary = Summarise(Steps(options));
+  EXPECT_GT(summary.accepted, 0);
+  EXPECT_EQ(summary.checked, 0);
+}
+
 TEST(ReplanStudy, RepeatsButForItsTimes) {
   const std::vector<ReplanRow> a = Steps(Options("C", 6)), b = Steps(Options("C", 6));
   ASSERT_EQ(a.size(), b.size());
@@ -70,8 +94,10 @@ TEST(ReplanStudy, RepeatsButForItsTimes) {
     EXPECT_EQ(a[i].pairs, b[i].pairs);
     EXPECT_EQ(a[i].solves, b[i].solves);
     EXPECT_EQ(a[i].jerk, b[i].jerk);
-    EXPECT_EQ(a[i].length, b[i].length);
-    EXPECT_EQ(a[i].true_clearance, b[i].true_clearance);
+    ASSERT_EQ(a[i].check.has_value(), b[i].check.has_value());
+    if (!a[i].check) continue;
+    EXPECT_EQ(a[i].check->length, b[i].check->length);
+    EXPECT_EQ(a[i].check->true_clearance, b[i].check->true_clearance);
   }
 }
 

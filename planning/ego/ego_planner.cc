@@ -58,7 +58,7 @@ FlatState StateOn(const UniformBspline& curve, double t) {
 }
 
 bool Plausible(const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
-  return p.allFinite() && v.allFinite() && v.norm() < kFastest;
+  return p.cwiseAbs().maxCoeff() < kFarthest && v.norm() < kFastest;
 }
 
 bool Usable(const ReplanInput& input) {

@@ -39,5 +39,12 @@ TEST(Barrier, APathThroughTheStateHasNoSide) {
   EXPECT_FALSE(CloseWay(through, Flying({0, 0, 1}, {1, 0, 0})).has_value());
 }
 
+TEST(Barrier, WithoutADirectionThereIsNone) {
+  const FlatState still = Flying({0, 0, 1}, Vector3d::Zero());
+  EXPECT_FALSE(CloseWay({}, still).has_value());
+  const std::vector<Vector3d> one = {{0, 0.5, 1}};
+  EXPECT_FALSE(CloseWay(one, still).has_value());
+}
+
 }  // namespace
 }  // namespace touchdown::planning

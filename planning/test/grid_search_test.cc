@@ -107,6 +107,78 @@ TEST(GridSearch, MovesBlockedEndsToFreeCells) {
   EXPECT_FALSE(space.Blocked(path.front()));
 }
 
+double CostOf(const GuidePath& path) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Eigen::Vector3d step = path[i] - path[i - 1];
+    sum += Eigen::Vector3d(step.x(), step.y(), kUp * step.z()).norm();
+  }
+  return sum;
+}
+
+TEST(GridSearch, GreedFindsAPathSoonerAndAtMostSoManyTimesAsLong) {
+  Draw draw(5);
+  constexpr double kGreed = 3.0;
+  GridSearch exact(kUp), greedy(kUp, kGreed);
+  int found = 0, expansions = 0, expansions_greedy = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    OccupancyMap map(SmallMap(0.1));
+    for (int i = 0; i < 60; ++i) {
+      map.SetOccupied({draw.Uniform(-1.5, 1.5), draw.Uniform(-2.5, 2.5), draw.Uniform(-1.5, 1.5)});
+    }
+    const FreeSpace space = SpaceOf(map);
+    const Eigen::Vector3d from(-2.0, draw.Uniform(-1, 1), 0.0), to(2.0, draw.Uniform(-1, 1), 0.0);
+    GuidePath shortest, path;
+    if (exact.Search(space, from, to, 100000, &shortest) != SearchStatus::kFound) continue;
+    ASSERT_EQ(greedy.Search(space, from, to, 100000, &path), SearchStatus::kFound);
+    for (const Eigen::Vector3d& p : path) EXPECT_FALSE(space.Blocked(p));
+    EXPECT_LE(CostOf(path), kGreed * CostOf(shortest) + 1e-4);
+    expansions += exact.expansions();
+    expansions_greedy += greedy.expansions();
+    ++found;
+  }
+  EXPECT_GT(found, 30);
+  EXPECT_LT(expansions_greedy, expansions / 2);
+}
+
+TEST(GridSearch, WidePassagesArePreferredToTightOnes) {
+  OccupancyMap map(SmallMap(0.0));
+  // A wall across x = 0 with a gap of one cell ahead and one of a metre beside it.
+  for (double y = -3.15; y < 3.2; y += 0.1) {
+    if (std::abs(y - 0.05) < 0.01 || (y > 0.6 && y < 1.6)) continue;
+    for (double z = -1.55; z < 1.6; z += 0.1) map.SetOccupied({0.05, y, z});
+  }
+  const FreeSpace space = SpaceOf(map);
+  const Eigen::Vector3d from(-1.55, 0.05, 0.05), to(1.55, 0.05, 0.05);
+  const auto crosses_at = [&](GridSearch search) {
+    GuidePath path;
+    EXPECT_EQ(search.Search(space, from, to, 100000, &path), SearchStatus::kFound);
+    for (const Eigen::Vector3d& p : path) {
+      if (std::abs(p.x() - 0.05) < 0.05) return p.y();
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_NEAR(crosses_at(GridSearch(kUp)), 0.05, 1e-9);
+  EXPECT_GT(crosses_at(GridSearch(kUp, 1.0, 8.0)), 0.6);
+}
+
+TEST(GridSearch, ASearchThatCannotBeginExpandsNothing) {
+  OccupancyMap map(SmallMap(0.1));
+  const FreeSpace space = SpaceOf(map);
+  GridSearch search(kUp);
+  GuidePath path;
+  ASSERT_EQ(search.Search(space, {-1, 0, 0}, {1, 0, 0}, 1000, &path), SearchStatus::kFound);
+  EXPECT_GT(search.expansions(), 0);
+  EXPECT_EQ(search.Search(space, {-1, 0, 0}, {100, 0, 0}, 1000, &path), SearchStatus::kEndsOutside);
+  EXPECT_EQ(search.expansions(), 0);
+}
+
+TEST(GridSearch, RefusesFactorsBelowOne) {
+  EXPECT_THROW(GridSearch(0.9), std::invalid_argument);
+  EXPECT_THROW(GridSearch(1.0, 0.9), std::invalid_argument);
+  EXPECT_THROW(GridSearch(1.0, 1.0, 0.9), std::invalid_argument);
+}
+
 TEST(GridSearch, ABarrierLeadsTheOtherWay) {
   OccupancyMap map(SmallMap(0.1));
   for (double y = -0.45; y <= 0.5; y += 0.1) {

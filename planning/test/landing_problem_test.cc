@@ -9,8 +9,8 @@
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/test/planning_fixtures.h"
-#include "touchdown/solvers/backend_registry.h"
 #include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
 namespace {

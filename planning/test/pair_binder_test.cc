@@ -53,8 +53,8 @@ TEST(PairBinder, BindsWhatIsBlockedAndBesideItToTheGuidesSide) {
     const double t = (pair.control_point - 1) * kInterval;
     EXPECT_GT(t, wall.runs.front().t_in - 3 * kInterval);
     EXPECT_LT(t, wall.runs.front().t_out + 3 * kInterval);
-    // Where the curve is blocked it must go left: some plane keeps it off the wall's middle.
   }
+  // Where the curve is blocked some plane of every control point pushes it to the guide's side.
   for (const int i : bound) {
     const double t = (i - 1) * kInterval;
     if (t < wall.runs.front().t_in || t > wall.runs.front().t_out) continue;
@@ -109,6 +109,14 @@ TEST(PairBinder, NeverGivesMorePairsThanTheProblemHolds) {
     binder.Bind(wall.space, &pairs);
     EXPECT_LE(static_cast<int>(pairs.size()), problem.max_pairs());
   }
+}
+
+TEST(PairBinder, RefusesWhatItCannotHold) {
+  LandingProblemOptions options;
+  options.max_pairs_per_point = 1;
+  EXPECT_THROW(PairBinder{options}, std::invalid_argument);
+  PairBinder binder{LandingProblemOptions()};
+  EXPECT_THROW(binder.Begin(PairBinder::kMostControlPoints + 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -57,7 +57,10 @@ TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
       side[guides - 1] = SideOf(result.curve) - y;
       cost[guides - 1] = result.solver.cost;
       for (const solvers::TermCost& term : result.solver.cost_by_term) {
-        if (term.name == "obstacle_pair") cost[guides - 1] -= term.cost;
+        // Not the terms whose weights are pressed from solve to solve.
+        const TermRegistry terms = StandardTerms();
+        const TermEntry& entry = FindTerm(terms, term.name);
+        if (entry.is_clearance || entry.is_limit) cost[guides - 1] -= term.cost;
       }
     }
     chosen_second += side[0] * side[1] < 0.0;

@@ -140,8 +140,7 @@ TEST(Replanner, AStepIsRepeatedFromItsState) {
       EXPECT_EQ(best.curve.control_points(), wanted.curve.control_points());
       EXPECT_TRUE(best.blocked.empty());
       EXPECT_EQ(static_cast<int>(best.pairs.size()), wanted.pairs);
-      EXPECT_EQ(best.solver.trace.size(),
-                static_cast<std::size_t>(wanted.solver.iterations));
+      EXPECT_EQ(best.solver.trace.size(), static_cast<std::size_t>(wanted.solver.iterations));
     }
     p = flown.Reference(input.t_now + 0.1).p_WB;
   }

@@ -24,7 +24,6 @@ VARIED = {
     "density_per_m2": "pillars per square metre",
     "resolution_m": "side of a map cell [m]",
 }
-PAIR_EDGES = [0, 1, 5, 9, 17, 33, 65, 129, 257]
 
 
 class GrowthError(Exception):
@@ -66,10 +65,12 @@ class Growth:
 def by_pairs(rows):
     """Rows (pairs, times ...) in classes of the number of pairs: {(from, to): times}."""
     classes = {}
-    for low, end in zip(PAIR_EDGES, PAIR_EDGES[1:]):
+    low, end = 0, 1
+    while low <= rows[:, 0].max(initial=0):
         inside = rows[(rows[:, 0] >= low) & (rows[:, 0] < end), 1:]
         if len(inside):
             classes[(low, end - 1)] = inside
+        low, end = end, max(5, 2 * end - 1)
     return classes
 
 
