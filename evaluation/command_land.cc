@@ -78,7 +78,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
 }
 
 void CheckOutputs(const LandArguments& arguments) {
-  if (!arguments.record.empty()) CheckOutputPath("--record", arguments.record);
+  if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }

@@ -44,6 +44,17 @@ void CheckOutputPath(const std::string& option, const std::string& path) {
   }
 }
 
+void CheckRecordPath(const std::string& option, const std::string& path) {
+  CheckOutputPath(option, path);
+  constexpr std::string_view kMagic = "SQLite format 3";
+  std::error_code ignored;
+  if (!fs::exists(path, ignored) || fs::file_size(path, ignored) == 0) return;
+  std::string head(kMagic.size(), '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (head != kMagic) Refuse(option, path, "a file that is no SQLite file is in its place");
+}
+
 void CheckPicturePath(const std::string& option, const std::string& path) {
   CheckOutputPath(option, path);
   const std::string kind = fs::path(path).extension().string();

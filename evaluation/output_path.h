@@ -10,6 +10,9 @@ namespace touchdown::evaluation {
 /// @throws BadInput
 void CheckOutputPath(const std::string& option, const std::string& path);
 
+/// The same for a record, which replaces an older one but nothing that is no SQLite file. @throws BadInput
+void CheckRecordPath(const std::string& option, const std::string& path);
+
 /// The same for a picture, whose name says what it is: .png, .pdf or .svg. @throws BadInput
 void CheckPicturePath(const std::string& option, const std::string& path);
 

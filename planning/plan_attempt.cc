@@ -40,7 +40,7 @@ constexpr double kGreed = 4.0;          // of A*: a guide only tells the side
 constexpr double kTightCost = 8.0;      // of A*, beside obstacles
 constexpr double kLevelMargin = 0.3;    // of a guide from floor and ceiling, out of the window [m]
 /// A way that is found only after so many cells is a long one.
-constexpr int kOtherWayExpansions = 3000;
+constexpr int kOtherWayExpansions = 1000;
 constexpr int kOtherWayAtRest = 12000;
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.

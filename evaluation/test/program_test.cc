@@ -4,6 +4,7 @@
 #include "touchdown/evaluation/program.h"
 
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -125,6 +126,25 @@ TEST(Program, CompareTellsEveryBackendsFigures) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("takes no inequality constraints"));
   EXPECT_FALSE(std::filesystem::exists(db));
+}
+
+TEST(Program, ARecordReplacesNoOtherFile) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "notes.md";
+  std::ofstream(file) << "# Notes that nobody wants to lose\n";
+  const Ran ran = Call({"land", "straight_turn", "--set", "timeout=1", "--record", file.c_str()});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("no SQLite file"));
+  std::string kept;
+  std::getline(std::ifstream(file) >> std::ws, kept);
+  EXPECT_EQ(kept, "# Notes that nobody wants to lose");
+  std::filesystem::remove(file);
+  // A record is replaced.
+  for (int i = 0; i < 2; ++i) {
+    const Ran flown =
+        Call({"land", "straight_turn", "--set", "timeout=1", "--record", file.c_str()});
+    EXPECT_EQ(flown.status, 1) << flown.err;
+  }
+  std::filesystem::remove(file);
 }
 
 TEST(Program, AFormulationThatTheBackendRefusesIsBadInput) {
