@@ -155,7 +155,8 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
     return scene;
   }
   throw std::runtime_error(
-      fmt::format("replan scene {}: the start was blocked in {} draws", index, kForestSceneDraws));
+      fmt::format("replan scene {}: in {} draws the start was blocked, or no end was met on time",
+                  index, kForestSceneDraws));
 }
 
 planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* replanner) {

@@ -45,9 +45,10 @@ planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
                                                  planning::ReplannerOptions base);
 
 /// Scene `index`: a forest scene whose end passes a point one horizon ahead with up to half the speed
-/// limit in any direction. Scenes whose start is blocked are drawn again. The same options and index
-/// give the same scene. Throws std::invalid_argument for an option out of
-/// range.
+/// limit in any direction. Scenes whose start is blocked, or where no time is the one that the replanner
+/// guesses for an end that moves so, are drawn again. The same options and index give the same scene.
+/// Throws std::invalid_argument for an option out of range, BadInput for a horizon that no map of this
+/// resolution holds.
 ReplanScene DrawReplanScene(const SceneOptions& options, int index);
 
 /// Puts the replanner at the scene's start: it is flying there at the start's velocity.
