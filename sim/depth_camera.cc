@@ -24,6 +24,36 @@ double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 }  // namespace
 
+void Validate(const DepthCameraConfig& config) {
+  CheckWithin("depth_camera.width", config.width, 1, 4096);
+  CheckWithin("depth_camera.height", config.height, 1, 4096);
+  CheckAbove("depth_camera.fov_x_deg", config.fov_x_deg, 0.0, 170.0);
+  CheckAbove("depth_camera.max_range", config.max_range, 0.0, 100.0);
+  CheckWithin("depth_camera.pitch_deg", config.pitch_deg, -90.0, 90.0);
+  CheckWithin("depth_camera.range_noise", config.range_noise, 0.0, 0.5);
+  CheckWithin("length of depth_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
+}
+
+estimation::CameraIntrinsics IntrinsicsOf(const DepthCameraConfig& config) {
+  estimation::CameraIntrinsics intrinsics;
+  intrinsics.width = config.width;
+  intrinsics.height = config.height;
+  intrinsics.focal = 0.5 * config.width / std::tan(0.5 * Radians(config.fov_x_deg));
+  intrinsics.cx = 0.5 * config.width;
+  intrinsics.cy = 0.5 * config.height;
+  return intrinsics;
+}
+
+Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config) {
+  const double c = std::cos(Radians(config.pitch_deg));
+  const double s = std::sin(Radians(config.pitch_deg));
+  Eigen::Matrix3d R_BC;
+  R_BC.col(0) = -Eigen::Vector3d::UnitY();
+  R_BC.col(1) = Eigen::Vector3d(-s, 0.0, -c);
+  R_BC.col(2) = Eigen::Vector3d(c, 0.0, -s);
+  return R_BC;
+}
+
 DepthCamera::Shape DepthCamera::MakeShape(const Obstacle& obstacle) {
   Shape shape;
   if (const auto* box = std::get_if<Box>(&obstacle)) {
@@ -57,25 +87,9 @@ double DepthCamera::Shape::Cast(const Eigen::Vector3d& ray_W, double ray_squared
 DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& obstacles,
                          const PadGeometry& pad, std::uint64_t seed)
     : config_(config), pad_(pad), noise_(seed, "depth camera") {
-  CheckWithin("depth_camera.width", config.width, 1, 4096);
-  CheckWithin("depth_camera.height", config.height, 1, 4096);
-  CheckAbove("depth_camera.fov_x_deg", config.fov_x_deg, 0.0, 170.0);
-  CheckAbove("depth_camera.max_range", config.max_range, 0.0, 100.0);
-  CheckWithin("depth_camera.pitch_deg", config.pitch_deg, -90.0, 90.0);
-  CheckWithin("depth_camera.range_noise", config.range_noise, 0.0, 0.5);
-  CheckWithin("length of depth_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
-
-  intrinsics_.width = config.width;
-  intrinsics_.height = config.height;
-  intrinsics_.focal = 0.5 * config.width / std::tan(0.5 * Radians(config.fov_x_deg));
-  intrinsics_.cx = 0.5 * config.width;
-  intrinsics_.cy = 0.5 * config.height;
-
-  const double c = std::cos(Radians(config.pitch_deg));
-  const double s = std::sin(Radians(config.pitch_deg));
-  R_BC_.col(0) = -Eigen::Vector3d::UnitY();
-  R_BC_.col(1) = Eigen::Vector3d(-s, 0.0, -c);
-  R_BC_.col(2) = Eigen::Vector3d(c, 0.0, -s);
+  Validate(config);
+  intrinsics_ = IntrinsicsOf(config);
+  R_BC_ = CameraAxes(config);
 
   rays_C_.reserve(static_cast<std::size_t>(config.width) * config.height);
   for (int row = 0; row < config.height; ++row) {

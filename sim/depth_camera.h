@@ -26,6 +26,14 @@ struct DepthCameraConfig {
   double range_noise = 0.0;  ///< standard deviation of a range over the range, in [0, 0.5]
 };
 
+/// Throws std::invalid_argument naming the key, its value and the allowed range.
+void Validate(const DepthCameraConfig& config);
+
+estimation::CameraIntrinsics IntrinsicsOf(const DepthCameraConfig& config);
+
+/// The camera's axes in B: rotation C to B.
+Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config);
+
 /// Depth images by analytic ray casting of ground, obstacles and pad vehicle at its true pose. The
 /// vehicle does not see itself. One DepthCamera belongs to one thread.
 class DepthCamera {

@@ -77,15 +77,6 @@ Eigen::Matrix3d DownwardCamera() { return Eigen::Vector3d(1.0, -1.0, -1.0).asDia
 
 }  // namespace
 
-std::array<PadTag, 5> PadTags() {
-  constexpr double kOffset = 0.36;  // [m]
-  return {{{{0.0, 0.0}, 0.15},
-           {{kOffset, kOffset}, kOuterSide},
-           {{-kOffset, kOffset}, kOuterSide},
-           {{-kOffset, -kOffset}, kOuterSide},
-           {{kOffset, -kOffset}, kOuterSide}}};
-}
-
 TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacles,
                      std::uint64_t seed)
     : config_(config), obstacles_(obstacles), clock_(config.rate_hz), noise_(seed, "tag camera") {
@@ -102,8 +93,8 @@ TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacl
   intrinsics_.cy = 0.5 * config.height;
 }
 
-std::array<bool, 5> TagSensor::Visible(const estimation::VehicleState& vehicle,
-                                       const estimation::PadState& pad) const {
+std::array<bool, estimation::kPadTagCount> TagSensor::Visible(
+    const estimation::VehicleState& vehicle, const estimation::PadState& pad) const {
   const Eigen::Matrix3d R_WB = vehicle.q_WB.toRotationMatrix();
   const Eigen::Matrix3d R_WC = R_WB * DownwardCamera();
   const Eigen::Vector3d p_WC = vehicle.p_WB + R_WB * config_.p_BC;
@@ -117,10 +108,10 @@ std::array<bool, 5> TagSensor::Visible(const estimation::VehicleState& vehicle,
            // Of the ray from camera (0) to corner (1), nothing may cross before 1.
            obstacles_.RayDistance(p_WC, corner_W - p_WC) >= 1.0;
   };
-  std::array<bool, 5> visible{};
-  const std::array<PadTag, 5> tags = PadTags();
+  std::array<bool, estimation::kPadTagCount> visible{};
+  const auto& tags = estimation::PadTags();
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    const PadTag& tag = tags[i];
+    const estimation::PadTag& tag = tags[i];
     const Eigen::Vector3d center_W = pad.p_WP + tag.center_P.x() * x_P + tag.center_P.y() * y_P;
     const Eigen::Vector3d to_camera = p_WC - center_W;
     const double distance = to_camera.norm();
@@ -138,8 +129,8 @@ std::optional<estimation::PadSighting> TagSensor::Poll(double t,
                                                        const estimation::VehicleState& vehicle,
                                                        const estimation::PadState& pad) {
   if (!clock_.Due(t)) return std::nullopt;
-  const std::array<bool, 5> visible = Visible(vehicle, pad);
-  const std::array<PadTag, 5> tags = PadTags();
+  const std::array<bool, estimation::kPadTagCount> visible = Visible(vehicle, pad);
+  const auto& tags = estimation::PadTags();
   estimation::PadSighting sighting;
   double side = 0.0;
   for (std::size_t i = 0; i < tags.size(); ++i) {

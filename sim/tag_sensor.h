@@ -9,21 +9,13 @@
 
 #include "touchdown/estimation/measurements.h"
 #include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/estimation/pad_tags.h"
 #include "touchdown/estimation/vehicle_state.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/sim/sample_clock.h"
 
 namespace touchdown::sim {
-
-/// One square marker, flat on the deck, its sides along the pad's axes.
-struct PadTag {
-  Eigen::Vector2d center_P = Eigen::Vector2d::Zero();  ///< [m]
-  double side = 0.15;                                  ///< [m]
-};
-
-/// The pad's five markers: the small one in the centre first, then four large ones around it.
-std::array<PadTag, 5> PadTags();
 
 /// Downward camera that sees the tags, and how it errs. C: x right (x_B), y down (-y_B), z down.
 struct TagSensorConfig {
@@ -48,10 +40,10 @@ class TagSensor {
   std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
                                               const estimation::PadState& pad);
 
-  /// Which of PadTags() a camera at this pose detects: all four corners in the image, large enough
+  /// Which of estimation::PadTags() a camera at this pose detects: all four corners in the image, large enough
   /// in it, at an admissible angle, nothing in between.
-  std::array<bool, 5> Visible(const estimation::VehicleState& vehicle,
-                              const estimation::PadState& pad) const;
+  std::array<bool, estimation::kPadTagCount> Visible(const estimation::VehicleState& vehicle,
+                                                     const estimation::PadState& pad) const;
 
   const TagSensorConfig& config() const { return config_; }
   const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }

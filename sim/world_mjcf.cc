@@ -10,41 +10,18 @@
 
 #include "touchdown/sim/world_mjcf.h"
 
-#include <cmath>
 #include <sstream>
 #include <string>
-#include <variant>
 
 #include "touchdown/sim/argument_check.h"
+#include "touchdown/sim/mjcf_text.h"
 #include "touchdown/sim/mujoco_model.h"
 
 namespace touchdown::sim {
 namespace {
 
-std::string Text(const Eigen::Vector3d& v) {
-  return NumberText(v.x()) + ' ' + NumberText(v.y()) + ' ' + NumberText(v.z());
-}
-
-std::string YawQuaternion(double yaw) {
-  return NumberText(std::cos(0.5 * yaw)) + " 0 0 " + NumberText(std::sin(0.5 * yaw));
-}
-
 constexpr char kEnvironment[] =
     "contype='1' conaffinity='0' solref='0.02 1' solimp='0.9 0.95 0.001 0.5 2' margin='0' ";
-
-std::string ObstacleGeom(const Box& box) {
-  return "type='box' size='" + Text(box.half_extents) + "' pos='" + Text(box.center) + "' quat='" +
-         YawQuaternion(box.yaw) + "'";
-}
-
-std::string ObstacleGeom(const Cylinder& cylinder) {
-  return "type='cylinder' size='" + NumberText(cylinder.radius) + ' ' +
-         NumberText(0.5 * cylinder.height) + "' pos='" + Text(cylinder.center) + "' quat='1 0 0 0'";
-}
-
-// Refused by CheckGeom before.
-std::string ObstacleGeom(const VoxelColumns&) { return ""; }
-std::string ObstacleGeom(const Ring&) { return ""; }
 
 void WritePad(const WorldConfig& config, std::ostream& xml) {
   const double height = config.pad_motion.p_start.z();
@@ -57,20 +34,21 @@ void WritePad(const WorldConfig& config, std::ostream& xml) {
   const double length = config.pad.body_half_length;
   const double width = config.pad.body_half_width;
   const double yaw_inertia = PadDrive::kMass * (length * length + width * width) / 3.0;
-  xml << "<body name='pad' pos='" << Text(origin) << "'>\n"
+  xml << "<body name='pad' pos='" << VectorText(origin) << "'>\n"
       << "<joint name='pad_x' type='slide' axis='1 0 0' limited='false'/>\n"
       << "<joint name='pad_y' type='slide' axis='0 1 0' limited='false'/>\n"
       << "<joint name='pad_yaw' type='hinge' axis='0 0 1' limited='false'/>\n"
-      << "<inertial pos='" << Text(body.center - origin) << "' mass='"
+      << "<inertial pos='" << VectorText(body.center - origin) << "' mass='"
       << NumberText(PadDrive::kMass) << "' diaginertia='"
-      << Text(Eigen::Vector3d::Constant(yaw_inertia))
+      << VectorText(Eigen::Vector3d::Constant(yaw_inertia))
       << "'/>\n"
       // Priority: the deck's own friction holds, whatever the vehicle's feet say.
-      << "<geom name='deck' type='box' size='" << Text(deck.half_extents) << "' pos='"
-      << Text(deck.center - origin) << "' " << kEnvironment << "condim='4' priority='1' friction='"
-      << NumberText(config.pad.friction) << " 0.005 0.0001'/>\n"
-      << "<geom name='pad_body' type='box' size='" << Text(body.half_extents) << "' pos='"
-      << Text(body.center - origin) << "' " << kEnvironment << "condim='3'/>\n"
+      << "<geom name='deck' type='box' size='" << VectorText(deck.half_extents) << "' pos='"
+      << VectorText(deck.center - origin) << "' " << kEnvironment
+      << "condim='4' priority='1' friction='" << NumberText(config.pad.friction)
+      << " 0.005 0.0001'/>\n"
+      << "<geom name='pad_body' type='box' size='" << VectorText(body.half_extents) << "' pos='"
+      << VectorText(body.center - origin) << "' " << kEnvironment << "condim='3'/>\n"
       << "</body>\n";
 }
 
@@ -88,10 +66,9 @@ std::string WorldMjcf(const WorldConfig& config) {
       << "<geom name='ground' type='plane' size='0 0 1' pos='0 0 0' condim='3' " << kEnvironment
       << "/>\n";
   for (std::size_t i = 0; i < config.obstacles.size(); ++i) {
-    CheckGeom(config.obstacles.obstacles()[i], "obstacle " + std::to_string(i), "a MuJoCo world");
     xml << "<geom name='obstacle" << i << "' condim='3' " << kEnvironment
-        << std::visit([](const auto& shape) { return ObstacleGeom(shape); },
-                      config.obstacles.obstacles()[i])
+        << GeomText(config.obstacles.obstacles()[i], "obstacle " + std::to_string(i),
+                    "a MuJoCo world")
         << "/>\n";
   }
   WritePad(config, xml);

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// libapriltag 3.3 (J. Wang and E. Olson, "AprilTag 2: efficient and robust fiducial detection",
+// 2016) for the family TAG36H11: no decimation, one thread, edges refined on the grey image. No
+// wrong bit is forgiven: the family's codes differ in 11 bits, and a tag that is hard to read has
+// bad corners too. libapriltag's corners follow (-1,1), (1,1), (1,-1), (-1,-1) of a tag whose y axis
+// points down, which is the order of PadTag::Corners().
+
+#include "touchdown/estimation/tag_detector.h"
+
+#include <apriltag/apriltag.h>
+#include <apriltag/tag36h11.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "touchdown/estimation/enlarge.h"
+#include "touchdown/estimation/pad_tags.h"
+
+namespace touchdown::estimation {
+namespace {
+
+constexpr int kMinSide = 8;  // [pixel]
+
+void Check(const GrayImageView& image) {
+  if (image.data == nullptr) throw std::invalid_argument("image.data is null");
+  if (image.width < kMinSide || image.height < kMinSide || image.stride < image.width) {
+    throw std::invalid_argument("image is " + std::to_string(image.width) + " x " +
+                                std::to_string(image.height) + " with a stride of " +
+                                std::to_string(image.stride) +
+                                "; allowed is at least 8 x 8 and a stride of at least the width");
+  }
+}
+
+}  // namespace
+
+class TagDetector::Impl {
+ public:
+  explicit Impl(const TagDetectorOptions& options)
+      : enlarge_(options.enlarge),
+        family_(tag36h11_create(), tag36h11_destroy),
+        detector_(apriltag_detector_create(), apriltag_detector_destroy) {
+    detector_->quad_decimate = 1.0F;
+    detector_->quad_sigma = 0.0F;
+    detector_->nthreads = 1;
+    detector_->refine_edges = true;
+    apriltag_detector_add_family_bits(detector_.get(), family_.get(), 0);
+  }
+
+  std::vector<TagDetection> Detect(GrayImageView image) {
+    if (enlarge_ == 2) {
+      EnlargeTwice(image, &enlarged_);
+      image = enlarged_.View();
+    }
+    // libapriltag does not write to the image it is given.
+    image_u8_t borrowed = {image.width, image.height, image.stride,
+                           const_cast<std::uint8_t*>(image.data)};
+    const std::unique_ptr<zarray_t, void (*)(zarray_t*)> found(
+        apriltag_detector_detect(detector_.get(), &borrowed), apriltag_detections_destroy);
+    std::vector<TagDetection> tags;
+    for (int i = 0; i < zarray_size(found.get()); ++i) {
+      apriltag_detection_t* one = nullptr;
+      zarray_get(found.get(), i, &one);
+      if (one->id < kPadTagCount && one->hamming == 0) Add(*one, &tags);
+    }
+    return tags;
+  }
+
+ private:
+  void Add(const apriltag_detection_t& one, std::vector<TagDetection>* tags) const {
+    TagDetection tag;
+    tag.id = one.id;
+    tag.decision_margin = one.decision_margin;
+    tag.hamming = one.hamming;
+    for (int k = 0; k < 4; ++k) tag.corners.col(k) << one.p[k][0], one.p[k][1];
+    tag.corners /= enlarge_;
+    const auto place =
+        std::lower_bound(tags->begin(), tags->end(), tag.id,
+                         [](const TagDetection& other, int id) { return other.id < id; });
+    if (place == tags->end() || place->id != tag.id) {
+      tags->insert(place, tag);
+    } else if (place->decision_margin < tag.decision_margin) {
+      *place = tag;
+    }
+  }
+
+  int enlarge_;
+  GrayImage enlarged_;
+  std::unique_ptr<apriltag_family_t, void (*)(apriltag_family_t*)> family_;
+  std::unique_ptr<apriltag_detector_t, void (*)(apriltag_detector_t*)> detector_;
+};
+
+TagDetector::TagDetector(const TagDetectorOptions& options) {
+  if (options.enlarge != 1 && options.enlarge != 2) {
+    throw std::invalid_argument("tag_detector.enlarge is " + std::to_string(options.enlarge) +
+                                "; allowed is 1 or 2");
+  }
+  impl_ = std::make_unique<Impl>(options);
+}
+TagDetector::TagDetector(TagDetector&&) noexcept = default;
+TagDetector& TagDetector::operator=(TagDetector&&) noexcept = default;
+TagDetector::~TagDetector() = default;
+
+std::vector<TagDetection> TagDetector::Detect(const GrayImageView& image) {
+  Check(image);
+  return impl_->Detect(image);
+}
+
+}  // namespace touchdown::estimation
