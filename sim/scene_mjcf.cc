@@ -9,9 +9,9 @@
 
 #include <sstream>
 
+#include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/mjcf_text.h"
-#include "touchdown/sim/pad_texture.h"
 
 namespace touchdown::sim {
 namespace {
@@ -24,8 +24,8 @@ void WriteAssets(std::ostream& xml) {
   xml << "<asset>\n"
       << "<texture name='ground' type='2d' builtin='flat' rgb1='1 1 1' width='" << kGroundTexels
       << "' height='" << kGroundTexels << "'/>\n"
-      << "<texture name='pad' type='2d' builtin='flat' rgb1='1 1 1' width='" << kPadSheetTexels
-      << "' height='" << kPadSheetTexels << "'/>\n"
+      << "<texture name='pad' type='2d' builtin='flat' rgb1='1 1 1' width='"
+      << estimation::kPadSheetTexels << "' height='" << estimation::kPadSheetTexels << "'/>\n"
       << "<material name='ground' texture='ground' texuniform='true' texrepeat='" << repeat << ' '
       << repeat << "' specular='0'/>\n"
       << "<material name='pad' texture='pad' texuniform='false' texrepeat='1 1' specular='0'/>\n"
@@ -51,9 +51,10 @@ void WritePad(const VisualScene& scene, std::ostream& xml) {
   deck.half_extents.z() -= 0.5 * kSheetThickness;
   deck.center -= origin;
   body.center -= origin;
-  const Box sheet{{0.0, 0.0, -0.5 * kSheetThickness},
-                  {0.5 * kPadSheetSide, 0.5 * kPadSheetSide, 0.5 * kSheetThickness},
-                  0.0};
+  const Box sheet{
+      {0.0, 0.0, -0.5 * kSheetThickness},
+      {0.5 * estimation::kPadSheetSide, 0.5 * estimation::kPadSheetSide, 0.5 * kSheetThickness},
+      0.0};
   xml << "<body name='pad' mocap='true'>\n";
   WriteGeom(deck, "deck", xml);
   WriteGeom(body, "pad_body", xml);

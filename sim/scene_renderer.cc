@@ -18,19 +18,19 @@
 
 #include <Eigen/Geometry>
 
+#include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/gl_context.h"
 #include "touchdown/sim/ground_texture.h"
 #include "touchdown/sim/mujoco_model.h"
-#include "touchdown/sim/pad_texture.h"
 
 namespace touchdown::sim {
 namespace {
 
 void Check(const VisualScene& scene, const ViewConfig& view) {
   Validate(scene.pad, scene.deck_height);
-  CheckWithin("pad.deck_half_size of a rendered pad", scene.pad.deck_half_size, 0.5 * kPadSheetSide,
-              5.0);
+  CheckWithin("pad.deck_half_size of a rendered pad", scene.pad.deck_half_size,
+              0.5 * estimation::kPadSheetSide, 5.0);
   CheckWithin("view.width", view.width, 1, 4096);
   CheckWithin("view.height", view.height, 1, 4096);
   CheckAbove("view.fov_y_deg", view.fov_y_deg, 0.0, 170.0);
@@ -97,7 +97,7 @@ MujocoModel CompileScene(const VisualScene& scene, const ViewConfig& view) {
   Check(scene, view);
   MujocoModel model = CompileMjcf(SceneMjcf(scene, view));
   Fill("ground", GroundTexture(kGroundTexels), model.get());
-  Fill("pad", PadTexture(), model.get());
+  Fill("pad", estimation::PadSheet(), model.get());
   return model;
 }
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/sim/pad_camera.h"
-#include "touchdown/sim/pad_texture.h"
+#include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/sim/test/scenes.h"
 
 namespace touchdown::sim {
@@ -37,8 +37,8 @@ int Level(const std::vector<std::uint8_t>& rgb, int u, int v) {
   return rgb[static_cast<std::size_t>(3 * (v * 320 + u))];
 }
 
-TEST(PadTexture, CellsFallOnTexels) {
-  const estimation::GrayImage sheet = PadTexture();
+TEST(PadSheet, CellsFallOnTexels) {
+  const estimation::GrayImage sheet = estimation::PadSheet();
   ASSERT_EQ(sheet.width, 1024);
   int black = 0;
   for (const std::uint8_t level : sheet.pixels) {

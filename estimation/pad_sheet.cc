@@ -3,28 +3,28 @@
 // from the sheet's edge: with texels of 1.25 mm, 1024 of them along a side, no edge is blurred or
 // moved by the sampling. A power of two also spares the renderer a resampling of its own.
 
-#include "touchdown/sim/pad_texture.h"
+#include "touchdown/estimation/pad_sheet.h"
 
 #include <cmath>
 
 #include "touchdown/estimation/pad_tags.h"
 #include "touchdown/estimation/tag_code.h"
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 namespace {
 
 constexpr int kTexels = kPadSheetTexels;
 constexpr double kTexel = kPadSheetSide / kTexels;  // [m]
 
-void Print(const estimation::PadTag& tag, estimation::GrayImage* sheet) {
-  const estimation::TagCode code = estimation::TagCodeOf(tag.id);
-  const double cell = tag.side / estimation::kTagBlackCells;
-  const double half = 0.5 * cell * estimation::kTagCells;
+void Print(const PadTag& tag, GrayImage* sheet) {
+  const TagCode code = TagCodeOf(tag.id);
+  const double cell = tag.side / kTagBlackCells;
+  const double half = 0.5 * cell * kTagCells;
   const auto texels = [](double length) { return static_cast<int>(std::lround(length / kTexel)); };
   const int left = texels(tag.center_P.x() - half + 0.5 * kPadSheetSide);
   const int top = texels(0.5 * kPadSheetSide - tag.center_P.y() - half);
   const int texels_per_cell = texels(cell);
-  const int side = estimation::kTagCells * texels_per_cell;
+  const int side = kTagCells * texels_per_cell;
   for (int row = 0; row < side; ++row) {
     const auto& code_row = code[static_cast<std::size_t>(row / texels_per_cell)];
     for (int column = 0; column < side; ++column) {
@@ -36,13 +36,13 @@ void Print(const estimation::PadTag& tag, estimation::GrayImage* sheet) {
 
 }  // namespace
 
-estimation::GrayImage PadTexture() {
-  estimation::GrayImage sheet;
+GrayImage PadSheet() {
+  GrayImage sheet;
   sheet.width = kTexels;
   sheet.height = kTexels;
   sheet.pixels.assign(static_cast<std::size_t>(kTexels) * kTexels, 255);
-  for (const estimation::PadTag& tag : estimation::PadTags()) Print(tag, &sheet);
+  for (const PadTag& tag : PadTags()) Print(tag, &sheet);
   return sheet;
 }
 
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

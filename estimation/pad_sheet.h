@@ -3,7 +3,7 @@
 
 #include "touchdown/estimation/gray_image.h"
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 
 /// Edge of the square sheet that the pad's markers are printed on [m].
 inline constexpr double kPadSheetSide = 1.28;
@@ -11,8 +11,8 @@ inline constexpr double kPadSheetSide = 1.28;
 /// The same of its image [texel].
 inline constexpr int kPadSheetTexels = 1024;
 
-/// The sheet: white, with estimation::PadTags() in black. Every edge of a cell falls on an edge of
+/// The sheet: white, with PadTags() in black. Every edge of a cell falls on an edge of
 /// a texel. Row 0 is at y_P = +0.64 m, column 0 at x_P = -0.64 m.
-estimation::GrayImage PadTexture();
+GrayImage PadSheet();
 
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A pose that may as well be its mirror image is not aligned: the sheet could settle in the wrong
+// one, and would then claim to be sure.
+
+#include "touchdown/estimation/pad_finder.h"
+
+namespace touchdown::estimation {
+namespace {
+
+constexpr double kMaxOtherProbability = 0.01;
+
+}  // namespace
+
+PadFinder::PadFinder(const PadFinderOptions& options)
+    : options_(options), detector_(options.detector), alignment_(options.alignment) {}
+
+PadView PadFinder::Find(const GrayImageView& image, const CameraIntrinsics& camera,
+                        const std::optional<PadNormal>& normal) {
+  PadView view;
+  view.tags = detector_.Detect(image);
+  view.pose = SolvePadPose(view.tags, camera, options_.pose, normal);
+  view.aligned = options_.align && view.pose.status == PadPoseStatus::kSolved &&
+                 view.pose.other_probability <= kMaxOtherProbability &&
+                 alignment_.Refine(image, camera, normal, &view.pose);
+  return view;
+}
+
+}  // namespace touchdown::estimation
