@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown study: the standing studies. `replan`: the replanner's latency, success and safety in
-// random forests, and how faithful its baseline is.
+// random forests, and how faithful its baseline is. `tags`: see command_study_tags.cc.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -11,6 +11,7 @@
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/command_study_tags.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/forest_flight_report.h"
@@ -223,6 +224,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
 void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
   CLI::App* study = app.add_subcommand("study", "The standing studies");
   study->require_subcommand(1);
+  AddTagStudyCommand(*study, run);
   CLI::App* command = study->add_subcommand(
       "replan", "Latency, success and safety of replanning steps in random forests");
   const auto arguments = std::make_shared<StudyArguments>();

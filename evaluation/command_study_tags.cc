@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown study tags: how well the pad is found in rendered images.
+#include "touchdown/evaluation/command_study_tags.h"
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/tag_picture.h"
+#include "touchdown/evaluation/tag_report.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr int kFrames = 40;  // saved of each camera
+
+struct TagStudyArguments {
+  TagStudyOptions options;
+  std::vector<double> fovs = {90.0, 60.0};
+  std::vector<double> noises = {0.0, 5.0};
+  bool no_align = false;
+  std::string db;
+  std::string frames;
+  bool json = false;
+};
+
+class Progress {
+ public:
+  explicit Progress(std::string what) : what_(std::move(what)) {}
+  void operator()(int done, int all) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(2) && done < all) return;
+    last_ = now;
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    spdlog::info("{}: {} of {} views, {:.0f} s left", what_, done, all,
+                 elapsed / done * (all - done));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string what_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
+void CheckFrames(const std::string& directory) {
+  std::error_code ignored;
+  if (directory.empty() || std::filesystem::is_directory(directory, ignored)) return;
+  throw BadInput(fmt::format("--frames {}: there is no such directory.", directory));
+}
+
+int Run(const TagStudyArguments& arguments) {
+  CheckFrames(arguments.frames);
+  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+  std::vector<TagStudyPart> parts;
+  bool fulfilled = true;
+  for (const double fov : arguments.fovs) {
+    for (const double noise : arguments.noises) {
+      TagStudyPart part;
+      part.options = arguments.options;
+      part.options.camera.fov_y_deg = fov;
+      part.options.camera.height = part.options.camera.width * 3 / 4;
+      part.options.camera.noise_sigma = noise;
+      part.options.finder.align = !arguments.no_align;
+      const std::string name = fmt::format("fov{:g}_noise{:g}", fov, noise);
+      ViewObserver save;
+      if (!arguments.frames.empty()) {
+        save = [&](int index, const estimation::GrayImage& image, const estimation::PadView& view,
+                   const estimation::CameraIntrinsics& camera) {
+          if (index >= kFrames) return;
+          const std::string file = fmt::format("{}_{:03}.ppm", name, index);
+          WriteTagPicture((std::filesystem::path(arguments.frames) / file).string(), image, view,
+                          camera);
+        };
+      }
+      part.rows = RunTagStudy(part.options, Progress(name), save);
+      fulfilled = fulfilled && FulfilsDemand(part.rows);
+      parts.push_back(std::move(part));
+    }
+  }
+  if (arguments.json) {
+    std::cout << TagStudyJson(parts).dump(2) << std::endl;
+  } else {
+    std::cout << TagStudyText(parts) << std::flush;
+  }
+  if (!arguments.db.empty()) WriteTagStudy(arguments.db, parts);
+  return fulfilled ? kDone : kFellShort;
+}
+
+}  // namespace
+
+void AddTagStudyCommand(CLI::App& study, CommandRun* run) {
+  CLI::App* command = study.add_subcommand(
+      "tags", "How well the pad is found in rendered images of its tags, by height");
+  const auto arguments = std::make_shared<TagStudyArguments>();
+  TagStudyOptions& options = arguments->options;
+  command->add_option("--poses", options.poses, "Views for each camera")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--fov", arguments->fovs, "Vertical fields of view [deg]")
+      ->delimiter(',')
+      ->type_name("90,60,...")
+      ->check(FiniteRange(10.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--noise", arguments->noises, "Noise of the images [grey levels]")
+      ->delimiter(',')
+      ->type_name("0,5,...")
+      ->check(FiniteRange(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--width", options.camera.width, "Of the images, 4:3 [pixel]")
+      ->check(CLI::Range(32, 4096))
+      ->capture_default_str();
+  command->add_option("--exposure", options.camera.exposure_ms, "Of the images [ms]")
+      ->check(FiniteRange(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--speed", options.speed, "Of the vehicle over the pad while exposed [m/s]")
+      ->check(FiniteRange(0.0, 20.0))
+      ->capture_default_str();
+  command->add_flag("--no-align", arguments->no_align,
+                    "Poses from the tags' corners alone, the sheet is not aligned");
+  command->add_option("--seed", options.seed, "Seed of the views")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      ->capture_default_str();
+  AddFileOption(*command, "--db", &arguments->db, "Write every view, an SQLite file", "F.db");
+  AddFileOption(
+      *command, "--frames", &arguments->frames,
+      fmt::format("Save the first {} images of each camera with what was found in them", kFrames),
+      "DIR");
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->callback([arguments, run] { *run = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace touchdown::evaluation
