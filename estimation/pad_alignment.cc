@@ -30,6 +30,7 @@ using Matrix8d = Eigen::Matrix<double, 8, 8>;
 using Vector8d = Eigen::Matrix<double, 8, 1>;
 
 constexpr double kWideBlur = 3.0;    // [pixel]
+constexpr double kSmallDoubt = 0.5;  // that needs no wide blur [pixel]
 constexpr double kBlurGrowth = 1.4;  // from one blur that is tried to the next
 constexpr int kIterations = 10;
 constexpr double kStepEnd = 1e-2;  // square of a step, in variances of the solution
@@ -112,9 +113,29 @@ bool PadAlignment::SetWindow(const GrayImageView& image, const CameraIntrinsics&
   height_ = clamped(std::ceil(high.y()) + kMargin, image.height) - top_;
   image_ = image;
   camera_ = camera;
-  if (width_ < 3 || height_ < 3 || width_ * height_ > options_.max_pixels) return false;
-  model_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  return true;
+  return width_ * height_ <= options_.max_pixels;
+}
+
+bool PadAlignment::TooLarge(const GrayImageView& image, const CameraIntrinsics& camera,
+                            const PadPose& pose) {
+  return !SetWindow(image, camera, pose);
+}
+
+// Standard deviation of where the pose puts the worst of the sheet's corners [pixel].
+double PadAlignment::Doubt(const PadPose& pose) const {
+  constexpr double kHalf = 0.5 * kPadSheetSide;
+  PadCorners corners;
+  corners.count = 4;
+  corners.on_pad = {{{-kHalf, -kHalf}, {kHalf, -kHalf}, {kHalf, kHalf}, {-kHalf, kHalf}}};
+  corners.in_image.fill(Eigen::Vector2d::Zero());
+  double worst = 0.0;
+  for (int i = 0; i < corners.count; ++i) {
+    const auto residual = ResidualOf(corners, i, {pose.p_CP, pose.R_CP}, camera_);
+    if (!residual) return kWideBlur;
+    const Eigen::Matrix2d cov = residual->jacobian * pose.cov * residual->jacobian.transpose();
+    worst = std::max(worst, std::sqrt(cov.trace()));
+  }
+  return worst;
 }
 
 double PadAlignment::ModelAt(double u, double v, const Eigen::Matrix3d& from_ray,
@@ -208,6 +229,8 @@ bool PadAlignment::Converge(const std::optional<PadNormal>& normal, double blur,
 bool PadAlignment::Refine(const GrayImageView& image, const CameraIntrinsics& camera,
                           const std::optional<PadNormal>& normal, PadPose* pose) {
   if (pose->status != PadPoseStatus::kSolved || !SetWindow(image, camera, *pose)) return false;
+  if (width_ < 3 || height_ < 3) return false;
+  model_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   State state{{pose->p_CP, pose->R_CP}};
   {  // Light first: it is not known at all.
     const Sums sums = SumsAt(state, kWideBlur);
@@ -217,8 +240,8 @@ bool PadAlignment::Refine(const GrayImageView& image, const CameraIntrinsics& ca
     state.gain += light.x();
     state.offset += light.y();
   }
-  if (!Converge(normal, kWideBlur, &state) || !Converge(normal, options_.blur, &state))
-    return false;
+  if (Doubt(*pose) > kSmallDoubt && !Converge(normal, kWideBlur, &state)) return false;
+  if (!Converge(normal, options_.blur, &state)) return false;
   Sums sums = SumsAt(state, options_.blur);
   for (double blur = kBlurGrowth * options_.blur; blur < kWideBlur; blur *= kBlurGrowth) {
     if (SumsAt(state, blur).squares >= sums.squares) break;

@@ -14,9 +14,9 @@ namespace touchdown::estimation {
 
 struct PadAlignmentOptions {
   double blur = 1.2;         ///< side of the square that one pixel sees at least [pixel], in [1, 2]
-  int max_pixels = 12000;    ///< a pad that covers more is left alone: its corners are sharp enough
+  int max_pixels = 8000;     ///< a pad that covers more is left alone: its corners are sharp enough
   double correlation = 0.9;  ///< of image and model, demanded, in [0, 1]
-  double neighbors = 2.0;  ///< pixels that err alike: one of so many counts in the covariance, >= 1
+  double neighbors = 1.0;  ///< pixels that err alike: one of so many counts in the covariance, >= 1
 };
 
 /// Makes the pose of a pad that is small in the image sharper: instead of the corners of the tags
@@ -33,10 +33,14 @@ class PadAlignment {
   bool Refine(const GrayImageView& image, const CameraIntrinsics& camera,
               const std::optional<PadNormal>& normal, PadPose* pose);
 
+  /// Whether a pad there covers too much of the image to be aligned, or is too near for it.
+  bool TooLarge(const GrayImageView& image, const CameraIntrinsics& camera, const PadPose& pose);
+
  private:
   struct Sums;
   struct State;
   bool SetWindow(const GrayImageView& image, const CameraIntrinsics& camera, const PadPose& pose);
+  double Doubt(const PadPose& pose) const;
   double ModelAt(double u, double v, const Eigen::Matrix3d& from_ray, double blur) const;
   void FillModel(const PoseCP& pose, double blur);
   Sums SumsAt(const State& state, double blur);

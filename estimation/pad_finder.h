@@ -11,7 +11,8 @@
 namespace touchdown::estimation {
 
 struct PadFinderOptions {
-  TagDetectorOptions detector;
+  /// Where the image as it is does not do, look at it enlarged: finds tags down to 8 pixels a side.
+  bool enlarge = true;
   PadPoseOptions pose;
   bool align = true;  ///< the whole sheet with the image, once tags are found
   PadAlignmentOptions alignment;
@@ -25,7 +26,7 @@ struct PadView {
 };
 
 /// From an image to the pad's pose: detects tags, solves for one pose of all their corners, aligns
-/// the printed sheet with the image. One PadFinder belongs to one thread.
+/// the printed sheet with the image. A frame without a pad costs the most time. One PadFinder belongs to one thread.
 class PadFinder {
  public:
   /// Throws std::invalid_argument for an option out of its range.
@@ -37,8 +38,12 @@ class PadFinder {
                const std::optional<PadNormal>& normal = std::nullopt);
 
  private:
+  PadView FindAt(TagDetector* detector, const GrayImageView& image, const CameraIntrinsics& camera,
+                 const std::optional<PadNormal>& normal);
+
   PadFinderOptions options_;
   TagDetector detector_;
+  TagDetector enlarging_;
   PadAlignment alignment_;
 };
 

@@ -23,7 +23,8 @@
 namespace touchdown::estimation {
 namespace {
 
-constexpr int kMinSide = 8;  // [pixel]
+constexpr int kMinSide = 8;      // [pixel]
+constexpr double kBorder = 1.0;  // [pixel]
 constexpr int kForgivenBits = 3;
 constexpr double kSharpening = 4.0;
 
@@ -35,6 +36,14 @@ void Check(const GrayImageView& image) {
                                 std::to_string(image.stride) +
                                 "; allowed is at least 8 x 8 and a stride of at least the width");
   }
+}
+
+// Of a tag that the image's border cuts, the corners are where the border is.
+bool Whole(const apriltag_detection_t& tag, const GrayImageView& image) {
+  return std::all_of(tag.p, tag.p + 4, [&image](const double* corner) {
+    return corner[0] >= kBorder && corner[0] <= image.width - kBorder && corner[1] >= kBorder &&
+           corner[1] <= image.height - kBorder;
+  });
 }
 
 }  // namespace
@@ -68,7 +77,7 @@ class TagDetector::Impl {
     for (int i = 0; i < zarray_size(found.get()); ++i) {
       apriltag_detection_t* one = nullptr;
       zarray_get(found.get(), i, &one);
-      Add(*one, &tags);
+      if (Whole(*one, image)) Add(*one, &tags);
     }
     return tags;
   }

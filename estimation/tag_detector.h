@@ -12,7 +12,7 @@ namespace touchdown::estimation {
 struct TagDetectorOptions {
   /// Images are enlarged by this factor before tags are looked for, 1 or 2. Finds smaller tags and
   /// sharper corners, for about three times the time.
-  int enlarge = 2;
+  int enlarge = 1;
 };
 
 /// Finds the pad's tags in images. One TagDetector belongs to one thread.

@@ -176,7 +176,7 @@ void WriteTagStudy(const std::string& path, const std::vector<TagStudyPart>& par
       const TagStudyOptions& o = parts[i].options;
       insert_part.Run(number, static_cast<std::int64_t>(o.seed), o.camera.width, o.camera.height,
                       o.camera.fov_y_deg, o.camera.noise_sigma, o.camera.exposure_ms, o.speed,
-                      o.finder.align, o.finder.detector.enlarge, o.attitude_sigma_deg);
+                      o.finder.align, o.finder.enlarge, o.attitude_sigma_deg);
       for (std::size_t k = 0; k < parts[i].rows.size(); ++k) {
         const TagStudyRow& row = parts[i].rows[k];
         const int view = static_cast<int>(k);

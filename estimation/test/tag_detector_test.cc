@@ -23,8 +23,8 @@ double WorstCorner(const std::vector<TagDetection>& found, const PoseCP& pose) {
 }
 
 TEST(TagDetector, FindsAllTagsWithTheirCornersInOrder) {
-  TagDetector twice;
-  TagDetector once({.enlarge = 1});
+  TagDetector twice({.enlarge = 2});
+  TagDetector once;
   for (const double yaw : {0.0, 0.4, 2.0, -2.7}) {
     const PoseCP pose = PadAhead(1.5, 0.2, 0.5, yaw, {0.05, -0.03});
     const GrayImage image = PadImage(pose, TestCamera());
@@ -38,8 +38,8 @@ TEST(TagDetector, FindsAllTagsWithTheirCornersInOrder) {
 }
 
 TEST(TagDetector, EnlargedImagesHaveTheirTagsFoundFartherAway) {
-  TagDetector twice;
-  TagDetector once({.enlarge = 1});
+  TagDetector twice({.enlarge = 2});
+  TagDetector once;
   const GrayImage image = PadImage(PadAhead(7.5, 0.1, 0.5, 0.4), TestCamera());  // 10.7 pixels
   EXPECT_EQ(twice.Detect(image.View()).size(), 4U);
   EXPECT_LT(once.Detect(image.View()).size(), 4U);
@@ -52,6 +52,15 @@ TEST(TagDetector, CutTagsAreNotReported) {
   EXPECT_EQ(found[0].id, 2);
   EXPECT_EQ(found[1].id, 3);
   EXPECT_LT(WorstCorner(found, pose), 0.5);
+}
+
+TEST(TagDetector, NoCornerIsTakenFromTheBorder) {
+  TagDetector detector;
+  for (int step = 0; step < 40; ++step) {
+    const PoseCP pose = PadAhead(0.8, 0.2, 0.1 * step, 0.7, {0.55 + 0.01 * step, 0.1});
+    const auto found = detector.Detect(PadImage(pose, TestCamera()).View());
+    EXPECT_LT(WorstCorner(found, pose), 1.0) << step;
+  }
 }
 
 TEST(TagDetector, NoiseIsNoTag) {
