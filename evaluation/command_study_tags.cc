@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/tag_fit.h"
 #include "touchdown/evaluation/tag_picture.h"
 #include "touchdown/evaluation/tag_report.h"
 
@@ -24,6 +25,7 @@ struct TagStudyArguments {
   std::vector<double> fovs = {90.0, 60.0};
   std::vector<double> noises = {0.0, 5.0};
   bool no_align = false;
+  bool fit = false;
   std::string db;
   std::string frames;
   bool json = false;
@@ -57,6 +59,10 @@ void CheckFrames(const std::string& directory) {
 int Run(const TagStudyArguments& arguments) {
   CheckFrames(arguments.frames);
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+  if (arguments.fit && arguments.fovs.size() * arguments.noises.size() != 1) {
+    throw BadInput(
+        "--fit goes with one field of view and one noise: name them by --fov and --noise.");
+  }
   std::vector<TagStudyPart> parts;
   bool fulfilled = true;
   for (const double fov : arguments.fovs) {
@@ -83,10 +89,19 @@ int Run(const TagStudyArguments& arguments) {
       parts.push_back(std::move(part));
     }
   }
+  nlohmann::ordered_json json = TagStudyJson(parts);
+  std::string text = TagStudyText(parts);
+  if (arguments.fit) {
+    const TagStudyPart& part = parts.front();
+    const sim::TagModel model = FitTagModel(part.options, part.rows);
+    const auto agreement = CompareTagCameras(part.options, part.rows, model);
+    json["fit"] = TagFitJson(model, agreement);
+    text += TagFitText(model, agreement);
+  }
   if (arguments.json) {
-    std::cout << TagStudyJson(parts).dump(2) << std::endl;
+    std::cout << json.dump(2) << std::endl;
   } else {
-    std::cout << TagStudyText(parts) << std::flush;
+    std::cout << text << std::flush;
   }
   if (!arguments.db.empty()) WriteTagStudy(arguments.db, parts);
   return fulfilled ? kDone : kFellShort;
@@ -123,6 +138,8 @@ void AddTagStudyCommand(CLI::App& study, CommandRun* run) {
       ->capture_default_str();
   command->add_flag("--no-align", arguments->no_align,
                     "Poses from the tags' corners alone, the sheet is not aligned");
+  command->add_flag("--fit", arguments->fit,
+                    "Fit the constants of the fast tag camera to the views (sim/tag_model.h)");
   command->add_option("--seed", options.seed, "Seed of the views")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       ->capture_default_str();

@@ -110,6 +110,8 @@ TagStudyRow Judge(const View& view, const estimation::PadView& seen, const Eigen
   row.height = view.height;
   row.distance = p_CP.norm();
   row.tilt_deg = view.tilt_deg;
+  row.vehicle = view.vehicle;
+  row.pad = view.pad;
   row.status = seen.pose.status;
   row.aligned = seen.aligned;
   for (const estimation::PadTag& tag : estimation::PadTags()) {

@@ -44,6 +44,8 @@ struct TagStudyRow {
   double height = 0.0;    ///< of the camera above the deck [m]
   double distance = 0.0;  ///< from the camera to the pad's centre [m]
   double tilt_deg = 0.0;
+  estimation::VehicleState vehicle;  ///< where it was seen from
+  estimation::PadState pad;
   std::array<TagRow, estimation::kPadTagCount> tags;
   estimation::PadPoseStatus status = estimation::PadPoseStatus::kNoTag;
   bool aligned = false;

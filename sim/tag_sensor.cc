@@ -1,79 +1,93 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measurement model of five TAG36H11 markers seen by a downward camera. It is a model: constants
-// are read off a table of libapriltag 3.3 detections on noise-free rendered images (320x240, fovy
-// 60 deg, focal length 207.8 pixel, tilt to 9 deg, 8 poses per height), not a derivation. z: camera
-// to pad.
-//
-//  what                                       table                           model
-//  central tag (0.15 m) found                 to 3 m, not at 4 m              to 3 m
-//  outer tags (0.4 m) found                   to 6 m, the table's end         to 6 m
-//  position, several tags, mean |error|       0.5-1.5 mm to 3 m; 2.9 at 4;    0.5 mm + 0.2 mm/m^2
-//  z^2
-//                                             5.2 at 5; 4.9 at 6 m
-//  position, one tag of side s, mean |error|  outer 2 / 9 / 30 / 68 / 128 mm  0.5 mm + 2 mm
-//  (x/2)^3.8,
-//                                             at 2 / 3 / 4 / 5 / 6 m;         x = z 0.4 / s
-//                                             central 0.3 / 0.7 / 38 mm
-//                                             at 0.3 / 0.6 / 2 m
-//  rotation, several tags                     0.03-0.8 deg                    0.1 deg + 0.1 deg/m z
-//  rotation, one tag                          central 0.1-1.1 deg at 0.3 to   0.5 deg + 0.33 deg
-//  x^2
-//                                             0.6 m, 9.5 at 2 m; outer 4-10
-//
-// Ranges and errors are carried over to another camera by its focal length: a tag then has the same
-// size in pixels at focal / 207.8 times the distance. A mean |error| in space is 1.6 standard
-// deviations of one axis. Images with noise and motion blur are worse than the table's: factor 2.
+// Measurement model of the pad camera, with the constants of TagModel, which are fitted to rendered
+// images. The tags' true corners are projected; a tag is found by a probit of its size whose noise
+// is in part common to the image (what makes one tag hard to read makes its neighbours so). Where
+// the sheet is small enough in the image for estimation::PadAlignment, the corners of all tags in
+// view stand for it with a small noise of their own; else those of the tags found, with theirs. From
+// them the pose is solved by the very solver that rendered images use.
 
 #include "touchdown/sim/tag_sensor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
+#include "touchdown/estimation/pad_alignment.h"
+#include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/sim/argument_check.h"
+#include "touchdown/sim/pad_camera.h"
 
 namespace touchdown::sim {
 namespace {
 
-constexpr double kTableFocal = 207.8;       // [pixel]
-constexpr double kCentralRange = 3.0;       // at the table's focal length [m]
-constexpr double kOuterRange = 6.0;         // [m]
-constexpr double kOuterSide = 0.4;          // [m]
-constexpr double kImageNoiseFactor = 2.0;   // images that are not noise-free
-constexpr double kMeanNormOverSigma = 1.6;  // of a three-dimensional normal: 2 sqrt(2 / pi)
+using Corners = Eigen::Matrix<double, 2, 4>;
+
+constexpr double kMinSigma = 1e-6;  // that the solver is told of exact corners [pixel]
 
 double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-struct PoseSigma {
-  double position = 0.0;  // each axis [m]
-  double yaw = 0.0;       // [rad]
+// The pad in C.
+struct Placement {
+  Eigen::Vector3d p_CP;
+  Eigen::Matrix3d R_CP;
+
+  Placement(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+            const Eigen::Vector3d& p_BC) {
+    const Eigen::Matrix3d R_BW = vehicle.q_WB.toRotationMatrix().transpose();
+    const Eigen::Matrix3d R_CB = DownwardCameraAxes().transpose();
+    p_CP = R_CB * (R_BW * (pad.p_WP - vehicle.p_WB) - p_BC);
+    R_CP = R_CB * R_BW * Eigen::AngleAxisd(pad.yaw, Eigen::Vector3d::UnitZ());
+  }
+  Eigen::Vector3d ToC(const Eigen::Vector2d& x_P) const {
+    return p_CP + R_CP * Eigen::Vector3d(x_P.x(), x_P.y(), 0.0);
+  }
 };
 
-// @param z distance from camera to pad, scaled to the table's focal length [m].
-// @param side of the tag, read if only one is seen [m].
-PoseSigma SigmaOf(double z, int tags_seen, double side) {
-  double error_m = 0.0;
-  double error_deg = 0.0;
-  if (tags_seen > 1) {
-    error_m = 0.5e-3 + 0.2e-3 * z * z;
-    error_deg = 0.1 + 0.1 * z;
-  } else {
-    const double x = z * kOuterSide / side;
-    error_m = 0.5e-3 + 2.0e-3 * std::pow(0.5 * x, 3.8);
-    error_deg = 0.5 + 0.33 * x * x;
+Eigen::Vector2d Project(const estimation::CameraIntrinsics& camera, const Eigen::Vector3d& x_C) {
+  return camera.focal * x_C.head<2>() / x_C.z() + Eigen::Vector2d(camera.cx, camera.cy);
+}
+
+bool InImage(const estimation::CameraIntrinsics& camera, const Eigen::Vector3d& x_C) {
+  if (x_C.z() <= 0.0) return false;
+  const Eigen::Vector2d pixel = Project(camera, x_C);
+  return pixel.minCoeff() >= 0.0 && pixel.x() <= camera.width && pixel.y() <= camera.height;
+}
+
+Corners CornersOf(const estimation::PadTag& tag, const Placement& placement,
+                  const estimation::CameraIntrinsics& camera) {
+  Corners corners = tag.Corners();
+  for (int k = 0; k < 4; ++k) corners.col(k) = Project(camera, placement.ToC(corners.col(k)));
+  return corners;
+}
+
+double ShortestSide(const Corners& corners) {
+  double shortest = (corners.col(3) - corners.col(0)).norm();
+  for (int k = 0; k < 3; ++k) {
+    shortest = std::min(shortest, (corners.col(k + 1) - corners.col(k)).norm());
   }
-  const double factor = kImageNoiseFactor / kMeanNormOverSigma;
-  return {factor * error_m, factor * Radians(error_deg)};
+  return shortest;
 }
 
-bool InImage(const estimation::CameraIntrinsics& camera, const Eigen::Vector3d& p_C) {
-  if (p_C.z() <= 0.0) return false;
-  const double u = camera.cx + camera.focal * p_C.x() / p_C.z();
-  const double v = camera.cy + camera.focal * p_C.y() / p_C.z();
-  return u >= 0.0 && u <= camera.width && v >= 0.0 && v <= camera.height;
+// As PadAlignment decides: all of the sheet is before the camera, and covers no more than so much.
+bool SheetIsAligned(const Placement& placement, const estimation::CameraIntrinsics& camera) {
+  constexpr double kHalf = 0.5 * estimation::kPadSheetSide;
+  constexpr double kMinDepth = 0.05;  // [m]
+  Eigen::Vector2d low(camera.width, camera.height);
+  Eigen::Vector2d high(0.0, 0.0);
+  for (const double x : {-kHalf, kHalf}) {
+    for (const double y : {-kHalf, kHalf}) {
+      const Eigen::Vector3d x_C = placement.ToC({x, y});
+      if (x_C.z() <= kMinDepth) return false;
+      const Eigen::Vector2d pixel = Project(camera, x_C)
+                                        .cwiseMax(Eigen::Vector2d::Zero())
+                                        .cwiseMin(Eigen::Vector2d(camera.width, camera.height));
+      low = low.cwiseMin(pixel);
+      high = high.cwiseMax(pixel);
+    }
+  }
+  return (high - low).prod() <= estimation::PadAlignmentOptions{}.max_pixels;
 }
-
-// The camera's axes in B: the image's right is x_B, its up is y_B.
-Eigen::Matrix3d DownwardCamera() { return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal(); }
 
 }  // namespace
 
@@ -84,7 +98,10 @@ TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacl
   CheckWithin("tag_camera.height", config.height, 1, 4096);
   CheckAbove("tag_camera.fov_y_deg", config.fov_y_deg, 0.0, 170.0);
   CheckWithin("tag_camera.max_view_angle_deg", config.max_view_angle_deg, 0.0, 89.0);
+  CheckWithin("tag_camera.attitude_sigma_deg", config.attitude_sigma_deg, 0.01, 45.0);
   CheckWithin("tag_camera.noise_scale", config.noise_scale, 0.0, 100.0);
+  CheckWithin("tag_camera.model.common", config.model.common, 0.0, 1.0);
+  CheckAbove("tag_camera.model.spread", config.model.spread, 0.0, 1000.0);
   CheckWithin("length of tag_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
   intrinsics_.width = config.width;
   intrinsics_.height = config.height;
@@ -95,64 +112,80 @@ TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacl
 
 std::array<bool, estimation::kPadTagCount> TagSensor::Visible(
     const estimation::VehicleState& vehicle, const estimation::PadState& pad) const {
-  const Eigen::Matrix3d R_WB = vehicle.q_WB.toRotationMatrix();
-  const Eigen::Matrix3d R_WC = R_WB * DownwardCamera();
-  const Eigen::Vector3d p_WC = vehicle.p_WB + R_WB * config_.p_BC;
+  const Placement placement(vehicle, pad, config_.p_BC);
+  const Eigen::Vector3d p_WC = vehicle.p_WB + vehicle.q_WB * config_.p_BC;
+  const Eigen::Matrix3d R_WC = vehicle.q_WB.toRotationMatrix() * DownwardCameraAxes();
   const double cos_limit = std::cos(Radians(config_.max_view_angle_deg));
-  const double range_scale = intrinsics_.focal / kTableFocal;
-  const Eigen::Vector3d x_P(std::cos(pad.yaw), std::sin(pad.yaw), 0.0);
-  const Eigen::Vector3d y_P(-x_P.y(), x_P.x(), 0.0);
-
-  const auto corner_seen = [&](const Eigen::Vector3d& corner_W) {
-    return InImage(intrinsics_, R_WC.transpose() * (corner_W - p_WC)) &&
+  const auto corner_seen = [&](const Eigen::Vector3d& corner_C) {
+    return InImage(intrinsics_, corner_C) &&
            // Of the ray from camera (0) to corner (1), nothing may cross before 1.
-           obstacles_.RayDistance(p_WC, corner_W - p_WC) >= 1.0;
+           obstacles_.RayDistance(p_WC, R_WC * corner_C) >= 1.0;
   };
   std::array<bool, estimation::kPadTagCount> visible{};
-  const auto& tags = estimation::PadTags();
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    const estimation::PadTag& tag = tags[i];
-    const Eigen::Vector3d center_W = pad.p_WP + tag.center_P.x() * x_P + tag.center_P.y() * y_P;
-    const Eigen::Vector3d to_camera = p_WC - center_W;
-    const double distance = to_camera.norm();
-    const double range = range_scale * (i == 0 ? kCentralRange : kOuterRange);
-    if (distance > range || to_camera.z() < cos_limit * distance) continue;
-    const Eigen::Vector3d dx = 0.5 * tag.side * x_P;
-    const Eigen::Vector3d dy = 0.5 * tag.side * y_P;
-    visible[i] = corner_seen(center_W + dx + dy) && corner_seen(center_W - dx + dy) &&
-                 corner_seen(center_W - dx - dy) && corner_seen(center_W + dx - dy);
+  for (const estimation::PadTag& tag : estimation::PadTags()) {
+    const Eigen::Vector3d center_C = placement.ToC(tag.center_P);
+    if (-placement.R_CP.col(2).dot(center_C) < cos_limit * center_C.norm()) continue;
+    const Corners corners = tag.Corners();
+    bool all = true;
+    for (int k = 0; k < 4 && all; ++k) all = corner_seen(placement.ToC(corners.col(k)));
+    visible[static_cast<std::size_t>(tag.id)] = all;
   }
   return visible;
+}
+
+TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
+                                 const estimation::PadState& pad) {
+  const TagModel& model = config_.model;
+  const std::array<bool, estimation::kPadTagCount> visible = Visible(vehicle, pad);
+  Image image;
+  if (std::none_of(visible.begin(), visible.end(), [](bool one) { return one; })) return image;
+  const Placement placement(vehicle, pad, config_.p_BC);
+  const double common = noise_.Normal(std::sqrt(model.common));
+  std::array<Corners, estimation::kPadTagCount> corners;
+  double largest = 0.0;
+  bool any = false;
+  for (const estimation::PadTag& tag : estimation::PadTags()) {
+    const auto id = static_cast<std::size_t>(tag.id);
+    const double own = noise_.Normal(std::sqrt(1.0 - model.common));
+    if (!visible[id]) continue;
+    corners[id] = CornersOf(tag, placement, intrinsics_);
+    const double size = ShortestSide(corners[id]);
+    largest = std::max(largest, size);
+    image.found[id] = (size - model.half_size) / model.spread + common + own > 0.0;
+    any = any || image.found[id];
+  }
+  if (!any) return image;
+  image.aligned = SheetIsAligned(placement, intrinsics_);
+  const double sigma = config_.noise_scale *
+                       At(model, image.aligned ? model.sheet_sigma : model.corner_sigma, largest);
+  std::array<estimation::TagDetection, estimation::kPadTagCount> tags;
+  std::size_t count = 0;
+  for (std::size_t id = 0; id < tags.size(); ++id) {
+    if (!(image.aligned ? visible[id] : image.found[id])) continue;
+    tags[count].id = static_cast<int>(id);
+    tags[count].corners = corners[id];
+    for (double& coordinate : tags[count].corners.reshaped()) coordinate += noise_.Normal(sigma);
+    ++count;
+  }
+  estimation::PadPoseOptions options;
+  options.corner_sigma = std::max(sigma, kMinSigma);
+  options.corner_sigma_floor = options.corner_sigma;
+  image.pose = estimation::SolvePadPose(
+      std::span(tags.data(), count), intrinsics_, options,
+      estimation::LevelPadNormal(vehicle.q_WB.toRotationMatrix(), DownwardCameraAxes(),
+                                 Radians(config_.attitude_sigma_deg)));
+  return image;
 }
 
 std::optional<estimation::PadSighting> TagSensor::Poll(double t,
                                                        const estimation::VehicleState& vehicle,
                                                        const estimation::PadState& pad) {
   if (!clock_.Due(t)) return std::nullopt;
-  const std::array<bool, estimation::kPadTagCount> visible = Visible(vehicle, pad);
-  const auto& tags = estimation::PadTags();
-  estimation::PadSighting sighting;
-  double side = 0.0;
-  for (std::size_t i = 0; i < tags.size(); ++i) {
-    if (!visible[i]) continue;
-    ++sighting.tags_seen;
-    side = tags[i].side;
-  }
-  if (sighting.tags_seen == 0) return std::nullopt;
-
-  const Eigen::Matrix3d R_BW = vehicle.q_WB.toRotationMatrix().transpose();
-  const Eigen::Vector3d p_BP_B = R_BW * (pad.p_WP - vehicle.p_WB);
-  const Eigen::Vector3d x_P_B = R_BW * Eigen::Vector3d(std::cos(pad.yaw), std::sin(pad.yaw), 0.0);
-  const double z = (p_BP_B - config_.p_BC).norm() * kTableFocal / intrinsics_.focal;
-  const PoseSigma sigma = SigmaOf(z, sighting.tags_seen, side);
-  sighting.t = t;
-  sighting.sigma_p.setConstant(config_.noise_scale * sigma.position);
-  sighting.sigma_yaw = config_.noise_scale * sigma.yaw;
-  for (int axis = 0; axis < 3; ++axis) {
-    sighting.p_BP_B[axis] = p_BP_B[axis] + noise_.Normal(sighting.sigma_p[axis]);
-  }
-  const double yaw = std::atan2(x_P_B.y(), x_P_B.x()) + noise_.Normal(sighting.sigma_yaw);
-  sighting.yaw_BP = estimation::WrapAngle(yaw);
+  const Image image = Look(vehicle, pad);
+  if (image.pose.status != estimation::PadPoseStatus::kSolved) return std::nullopt;
+  estimation::PadSighting sighting =
+      estimation::ToSighting(image.pose, t, DownwardCameraAxes(), config_.p_BC);
+  sighting.tags_seen = static_cast<int>(std::count(image.found.begin(), image.found.end(), true));
   return sighting;
 }
 

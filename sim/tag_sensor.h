@@ -8,40 +8,53 @@
 #include <Eigen/Core>
 
 #include "touchdown/estimation/measurements.h"
+#include "touchdown/estimation/pad_pose.h"
 #include "touchdown/estimation/pad_prediction.h"
 #include "touchdown/estimation/pad_tags.h"
 #include "touchdown/estimation/vehicle_state.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/sim/sample_clock.h"
+#include "touchdown/sim/tag_model.h"
 
 namespace touchdown::sim {
 
 /// Downward camera that sees the tags, and how it errs. C: x right (x_B), y down (-y_B), z down.
 struct TagSensorConfig {
-  int width = 640;          ///< [pixel]
-  int height = 480;         ///< [pixel]
+  int width = 320;          ///< [pixel]
+  int height = 240;         ///< [pixel]
   double fov_y_deg = 90.0;  ///< vertical field of view, as MuJoCo's fovy [deg], in (0, 170]
   Eigen::Vector3d p_BC = {0.0, 0.0, -0.05};  ///< camera in B [m]
   double rate_hz = 20.0;                     ///< [Hz], in (0, 1000]
-  double max_view_angle_deg = 65.0;  ///< between the line of sight and the deck's normal [deg]
-  double noise_scale = 1.0;          ///< factor on all standard deviations, in [0, 100]
+  double max_view_angle_deg = 75.0;  ///< between the line of sight and the deck's normal [deg]
+  double attitude_sigma_deg = 1.0;   ///< claimed of the vehicle's attitude [deg], in [0.01, 45]
+  double noise_scale = 1.0;          ///< factor on the corners' noise, in [0, 100]
+  TagModel model;
 };
 
-/// Measurement model of the tag camera: which tags are wholly in view, and how far off the pose
-/// solved from them is. It stands in for rendering images and detecting tags in them.
+/// Measurement model of the pad camera: which tags are wholly in view and found, and where their
+/// corners appear in the image; the pose is solved from them as from a rendered image. It stands in
+/// for rendering images and detecting tags in them.
 class TagSensor {
  public:
   /// `seed` feeds the stream "tag camera". Throws std::invalid_argument naming key, value, range.
   TagSensor(const TagSensorConfig& config, const ObstacleField& obstacles, std::uint64_t seed);
 
-  /// A sighting if an image is due at time t [s] and a tag is in view, else nothing. Call once per
-  /// simulation step. Does not allocate.
+  /// A sighting if an image is due at time t [s] and a tag is found in it, else nothing. Call once
+  /// per simulation step. Does not allocate.
   std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
                                               const estimation::PadState& pad);
 
-  /// Which of estimation::PadTags() a camera at this pose detects: all four corners in the image, large enough
-  /// in it, at an admissible angle, nothing in between.
+  /// Takes an image at once: the tags that are found, and the pad's pose in it.
+  struct Image {
+    std::array<bool, estimation::kPadTagCount> found{};
+    bool aligned = false;  ///< the pose is that of the whole sheet
+    estimation::PadPose pose;
+  };
+  Image Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad);
+
+  /// Which of estimation::PadTags() a camera at this pose has in view: all four corners in the
+  /// image, at an admissible angle, nothing in between.
   std::array<bool, estimation::kPadTagCount> Visible(const estimation::VehicleState& vehicle,
                                                      const estimation::PadState& pad) const;
 
