@@ -23,7 +23,8 @@ using Table = std::array<double, sim::TagModel::kKnots>;
 constexpr double kTrialSigma = 0.1;  // [pixel]
 constexpr int kRounds = 3;
 constexpr int kRepeats = 10;
-constexpr int kFewRows = 8;  // a class with fewer takes its neighbour's noise
+constexpr double kLapse = 0.005;  // of tags, whatever their size: a stray one must not rule the fit
+constexpr int kFewRows = 25;      // a class with fewer takes its neighbour's noise
 
 double Probability(double x) { return 0.5 * std::erfc(-x * std::sqrt(0.5)); }
 
@@ -33,7 +34,7 @@ double LogLikelihood(const std::vector<TagStudyRow>& rows, double half_size, dou
     for (const TagRow& tag : row.tags) {
       if (!tag.in_view) continue;
       const double p = Probability((tag.size_px - half_size) / spread);
-      sum += std::log(std::max(1e-6, tag.found ? p : 1.0 - p));
+      sum += std::log(std::max(kLapse, tag.found ? p : 1.0 - p));
     }
   }
   return sum;

@@ -2,8 +2,8 @@
 // Measurement model of the pad camera, with the constants of TagModel, which are fitted to rendered
 // images. The tags' true corners are projected; a tag is found by a probit of its size whose noise
 // is in part common to the image (what makes one tag hard to read makes its neighbours so). Where
-// the sheet is small enough in the image for estimation::PadAlignment, the corners of all tags in
-// view stand for it with a small noise of their own; else those of the tags found, with theirs. From
+// the sheet is small enough in the image for estimation::PadAlignment, the corners of all tags whose
+// centres are in it stand for it with a small noise of their own; else those of the tags found, with theirs. From
 // them the pose is solved by the very solver that rendered images use.
 
 #include "touchdown/sim/tag_sensor.h"
@@ -142,13 +142,17 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   const Placement placement(vehicle, pad, config_.p_BC);
   const double common = noise_.Normal(std::sqrt(model.common));
   std::array<Corners, estimation::kPadTagCount> corners;
+  std::array<bool, estimation::kPadTagCount> in_sheet{};
   double largest = 0.0;
   bool any = false;
   for (const estimation::PadTag& tag : estimation::PadTags()) {
     const auto id = static_cast<std::size_t>(tag.id);
     const double own = noise_.Normal(std::sqrt(1.0 - model.common));
-    if (!visible[id]) continue;
+    // Of the sheet, what is in the image counts, whole tags or not.
+    in_sheet[id] = InImage(intrinsics_, placement.ToC(tag.center_P));
+    if (!visible[id] && !in_sheet[id]) continue;
     corners[id] = CornersOf(tag, placement, intrinsics_);
+    if (!visible[id]) continue;
     const double size = ShortestSide(corners[id]);
     largest = std::max(largest, size);
     image.found[id] = (size - model.half_size) / model.spread + common + own > 0.0;
@@ -161,7 +165,7 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   std::array<estimation::TagDetection, estimation::kPadTagCount> tags;
   std::size_t count = 0;
   for (std::size_t id = 0; id < tags.size(); ++id) {
-    if (!(image.aligned ? visible[id] : image.found[id])) continue;
+    if (!(image.aligned ? in_sheet[id] : image.found[id])) continue;
     tags[count].id = static_cast<int>(id);
     tags[count].corners = corners[id];
     for (double& coordinate : tags[count].corners.reshaped()) coordinate += noise_.Normal(sigma);
