@@ -95,8 +95,11 @@ int Run(const TagStudyArguments& arguments) {
     const TagStudyPart& part = parts.front();
     const sim::TagModel model = FitTagModel(part.options, part.rows);
     const auto agreement = CompareTagCameras(part.options, part.rows, model);
+    const auto now = CompareTagCameras(part.options, part.rows, sim::TagModel());
     json["fit"] = TagFitJson(model, agreement);
-    text += TagFitText(model, agreement);
+    json["in_use"] = TagFitJson(sim::TagModel(), now);
+    text += "Fitted to these views:\n" + TagFitText(model, agreement);
+    text += "\nIn use:\n" + TagFitText(sim::TagModel(), now);
   }
   if (arguments.json) {
     std::cout << json.dump(2) << std::endl;

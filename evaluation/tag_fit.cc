@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fits the fast tag camera to rendered views. Detection: the probit's two constants by maximum
-// likelihood over all tags in view, on a grid that is refined; then the share of the noise that an
-// image's tags have in common, so that as many views have a tag found as were seen, by bisection.
-// Noise: from each view the fast camera looks with some noise of the corners; in each class of sizes
-// the noise is scaled by what the medians of the position errors ask for, since the error goes with
-// the noise, and once more for what is not linear.
+// likelihood over all tags in view, on a grid that is refined; a part of the noise common to all tags
+// of an image was tried and fitted to nothing. Noise: from each view the fast camera looks with some
+// noise of the corners; in each class of sizes the noise is scaled by what the medians of the
+// position errors ask for, since the error goes with the noise, and again for what is not linear.
 #include "touchdown/evaluation/tag_fit.h"
 
 #include <algorithm>
@@ -61,43 +60,6 @@ void FitDetection(const std::vector<TagStudyRow>& rows, sim::TagModel* model) {
       }
     }
   }
-}
-
-// Views in which a tag would be found, expected, by quadrature over the common part.
-double ExpectedViews(const std::vector<TagStudyRow>& rows, const sim::TagModel& model,
-                     double common) {
-  constexpr int kNodes = 81;
-  constexpr double kReach = 5.0;  // standard deviations
-  double views = 0.0;
-  for (const TagStudyRow& row : rows) {
-    double none = 0.0;
-    double weights = 0.0;
-    for (int i = 0; i < kNodes; ++i) {
-      const double z = kReach * (2.0 * i / (kNodes - 1) - 1.0);
-      double product = std::exp(-0.5 * z * z);
-      weights += product;
-      for (const TagRow& tag : row.tags) {
-        if (!tag.in_view) continue;
-        const double x = (tag.size_px - model.half_size) / model.spread + std::sqrt(common) * z;
-        product *= 1.0 - Probability(x / std::sqrt(1.0 - common));
-      }
-      none += product;
-    }
-    views += 1.0 - none / weights;
-  }
-  return views;
-}
-
-void FitCommon(const std::vector<TagStudyRow>& rows, sim::TagModel* model) {
-  double found = 0.0;
-  for (const TagStudyRow& row : rows) found += row.InView() && row.Solved() ? 1.0 : 0.0;
-  double low = 0.0;
-  double high = 0.999;
-  for (int i = 0; i < 30; ++i) {
-    const double middle = 0.5 * (low + high);
-    (ExpectedViews(rows, *model, middle) > found ? low : high) = middle;
-  }
-  model->common = 0.5 * (low + high);
 }
 
 sim::TagSensorConfig FastConfig(const TagStudyOptions& options, const sim::TagModel& model) {
@@ -175,7 +137,6 @@ sim::TagModel FitTagModel(const TagStudyOptions& options, const std::vector<TagS
   }
   sim::TagModel model;
   FitDetection(rows, &model);
-  FitCommon(rows, &model);
   model.corner_sigma.fill(kTrialSigma);
   model.sheet_sigma.fill(kTrialSigma);
   for (int round = 0; round < kRounds; ++round) {
@@ -185,42 +146,48 @@ sim::TagModel FitTagModel(const TagStudyOptions& options, const std::vector<TagS
   return model;
 }
 
+TagAgreement CompareTagCameras(const TagStudyOptions& options, const std::vector<TagStudyRow>& rows,
+                               double from, double to, const sim::TagModel& model) {
+  constexpr int kLooks = 20;
+  sim::TagSensor sensor(FastConfig(options, model), {}, options.seed);
+  TagAgreement part;
+  part.from = from;
+  part.to = to;
+  std::vector<double> rendered, fast;
+  for (const TagStudyRow& row : rows) {
+    if (row.height < from || row.height >= to || !row.InView()) continue;
+    ++part.views;
+    if (row.Solved()) rendered.push_back(1e3 * row.position_error);
+    for (int k = 0; k < kLooks; ++k) {
+      const sim::TagSensor::Image image = sensor.Look(row.vehicle, row.pad);
+      if (image.pose.status != estimation::PadPoseStatus::kSolved) continue;
+      fast.push_back(PositionErrorMm(row, image, options.camera.p_BC));
+    }
+  }
+  const double views = std::max(1, part.views);
+  part.rendered_rate = static_cast<double>(rendered.size()) / views;
+  part.fast_rate = static_cast<double>(fast.size()) / (views * kLooks);
+  part.rendered_mm = QuantilesOf(rendered);
+  part.fast_mm = QuantilesOf(fast);
+  return part;
+}
+
 std::vector<TagAgreement> CompareTagCameras(const TagStudyOptions& options,
                                             const std::vector<TagStudyRow>& rows,
-                                            const sim::TagModel& model, int repeats) {
+                                            const sim::TagModel& model) {
   constexpr std::array<double, 4> kEdges = {kLowestView, 2.0, 4.0, kHighestView};
-  sim::TagSensor sensor(FastConfig(options, model), {}, options.seed);
   std::vector<TagAgreement> agreement;
   for (std::size_t i = 0; i + 1 < kEdges.size(); ++i) {
-    TagAgreement part;
-    part.from = kEdges[i];
-    part.to = kEdges[i + 1];
-    std::vector<double> rendered, fast;
-    for (const TagStudyRow& row : rows) {
-      if (row.height < part.from || row.height >= part.to || !row.InView()) continue;
-      ++part.views;
-      if (row.Solved()) rendered.push_back(1e3 * row.position_error);
-      for (int k = 0; k < repeats; ++k) {
-        const sim::TagSensor::Image image = sensor.Look(row.vehicle, row.pad);
-        if (image.pose.status != estimation::PadPoseStatus::kSolved) continue;
-        fast.push_back(PositionErrorMm(row, image, options.camera.p_BC));
-      }
-    }
-    const double views = std::max(1, part.views);
-    part.rendered_rate = static_cast<double>(rendered.size()) / views;
-    part.fast_rate = static_cast<double>(fast.size()) / (views * repeats);
-    part.rendered_mm = QuantilesOf(rendered);
-    part.fast_mm = QuantilesOf(fast);
-    agreement.push_back(part);
+    agreement.push_back(CompareTagCameras(options, rows, kEdges[i], kEdges[i + 1], model));
   }
   return agreement;
 }
 
 std::string TagFitText(const sim::TagModel& model, const std::vector<TagAgreement>& agreement) {
   std::string text = fmt::format(
-      "half_size = {:.2f};  spread = {:.2f};  common = {:.2f};\nsize = {{{:.3g}}};\n"
+      "half_size = {:.2f};  spread = {:.2f};\nsize = {{{:.3g}}};\n"
       "corner_sigma = {{{:.3f}}};\nsheet_sigma = {{{:.4f}}};\n\n",
-      model.half_size, model.spread, model.common, fmt::join(model.size, ", "),
+      model.half_size, model.spread, fmt::join(model.size, ", "),
       fmt::join(model.corner_sigma, ", "), fmt::join(model.sheet_sigma, ", "));
   text += fmt::format("{:<11}{:>7}{:>20}{:>22}{:>22}\n", "height m", "views", "found: rendered",
                       "median mm: rendered", "p95 mm: rendered");
@@ -254,7 +221,6 @@ nlohmann::ordered_json TagFitJson(const sim::TagModel& model,
   return {{"model",
            {{"half_size", model.half_size},
             {"spread", model.spread},
-            {"common", model.common},
             {"size", model.size},
             {"corner_sigma", model.corner_sigma},
             {"sheet_sigma", model.sheet_sigma}}},

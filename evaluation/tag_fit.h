@@ -23,10 +23,14 @@ struct TagAgreement {
   Quantiles rendered_mm, fast_mm;               ///< position errors
 };
 
-/// The fast camera looks `repeats` times from each view.
+/// The fast camera looks twenty times from each view.
+TagAgreement CompareTagCameras(const TagStudyOptions& options, const std::vector<TagStudyRow>& rows,
+                               double from, double to, const sim::TagModel& model);
+
+/// The same for each range of heights.
 std::vector<TagAgreement> CompareTagCameras(const TagStudyOptions& options,
                                             const std::vector<TagStudyRow>& rows,
-                                            const sim::TagModel& model, int repeats = 20);
+                                            const sim::TagModel& model);
 
 /// The constants as they stand in sim/tag_model.h, and how well both cameras agree.
 std::string TagFitText(const sim::TagModel& model, const std::vector<TagAgreement>& agreement);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measurement model of the pad camera, with the constants of TagModel, which are fitted to rendered
-// images. The tags' true corners are projected; a tag is found by a probit of its size whose noise
-// is in part common to the image (what makes one tag hard to read makes its neighbours so). Where
-// the sheet is small enough in the image for estimation::PadAlignment, the corners of all tags whose
-// centres are in it stand for it with a small noise of their own; else those of the tags found, with theirs. From
-// them the pose is solved by the very solver that rendered images use.
+// images. The tags' true corners are projected; a tag is found by a probit of its size. Where the
+// sheet is small enough in the image for estimation::PadAlignment, the corners of all tags whose
+// centres are in it stand for it, with a small noise of their own; else those of the tags that are
+// found, with theirs. From them the pose is solved by the very solver that rendered images use.
 
 #include "touchdown/sim/tag_sensor.h"
 
@@ -100,7 +99,6 @@ TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacl
   CheckWithin("tag_camera.max_view_angle_deg", config.max_view_angle_deg, 0.0, 89.0);
   CheckWithin("tag_camera.attitude_sigma_deg", config.attitude_sigma_deg, 0.01, 45.0);
   CheckWithin("tag_camera.noise_scale", config.noise_scale, 0.0, 100.0);
-  CheckWithin("tag_camera.model.common", config.model.common, 0.0, 1.0);
   CheckAbove("tag_camera.model.spread", config.model.spread, 0.0, 1000.0);
   CheckWithin("length of tag_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
   intrinsics_.width = config.width;
@@ -140,14 +138,13 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   Image image;
   if (std::none_of(visible.begin(), visible.end(), [](bool one) { return one; })) return image;
   const Placement placement(vehicle, pad, config_.p_BC);
-  const double common = noise_.Normal(std::sqrt(model.common));
   std::array<Corners, estimation::kPadTagCount> corners;
   std::array<bool, estimation::kPadTagCount> in_sheet{};
   double largest = 0.0;
   bool any = false;
   for (const estimation::PadTag& tag : estimation::PadTags()) {
     const auto id = static_cast<std::size_t>(tag.id);
-    const double own = noise_.Normal(std::sqrt(1.0 - model.common));
+    const double luck = noise_.Normal(1.0);
     // Of the sheet, what is in the image counts, whole tags or not.
     in_sheet[id] = InImage(intrinsics_, placement.ToC(tag.center_P));
     if (!visible[id] && !in_sheet[id]) continue;
@@ -155,7 +152,7 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
     if (!visible[id]) continue;
     const double size = ShortestSide(corners[id]);
     largest = std::max(largest, size);
-    image.found[id] = (size - model.half_size) / model.spread + common + own > 0.0;
+    image.found[id] = (size - model.half_size) / model.spread + luck > 0.0;
     any = any || image.found[id];
   }
   if (!any) return image;

