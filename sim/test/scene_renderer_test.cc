@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/pad_camera.h"
 #include "touchdown/estimation/pad_sheet.h"
+#include "touchdown/sim/pad_camera.h"
 #include "touchdown/sim/test/scenes.h"
 
 namespace touchdown::sim {
