@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Rows of the map's inflated grid, the floor, the ceiling and the barriers as words of bits; and of these
+// the blocks of 2 x 2 x 2 cells: four rows laid over each other, then neighbouring bits.
+
 #include "touchdown/planning/blocked_bits.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace touchdown::planning {
 
@@ -10,58 +12,109 @@ namespace {
 
 constexpr int kWord = 64;  // cells
 
+/// The bits at even places of (bits | bits >> 1), brought together in the lower half.
+std::uint64_t PairsToBits(std::uint64_t bits) {
+  bits = (bits | bits >> 1) & 0x5555'5555'5555'5555;
+  bits = (bits | bits >> 1) & 0x3333'3333'3333'3333;
+  bits = (bits | bits >> 2) & 0x0f0f'0f0f'0f0f'0f0f;
+  bits = (bits | bits >> 4) & 0x00ff'00ff'00ff'00ff;
+  bits = (bits | bits >> 8) & 0x0000'ffff'0000'ffff;
+  return (bits | bits >> 16) & 0x0000'0000'ffff'ffff;
+}
+
 }  // namespace
 
 void BlockedBits::Reserve(const OccupancyMap& map) {
-  if (map.size() == size_) return;
-  size_ = map.size();
-  words_per_row_ = (size_.x() + kWord - 1) / kWord;
-  const auto words = static_cast<std::size_t>(words_per_row_) *
-                     static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(size_.z());
-  words_.assign(words, 0);
-  made_.assign(words, 0);
+  if (map.size() == size(Lattice::kCells)) return;
   number_ = 0;
+  for (const Lattice lattice : {Lattice::kCells, Lattice::kBlocks}) {
+    Layer& l = layer(lattice);
+    const int side = lattice == Lattice::kCells ? 1 : kBlock;
+    l.size = map.size() / side;
+    l.words_per_row = (l.size.x() + kWord - 1) / kWord;
+    const auto words = static_cast<std::size_t>(l.words_per_row) *
+                       static_cast<std::size_t>(l.size.y()) * static_cast<std::size_t>(l.size.z());
+    l.words.assign(words, 0);
+    l.made.assign(words, 0);
+  }
 }
 
 void BlockedBits::Begin(const FreeSpace& space, std::span<const Barrier> barriers) {
   Reserve(*space.map);
   space_ = space;
   barriers_ = barriers;
-  if (++number_ == 0) {  // wrapped around
-    std::fill(made_.begin(), made_.end(), 0);
-    number_ = 1;
-  }
+  if (++number_ != 0) return;
+  for (Layer& l : layers_) std::fill(l.made.begin(), l.made.end(), 0);  // wrapped around
+  number_ = 1;
 }
 
-std::uint32_t BlockedBits::Around(const CellIndex& cell) {
+std::uint64_t BlockedBits::Word(Lattice lattice, int row, int word) {
+  Layer& l = layer(lattice);
+  const auto i = static_cast<std::size_t>(row * l.words_per_row + word);
+  if (l.made[i] != number_) {
+    l.words[i] = lattice == Lattice::kCells ? OfCells(row, word) : OfBlocks(row, word);
+    l.made[i] = number_;
+  }
+  return l.words[i];
+}
+
+bool BlockedBits::Blocked(Lattice lattice, const CellIndex& cell) {
+  const int row = cell.z() * size(lattice).y() + cell.y();
+  return (Word(lattice, row, cell.x() / kWord) >> (cell.x() % kWord) & 1u) != 0;
+}
+
+std::uint32_t BlockedBits::Around(Lattice lattice, const CellIndex& cell) {
+  const Layer& l = layer(lattice);
   const int word = cell.x() / kWord, bit = cell.x() % kWord;
   std::uint32_t around = 0;
   for (int z = -1; z <= 1; ++z) {
-    if (cell.z() + z < 0 || cell.z() + z >= size_.z()) continue;
+    if (cell.z() + z < 0 || cell.z() + z >= l.size.z()) continue;
     for (int y = -1; y <= 1; ++y) {
-      if (cell.y() + y < 0 || cell.y() + y >= size_.y()) continue;
-      const int row = (cell.z() + z) * size_.y() + cell.y() + y;
-      std::uint64_t three = Word(row, word);
+      if (cell.y() + y < 0 || cell.y() + y >= l.size.y()) continue;
+      const int row = (cell.z() + z) * l.size.y() + cell.y() + y;
+      std::uint64_t three = Word(lattice, row, word);
       if (bit > 0) {
         three >>= bit - 1;
       } else {
         three <<= 1;
-        if (word > 0) three |= Word(row, word - 1) >> (kWord - 1);
+        if (word > 0) three |= Word(lattice, row, word - 1) >> (kWord - 1);
       }
-      if (bit == kWord - 1 && word + 1 < words_per_row_) three |= (Word(row, word + 1) & 1u) << 2;
+      if (bit == kWord - 1 && word + 1 < l.words_per_row) {
+        three |= (Word(lattice, row, word + 1) & 1u) << 2;
+      }
       around |= static_cast<std::uint32_t>(three & 7u) << (9 * (z + 1) + 3 * (y + 1));
     }
   }
   return around;
 }
 
+std::uint64_t BlockedBits::OfBlocks(int row, int word) {
+  const Layer& cells = layer(Lattice::kCells);
+  const CellIndex& size = layer(Lattice::kBlocks).size;
+  const int y = kBlock * (row % size.y()), z = kBlock * (row / size.y());
+  std::uint64_t bits = 0;
+  for (int half = 0; half < kBlock; ++half) {
+    const int from = kBlock * word + half;
+    if (from >= cells.words_per_row) break;
+    std::uint64_t over = 0;
+    for (int dz = 0; dz < kBlock; ++dz) {
+      for (int dy = 0; dy < kBlock; ++dy) {
+        over |= Word(Lattice::kCells, (z + dz) * cells.size.y() + y + dy, from);
+      }
+    }
+    bits |= PairsToBits(over) << (half * kWord / kBlock);
+  }
+  return bits;
+}
+
 /// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
-void BlockedBits::Make(int row, int word) {
+std::uint64_t BlockedBits::OfCells(int row, int word) const {
   const OccupancyMap& map = *space_.map;
-  const CellIndex first = map.origin() + CellIndex(word * kWord, row % size_.y(), row / size_.y());
-  const int count = std::min(kWord, size_.x() - word * kWord);
+  const CellIndex& size = layer(Lattice::kCells).size;
+  const CellIndex first = map.origin() + CellIndex(word * kWord, row % size.y(), row / size.y());
+  const int count = std::min(kWord, size.x() - word * kWord);
   std::uint64_t bits = map.BlockedRow(first, count);
-  Eigen::Vector3d centre = map.CentreOf(first);
+  const Eigen::Vector3d centre = map.CentreOf(first);
   const double resolution = map.resolution();
   const auto add_where = [&](const auto& blocked) {
     for (int i = 0; i < count; ++i) {
@@ -85,9 +138,7 @@ void BlockedBits::Make(int row, int word) {
     if (std::min(from, to) > reach || std::max(from, to) < -reach) continue;
     add_where([&](const Eigen::Vector3d& at) { return Closes(barrier, at, resolution); });
   }
-  const auto i = static_cast<std::size_t>(row * words_per_row_ + word);
-  words_[i] = bits;
-  made_[i] = number_;
+  return bits;
 }
 
 }  // namespace touchdown::planning

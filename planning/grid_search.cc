@@ -8,9 +8,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+
+#include "touchdown/planning/cell_box.h"
+#include "touchdown/planning/voxel_traversal.h"
 
 namespace touchdown::planning {
 
@@ -30,14 +34,21 @@ constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
 constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
 constexpr std::uint32_t kAbove[] = {StepsTo(0, 1), StepsTo(1, 1), StepsTo(2, 1)};
 
+/// In W [m]: the corner that its cells share. `block` counts from the window's lowest one.
+Eigen::Vector3d CentreOfBlock(const OccupancyMap& map, const CellIndex& block) {
+  const double to_middle = 0.5 * (kBlock - 1) * map.resolution();
+  return map.CentreOf(kBlock * block + map.origin()).array() + to_middle;
+}
+
 }  // namespace
 
-GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
+GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost, bool blocks_first)
     : vertical_cost_(static_cast<float>(vertical_cost)),
       slanted_(std::sqrt(1.0f + vertical_cost_ * vertical_cost_)),
       cubic_(std::sqrt(2.0f + vertical_cost_ * vertical_cost_)),
       greed_(static_cast<float>(greed)),
-      tight_cost_(static_cast<float>(tight_cost)) {
+      tight_cost_(static_cast<float>(tight_cost)),
+      blocks_first_(blocks_first) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
                                 ", it must be >= 1");
@@ -104,16 +115,11 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
 }
 
 void GridSearch::Reserve(const OccupancyMap& map) {
-  if (map.size() == size_) return;
-  size_ = map.size();
   blocked_.Reserve(map);
-  const auto cells = static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
-                     static_cast<std::size_t>(size_.z());
+  const auto cells = static_cast<std::size_t>(map.size().cast<std::int64_t>().prod());
+  if (cells_.size() == cells) return;
   cells_.assign(cells, Cell());
   search_ = 0;
-  for (Step& step : steps_) {
-    step.address = (step.offset.z() * size_.y() + step.offset.y()) * size_.x() + step.offset.x();
-  }
 }
 
 /// The steps that leave the window.
@@ -126,13 +132,39 @@ std::uint32_t GridSearch::Outside(const CellIndex& cell) const {
   return outside;
 }
 
-void GridSearch::Begin(const OccupancyMap& map) {
-  Reserve(map);
+void GridSearch::Begin(Lattice lattice) {
+  size_ = blocked_.size(lattice);
+  for (Step& step : steps_) {
+    step.address = (step.offset.z() * size_.y() + step.offset.y()) * size_.x() + step.offset.x();
+  }
   if (++search_ > kMostSearches) {
     std::fill(cells_.begin(), cells_.end(), Cell());
     search_ = 1;
   }
   heap_.clear();
+  way_.clear();
+}
+
+/// The nearest free block whose centre can be seen from the cell's.
+bool GridSearch::BlockNear(const FreeSpace& space, const CellIndex& cell, CellIndex* block) {
+  constexpr int kReach = 2;  // blocks
+  const OccupancyMap& map = *space.map;
+  const Eigen::Vector3d from = map.CentreOf(cell + map.origin());
+  const CellIndex around = cell / kBlock;
+  const CellIndex low = (around.array() - kReach).max(0);
+  const CellIndex high = (around.array() + kReach + 1).min(blocked_.size(Lattice::kBlocks).array());
+  double best = std::numeric_limits<double>::infinity();
+  ForEachCell({low, high}, [&](const CellIndex& candidate) {
+    if (blocked_.Blocked(Lattice::kBlocks, candidate)) return;
+    const Eigen::Vector3d to = CentreOfBlock(map, candidate);
+    const double distance2 = (to - from).squaredNorm();
+    if (distance2 >= best) return;
+    const auto is_free = [&](const CellIndex& c) { return !space.Blocked(c); };
+    if (!TraverseCells(from, to, map.resolution(), is_free)) return;
+    best = distance2;
+    *block = candidate;
+  });
+  return std::isfinite(best);
 }
 
 SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -144,12 +176,33 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   CellIndex start = map.CellOf(from), goal = map.CellOf(to);
   if (!map.InWindow(start) || !map.InWindow(goal)) return SearchStatus::kEndsOutside;
   if (!NearestFree(space, &start) || !NearestFree(space, &goal)) return SearchStatus::kEndsBlocked;
-  Begin(map);
+  Reserve(map);
   blocked_.Begin(space, barriers);
 
   // From here on cells are counted from the window's lowest one.
   start -= map.origin();
   goal -= map.origin();
+  const auto add = [&](const CellIndex& cell) {
+    path->push_back(map.CentreOf(cell + map.origin()));
+  };
+  CellIndex first, last;
+  if (blocks_first_ && BlockNear(space, start, &first) && BlockNear(space, goal, &last) &&
+      SearchOn(Lattice::kBlocks, first, last, max_expansions) == SearchStatus::kFound) {
+    add(start);
+    for (const CellIndex& block : way_) path->push_back(CentreOfBlock(map, block));
+    add(goal);
+    return SearchStatus::kFound;
+  }
+  const SearchStatus status = SearchOn(Lattice::kCells, start, goal, max_expansions);
+  for (const CellIndex& cell : way_) add(cell);
+  return status;
+}
+
+SearchStatus GridSearch::SearchOn(Lattice lattice, const CellIndex& start, const CellIndex& goal,
+                                  int max_expansions) {
+  Begin(lattice);
+  // A block beside a blocked one has more room than a cell has.
+  const float tight_cost = lattice == Lattice::kBlocks ? std::sqrt(tight_cost_) : tight_cost_;
   const auto address = [&](const CellIndex& cell) {
     return static_cast<std::uint32_t>((cell.z() * size_.y() + cell.y()) * size_.x() + cell.x());
   };
@@ -178,18 +231,19 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
     cells_[here].closed = true;
     if (here == goal_address) {
       for (CellIndex cell = goal;;) {
-        path->push_back(map.CentreOf(cell + map.origin()));
+        way_.push_back(cell);
         const unsigned by = cells_[address(cell)].parent;
         if (by == kSelf) break;
         cell -= steps_[by].offset;
       }
-      std::reverse(path->begin(), path->end());
+      std::reverse(way_.begin(), way_.end());
       return SearchStatus::kFound;
     }
-    if (++expansions_ > max_expansions) return SearchStatus::kExpansionLimit;
+    if (expansions_ >= max_expansions) return SearchStatus::kExpansionLimit;
+    ++expansions_;
     const CellIndex cell = cell_at(here);
-    const std::uint32_t blocked = blocked_.Around(cell) & ~(1u << kSelf);
-    const float factor = blocked != 0 ? tight_cost_ : 1.0f;
+    const std::uint32_t blocked = blocked_.Around(lattice, cell) & ~(1u << kSelf);
+    const float factor = blocked != 0 ? tight_cost : 1.0f;
     const float g_here = cells_[here].g;
     std::uint32_t open = ~(blocked | Outside(cell) | 1u << kSelf) & kAllSteps;
     for (; open != 0; open &= open - 1) {

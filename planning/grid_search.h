@@ -30,6 +30,10 @@ enum class SearchStatus {
 /// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
 /// nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the order of
 /// insertion. Its arrays have the size of the map's window and are kept between searches.
+///
+/// With `blocks_first` it looks for a path of whole blocks of 2 x 2 x 2 free cells before one of cells: an
+/// eighth of the lattice, which matters where a goal behind an obstacle has a hollow before it to be filled,
+/// and paths keep off corners. What only fits between blocks is then found on the cells.
 class GridSearch {
  public:
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]
@@ -37,13 +41,15 @@ class GridSearch {
   /// With `greed` > 1 cells near the goal come first: a path costs at most so many times the least, and
   /// is found after far fewer expansions. A step from a cell beside a blocked one costs `tight_cost`
   /// times as much: wide passages are preferred. Throws std::invalid_argument unless all are >= 1.
-  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0);
+  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0,
+                      bool blocks_first = false);
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
 
-  /// Finds a path of cell centres from `from` to `to`, the (moved) ends included. Expands at most
-  /// `max_expansions` cells. Allocates only to grow to a high-water mark.
+  /// Finds a path of cell centres, or of block centres between the cells of its ends, from `from` to `to`,
+  /// the (moved) ends included. Expands at most `max_expansions` cells and blocks. Allocates only to grow
+  /// to a high-water mark.
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                       std::span<const Barrier> barriers = {});
@@ -55,9 +61,10 @@ class GridSearch {
   int expansions() const { return expansions_; }
 
  private:
+  // The upper half of the key is f: the bits of positive floats are ordered as they are. The lower half is
+  // the order of insertion.
   struct Node {
-    std::uint64_t
-        key;  // f, and the order of insertion: the bits of positive floats are ordered as they are
+    std::uint64_t key;
     std::uint32_t address;
   };
 
@@ -75,25 +82,30 @@ class GridSearch {
     std::uint32_t parent : 5;  // the step that it was reached by; kSelf: the start
     std::uint32_t closed : 1;
   };
-  void Begin(const OccupancyMap& map);
 
   struct Step {
     CellIndex offset;
     float length;
     int address;  // difference of the addresses
   };
+  SearchStatus SearchOn(Lattice lattice, const CellIndex& start, const CellIndex& goal,
+                        int max_expansions);
+  void Begin(Lattice lattice);
   float LatticeDistance(const CellIndex& a, const CellIndex& b) const;
   std::uint32_t Outside(const CellIndex& cell) const;
+  bool BlockNear(const FreeSpace& space, const CellIndex& cell, CellIndex* block);
 
   float vertical_cost_;
   float slanted_, cubic_;  // lengths of steps up and along one axis, up and along both
   float greed_;
   float tight_cost_;
   std::array<Step, 27> steps_;  // in the order of BlockedBits::Around
+  bool blocks_first_;
   BlockedBits blocked_;
-  CellIndex size_ = CellIndex::Zero();  // of the window
+  CellIndex size_ = CellIndex::Zero();  // of the lattice that is searched
   std::vector<Cell> cells_;
   std::vector<Node> heap_;
+  std::vector<CellIndex> way_;  // what a search found, of its lattice
   std::uint32_t search_ = 0;
   int expansions_ = 0;
 };

@@ -34,6 +34,13 @@ const Eigen::Vector3i& CheckedSize(const Eigen::Vector3i& size_log2) {
   return size_log2;
 }
 
+/// Bit i: counts[i] > 0.
+std::uint64_t NotZero(const std::uint16_t* counts, int n) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < n; ++i) bits |= static_cast<std::uint64_t>(counts[i] > 0) << i;
+  return bits;
+}
+
 void CheckDepths(const estimation::DepthFrame& frame) {
   const estimation::CameraIntrinsics& k = frame.intrinsics;
   const auto pixels = static_cast<std::size_t>(k.width) * static_cast<std::size_t>(k.height);
@@ -72,6 +79,8 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
                      static_cast<std::size_t>(size_.z());
   cells_.assign(cells, Cell{});
   inflation_.assign(cells, 0);
+  words_per_row_ = (static_cast<std::size_t>(size_.x()) + kWord - 1) / kWord;
+  blocked_.assign(cells / static_cast<std::size_t>(size_.x()) * words_per_row_, 0);
   for (int old = -128; old < 128; ++old) {
     const auto after = [&](int change) {
       return static_cast<std::int8_t>(
@@ -157,7 +166,7 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const Excluded
 }
 
 void OccupancyMap::ApplyVotes() {
-  constexpr int kWord = 8;  // votes looked at in one go: most have none
+  constexpr int kVotes = 8;  // looked at in one go: most have none
   static_assert(std::endian::native == std::endian::little, "a word's first vote is its lowest");
   CellIndex cell;
   for (int z = votes_.low().z(); z < votes_.high().z(); ++z) {
@@ -166,7 +175,7 @@ void OccupancyMap::ApplyVotes() {
       cell.y() = origin_.y() + y;
       const std::size_t row = RowAddress(cell.y(), cell.z());
       std::uint8_t* votes = votes_.Row(y, z);
-      for (int x = votes_.low().x() / kWord * kWord; x < votes_.high().x(); x += kWord) {
+      for (int x = votes_.low().x() / kVotes * kVotes; x < votes_.high().x(); x += kVotes) {
         std::uint64_t word;
         std::memcpy(&word, votes + x, sizeof(word));
         if (word == 0) continue;
@@ -243,45 +252,60 @@ void OccupancyMap::Inflate(const CellIndex& cell, int increment) {
   }
 }
 
+/// Calls visit(from, count) for the at most kWord cells long stretches of addresses in a row of the
+/// window that hold the cells [x_begin, x_end), none of which crosses a word's edge.
+template <class Visit>
+void OccupancyMap::ForEachStretch(int x_begin, int x_end, Visit&& visit) const {
+  constexpr int kCells = static_cast<int>(kWord);
+  for (int x = x_begin; x < x_end;) {
+    const int from = x & mask_.x();
+    const int room = std::min(kCells - from % kCells, size_.x() - from);
+    const int count = std::min(room, x_end - x);
+    visit(from, count);
+    x += count;
+  }
+}
+
+/// Bits of the addresses [from, from + count), which are in one word of a row.
+void OccupancyMap::StoreBits(std::size_t row, int from, int count, std::uint64_t bits) {
+  const auto x = static_cast<std::size_t>(from);
+  const std::uint64_t these = ~std::uint64_t{0} >> (static_cast<int>(kWord) - count) << (x % kWord);
+  std::uint64_t& word = blocked_[row * words_per_row_ + x / kWord];
+  word = (word & ~these) | (bits << (x % kWord) & these);
+}
+
 // Cells [x_begin, x_end) of a row, as far as they are in the window.
 void OccupancyMap::AddToRow(int y, int z, int x_begin, int x_end, int increment) {
   const CellIndex end = origin_ + size_;
   if (y < origin_.y() || y >= end.y() || z < origin_.z() || z >= end.z()) return;
   x_begin = std::max(x_begin, origin_.x());
   x_end = std::min(x_end, end.x());
-  std::uint16_t* row = &inflation_[RowAddress(y, z)];
-  const auto add = [&](int from, int to) {
-    for (int x = from; x < to; ++x) row[x] = static_cast<std::uint16_t>(row[x] + increment);
-  };
-  // Addresses wrap around once in the window, at a multiple of its size.
-  const int from = x_begin & mask_.x();
-  const int to = from + (x_end - x_begin);
-  add(from, std::min(to, size_.x()));
-  add(0, to - size_.x());
+  const std::size_t row = RowIndex(y, z);
+  ForEachStretch(x_begin, x_end, [&](int from, int count) {
+    std::uint16_t* covers = &inflation_[RowAddress(y, z) + static_cast<std::size_t>(from)];
+    for (int i = 0; i < count; ++i) covers[i] = static_cast<std::uint16_t>(covers[i] + increment);
+    StoreBits(row, from, count, increment > 0 ? ~std::uint64_t{0} : NotZero(covers, count));
+  });
+}
+
+/// As if there were no obstacle: of cells that enter the window.
+void OccupancyMap::ClearRow(int y, int z, int x_begin, int x_end) {
+  ForEachStretch(x_begin, x_end, [&](int from, int count) {
+    std::fill_n(&inflation_[RowAddress(y, z) + static_cast<std::size_t>(from)], count, 0);
+    StoreBits(RowIndex(y, z), from, count, 0);
+  });
 }
 
 std::uint64_t OccupancyMap::BlockedRow(const CellIndex& first, int count) const {
-  constexpr int kLanes = 4;  // counts looked at in one go
-  constexpr std::uint64_t kLow15 = 0x7fff'7fff'7fff'7fff;
-  constexpr std::uint64_t kTop = 0x8000'8000'8000'8000;
-  constexpr std::uint64_t kGather = 0x0001'0002'0004'0008;  // lane j to bit 48 + j
-  const std::uint16_t* row = &inflation_[RowAddress(first.y(), first.z())];
+  const std::uint64_t* row = &blocked_[RowIndex(first.y(), first.z()) * words_per_row_];
   std::uint64_t bits = 0;
-  int i = 0;
-  while (i < count) {
-    const int x = (first.x() + i) & mask_.x();
-    if (count - i < kLanes || size_.x() - x < kLanes) {
-      bits |= static_cast<std::uint64_t>(row[x] > 0) << i++;
-      continue;
-    }
-    std::uint64_t lanes;
-    std::memcpy(&lanes, row + x, sizeof(lanes));
-    // The top bit of each lane that is not zero, brought together.
-    const std::uint64_t set = (((lanes & kLow15) + kLow15) | lanes) & kTop;
-    const std::uint64_t four = ((set >> 15) * kGather >> 48) & 0xf;
-    bits |= four << i;
-    i += kLanes;
-  }
+  int done = 0;
+  ForEachStretch(first.x(), first.x() + count, [&](int from, int n) {
+    const auto x = static_cast<std::size_t>(from);
+    const std::uint64_t all = ~std::uint64_t{0} >> (static_cast<int>(kWord) - n);
+    bits |= (row[x / kWord] >> (x % kWord) & all) << done;
+    done += n;
+  });
   return bits;
 }
 

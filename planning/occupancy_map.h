@@ -127,7 +127,10 @@ class OccupancyMap {
 
   /// Blocked after inflation. Out of the window: free (unknown).
   bool IsBlocked(const CellIndex& cell) const {
-    return InWindow(cell) && inflation_[Address(cell)] > 0;
+    if (!InWindow(cell)) return false;
+    const auto x = static_cast<std::size_t>(cell.x() & mask_.x());
+    const std::size_t row = RowIndex(cell.y(), cell.z()) * words_per_row_;
+    return (blocked_[row + x / kWord] >> (x % kWord) & 1u) != 0;
   }
   bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
   /// Bit i: the cell i beyond `first` along x is blocked. `count` (at most 64) cells, all in the window.
@@ -151,6 +154,7 @@ class OccupancyMap {
   const std::vector<CellFlip>& flips() const { return flips_; }
 
  private:
+  static constexpr std::size_t kWord = 64;  // cells
   // Never observed. Outside the clamps, so that no update can reach it.
   static constexpr std::int8_t kUnknown = -128;
 
@@ -164,11 +168,11 @@ class OccupancyMap {
     int y, z;
   };
 
-  std::size_t RowAddress(int y, int z) const {
-    const Eigen::Vector3i& n = options_.size_log2;
-    return (static_cast<std::size_t>(z & mask_.z()) << (n.x() + n.y())) |
-           (static_cast<std::size_t>(y & mask_.y()) << n.x());
+  std::size_t RowIndex(int y, int z) const {
+    return (static_cast<std::size_t>(z & mask_.z()) << options_.size_log2.y()) |
+           static_cast<std::size_t>(y & mask_.y());
   }
+  std::size_t RowAddress(int y, int z) const { return RowIndex(y, z) << options_.size_log2.x(); }
   std::size_t Address(const CellIndex& cell) const {
     return RowAddress(cell.y(), cell.z()) | static_cast<std::size_t>(cell.x() & mask_.x());
   }
@@ -183,6 +187,10 @@ class OccupancyMap {
   void SetLogOdds(const CellIndex& cell, std::int8_t value);
   void Inflate(const CellIndex& cell, int increment);
   void AddToRow(int y, int z, int x_begin, int x_end, int increment);
+  void ClearRow(int y, int z, int x_begin, int x_end);
+  template <class Visit>
+  void ForEachStretch(int x_begin, int x_end, Visit&& visit) const;
+  void StoreBits(std::size_t row, int from, int count, std::uint64_t bits);
 
   OccupancyMapOptions options_;
   CellIndex origin_ = CellIndex::Zero();
@@ -195,6 +203,8 @@ class OccupancyMap {
   int ball_reach_ = 0;         // its largest extent along an axis
   std::vector<Cell> cells_;
   std::vector<std::uint16_t> inflation_;  // number of obstacle cells whose ball holds it
+  std::vector<std::uint64_t> blocked_;    // bit by bit along x: that number is not zero
+  std::size_t words_per_row_ = 0;
   FrameVotes votes_;
   std::vector<CellFlip> flips_;
   std::vector<CellValue> left_;

@@ -49,7 +49,11 @@ void OccupancyMap::MoveWindow(const CellIndex& origin) {
   const CellBox window = {origin_, origin_ + size_};
   EdgeSlabs(window, shift, &entered_);
   for (const CellBox& slab : entered_) {
-    ForEachAddress(slab, [&](const CellIndex&, std::size_t address) { inflation_[address] = 0; });
+    for (int z = slab.low.z(); z < slab.high.z(); ++z) {
+      for (int y = slab.low.y(); y < slab.high.y(); ++y) {
+        ClearRow(y, z, slab.low.x(), slab.high.x());
+      }
+    }
   }
   CellIndex reach;
   for (int c = 0; c < 3; ++c) reach[c] = (shift[c] > 0) - (shift[c] < 0);

@@ -19,7 +19,7 @@ namespace {
 
 // Not the last digits of an optimum make a plan, but its certificate: where the caller does not say
 // otherwise, solves end this near to it, as shares of the cost.
-constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 1e-3},
+constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 5e-3},
                                                            {"function_tolerance", 1e-5}};
 constexpr double kLongestSegment = 0.75;  // at full speed [m]
 constexpr double kSlowestSegment = 0.30;  // [s]
@@ -34,35 +34,13 @@ constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a 
 constexpr double kTooFarBeyond = 1.3;   // and beyond this only more time helps
 constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
-constexpr double kGuideStep = 0.05;     // sampling of the committed curve as a guide [s]
 constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
-constexpr double kGreed = 4.0;          // of A*: a guide only tells the side
-constexpr double kTightCost = 8.0;      // of A*, beside obstacles
-constexpr double kLevelMargin = 0.3;    // of a guide from floor and ceiling, out of the window [m]
-/// A way that is found only after so many cells is a long one.
-constexpr int kOtherWayExpansions = 1000;
-constexpr int kOtherWayAtRest = 12000;
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
 double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
   if (certificate.recovering) return 1.0;
   return std::max(certificate.speed_bound / limits.speed,
                   certificate.acceleration_bound / limits.acceleration);
-}
-
-void SampleGuide(const UniformBspline& curve, double from, double to, GuidePath* guide) {
-  guide->clear();
-  const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kGuideStep)));
-  for (int i = 0; i <= steps; ++i) {
-    guide->push_back(curve.Evaluate(from + (to - from) * i / steps).p_WB);
-  }
-}
-
-/// Ends a run that leaves the map's window before it does: the search knows no more.
-void EndInWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
-  const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Evaluate(t).p_WB)); };
-  if (!in_window(run->t_in)) return;
-  while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kGuideStep);
 }
 
 }  // namespace
@@ -87,7 +65,7 @@ LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMod
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options),
       backends_(backends),
-      search_(options.vertical_cost, kGreed, kTightCost),
+      finder_(options.vertical_cost),
       binder_(options.problem) {
   for (const TermEntry& entry : options.problem.terms) {
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
@@ -103,7 +81,6 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
   pairs_.reserve(static_cast<std::size_t>(options.problem.max_pairs_per_point) *
                  kMostControlPoints);
   runs_.reserve(64);
-  barriers_.reserve(8);
   for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
     curve->Reserve(kMostControlPoints);
   }
@@ -147,7 +124,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   best_.solved = false;
   best_.pairs = 0;
   best_.round = -1;
-  best_.reason = Try(request, result);
+  best_.reason = request.go_on ? GoOn(request, result) : Try(request, result);
   if (best_.solved) {
     result->curve = best_.curve;
     result->solver = best_.solver;
@@ -165,7 +142,8 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   return best_.reason;
 }
 
-ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
+/// Refuses ends that no plan can have.
+ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
   now_ = &prepared_.at({request.segments, request.arrival});
   LandingProblem& problem = *now_->problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
@@ -178,9 +156,16 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   if (fixed && request.space->Blocked(EndStateAt(*request.pad, request.target, t_end).state.p)) {
     return ReplanReason::kGoalBlocked;
   }
-  expansions_left_ = options_.max_expansions;
+  return ReplanReason::kNone;
+}
+
+ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
+  bound_ = false;
+  finder_.Begin(options_.max_expansions, request.at_rest);
   pairs_.clear();
-  barriers_.clear();
+  const ReplanReason refused = SetEnds(request);
+  if (refused != ReplanReason::kNone) return refused;
+  LandingProblem& problem = *now_->problem;
   if (request.previous) {
     problem.WarmGuess(*request.previous, &now_->start.y);
   } else {
@@ -200,20 +185,18 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
   first_curve_ = best_.curve;
   const BlockedRun first = runs_.front();
   if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
-  {
+  if (request.previous && request.previous->t_end() > request.t0) {
     StageTimer timer(&result->times.check);
-    previous_clear_ =
-        request.previous && request.previous->t_end() > request.t0 &&
-        !std::isfinite(FirstBlockedTime(*request.previous, request.t0, *request.space));
+    const double hit = FirstBlockedTime(*request.previous, request.t0, *request.space);
+    if (!std::isfinite(hit)) finder_.Keep(request.previous);
   }
   // One path past everything that is in the way, so that one detour does not lead into the next.
   BlockedRun span = {first.t_in, runs_.back().t_out, first.at_start, false};
-  EndInWindow(first_curve_, *request.space->map, &span);
-  const bool keeps_side = Keeps(span);
+  const bool keeps_side = finder_.Keeps(span);
   const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
   for (int i = 0; i < guides; ++i) {
     if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;
-    const ReplanReason found = FindGuide(request, first_curve_, span, result);
+    const ReplanReason found = FindGuide(request, first_curve_, &span, result);
     if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
     if (found != ReplanReason::kNone) return found;
     first_guide_ = guide_;
@@ -228,7 +211,7 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
     const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
     const std::optional<Barrier> barrier = CloseWay(first_guide_, through);
     if (!barrier) break;
-    barriers_.push_back(*barrier);
+    finder_.Close(*barrier);
   }
   return best_.reason;
 }
@@ -237,13 +220,34 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
   binder_.Begin(candidate->curve.segments() + 3);
+  bound_ = true;
   pressure_ = {};
+  return SolveUntilClear(request, candidate, 1, result);
+}
+
+/// The control points are bound as the last attempt left them.
+ReplanReason PlanAttempt::GoOn(const AttemptRequest& request, ReplanResult* result) {
+  finder_.Begin(options_.max_expansions, request.at_rest);
+  const ReplanReason refused = SetEnds(request);
+  if (refused != ReplanReason::kNone) return refused;
+  now_->problem->WarmGuess(best_.curve, &now_->start.y);
+  pressure_ = {};
+  return SolveUntilClear(request, &best_, 0, result);
+}
+
+/// In round 0 the pairs are as they are, in the first of Follow they lead along its guide, and later ones
+/// bind what is still blocked.
+ReplanReason PlanAttempt::SolveUntilClear(const AttemptRequest& request, Candidate* candidate,
+                                          int first_round, ReplanResult* result) {
   double blocked = std::numeric_limits<double>::infinity();
-  for (int round = 1; round <= options_.max_rebinds; ++round) {
-    const ReplanReason bound = Bind(request, candidate->curve, round == 1, result);
-    if (bound != ReplanReason::kNone) return bound;
-    if (round > 1) pressure_.pairs *= kPressure;
-    ++result->rebinds;
+  for (int round = first_round; round <= options_.max_rebinds; ++round) {
+    if (round > 0) {
+      const bool guide_is_known = round == first_round;
+      const ReplanReason bound = Bind(request, candidate->curve, guide_is_known, result);
+      if (bound != ReplanReason::kNone) return bound;
+      if (!guide_is_known) pressure_.pairs *= kPressure;
+      ++result->rebinds;
+    }
     ReplanReason reason = SolveAndCheck(request, candidate, result);
     if (reason != ReplanReason::kNone) return reason;
     // A blocked start alone is for the certificate: it may be an escape.
@@ -298,7 +302,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   candidate->solver = now_->solver;
   candidate->pairs = static_cast<int>(pairs_.size());
   if (request.log) {
-    const int guide = static_cast<int>(barriers_.size());
+    const int guide = finder_.ways_closed();
     candidate->round = static_cast<int>(request.log->rounds.size());
     request.log->rounds.push_back(
         {pressure_.pairs, pressure_.limits, pairs_, now_->solver, {}, {}, guide});
@@ -349,8 +353,7 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
   for (BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
     if (!guide_is_known) {
-      EndInWindow(curve, *request.space->map, &run);
-      const ReplanReason reason = FindGuide(request, curve, run, result);
+      const ReplanReason reason = FindGuide(request, curve, &run, result);
       if (reason != ReplanReason::kNone) return reason;
       binder_.AddCorner(curve, run, guide_, *request.space);
     }
@@ -361,42 +364,16 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
   return ReplanReason::kNone;
 }
 
-/// The committed curve leads past this stretch, and no way was closed yet.
-bool PlanAttempt::Keeps(const BlockedRun& run) const {
-  return barriers_.empty() && !run.at_start && previous_clear_;
-}
-
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                                    const BlockedRun& run, ReplanResult* result) {
+                                    BlockedRun* run, ReplanResult* result) {
   StageTimer timer(&result->times.search);
-  if (Keeps(run)) {
-    // The same share of the way that is left, wherever the arrival is now.
-    const UniformBspline& previous = *request.previous;
-    const double rate = (previous.t_end() - request.t0) / (curve.t_end() - request.t0);
-    const auto then = [&](double t) { return request.t0 + rate * (t - request.t0); };
-    SampleGuide(previous, then(run.t_in), then(run.t_out), &guide_);
-    return ReplanReason::kNone;
-  }
-  const int other_way = request.at_rest ? kOtherWayAtRest : kOtherWayExpansions;
-  const int budget = barriers_.empty() ? expansions_left_ : std::min(expansions_left_, other_way);
-  const SearchStatus status =
-      search_.Search(*request.space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
-                     budget, &guide_, barriers_);
-  expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
-  if (status == SearchStatus::kEndsOutside) {
-    // Out of the window only floor and ceiling block: between them leads the way.
-    SampleGuide(curve, run.t_in, run.t_out, &guide_);
-    for (Eigen::Vector3d& p : guide_) {
-      p.z() = std::max(std::min(p.z(), request.space->ceiling - kLevelMargin),
-                       request.space->FloorAt(p) + kLevelMargin);
-    }
-    return ReplanReason::kNone;
-  }
+  const bool searches = !finder_.Keeps(*run);
+  const SearchStatus status = finder_.Find(*request.space, curve, run, &guide_);
   // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
-  if (run.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
-  if (status != SearchStatus::kFound) return ReplanReason::kSearchFailed;
-  result->guide_paths.Add(guide_);
-  return ReplanReason::kNone;
+  if (run->at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
+  if (status == SearchStatus::kFound && searches) result->guide_paths.Add(guide_);
+  const bool led = status == SearchStatus::kFound || status == SearchStatus::kEndsOutside;
+  return led ? ReplanReason::kNone : ReplanReason::kSearchFailed;
 }
 
 }  // namespace touchdown::planning

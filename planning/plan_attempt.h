@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "touchdown/planning/certificate.h"
-#include "touchdown/planning/grid_search.h"
+#include "touchdown/planning/guide_finder.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/pair_binder.h"
 #include "touchdown/planning/replan_log.h"
@@ -35,6 +35,7 @@ struct AttemptRequest {
   const FreeSpace* space = nullptr;
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   bool at_rest = false;   ///< there is time to look for long ways round
+  bool go_on = false;  ///< on the way that the last attempt took, with as many segments; GoesOn()
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice while clear
   AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };
@@ -51,12 +52,16 @@ class PlanAttempt {
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
 
   /// Makes room for searches on maps with this one's window.
-  void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
+  void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
 
   /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
   /// does not allocate it does not either, once its buffers have grown.
   ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
+
+  /// The last attempt bound its control points to one way, and found no plan on it: with more time there
+  /// may be one, for a solve or two.
+  bool GoesOn() const { return bound_ && finder_.ways_closed() == 0; }
 
  private:
   struct Prepared {
@@ -84,6 +89,7 @@ class PlanAttempt {
   };
 
   void PrepareProblem(int segments, ArrivalMode arrival);
+  ReplanReason SetEnds(const AttemptRequest& request);
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
   ReplanReason SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
@@ -91,33 +97,33 @@ class PlanAttempt {
   ReplanReason KeepLimits(const AttemptRequest& request, Candidate* candidate,
                           ReplanResult* result);
   ReplanReason Follow(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
+  ReplanReason GoOn(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason SolveUntilClear(const AttemptRequest& request, Candidate* candidate, int first_round,
+                               ReplanResult* result);
   ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool guide_is_known,
                     ReplanResult* result);
   ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                         const BlockedRun& run, ReplanResult* result);
+                         BlockedRun* run, ReplanResult* result);
   double BlockedTime() const;
-  bool Keeps(const BlockedRun& run) const;
   double CostOfShape(const solvers::SolverSummary& solver) const;
   bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
 
   ReplannerOptions options_;
   solvers::BackendRegistry backends_;
   std::map<std::pair<int, ArrivalMode>, Prepared> prepared_;
-  GridSearch search_;
+  GuideFinder finder_;
   PairBinder binder_;
   std::vector<std::string> pressed_;  // terms whose weights are scaled
 
   // Of the attempt under way.
   Prepared* now_ = nullptr;
-  int expansions_left_ = 0;
   Pressure pressure_;
-  bool previous_clear_ = false;  // the committed curve can serve as a guide
-  UniformBspline first_curve_;   // before any pair
+  bool bound_ = false;          // control points of best_, to one way
+  UniformBspline first_curve_;  // before any pair
   std::vector<BlockedRun> runs_;
   Candidate best_, other_;
   std::vector<ObstaclePair> pairs_;
-  std::vector<Barrier> barriers_;  // ways around the first obstacle that were taken
   GuidePath first_guide_, guide_;
 };
 

@@ -21,7 +21,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr int kMaxAttempts = 6;
+constexpr int kMaxAttempts = 7;
 constexpr double kStretch = 1.3;         // of the duration after an attempt that failed
 constexpr double kFinest = 1.5;          // attempts after the first have so many times its segments
 constexpr int kRescueGuides = 2;         // ways around an obstacle that later attempts try
@@ -324,7 +324,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
-    request.segments = SegmentsFor(std::min(T, kFinest * first), options_.limits, i > 0);
+    if (!request.go_on) {
+      request.segments = SegmentsFor(std::min(T, kFinest * first), options_.limits, i > 0);
+    }
     request.space = &space;
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
@@ -336,9 +338,14 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
     const bool was_free = request.arrival == ArrivalMode::kFree;
-    if (!slower_helps && !was_free) return reason;
+    const bool went_on = request.go_on && reason != ReplanReason::kGoalBlocked;
+    if (!slower_helps && !was_free && !went_on) return reason;
     request.arrival = ArrivalMode::kFixed;
-    if (!slower_helps) continue;
+    // A way that is known costs little to try with more time. If that is not enough, everything is decided
+    // anew for the same arrival.
+    request.go_on =
+        (i == 0 || request.go_on) && !went_on && slower_helps && !was_free && attempt_.GoesOn();
+    if (went_on || !slower_helps) continue;
     // Free arrival traded a limit for time: fix a longer one.
     if (was_free) T = std::max(T, result_.curve.duration());
     // A promise that cannot be kept binds no longer: the pad may have jumped.

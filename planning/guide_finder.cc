@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Guides tell the side on which an obstacle is passed, no more: so A* may be greedy, sees the map in blocks
+// first, and keeps off walls; and the curve that is flown already is as good a guide as any.
+
+#include "touchdown/planning/guide_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kGuideStep = 0.05;   // sampling of a curve as a guide [s]
+constexpr double kGreed = 4.0;        // of A*
+constexpr double kTightCost = 8.0;    // of A*, beside obstacles
+constexpr double kLevelMargin = 0.3;  // of a guide from floor and ceiling, out of the window [m]
+/// A way that is found only after so many cells is a long one.
+constexpr int kOtherWayExpansions = 1000;
+constexpr int kOtherWayAtRest = 12000;
+
+void SampleGuide(const UniformBspline& curve, double from, double to, GuidePath* guide) {
+  guide->clear();
+  const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kGuideStep)));
+  for (int i = 0; i <= steps; ++i) {
+    guide->push_back(curve.Evaluate(from + (to - from) * i / steps).p_WB);
+  }
+}
+
+void EndInWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
+  const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Evaluate(t).p_WB)); };
+  if (!in_window(run->t_in)) return;
+  while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kGuideStep);
+}
+
+}  // namespace
+
+GuideFinder::GuideFinder(double vertical_cost)
+    : search_(vertical_cost, kGreed, kTightCost, /*blocks_first=*/true) {
+  barriers_.reserve(8);
+}
+
+void GuideFinder::Begin(int max_expansions, bool at_rest) {
+  barriers_.clear();
+  committed_ = nullptr;
+  expansions_left_ = max_expansions;
+  at_rest_ = at_rest;
+}
+
+SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run,
+                               GuidePath* guide) {
+  EndInWindow(curve, *space.map, run);
+  if (Keeps(*run)) {
+    // The same share of the way that is left, wherever the arrival is now.
+    const double t0 = curve.t0();
+    const double rate = (committed_->t_end() - t0) / (curve.t_end() - t0);
+    const auto then = [&](double t) { return t0 + rate * (t - t0); };
+    SampleGuide(*committed_, then(run->t_in), then(run->t_out), guide);
+    return SearchStatus::kFound;
+  }
+  const int other_way = at_rest_ ? kOtherWayAtRest : kOtherWayExpansions;
+  const int budget = barriers_.empty() ? expansions_left_ : std::min(expansions_left_, other_way);
+  const SearchStatus status =
+      search_.Search(space, curve.Evaluate(run->t_in).p_WB, curve.Evaluate(run->t_out).p_WB, budget,
+                     guide, barriers_);
+  expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
+  if (status == SearchStatus::kEndsOutside) {
+    // Out of the window only floor and ceiling block: between them leads the way.
+    SampleGuide(curve, run->t_in, run->t_out, guide);
+    for (Eigen::Vector3d& p : *guide) {
+      p.z() =
+          std::max(std::min(p.z(), space.ceiling - kLevelMargin), space.FloorAt(p) + kLevelMargin);
+    }
+  }
+  return status;
+}
+
+}  // namespace touchdown::planning

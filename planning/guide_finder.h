@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "touchdown/planning/barrier.h"
+#include "touchdown/planning/curve_check.h"
+#include "touchdown/planning/grid_search.h"
+#include "touchdown/planning/uniform_bspline.h"
+
+namespace touchdown::planning {
+
+/// Finds guides past the blocked stretches of a curve: along the committed curve while it is clear, so that
+/// the side of an obstacle is kept, else by A*. All searches of one attempt share a budget.
+class GuideFinder {
+ public:
+  explicit GuideFinder(double vertical_cost);
+
+  /// Makes room for searches on maps with this one's window.
+  void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
+
+  /// An attempt begins: no way is closed, nothing is kept.
+  /// @param max_expansions of all its searches. @param at_rest there is time to look for long ways round.
+  void Begin(int max_expansions, bool at_rest);
+
+  /// `committed`, which must outlive the attempt, is clear.
+  void Keep(const UniformBspline* committed) { committed_ = committed; }
+
+  /// The committed curve leads past this stretch, and no way was closed yet.
+  bool Keeps(const BlockedRun& run) const {
+    return committed_ != nullptr && barriers_.empty() && !run.at_start;
+  }
+
+  /// From here on guides do not cross this.
+  void Close(const Barrier& barrier) { barriers_.push_back(barrier); }
+  int ways_closed() const { return static_cast<int>(barriers_.size()); }
+
+  /// A guide past what blocks `curve` in `run`, at least one point. A run that leaves the map's window
+  /// before it does ends there: the search knows no more; one that begins out of it is led along the curve,
+  /// between floor and ceiling. kFound and kEndsOutside leave a guide.
+  SearchStatus Find(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run,
+                    GuidePath* guide);
+
+ private:
+  GridSearch search_;
+  std::vector<Barrier> barriers_;
+  const UniformBspline* committed_ = nullptr;
+  int expansions_left_ = 0;
+  bool at_rest_ = false;
+};
+
+}  // namespace touchdown::planning
