@@ -99,16 +99,9 @@ EgoScene DrawFree(const SceneOptions& options, int index) {
 }
 
 void Measure(const planning::UniformBspline& curve, EgoSceneResult* result) {
-  const planning::ControlPoints& q = curve.control_points();
-  const double h = curve.interval();
-  result->control_points = static_cast<int>(q.cols());
+  result->control_points = static_cast<int>(curve.control_points().cols());
   result->duration = curve.duration();
-  result->jerk = 0.0;
-  for (int i = 0; i + 3 < q.cols(); ++i) {
-    result->jerk +=
-        (q.col(i + 3) - 3.0 * q.col(i + 2) + 3.0 * q.col(i + 1) - q.col(i)).squaredNorm() /
-        std::pow(h, 5);
-  }
+  result->jerk = curve.SquaredJerk();
   Eigen::Vector3d before = curve.Evaluate(curve.t0()).p_WB;
   result->length = result->max_speed = result->max_acceleration = 0.0;
   for (double t = 0.0; t <= curve.duration(); t += kSample) {

@@ -89,14 +89,12 @@ bool BrakesFreely(const ReplanScene& scene, const planning::FreeSpace& space,
 
 bool Joined(const ReplanScene& scene, const planning::FreeSpace& space) {
   planning::GridSearch search;
-  std::vector<Eigen::Vector3d> path;
+  planning::GuidePath path;
   if (search.Search(space, scene.start.p, scene.target, kExpansions, &path) !=
       planning::SearchStatus::kFound) {
     return false;
   }
-  double length = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
-  return length <= kMostDetour * (scene.target - scene.start.p).norm();
+  return planning::PathLength(path) <= kMostDetour * (scene.target - scene.start.p).norm();
 }
 
 }  // namespace

@@ -31,17 +31,6 @@ bool DeepInBlocked(const planning::OccupancyMap& map, const Eigen::Vector3d& p) 
   return true;
 }
 
-/// Integral of the squared jerk: constant on every segment.
-double SquaredJerk(const UniformBspline& curve) {
-  const auto& q = curve.control_points();
-  double sum = 0.0;
-  for (int i = 0; i + 3 < q.cols(); ++i) {
-    sum += (q.col(i + 3) - 3.0 * q.col(i + 2) + 3.0 * q.col(i + 1) - q.col(i)).squaredNorm() /
-           std::pow(curve.interval(), 5);
-  }
-  return sum;
-}
-
 }  // namespace
 
 PlanCheck CheckPlan(const UniformBspline& curve, const ReplanScene& scene,
@@ -114,7 +103,7 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
     if (row.planned()) {
       row.duration = plan.duration();
       row.stretch = plan.duration() / scene.duration;
-      row.jerk = SquaredJerk(plan);
+      row.jerk = plan.SquaredJerk();
       if (options.check) row.check = CheckPlan(plan, scene, options.scenes.kind.limits);
     }
     std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end(),

@@ -42,6 +42,12 @@ Eigen::Vector3d CentreOfBlock(const OccupancyMap& map, const CellIndex& block) {
 
 }  // namespace
 
+double PathLength(const GuidePath& path) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
+  return length;
+}
+
 GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost, bool blocks_first)
     : vertical_cost_(static_cast<float>(vertical_cost)),
       slanted_(std::sqrt(1.0f + vertical_cost_ * vertical_cost_)),

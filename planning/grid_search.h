@@ -17,6 +17,9 @@ namespace touchdown::planning {
 /// A free path around an obstacle, as a polyline in W [m].
 using GuidePath = std::vector<Eigen::Vector3d>;
 
+/// [m]
+double PathLength(const GuidePath& path);
+
 enum class SearchStatus {
   kFound,
   kEndsOutside,     ///< an end lies outside the map's window

@@ -55,9 +55,7 @@ Eigen::Vector3d BesideObstacle(const FreeSpace& space, const Eigen::Vector3d& gu
 /// Walks along a polyline at constant speed.
 class PathWalk {
  public:
-  explicit PathWalk(const GuidePath& path) : path_(path) {
-    for (std::size_t i = 1; i < path.size(); ++i) length_ += (path[i] - path[i - 1]).norm();
-  }
+  explicit PathWalk(const GuidePath& path) : path_(path), length_(PathLength(path)) {}
   /// At this share of the length; shares must not fall from call to call.
   Eigen::Vector3d At(double share) {
     while (next_ + 1 < path_.size() && before_ + Side() < share * length_)
@@ -73,7 +71,7 @@ class PathWalk {
   double Side() const { return (path_[next_] - path_[next_ - 1]).norm(); }
 
   const GuidePath& path_;
-  double length_ = 0.0;
+  double length_;
   double before_ = 0.0;   // length before the present side
   std::size_t next_ = 1;  // its end
 };
@@ -87,7 +85,7 @@ double TimeOf(const UniformBspline& curve, int control_point) {
 
 PairBinder::PairBinder(const LandingProblemOptions& options)
     : corridor_(PairClearance(options), kFloorMargin),
-      planes_(std::max(0, options.max_pairs_per_point - kLevels)),
+      planes_(options.max_pairs_per_point - kLevels),
       per_point_(options.max_pairs_per_point) {
   if (per_point_ < kLevels) {
     throw std::invalid_argument("PairBinder: max_pairs_per_point is " + std::to_string(per_point_) +

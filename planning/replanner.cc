@@ -92,8 +92,6 @@ void Validate(const ReplannerOptions& o) {
   Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");
   Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
   Require(o.max_solves >= 1, "max_solves", o.max_solves, ">= 1");
-  Require(o.problem.max_pairs_per_point >= 2, "problem.max_pairs_per_point",
-          o.problem.max_pairs_per_point, ">= 2, for floor and ceiling");
   Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
   Require(o.max_expansions >= 1, "max_expansions", o.max_expansions, ">= 1");
 }

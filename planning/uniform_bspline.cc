@@ -37,6 +37,15 @@ void UniformBspline::Assign(const Eigen::Ref<const ControlPoints>& control_point
   t0_ = t0;
 }
 
+double UniformBspline::SquaredJerk() const {
+  const auto& q = control_points();
+  double sum = 0.0;  // of |j|^2 h^6
+  for (int i = 0; i + 3 < q.cols(); ++i) {
+    sum += (q.col(i + 3) - 3.0 * q.col(i + 2) + 3.0 * q.col(i + 1) - q.col(i)).squaredNorm();
+  }
+  return sum / std::pow(h_, 5);
+}
+
 FlatState UniformBspline::Evaluate(double t) const {
   const double s = std::clamp((t - t0_) / h_, 0.0, static_cast<double>(segments()));
   const int i = std::min(static_cast<int>(s), segments() - 1);

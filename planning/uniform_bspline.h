@@ -52,6 +52,10 @@ class UniformBspline {
   /// fields are left zero. Does not allocate.
   FlatState Evaluate(double t) const;
 
+  /// Integral of the squared norm of the jerk [m^2/s^5], which is constant on every segment. Does not
+  /// allocate.
+  double SquaredJerk() const;
+
   /// State at knot k in 0..M: p = (Q_k + 4 Q_{k+1} + Q_{k+2})/6 and its derivatives.
   SplineState AtKnot(int k) const;
 

@@ -37,6 +37,12 @@ struct Wall {
   GuidePath guide;
 };
 
+std::set<int> ControlPointsOf(const std::vector<ObstaclePair>& pairs) {
+  std::set<int> bound;
+  for (const ObstaclePair& pair : pairs) bound.insert(pair.control_point);
+  return bound;
+}
+
 TEST(PairBinder, BindsWhatIsBlockedAndBesideItToTheGuidesSide) {
   Wall wall;
   ASSERT_EQ(wall.runs.size(), 1u);
@@ -47,10 +53,9 @@ TEST(PairBinder, BindsWhatIsBlockedAndBesideItToTheGuidesSide) {
   std::vector<ObstaclePair> pairs;
   binder.Bind(wall.space, &pairs);
   ASSERT_FALSE(pairs.empty());
-  std::set<int> bound;
-  for (const ObstaclePair& pair : pairs) {
-    bound.insert(pair.control_point);
-    const double t = (pair.control_point - 1) * kInterval;
+  const std::set<int> bound = ControlPointsOf(pairs);
+  for (const int i : bound) {
+    const double t = (i - 1) * kInterval;
     EXPECT_GT(t, wall.runs.front().t_in - 3 * kInterval);
     EXPECT_LT(t, wall.runs.front().t_out + 3 * kInterval);
   }
@@ -69,8 +74,7 @@ TEST(PairBinder, BindsWhatIsBlockedAndBesideItToTheGuidesSide) {
   std::vector<ObstaclePair> again;
   binder.Start(wall.curve);
   binder.Bind(wall.space, &again);
-  std::set<int> still;
-  for (const ObstaclePair& pair : again) still.insert(pair.control_point);
+  const std::set<int> still = ControlPointsOf(again);
   EXPECT_TRUE(std::includes(still.begin(), still.end(), bound.begin(), bound.end()));
   binder.Begin(kPoints);
   binder.Start(wall.curve);
@@ -86,8 +90,7 @@ TEST(PairBinder, ACornerBindsBothControlPointsBesideIt) {
   binder.AddCorner(wall.curve, wall.runs.front(), wall.guide, wall.space);
   std::vector<ObstaclePair> pairs;
   binder.Bind(wall.space, &pairs);
-  std::set<int> bound;
-  for (const ObstaclePair& pair : pairs) bound.insert(pair.control_point);
+  const std::set<int> bound = ControlPointsOf(pairs);
   ASSERT_EQ(bound.size(), 2u);
   EXPECT_EQ(*bound.rbegin(), *bound.begin() + 1);
 }

@@ -30,6 +30,16 @@ inline ReplannerOptions Options(ArrivalMode arrival) {
   return options;
 }
 
+/// Flying at v_WB since before t = 0.
+inline void FlyAlong(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB,
+                     Replanner* replanner) {
+  ControlPoints points(3, 8);
+  for (int i = 0; i < 8; ++i) points.col(i) = p_WB + (i - 3) * v_WB;
+  ReplannerState state = replanner->state();
+  state.current = state.next = UniformBspline(points, 1.0, -2.0);
+  replanner->Restore(state);
+}
+
 inline ReplanInput Input(const Eigen::Vector3d& p_WB, const estimation::PadPrediction& pad,
                          double t) {
   ReplanInput input;

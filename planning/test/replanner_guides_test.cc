@@ -25,15 +25,6 @@ double SideOf(const UniformBspline& curve) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Flying at v_WB since before t = 0.
-void FlyAlong(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB, Replanner* replanner) {
-  ControlPoints points(3, 8);
-  for (int i = 0; i < 8; ++i) points.col(i) = p_WB + (i - 3) * v_WB;
-  ReplannerState state = replanner->state();
-  state.current = state.next = UniformBspline(points, 1.0, -2.0);
-  replanner->Restore(state);
-}
-
 TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
   Draw draw(41);
   int chosen_second = 0;
@@ -94,6 +85,41 @@ TEST(ReplannerGuides, ASideOnceFlownIsKept) {
     EXPECT_GT(side * first_side, 0.0) << t;
     p = replanner.Reference(t + 0.1).p_WB;
   }
+}
+
+// The way is right and the arrival too early: the same control points stay bound and get more time.
+TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
+  Draw draw(17);
+  int went_on = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    OccupancyMap map = ObservedMap();
+    for (int i = 0; i < 14; ++i) AddPillar(draw.Uniform(-3, 3), draw.Uniform(-2, 2), &map);
+    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    Replanner replanner(WithGuides(1), solvers::StandardBackends());
+    ReplanLog log;
+    replanner.set_log(&log);
+    const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.5, 0.0, 0.0);
+    FlyAlong(start, v_WB, &replanner);
+    ReplanInput input = Input(start, pad, 0.0);
+    input.vehicle.v_WB = v_WB;
+    replanner.Replan(input, map);
+    if (log.attempts.size() < 2 || log.attempts[0].rounds.size() < 2) continue;
+    const AttemptLog &first = log.attempts[0], &second = log.attempts[1];
+    if (second.rounds.empty()) continue;  // the pad is blocked then
+    ++went_on;
+    EXPECT_EQ(second.segments, first.segments);
+    EXPECT_GT(second.duration, first.duration);
+    // It begins with the pairs that the first ended with, not with a straight curve.
+    ASSERT_EQ(second.rounds.front().pairs.size(), first.rounds.back().pairs.size());
+    for (std::size_t i = 0; i < second.rounds.front().pairs.size(); ++i) {
+      EXPECT_EQ(second.rounds.front().pairs[i].p, first.rounds.back().pairs[i].p);
+    }
+    if (second.reason == ReplanReason::kNone || log.attempts.size() < 3) continue;
+    if (second.reason == ReplanReason::kGoalBlocked) continue;
+    EXPECT_EQ(log.attempts[2].duration, second.duration);
+    EXPECT_GT(log.attempts[2].segments, second.segments);
+  }
+  EXPECT_GT(went_on, 3);
 }
 
 TEST(ReplannerGuides, AStepDoesNotAllocateOnceWarm) {

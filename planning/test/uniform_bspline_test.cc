@@ -56,6 +56,17 @@ TEST(UniformBspline, KnotsAgreeWithEvaluationFromBothSides) {
   }
 }
 
+TEST(UniformBspline, SquaredJerkIsTheIntegral) {
+  Draw draw(12);
+  const UniformBspline curve = RandomCurve(&draw, 10);
+  double sum = 0.0;
+  for (int k = 0; k < curve.segments(); ++k) {
+    const double middle = curve.t0() + (k + 0.5) * curve.interval();
+    sum += curve.Evaluate(middle).j_WB.squaredNorm() * curve.interval();
+  }
+  EXPECT_NEAR(curve.SquaredJerk(), sum, 1e-9 * sum);
+}
+
 TEST(UniformBspline, HermiteControlPointsReproduceCubics) {
   Draw draw(4);
   for (int trial = 0; trial < 20; ++trial) {

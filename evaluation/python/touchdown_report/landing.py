@@ -16,6 +16,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
 from touchdown_report import bspline, command_line  # noqa: E402
 from touchdown_report.record import Record, RecordError  # noqa: E402
+from touchdown_report.style import STYLE  # noqa: E402
 
 # Okabe and Ito's palette: distinct for colour-blind readers as well.
 MODE_COLOURS = {
@@ -31,17 +32,9 @@ PAD_COLOUR = "#2B2B2B"
 PLAN_COLOUR = "#56B4E9"
 BUILDING_FACE = "#DDD8CF"
 BUILDING_EDGE = "#8C857A"
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.edgecolor": "#BBBBBB",
+PICTURE_STYLE = {
+    **STYLE,
     "axes.labelcolor": "#333333",
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.grid": True,
-    "grid.color": "#EEEEEE",
-    "axes.axisbelow": True,
     "xtick.color": "#555555",
     "ytick.color": "#555555",
 }
@@ -232,7 +225,7 @@ def draw(record, out_path):
     """Draws the picture of `record` to `out_path` (format by its extension)."""
     contact = record.contact_index()
     half = 0.5 * float(record.scenario_value("pad", "deck_size") or 1.5)
-    with plt.rc_context(STYLE):
+    with plt.rc_context(PICTURE_STYLE):
         figure = plt.figure(figsize=(13.0, 8.6), dpi=140)
         grid = figure.add_gridspec(
             2, 2, width_ratios=[1.75, 1.0], height_ratios=[2.5, 1.0],

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ladder below a plan: what is flown when nothing is certified, and when nothing may be.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/test/replanner_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+TEST(ReplannerFallback, UnobservedSpaceIsEnteredAtACrawlOrNotAtAll) {
+  OccupancyMap unobserved{OccupancyMapOptions{}};
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  unobserved.MarkOwnVolume(start, 0.3);
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  const ReplanInput input = Input(start, pad, 0.0);
+  replanner.Replan(input, unobserved);
+  // What is flown until the next plan can stop within the 0.3 m that were observed.
+  const double t = input.t_start + replanner.options().reaction;
+  const double speed = replanner.Reference(t).v_WB.norm();
+  EXPECT_LE(speed * speed / (2 * 0.6 * 6.0), 0.3);
+}
+
+TEST(ReplannerFallback, BrakesBeforeSpaceThatStaysUnobserved) {
+  // The camera is dead: the map never grows beyond 4 m around the start.
+  OccupancyMap map{OccupancyMapOptions{}};
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  map.MarkOwnVolume(start, 4.0);
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  bool braked = false;
+  for (int step = 0; step < 80; ++step) {
+    const double t = 0.1 * step;
+    const FlatState at = replanner.Reference(t);
+    EXPECT_LE((at.p_WB - start).norm(), 4.0 + 0.1);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    braked = replanner.Replan(input, map).status == ReplanStatus::kBraking || braked;
+  }
+  EXPECT_TRUE(braked);
+}
+
+TEST(ReplannerFallback, APadThatBecomesNanBringsItToRest) {
+  class BrokenPad : public ArcPad {
+   public:
+    using ArcPad::ArcPad;
+    estimation::PadState At(double t) const noexcept override {
+      estimation::PadState state = ArcPad::At(t);
+      if (broken) state.p_WP.x() = std::numeric_limits<double>::quiet_NaN();
+      return state;
+    }
+    bool broken = false;
+  };
+  const OccupancyMap map = ObservedMap();
+  BrokenPad pad({6.0, 0.0, 0.3}, 0.8, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover({-6.0, 0.0, 1.5}, 0.0);
+  for (int step = 0; step < 120; ++step) {
+    const double t = 0.1 * step;
+    pad.broken = t > 1.5;
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    EXPECT_EQ(result.reason, pad.broken ? ReplanReason::kInvalidInput : ReplanReason::kNone);
+    EXPECT_TRUE(result.certificate.passed());
+  }
+  EXPECT_LT(replanner.Reference(12.0).v_WB.norm(), 1e-9);
+}
+
+TEST(ReplannerFallback, AStartInTheInflatedZoneIsLedOut) {
+  OccupancyMap map = ObservedMap(0.4);
+  AddPillar(-3.4, 0.0, &map);  // its face is 0.3 m ahead of the start
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
+  const Eigen::Vector3d start(-4.0, 0.1, 1.5);
+  ASSERT_TRUE(map.IsBlocked(start));
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  Eigen::Vector3d p = start;
+  ReplanStatus status = ReplanStatus::kUnsafe;
+  for (int step = 0; step < 30 && status != ReplanStatus::kPlanned; ++step) {
+    ReplanInput input = Input(p, pad, 0.1 * step);
+    input.vehicle.v_WB = replanner.Reference(input.t_now).v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    status = result.status;
+    EXPECT_TRUE(result.certificate.passed()) << ToString(result.reason) << " at step " << step;
+    if (step == 0) {
+      // Out of the zone and to rest, or out of it and to the pad at once.
+      EXPECT_TRUE(status == ReplanStatus::kEscaping || status == ReplanStatus::kPlanned);
+      EXPECT_TRUE(result.certificate.escaping);
+      EXPECT_GT(result.certificate.clearance, 0.2);
+    }
+    p = replanner.Reference(input.t_now + 0.1).p_WB;
+  }
+  EXPECT_EQ(status, ReplanStatus::kPlanned);
+}
+
+TEST(ReplannerFallback, BrakesWhenTheWayCloses) {
+  OccupancyMap map = ObservedMap();
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  replanner.CommitHover(start, 0.0);
+  ASSERT_EQ(replanner.Replan(Input(start, pad, 0.0), map).status, ReplanStatus::kPlanned);
+  // In full flight a wall appears from side to side and top to bottom, 1.8 m ahead.
+  const double t = 2.0;
+  const FlatState at = replanner.Reference(t);
+  ASSERT_GT(at.v_WB.norm(), 1.5);
+  for (double y = -12.75; y < 12.8; y += 0.1) {
+    for (double z = -3.15; z < 3.2; z += 0.1) {
+      map.SetOccupied({at.p_WB.x() + 1.8, y, z});
+    }
+  }
+  ReplanInput input = Input(at.p_WB, pad, t);
+  input.vehicle.v_WB = at.v_WB;
+  const ReplanResult& result = replanner.Replan(input, map);
+  EXPECT_EQ(result.status, ReplanStatus::kBraking) << ToString(result.reason);
+  EXPECT_TRUE(result.certificate.passed());
+  const FlatState end = replanner.Reference(result.curve.t_end());
+  EXPECT_LT(end.v_WB.norm(), 1e-9);
+  EXPECT_FALSE(map.IsBlocked(end.p_WB));
+}
+
+TEST(ReplannerFallback, ComesToRestOnRequestAndStays) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  for (const double climb : {0.0, 1.0}) {
+    Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+    const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+    replanner.CommitHover(start, 0.0);
+    ASSERT_EQ(replanner.Replan(Input(start, pad, 0.0), map).status, ReplanStatus::kPlanned);
+    double height = 0.0;
+    for (int step = 0; step < 40; ++step) {
+      const double t = 2.0 + 0.1 * step;
+      const FlatState at = replanner.Reference(t);
+      ReplanInput input = Input(at.p_WB, pad, t);
+      input.pad = nullptr;
+      input.vehicle.v_WB = at.v_WB;
+      const ReplanStatus status = replanner.Rest(input, climb, map).status;
+      if (step == 0) {
+        height = at.p_WB.z();
+        EXPECT_EQ(status, climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking);
+      } else {
+        EXPECT_TRUE(status == ReplanStatus::kKept || status == ReplanStatus::kHolding);
+      }
+    }
+    EXPECT_LT(replanner.Reference(6.0).v_WB.norm(), 1e-9);
+    EXPECT_NEAR(replanner.Reference(6.0).p_WB.z(), height + climb, 0.15);
+  }
+}
+
+TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
+  // Too near to the wall, and too fast: no arrival time changes that.
+  OccupancyMap map = ObservedMap();
+  for (double y = -6.0; y <= 6.0; y += 0.5) AddPillar(1.5, y, &map);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  ReplanLog log;
+  replanner.set_log(&log);
+  const Eigen::Vector3d start(0.0, 0.0, 1.6), v_WB(2.8, 0.0, 0.0);
+  FlyAlong(start, v_WB, &replanner);
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
+  ReplanInput input = Input(start, pad, 0.0);
+  input.vehicle.v_WB = v_WB;
+  const ReplanResult& result = replanner.Replan(input, map);
+  EXPECT_EQ(result.reason, ReplanReason::kCollisionRemains);
+  EXPECT_EQ(log.attempts.size(), 1u);
+}
+
+TEST(ReplannerFallback, ABudgetOfSolvesEndsTheSearchForAnArrival) {
+  OccupancyMap map = ObservedMap();
+  for (double y = -10.0; y <= 10.0; y += 0.5) {
+    if (std::abs(y - 3.0) > 0.8) AddPillar(1.5, y, &map);
+  }
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
+  int solves[2];
+  for (const int most : {1, 1000}) {
+    ReplannerOptions options = Options(ArrivalMode::kFixed);
+    options.max_solves = most;
+    Replanner replanner(options, solvers::StandardBackends());
+    const Eigen::Vector3d start(-4.0, 0.0, 1.6), v_WB(0.5, 0.0, 0.0);
+    FlyAlong(start, v_WB, &replanner);
+    ReplanLog log;
+    replanner.set_log(&log);
+    ReplanInput input = Input(start, pad, 0.0);
+    input.vehicle.v_WB = v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    solves[most > 1] = result.solves;
+    if (most == 1) {
+      EXPECT_EQ(log.attempts.size(), 1u);
+    }
+  }
+  EXPECT_LE(solves[0], solves[1]);
+}
+
+}  // namespace
+}  // namespace touchdown::planning
