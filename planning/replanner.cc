@@ -8,12 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/plan_attempt.h"
+#include "touchdown/planning/replan_checks.h"
 #include "touchdown/planning/rest_trajectory.h"
 #include "touchdown/planning/stage_timer.h"
 
@@ -49,52 +48,6 @@ FlatState StateOn(const UniformBspline& curve, double t) {
 }
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
-
-// Beyond these a number is taken for a fault; within them lattice indices cannot overflow.
-constexpr double kFarthest = 1e6;  // [m]
-constexpr double kFastest = 1e3;   // [m/s]
-
-bool Plausible(const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
-  return p.cwiseAbs().maxCoeff() < kFarthest && v.cwiseAbs().maxCoeff() < kFastest;
-}
-
-bool StateValid(const ReplanInput& input) {
-  return std::isfinite(input.t_now) && std::isfinite(input.t_start) &&
-         input.t_start >= input.t_now && input.vehicle.p_WB.allFinite() &&
-         input.vehicle.v_WB.allFinite() && Plausible(input.vehicle.p_WB, input.vehicle.v_WB);
-}
-
-bool TargetValid(const ReplanInput& input) {
-  const EndpointTarget& end = input.endpoint;
-  if (input.pad == nullptr || !std::isfinite(end.height) || !std::isfinite(end.sink_rate) ||
-      !std::isfinite(end.height_floor) || !std::isfinite(end.t_reference)) {
-    return false;
-  }
-  const estimation::PadState pad = input.pad->At(input.t_start);
-  return pad.p_WP.allFinite() && pad.v_WP.allFinite() && Plausible(pad.p_WP, pad.v_WP);
-}
-
-void Require(bool ok, const char* name, double value, const char* range) {
-  if (ok) return;
-  throw std::invalid_argument(std::string("ReplannerOptions: ") + name + " is " +
-                              std::to_string(value) + ", it must be " + range);
-}
-
-void Validate(const ReplannerOptions& o) {
-  Require(o.limits.speed > 0.0, "limits.speed", o.limits.speed, "> 0 m/s");
-  Require(o.limits.acceleration > 0.0, "limits.acceleration", o.limits.acceleration, "> 0 m/s^2");
-  Require(o.ceiling_height > o.floor_height, "ceiling_height", o.ceiling_height,
-          "above floor_height");
-  Require(o.min_duration > 0.0, "min_duration", o.min_duration, "> 0 s");
-  Require(o.max_duration > o.min_duration, "max_duration", o.max_duration, "above min_duration");
-  Require(o.odometry_threshold > 0.0, "odometry_threshold", o.odometry_threshold, "> 0 m");
-  Require(o.reaction >= 0.0, "reaction", o.reaction, ">= 0 s");
-  Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");
-  Require(o.max_rebinds >= 0, "max_rebinds", o.max_rebinds, ">= 0");
-  Require(o.max_solves >= 1, "max_solves", o.max_solves, ">= 1");
-  Require(o.max_iterations >= 1, "max_iterations", o.max_iterations, ">= 1");
-  Require(o.max_expansions >= 1, "max_expansions", o.max_expansions, ">= 1");
-}
 
 }  // namespace
 

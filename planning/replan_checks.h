@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the replanner refuses before it plans.
+#pragma once
+
+#include "touchdown/planning/replanner.h"
+
+namespace touchdown::planning {
+
+/// Throws std::invalid_argument naming the first option out of its range, its value and the range.
+void Validate(const ReplannerOptions& options);
+
+/// The times and the vehicle's state can be used: finite, ordered, and no farther or faster than a vehicle
+/// gets.
+bool StateValid(const ReplanInput& input);
+
+/// The endpoint and the pad's state at the start can be used.
+bool TargetValid(const ReplanInput& input);
+
+}  // namespace touchdown::planning
