@@ -7,6 +7,7 @@
 #include "touchdown/sim/own_sensors.h"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "touchdown/sim/argument_check.h"
@@ -53,20 +54,36 @@ Eigen::Vector3d OwnNoise::Draw() {
 double OwnNoise::Claimed() const { return std::hypot(config_.sigma, config_.drift_sigma); }
 
 OwnSensors::OwnSensors(const OwnSensorsConfig& config, std::uint64_t seed)
-    : vertical_factor_(config.gps.vertical_factor),
+    : gps_config_(config.gps),
+      outliers_(seed, "own gps outliers"),
       gps_(config.gps.sensor, seed, "own gps"),
       odometry_(config.odometry, seed, "own odometry"),
       height_(config.height, seed, "own height"),
       heading_(config.heading, seed, "own heading") {
-  CheckWithin("own gps.vertical_factor", vertical_factor_, 0.0, 10.0);
+  CheckWithin("own gps.vertical_factor", gps_config_.vertical_factor, 0.0, 10.0);
+  CheckWithin("own gps.outage_begin", gps_config_.outage_begin, 0.0, 1.0e6);
+  CheckWithin("own gps.outage_length", gps_config_.outage_length, 0.0, 1.0e6);
+  CheckWithin("own gps.outlier_probability", gps_config_.outlier_probability, 0.0, 1.0);
+  CheckWithin("own gps.outlier_size", gps_config_.outlier_size, 0.0, 1.0e6);
 }
 
 void OwnSensors::Sample(const estimation::VehicleState& vehicle) {
   const double t = vehicle.t;
-  if (gps_.Due(t)) {
-    const Eigen::Vector3d factors(1.0, 1.0, vertical_factor_);
-    positions_.Push({t, vehicle.p_WB + factors.cwiseProduct(gps_.Draw()), gps_.Claimed(),
-                     vertical_factor_ * gps_.Claimed()});
+  if (gps_.Due(t)) {  // all draws are used, so that a fault does not shift the others
+    const Eigen::Vector3d factors(1.0, 1.0, gps_config_.vertical_factor);
+    estimation::OwnPositionFix fix;
+    fix.t = t;
+    fix.p_WB = vehicle.p_WB + factors.cwiseProduct(gps_.Draw());
+    fix.sigma_horizontal = gps_.Claimed();
+    fix.sigma_vertical = gps_config_.vertical_factor * gps_.Claimed();
+    const bool outlier = outliers_.Uniform(0.0, 1.0) < gps_config_.outlier_probability;
+    const double direction = outliers_.Uniform(0.0, 2.0 * std::numbers::pi);
+    if (outlier) {
+      fix.p_WB.x() += gps_config_.outlier_size * std::cos(direction);
+      fix.p_WB.y() += gps_config_.outlier_size * std::sin(direction);
+    }
+    const double into_outage = t - gps_config_.outage_begin;
+    if (into_outage < 0.0 || into_outage >= gps_config_.outage_length) positions_.Push(fix);
   }
   if (odometry_.Due(t)) {
     const Eigen::Vector3d v_B = vehicle.q_WB.conjugate() * vehicle.v_WB;

@@ -35,6 +35,10 @@ struct OwnSensorConfig {
 struct OwnGpsConfig {
   OwnSensorConfig sensor{10.0, 0.02, 0.0, 60.0, 100.0};  ///< [m]
   double vertical_factor = 2.0;                          ///< in [0, 10]
+  double outage_begin = 0.0;         ///< no fixes from this time on [s], >= 0 ...
+  double outage_length = 0.0;        ///< ... for so long [s], >= 0
+  double outlier_probability = 0.0;  ///< of each fix, in [0, 1]
+  double outlier_size = 5.0;  ///< added to such a fix in a random horizontal direction [m], >= 0
 };
 
 /// What the vehicle carries. Off by default: odometry.
@@ -106,8 +110,9 @@ class DelayLine {
 /// All sensors of the vehicle's own state but the IMU.
 class OwnSensors {
  public:
-  /// `seed` feeds the streams "own gps", "own odometry", "own height" and "own heading". Throws
-  /// std::invalid_argument naming key, value and range.
+  /// `seed` feeds the streams "own gps", "own odometry", "own height" and "own heading", each
+  /// also with " drift", and "own gps outliers". Throws std::invalid_argument naming key, value and
+  /// range.
   OwnSensors(const OwnSensorsConfig& config, std::uint64_t seed);
 
   /// Takes the samples that are due at the true state's time. Call once per simulation step, before
@@ -121,7 +126,8 @@ class OwnSensors {
   std::optional<estimation::HeadingSample> PollHeading(double t);
 
  private:
-  double vertical_factor_;
+  OwnGpsConfig gps_config_;
+  RandomStream outliers_;
   OwnNoise gps_;
   OwnNoise odometry_;
   OwnNoise height_;

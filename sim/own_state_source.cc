@@ -37,13 +37,20 @@ estimation::OwnStateOptions FilterOptions(const OwnStateSourceConfig& config) {
   return options;
 }
 
+// The outage moved from the trial's time to the sensors' clock.
+OwnSensorsConfig Shifted(const OwnStateSourceConfig& config) {
+  OwnSensorsConfig sensors = config.sensors;
+  sensors.gps.outage_begin += config.hover_before;
+  return sensors;
+}
+
 }  // namespace
 
 OwnStateSource::OwnStateSource(const OwnStateSourceConfig& config, std::uint64_t seed,
                                const estimation::VehicleState& start, double timestep)
     : hover_before_(config.hover_before),
       imu_(config.imu, seed),
-      sensors_(config.sensors, seed),
+      sensors_(Shifted(config), seed),
       filter_(FilterOptions(config)) {
   CheckWithin("own_state.hover_before", config.hover_before, 0.5, 600.0);
   CheckWithin("own_state.takeoff_position_sigma", config.takeoff_position_sigma, 0.0, 100.0);

@@ -12,7 +12,7 @@ namespace touchdown::sim {
 
 struct OwnStateSourceConfig {
   ImuConfig imu;
-  OwnSensorsConfig sensors;
+  OwnSensorsConfig sensors;  ///< the GPS outage is in the trial's time, after the hover
   /// Its IMU noise, bias priors, IMU rate and reach are taken from the sensors above.
   estimation::OwnStateOptions filter;
   /// The vehicle hovers at its start for so long before t = 0, for the filter to start and settle

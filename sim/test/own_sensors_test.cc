@@ -86,12 +86,49 @@ TEST(OwnSensors, RateZeroIsOff) {
   }
 }
 
+TEST(OwnSensors, OutageAndOutliersLeaveTheOtherFixesAsTheyAre) {
+  OwnSensorsConfig config;
+  config.gps.sensor.latency_ms = 0.0;
+  OwnSensors sound(config, 3);
+  config.gps.outage_begin = 40.0;
+  config.gps.outage_length = 2.0;
+  config.gps.outlier_probability = 0.1;
+  OwnSensors faulty(config, 3);
+  estimation::VehicleState state;
+  int missing = 0;
+  int outliers = 0;
+  for (int k = 0; k < 1000; ++k) {
+    state.t = 0.1 * k;
+    sound.Sample(state);
+    faulty.Sample(state);
+    const auto good = sound.PollPosition(state.t);
+    const auto fix = faulty.PollPosition(state.t);
+    ASSERT_TRUE(good.has_value());
+    if (!fix.has_value()) {
+      EXPECT_GT(state.t, 39.99);
+      EXPECT_LT(state.t, 42.0);
+      ++missing;
+      continue;
+    }
+    const double off = (fix->p_WB - good->p_WB).norm();
+    if (off > 0.0) {
+      EXPECT_NEAR(off, 5.0, 1e-9);
+      ++outliers;
+    }
+  }
+  EXPECT_EQ(missing, 20);
+  EXPECT_NEAR(outliers, 98, 30);
+}
+
 TEST(OwnSensors, RefusesBadConfigurations) {
   OwnSensorsConfig config;
   config.gps.sensor.latency_ms = 501.0;
   EXPECT_THROW(OwnSensors(config, 1), std::invalid_argument);
   config = {};
   config.height.sigma = -0.1;
+  EXPECT_THROW(OwnSensors(config, 1), std::invalid_argument);
+  config = {};
+  config.gps.outlier_probability = 1.1;
   EXPECT_THROW(OwnSensors(config, 1), std::invalid_argument);
   config = {};
   config.gps.vertical_factor = 11.0;

@@ -118,6 +118,28 @@ TEST(OwnStateSource, SlowImuIsCarriedOn) {
   EXPECT_LT(errors.velocity, 0.12);
 }
 
+TEST(OwnStateSource, OutliersAreGatedAndAnOutageIsSaid) {
+  OwnStateSourceConfig config;
+  config.sensors.gps.outlier_probability = 0.1;
+  const Errors errors = Fly(config, 5);
+  EXPECT_LT(errors.position, 0.05);
+
+  config = {};
+  config.sensors.gps.outage_begin = 1.0;
+  config.sensors.gps.outage_length = 2.0;
+  World world(Start());
+  OwnStateSource source(config, 5, world.vehicle(), world.timestep());
+  const double hover = world.model().HoverThrust() / 4.0;
+  for (int k = 1; k <= 2000; ++k) {
+    world.Step({hover, hover, hover, hover});
+    source.Step(world.vehicle());
+    const bool without = k > 800 && k < 1500;
+    if (k % 490 != 0) continue;  // at 0.98, 1.96, 2.94 and 3.92 s
+    EXPECT_EQ(source.status(),
+              without ? estimation::OwnStatus::kOutage : estimation::OwnStatus::kGood);
+  }
+}
+
 TEST(OwnStateSource, OdometryAloneDriftsSlowly) {
   OwnStateSourceConfig config;
   config.sensors.gps.sensor.rate_hz = 0.0;
