@@ -2,8 +2,8 @@
 // Bookkeeping of the own-state filter: inputs in, time order, replay, status. The history is a ring
 // of inputs with the state after each; an input that belongs before others is put in its place and
 // all from there on is processed again. Between two inputs the state is carried by the IMU sample
-// whose interval they lie in, the next one in the history, so that a measurement between two samples
-// splits the later one's interval. A measurement ahead of the IMU is carried to by the last sample
+// whose interval they lie in, the next one in the history, so that a measurement between two
+// samples splits the later one's interval. A measurement ahead of the IMU is carried to by the last sample
 // and processed again when its own sample has come. Corrections are in own_state_update.cc.
 
 #include "touchdown/estimation/own_state_filter.h"
@@ -248,9 +248,15 @@ VehicleState OwnStateFilter::Estimate() const {
 }
 
 VehicleState OwnStateFilter::Estimate(double t) const {
-  const double ahead = std::clamp(t - belief().state.t, 0.0, options_.max_delay);
-  const OwnState state = PropagateOwnState(belief().state, last_imu_, ahead);
-  return {state.t, state.p_WB, state.v_WB, state.q_WB, last_imu_.w_WB_B - state.gyro_bias};
+  int at = size_ - 1;
+  while (at > 0 && snapshot(at).belief.state.t > t) --at;
+  int next = at + 1;
+  while (next < size_ && input(next).kind != Kind::kImu) ++next;
+  const ImuSample& imu = next < size_ ? input(next).imu : last_imu_;
+  const OwnState& before = snapshot(at).belief.state;
+  const double ahead = std::clamp(t - before.t, 0.0, options_.max_delay);
+  const OwnState state = PropagateOwnState(before, imu, ahead);
+  return {state.t, state.p_WB, state.v_WB, state.q_WB, imu.w_WB_B - state.gyro_bias};
 }
 
 double OwnStateFilter::PositionSigma() const {

@@ -14,13 +14,13 @@
 
 namespace touchdown::estimation {
 
-/// Error-state Kalman filter of the vehicle's own state from IMU, GPS, odometry, height and heading.
+/// Error-state Kalman filter of the vehicle's own state from IMU, GPS, odometry, height, heading.
 ///
 /// IMU samples, in time order, drive it; every other measurement carries its own time stamp and may
 /// come up to max_delay late or ahead of its IMU sample: it is put where it belongs in the history
 /// and what is newer is processed again, so that the result is that of an ordered sequence. Start()
-/// begins from a known state; without it the filter begins by itself from a hover, as soon as it has
-/// IMU samples for hover_time, a position and a heading.
+/// begins from a known state; without it the filter begins by itself from a hover, as soon as it
+/// has IMU samples for hover_time, a position and a heading.
 ///
 /// A value type: copies are independent and allocate. No other call allocates after construction.
 class OwnStateFilter {
@@ -44,11 +44,14 @@ class OwnStateFilter {
   /// Status at time t [s], with Sentence() in words.
   OwnStatus Status(double t) const;
 
-  /// State at the newest IMU sample or measurement: what a controller takes. Its angular rate is the
-  /// last reading less the bias. Meaningful once started().
+  /// State at the newest IMU sample or measurement: what a controller takes. Its angular rate is
+  /// the last reading less the bias. Meaningful once started().
   VehicleState Estimate() const;
 
-  /// The same carried on to t [s], no more than max_delay ahead, with the last readings.
+  /// The same at another time t [s]: carried on with the last readings, no more than max_delay
+  /// ahead, or as it was then, as far as the history reaches back and with all that is known by
+  /// now: for images, whose time stamp is past when they have been worked on. What it gives has the
+  /// time it is for.
   VehicleState Estimate(double t) const;
 
   /// The nominal state with its biases, and the covariance of its error. Meaningful once started().

@@ -2,8 +2,8 @@
 // Corrections of the own-state filter: the start from a hover, and Kalman updates in Joseph form
 // behind a Mahalanobis gate, the error injected into the nominal state and the covariance turned to
 // the new attitude (J. Sola, arXiv:1711.02508, chapter 6, eq. 285 to 287).
-// The start levels the vehicle with the mean specific force of the hover and then makes that force a
-// Kalman update of a wide belief, so that the correlation of tilt and accelerometer bias, which a
+// The start levels the vehicle with the mean specific force of the hover and then makes that force
+// a Kalman update of a wide belief, so that the correlation of tilt and accelerometer bias, which a
 // hover cannot tell apart, is right from the first moment.
 
 #include <algorithm>

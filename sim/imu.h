@@ -14,8 +14,8 @@
 namespace touchdown::sim {
 
 /// Noise of an IMU, each axis. White noise and turn-on offsets: a MEMS IMU of the class of Bosch's
-/// BMI088 (data sheet BST-BMI088-DS001: 190 ug/sqrt(Hz) and 0.014 deg/s/sqrt(Hz)), its offsets of 20
-/// mg and 1 deg/s calibrated to a quarter. The data sheet is silent on bias walks: those of the
+/// BMI088 (data sheet BST-BMI088-DS001: 190 ug/sqrt(Hz) and 0.014 deg/s/sqrt(Hz)), its offsets of
+/// 20 mg and 1 deg/s calibrated to a quarter. The data sheet is silent on bias walks: those of the
 /// EuRoC MAV data set's ADIS16448 (Burri et al., IJRR 2016, sensor.yaml).
 struct ImuConfig {
   double rate_hz = 500.0;                ///< [Hz], in [10, 1000]

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sensors and filter run on a clock that begins with the hover before the trial, so that no time is
 // below zero; the trial's times are shifted on the way in and back on the way out. In the hover the
-// vehicle is motionless at its start's pose. In each step the IMU comes first, then what has arrived
-// of the other sensors in a fixed order.
+// vehicle is motionless at its start's pose. In each step the IMU comes first, then what has
+// arrived of the other sensors in a fixed order.
 
 #include "touchdown/sim/own_state_source.h"
 
@@ -103,6 +103,12 @@ estimation::VehicleState OwnStateSource::Step(const estimation::VehicleState& ve
   estimate_ = filter_.Estimate(now_);
   estimate_.t = vehicle.t;
   return estimate_;
+}
+
+estimation::VehicleState OwnStateSource::EstimateAt(double t) const {
+  estimation::VehicleState estimate = filter_.Estimate(t + hover_before_);
+  estimate.t -= hover_before_;
+  return estimate;
 }
 
 }  // namespace touchdown::sim

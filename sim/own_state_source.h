@@ -24,7 +24,8 @@ struct OwnStateSourceConfig {
   double takeoff_heading_sigma = 0.035;  ///< [rad], in [0, 3]
 };
 
-/// The vehicle's own state as it knows it: sensors and filter in one, true states in, estimates out.
+/// The vehicle's own state as it knows it: sensors and filter in one, true states in, estimates
+/// out.
 /// The same configuration, seed and states give the same bits.
 class OwnStateSource {
  public:
@@ -34,12 +35,16 @@ class OwnStateSource {
   OwnStateSource(const OwnStateSourceConfig& config, std::uint64_t seed,
                  const estimation::VehicleState& start, double timestep);
 
-  /// Feeds sensors and filter with the true state and gives the estimate for its time. Call once per
-  /// simulation step, from t = timestep on. Does not allocate.
+  /// Feeds sensors and filter with the true state and gives the estimate for its time. Call once
+  /// per simulation step, from t = timestep on. Does not allocate.
   estimation::VehicleState Step(const estimation::VehicleState& vehicle);
 
   /// The last estimate; before the first Step() that of the hover's end, at t = 0.
   const estimation::VehicleState& estimate() const { return estimate_; }
+
+  /// The estimate for a time t [s] of the trial that has passed, as far back as the filter's
+  /// history reaches, with what is known by now: for images that come late.
+  estimation::VehicleState EstimateAt(double t) const;
 
   /// How far the estimate is to be trusted now.
   estimation::OwnStatus status() const { return filter_.Status(now_); }

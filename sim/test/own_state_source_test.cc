@@ -184,6 +184,7 @@ TEST(OwnStateSource, SameSeedSameBits) {
     world.Step({3.0, 3.0, 3.0, 3.0});
     EXPECT_EQ(a.Step(world.vehicle()).p_WB, b.Step(world.vehicle()).p_WB);
     other.Step(world.vehicle());
+    EXPECT_LT((a.EstimateAt(world.time()).p_WB - a.estimate().p_WB).norm(), 1e-9);
   }
   EXPECT_NE(a.estimate().p_WB, other.estimate().p_WB);
   EXPECT_EQ(a.status(), estimation::OwnStatus::kGood);
