@@ -24,8 +24,8 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kAttitudeSigma = 1.0 * std::numbers::pi / 180.0;  // claimed [rad]
-constexpr double kMargin = 0.5;        // about the expected pad [m]
-constexpr double kSigmas = 5.0;        // of its position
+constexpr double kMargin = 0.5;                                    // about the expected pad [m]
+constexpr double kSigmas = 5.0;                                    // of its position
 constexpr int kMostPassedOver = 9;     // images in a row that are not searched
 constexpr double kLeastTagPixels = 4;  // half a pixel to a cell: far below what is ever read
 

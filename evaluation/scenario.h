@@ -75,8 +75,8 @@ struct Scenario {
   } start;
 
   struct Gps {
-    double sigma = 0.01;  ///< [m]
-    double rate = 10.0;   ///< [Hz]
+    double sigma = 0.01;                               ///< [m]
+    double rate = 10.0;                                ///< [Hz]
     Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no fix from the first to the second [s]
     double outliers = 0.0;                             ///< probability of each fix
     double outlier_size = 10.0;                        ///< [m]

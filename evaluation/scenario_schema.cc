@@ -141,10 +141,10 @@ void AddVehicleKeys(std::vector<SchemaKey<Scenario>>& keys) {
 }
 
 void AddCameraKeys(std::vector<SchemaKey<Scenario>>& keys) {
-  keys.push_back(Whole("camera.width", 16, 2048, "pixels of the downward camera in a row",
-                       AT(camera.width)));
-  keys.push_back(Whole("camera.height", 16, 2048, "rows of the downward camera",
-                       AT(camera.height)));
+  keys.push_back(
+      Whole("camera.width", 16, 2048, "pixels of the downward camera in a row", AT(camera.width)));
+  keys.push_back(
+      Whole("camera.height", 16, 2048, "rows of the downward camera", AT(camera.height)));
   keys.push_back(Number<Scenario>("camera.fov_deg", In(10, 150, "deg"),
                                   "vertical field of view of the downward camera",
                                   AT(camera.fov_deg)));
@@ -176,8 +176,7 @@ void AddDepthKeys(std::vector<SchemaKey<Scenario>>& keys) {
                        "rows of the depth camera; 120 is recommended for sensing rendered",
                        AT(depth.height)));
   keys.push_back(Number<Scenario>("depth.noise", In(0, 0.5, ""),
-                                  "standard deviation of a range over the range",
-                                  AT(depth.noise)));
+                                  "standard deviation of a range over the range", AT(depth.noise)));
   keys.push_back(Number<Scenario>("depth.latency_ms", In(0, 400, "ms"),
                                   "from the depth image to the map", AT(depth.latency_ms)));
   keys.push_back(Number<Scenario>("depth.drop", In(0, 1, ""),

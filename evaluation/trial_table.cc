@@ -74,8 +74,8 @@ void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
   insert.Run(row.trial.index, t.wall_s, t.cpu_s, t.physics_cpu_s, t.sensing_cpu_s, t.mapping_cpu_s,
              t.planning_cpu_s, t.control_cpu_s, t.judging_cpu_s, Quantile(t.replan_wall_ms, 0.5),
              Quantile(t.replan_wall_ms, 0.95), Quantile(t.replan_wall_ms, 1.0), t.deadline_misses,
-             t.sensing_stages.depth_image, t.sensing_stages.pad_image,
-             t.sensing_stages.pad_finding, t.sensing_stages.pad_filter);
+             t.sensing_stages.depth_image, t.sensing_stages.pad_image, t.sensing_stages.pad_finding,
+             t.sensing_stages.pad_filter);
 }
 
 void WriteManifest(SqliteDb& db, const SweepOptions& options, const std::vector<SweepRow>& rows) {

@@ -12,7 +12,10 @@
 namespace touchdown::sim {
 
 PadGps::PadGps(const PadGpsConfig& config, std::uint64_t seed)
-    : config_(config), clock_(config.rate_hz), noise_(seed, "gps"), outliers_(seed, "gps outliers") {
+    : config_(config),
+      clock_(config.rate_hz),
+      noise_(seed, "gps"),
+      outliers_(seed, "gps outliers") {
   CheckWithin("gps.sigma", config.sigma, 0.0, 10.0);
   CheckWithin("gps.outlier_probability", config.outlier_probability, 0.0, 1.0);
   CheckWithin("gps.outlier_size", config.outlier_size, 0.0, 1.0e4);

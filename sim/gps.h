@@ -12,12 +12,12 @@
 namespace touchdown::sim {
 
 struct PadGpsConfig {
-  double sigma = 0.01;    ///< standard deviation of each horizontal axis [m], in [0, 10]
-  double rate_hz = 10.0;  ///< [Hz], in (0, 1000]
-  double outage_begin_s = 0.0;  ///< from here on no fix comes ... [s]
-  double outage_end_s = 0.0;    ///< ... until here; no outage if not after its begin [s]
+  double sigma = 0.01;               ///< standard deviation of each horizontal axis [m], in [0, 10]
+  double rate_hz = 10.0;             ///< [Hz], in (0, 1000]
+  double outage_begin_s = 0.0;       ///< from here on no fix comes ... [s]
+  double outage_end_s = 0.0;         ///< ... until here; no outage if not after its begin [s]
   double outlier_probability = 0.0;  ///< of each fix, in [0, 1]
-  double outlier_size = 10.0;        ///< an outlier is off by this, anywhere around [m], in [0, 1e4]
+  double outlier_size = 10.0;  ///< an outlier is off by this, anywhere around [m], in [0, 1e4]
 };
 
 /// GPS receiver on the pad vehicle: true horizontal position plus white Gaussian noise. An outlier
