@@ -100,8 +100,8 @@ TEST(PadEye, LatencyDelaysButKeepsStampAndState) {
 TEST(PadEye, AHalfCoveredPadShowsTwoTagsAndIsStillWhereItIs) {
   for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
     for (const double height : {1.0, 2.0, 3.0}) {
-      const Watch watch = WatchPad({kind, "camera.occlusion=0.5"}, 10, height);
-      EXPECT_GE(watch.glimpses.size(), 8U) << kind << " at " << height;
+      const Watch watch = WatchPad({kind, "camera.occlusion=0.5"}, 6, height);
+      EXPECT_GE(watch.glimpses.size(), 5U) << kind << " at " << height;
       for (const PadGlimpse& glimpse : watch.glimpses) {
         EXPECT_LE(glimpse.sighting.tags_seen, 2) << kind;
         EXPECT_LT(ErrorOf(glimpse, 0.5), 0.08) << kind << " at " << height;
@@ -114,7 +114,7 @@ TEST(PadEye, AHalfCoveredPadShowsTwoTagsAndIsStillWhereItIs) {
 
 TEST(PadEye, PassingOverImagesOnlySavesTime) {
   const auto pass = [](bool thrifty) {
-    return WatchPad({"sensing=rendered"}, 100, 2.0, -8.0, 3.0, thrifty);
+    return WatchPad({"sensing=rendered"}, 60, 2.0, -6.0, 3.0, thrifty);
   };
   const Watch thrifty = pass(true);
   const Watch all = pass(false);
