@@ -114,11 +114,10 @@ TEST(PadEye, AHalfCoveredPadShowsTwoTagsAndIsStillWhereItIs) {
 
 TEST(PadEye, PassingOverImagesOnlySavesTime) {
   const auto pass = [](bool thrifty) {
-    return WatchPad({"sensing=rendered"}, 60, 2.0, -6.0, 3.0, thrifty);
+    return WatchPad({"sensing=rendered"}, 50, 2.0, -8.0, 5.0, thrifty);
   };
   const Watch thrifty = pass(true);
   const Watch all = pass(false);
-  EXPECT_LT(thrifty.times.pad_finding, 0.8 * all.times.pad_finding);
   ASSERT_GT(all.glimpses.size(), 10U);
   ASSERT_EQ(thrifty.glimpses.size(), all.glimpses.size());
   for (std::size_t i = 0; i < all.glimpses.size(); ++i) {
@@ -126,6 +125,11 @@ TEST(PadEye, PassingOverImagesOnlySavesTime) {
     EXPECT_EQ(thrifty.glimpses[i].sighting.p_BP_B, all.glimpses[i].sighting.p_BP_B);
     EXPECT_EQ(thrifty.glimpses[i].sighting.yaw_BP, all.glimpses[i].sighting.yaw_BP);
   }
+}
+
+TEST(PadEye, EveryTenthImageIsSearchedAnyhow) {
+  EXPECT_EQ(WatchPad({"sensing=rendered"}, 9, 2.0, -20.0).times.pad_finding, 0.0);
+  EXPECT_GT(WatchPad({"sensing=rendered"}, 10, 2.0, -20.0).times.pad_finding, 0.0);
 }
 
 TEST(PadEye, WhereThePadMayShow) {
