@@ -230,6 +230,7 @@ class Trial {
     if (follow_) result_.following = metrics_.LastFollowing();
     result_.timing.simulated_s = world_.time();
     result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
+    result_.timing.sensing_stages = perception_.sensing_times();
     result_.timing.mapping_cpu_s = perception_.mapping_cpu_s();
     Note(world_.time(), "outcome", ToString(result_.outcome));
   }

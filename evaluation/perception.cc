@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "touchdown/evaluation/map_file.h"
@@ -29,9 +28,14 @@ estimation::PadFilterOptions FilterOptions(const Scenario& scenario) {
   return options;
 }
 
-sim::TagSensorConfig TagConfig(const Scenario& scenario) {
-  sim::TagSensorConfig config;
-  config.rate_hz = scenario.tag_rate;
+sim::PadGpsConfig GpsConfig(const Scenario& scenario) {
+  sim::PadGpsConfig config;
+  config.sigma = scenario.gps.sigma;
+  config.rate_hz = scenario.gps.rate;
+  config.outage_begin_s = scenario.gps.outage[0];
+  config.outage_end_s = scenario.gps.outage[1];
+  config.outlier_probability = scenario.gps.outliers;
+  config.outlier_size = scenario.gps.outlier_size;
   return config;
 }
 
@@ -44,10 +48,9 @@ planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
 }
 
 Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed)
-    : gps_({scenario.gps.sigma, scenario.gps.rate}, seed),
-      tags_(TagConfig(scenario), world.config().obstacles, seed),
-      depth_(sim::DepthCameraConfig{}, world.config().obstacles, world.config().pad, seed),
-      depth_clock_(scenario.depth_rate),
+    : gps_(GpsConfig(scenario), seed),
+      pad_eye_(MakePadEye(scenario, world.config(), seed)),
+      depth_eye_(MakeDepthEye(scenario, world.config(), seed)),
       pad_filter_(FilterOptions(scenario)),
       map_(MapOptions(scenario)),
       persistent_map_(map_.options()),
@@ -63,48 +66,56 @@ void Perception::Sense(const sim::World& world) {
   const double begin = solvers::ThreadCpuSeconds();
   const double t = world.time();
   const estimation::VehicleState vehicle = world.vehicle();
-  image_taken_ = depth_clock_.Due(t);
-  if (image_taken_) frame_times_ = {};
-  SenseAt(t, vehicle, world.pad());
+  const estimation::PadState pad = world.pad();
+  SensePad(t, vehicle, pad);
+  depth_eye_->Look(vehicle, pad, &sensing_times_);
   const double sensed = solvers::ThreadCpuSeconds();
   sensing_cpu_s_ += sensed - begin;
-  if (!image_taken_) return;
-  {
-    const planning::StageTimer timer(&frame_times_.map);
-    UpdateMap(t, vehicle, world.model().hull_radius);
+  image_taken_ = false;
+  while (auto glimpse = depth_eye_->Poll(t)) {
+    image_taken_ = true;
+    frame_times_ = {};
+    frame_times_.sense = glimpse->sense;
+    {
+      const planning::StageTimer timer(&frame_times_.map);
+      UpdateMap(t, vehicle, world.model().hull_radius, glimpse->frame);
+    }
+    depth_eye_->Recycle(std::move(*glimpse));
   }
-  mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
+  if (image_taken_) mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
 }
 
-void Perception::SenseAt(double t, const estimation::VehicleState& vehicle,
-                         const estimation::PadState& pad) {
-  // Steps without an image are over at once; of them there is no span.
-  std::optional<planning::StageTimer> timer;
-  if (image_taken_) timer.emplace(&frame_times_.sense);
+void Perception::SensePad(double t, const estimation::VehicleState& vehicle,
+                          const estimation::PadState& pad) {
   pad_measured_ = false;
-  if (const auto fix = gps_.Poll(t, pad)) {
-    pad_filter_.AddGps(*fix);
+  // Most steps bring nothing: the clock is read only if something has arrived.
+  const auto timed = [this](const auto& update) {
+    const double begin = solvers::ThreadCpuSeconds();
+    update();
+    sensing_times_.pad_filter += solvers::ThreadCpuSeconds() - begin;
     pad_measured_ = true;
+  };
+  if (const auto fix = gps_.Poll(t, pad)) timed([&] { pad_filter_.AddGps(*fix); });
+  pad_eye_->Look(vehicle, pad, pad_filter_, &sensing_times_);
+  while (const auto glimpse = pad_eye_->Poll(t)) {
+    timed([&] { pad_filter_.AddSighting(glimpse->sighting, glimpse->vehicle); });
   }
-  if (const auto sighting = tags_.Poll(t, vehicle, pad)) {
-    pad_filter_.AddSighting(*sighting, vehicle);
-    pad_measured_ = true;
-  }
-  if (image_taken_) depth_.Capture(vehicle, pad, &frame_);
 }
 
-void Perception::UpdateMap(double t, const estimation::VehicleState& vehicle, double hull_radius) {
+void Perception::UpdateMap(double t, const estimation::VehicleState& vehicle, double hull_radius,
+                           const estimation::DepthFrame& frame) {
   persistent_map_.Recentre(vehicle.p_WB, &map_);
-  const planning::ExcludedVolume volume = PadVolume(t);
+  const planning::ExcludedVolume volume = PadVolume(t, frame.t);
   map_.MarkOwnVolume(vehicle.p_WB, hull_radius);
   map_.Clear(volume);
-  map_.Integrate(frame_, volume);
+  map_.Integrate(frame, volume);
 }
 
-planning::ExcludedVolume Perception::PadVolume(double t) const {
+// Where the pad was when the image was taken, with today's doubt.
+planning::ExcludedVolume Perception::PadVolume(double t, double stamp) const {
   planning::ExcludedVolume volume;
   if (!pad_filter_.initialized()) return volume;
-  volume.centre = pad_filter_.Estimate(t).p_WP.head<2>();
+  volume.centre = pad_filter_.Estimate(stamp).p_WP.head<2>();
   volume.radius = deck_half_diagonal_ + kVolumeMargin +
                   kVolumeSigmas * std::min(pad_filter_.PositionSigma(t), kVolumeSigmaMax);
   volume.top = deck_height_ + kVolumeMargin;

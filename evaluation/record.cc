@@ -219,6 +219,10 @@ void WriteTiming(SqliteDb& db, const TrialTiming& timing) {
   SqliteStatement insert = db.Prepare("INSERT INTO timing VALUES(?, ?)");
   insert.Run("physics", timing.physics_cpu_s);
   insert.Run("sensing", timing.sensing_cpu_s);
+  insert.Run("sensing: depth image", timing.sensing_stages.depth_image);
+  insert.Run("sensing: pad image", timing.sensing_stages.pad_image);
+  insert.Run("sensing: pad finding", timing.sensing_stages.pad_finding);
+  insert.Run("sensing: pad filter", timing.sensing_stages.pad_filter);
   insert.Run("mapping", timing.mapping_cpu_s);
   insert.Run("planning", timing.planning_cpu_s);
   insert.Run("control", timing.control_cpu_s);

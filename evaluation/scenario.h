@@ -19,7 +19,7 @@ enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };
 enum class DescentKind { kNone, kVertical };
 enum class PlannerKind { kLanding, kEgo, kEgoVelocity };
-enum class SensingKind { kFast };
+enum class SensingKind { kFast, kRendered };
 enum class OwnStateKind { kTrue };
 enum class ArrivalKind { kFixed, kFree };
 enum class EndpointKind { kEliminated, kExplicit };
@@ -75,11 +75,33 @@ struct Scenario {
   } start;
 
   struct Gps {
-    double sigma = 0.01;  ///< [m]
-    double rate = 10.0;   ///< [Hz]
+    double sigma = 0.01;                               ///< [m]
+    double rate = 10.0;                                ///< [Hz]
+    Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no fix from the first to the second [s]
+    double outliers = 0.0;                             ///< probability of each fix
+    double outlier_size = 10.0;                        ///< [m]
   } gps;
   double tag_rate = 20.0;    ///< [Hz]
   double depth_rate = 10.0;  ///< [Hz]
+  /// Downward camera.
+  struct Camera {
+    int width = 320;           ///< [pixel]
+    int height = 240;          ///< [pixel]
+    double fov_deg = 90.0;     ///< vertical [deg]
+    double noise = 2.0;        ///< of a pixel [grey level]
+    double exposure_ms = 0.0;  ///< [ms]
+    double latency_ms = 0.0;   ///< [ms]
+    double drop = 0.0;         ///< probability of each image
+    double occlusion = 0.0;    ///< share of the pad's printed sheet that is covered
+  } camera;
+  /// Depth camera.
+  struct Depth {
+    int width = 80;           ///< [pixel]
+    int height = 60;          ///< [pixel]
+    double noise = 0.0;       ///< standard deviation of a range over the range
+    double latency_ms = 0.0;  ///< [ms]
+    double drop = 0.0;        ///< probability of each image
+  } depth;
   SensingKind sensing = SensingKind::kFast;
   OwnStateKind own_state = OwnStateKind::kTrue;
   PadEstimatorKind pad_estimator = PadEstimatorKind::kTurnRate;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/control/landing_state_machine.h"
+#include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/planner_options.h"
@@ -172,6 +173,21 @@ void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& m
   throw BadInput(fmt::format("{}: {}.", source.WhereOf(key).ToString(), refusal));
 }
 
+void CheckSensors(const ScenarioSource& source) {
+  const Scenario& s = source.scenario;
+  if (s.gps.outage[1] < s.gps.outage[0]) {
+    throw BadInput(fmt::format("{}: gps.outage must not end before it begins, and is [{}, {}] s.",
+                               source.WhereOf("gps.outage").ToString(), s.gps.outage[0],
+                               s.gps.outage[1]));
+  }
+  if (s.sensing == SensingKind::kRendered && s.pad.deck_size < estimation::kPadSheetSide) {
+    throw BadInput(fmt::format(
+        "{}: pad.deck_size must be in [{}, 5] m with sensing: rendered, which needs room for the "
+        "pad's printed sheet, not '{}'.",
+        source.WhereOf("pad.deck_size").ToString(), estimation::kPadSheetSide, s.pad.deck_size));
+  }
+}
+
 void CheckPriorMap(const ScenarioSource& source) {
   const std::string& path = source.scenario.map_prior;
   if (path == "none") return;
@@ -261,6 +277,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries) {
                                source.WhereOf("pad.speed").ToString(), 0.9 * s.limits.speed,
                                s.pad.speed));
   }
+  CheckSensors(source);
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
   CheckPlanning(source, model);

@@ -140,6 +140,49 @@ void AddVehicleKeys(std::vector<SchemaKey<Scenario>>& keys) {
                       AT(start.yaw_random)));
 }
 
+void AddCameraKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(
+      Whole("camera.width", 16, 2048, "pixels of the downward camera in a row", AT(camera.width)));
+  keys.push_back(
+      Whole("camera.height", 16, 2048, "rows of the downward camera", AT(camera.height)));
+  keys.push_back(Number<Scenario>("camera.fov_deg", In(10, 150, "deg"),
+                                  "vertical field of view of the downward camera",
+                                  AT(camera.fov_deg)));
+  keys.push_back(Number<Scenario>("camera.noise", In(0, 100, ""),
+                                  "sensing rendered: standard deviation of a pixel in grey levels "
+                                  "of 255; the model of sensing fast is fitted at 2",
+                                  AT(camera.noise)));
+  keys.push_back(Number<Scenario>("camera.exposure_ms", In(0, 100, "ms"),
+                                  "sensing rendered: exposure, over which motion blurs the image",
+                                  AT(camera.exposure_ms)));
+  keys.push_back(Number<Scenario>("camera.latency_ms", In(0, 400, "ms"),
+                                  "from the middle of the exposure until the pad's pose is known",
+                                  AT(camera.latency_ms)));
+  keys.push_back(Number<Scenario>("camera.drop", In(0, 1, ""),
+                                  "probability of each image of the downward camera to be lost",
+                                  AT(camera.drop)));
+  keys.push_back(Number<Scenario>("camera.occlusion", In(0, 0.9, ""),
+                                  "share of the pad's printed sheet under an opaque plate, from "
+                                  "its front edge on",
+                                  AT(camera.occlusion)));
+}
+
+void AddDepthKeys(std::vector<SchemaKey<Scenario>>& keys) {
+  keys.push_back(Whole("depth.width", 8, 1024,
+                       "pixels of the depth camera in a row; 160 is recommended for sensing "
+                       "rendered",
+                       AT(depth.width)));
+  keys.push_back(Whole("depth.height", 8, 1024,
+                       "rows of the depth camera; 120 is recommended for sensing rendered",
+                       AT(depth.height)));
+  keys.push_back(Number<Scenario>("depth.noise", In(0, 0.5, ""),
+                                  "standard deviation of a range over the range", AT(depth.noise)));
+  keys.push_back(Number<Scenario>("depth.latency_ms", In(0, 400, "ms"),
+                                  "from the depth image to the map", AT(depth.latency_ms)));
+  keys.push_back(Number<Scenario>("depth.drop", In(0, 1, ""),
+                                  "probability of each depth image to be lost", AT(depth.drop)));
+}
+
 void AddSensorKeys(std::vector<SchemaKey<Scenario>>& keys) {
   keys.push_back(Number<Scenario>("gps.sigma", In(0, 5, "m"),
                                   "standard deviation of the pad's GPS, each axis; the pad filter "
@@ -147,14 +190,28 @@ void AddSensorKeys(std::vector<SchemaKey<Scenario>>& keys) {
                                   AT(gps.sigma)));
   keys.push_back(
       Number<Scenario>("gps.rate", Above(0, 100, "Hz"), "rate of the pad's GPS", AT(gps.rate)));
+  keys.push_back(Vector<2, Scenario>("gps.outage", In(0, 600, "s"),
+                                     "no fix comes from the first time to the second; none is "
+                                     "missing if they are equal",
+                                     AT(gps.outage)));
+  keys.push_back(Number<Scenario>("gps.outliers", In(0, 1, ""),
+                                  "probability of each fix to be off by gps.outlier_size, which it "
+                                  "does not tell",
+                                  AT(gps.outliers)));
+  keys.push_back(Number<Scenario>("gps.outlier_size", In(0, 1000, "m"),
+                                  "error of an outlier, in any direction", AT(gps.outlier_size)));
   keys.push_back(Number<Scenario>("tags.rate", Above(0, 100, "Hz"), "rate of the downward camera",
                                   AT(tag_rate)));
+  AddCameraKeys(keys);
   keys.push_back(Number<Scenario>("depth.rate", Above(0, 100, "Hz"), "rate of the depth camera",
                                   AT(depth_rate)));
+  AddDepthKeys(keys);
   keys.push_back(Text("map.prior", "none or the path of an OctoMap file (.bt or .ot)",
                       "what is known of the obstacles before the flight, in cells of 0.1 m",
                       AT(map_prior)));
-  keys.push_back(Choice("sensing", {"fast"}, "camera models: analytic", AT(sensing)));
+  keys.push_back(Choice("sensing", {"fast", "rendered"},
+                        "fast: models of both cameras; rendered: images, in which the pad is found",
+                        AT(sensing)));
   keys.push_back(
       Choice("own_state", {"true"}, "what the vehicle knows of its own state", AT(own_state)));
   keys.push_back(Choice("estimator.pad", {"paper", "turn_rate"}, "pad filter", AT(pad_estimator)));

@@ -61,6 +61,10 @@ Json WallClockJson(const TrialTiming& timing) {
                    {"planning", timing.planning_cpu_s},
                    {"control", timing.control_cpu_s},
                    {"judging", timing.judging_cpu_s}};
+  json["sensing_cpu_s"] = {{"depth_image", timing.sensing_stages.depth_image},
+                           {"pad_image", timing.sensing_stages.pad_image},
+                           {"pad_finding", timing.sensing_stages.pad_finding},
+                           {"pad_filter", timing.sensing_stages.pad_filter}};
   return json;
 }
 

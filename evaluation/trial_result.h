@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/landing_judge.h"
+#include "touchdown/evaluation/sensing_times.h"
 
 namespace touchdown::evaluation {
 
@@ -36,6 +37,7 @@ struct TrialTiming {
   double simulated_s = 0.0;    ///< simulated time, for the real-time factor
   double physics_cpu_s = 0.0;  ///< stages of the loop, thread CPU time
   double sensing_cpu_s = 0.0;
+  SensingTimes sensing_stages;  ///< a part of sensing_cpu_s
   double mapping_cpu_s = 0.0;
   double planning_cpu_s = 0.0;
   double control_cpu_s = 0.0;

@@ -27,7 +27,8 @@ CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT);
 CREATE TABLE timing(trial INTEGER PRIMARY KEY, wall_s REAL, cpu_s REAL, physics_cpu_s REAL,
   sensing_cpu_s REAL, mapping_cpu_s REAL, planning_cpu_s REAL, control_cpu_s REAL,
   judging_cpu_s REAL, replan_median_ms REAL, replan_p95_ms REAL, replan_max_ms REAL,
-  deadline_misses INTEGER);
+  deadline_misses INTEGER, depth_image_cpu_s REAL, pad_image_cpu_s REAL, pad_finding_cpu_s REAL,
+  pad_filter_cpu_s REAL);
 )sql";
 
 using OptionalReal = std::optional<double>;
@@ -72,7 +73,9 @@ void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
   const TrialTiming& t = row.result.timing;
   insert.Run(row.trial.index, t.wall_s, t.cpu_s, t.physics_cpu_s, t.sensing_cpu_s, t.mapping_cpu_s,
              t.planning_cpu_s, t.control_cpu_s, t.judging_cpu_s, Quantile(t.replan_wall_ms, 0.5),
-             Quantile(t.replan_wall_ms, 0.95), Quantile(t.replan_wall_ms, 1.0), t.deadline_misses);
+             Quantile(t.replan_wall_ms, 0.95), Quantile(t.replan_wall_ms, 1.0), t.deadline_misses,
+             t.sensing_stages.depth_image, t.sensing_stages.pad_image, t.sensing_stages.pad_finding,
+             t.sensing_stages.pad_filter);
 }
 
 void WriteManifest(SqliteDb& db, const SweepOptions& options, const std::vector<SweepRow>& rows) {
@@ -108,7 +111,7 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
         "?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement variation = db.Prepare("INSERT INTO variation VALUES(?, ?, ?)");
     SqliteStatement timing =
-        db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+        db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (const SweepRow& row : rows) {
       WriteTrial(trial, row);
       for (const auto& [key, value] : row.trial.varied) variation.Run(row.trial.index, key, value);

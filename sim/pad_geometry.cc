@@ -3,6 +3,7 @@
 
 #include "touchdown/sim/pad_geometry.h"
 
+#include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/sim/argument_check.h"
 
 namespace touchdown::sim {
@@ -33,5 +34,7 @@ Box PadBodyBox(const PadGeometry& geometry, const estimation::PadState& pad) {
           {geometry.body_half_length, geometry.body_half_width, half_height},
           pad.yaw};
 }
+
+double PlateEdge(double share) { return (0.5 - share) * estimation::kPadSheetSide; }
 
 }  // namespace touchdown::sim

@@ -17,6 +17,7 @@ namespace touchdown::sim {
 namespace {
 
 constexpr double kSheetThickness = 0.0005;  // [m]
+constexpr double kPlateThickness = 0.004;   // of what covers a part of it [m]
 constexpr double kGroundPeriod = 4.0;       // the ground's texture repeats after [m]
 
 void WriteAssets(std::ostream& xml) {
@@ -32,6 +33,7 @@ void WriteAssets(std::ostream& xml) {
       << "<material name='box' rgba='0.72 0.50 0.34 1' specular='0'/>\n"
       << "<material name='cylinder' rgba='0.36 0.55 0.38 1' specular='0'/>\n"
       << "<material name='deck' rgba='0.62 0.62 0.66 1' specular='0'/>\n"
+      << "<material name='plate' rgba='0.45 0.45 0.45 1' specular='0'/>\n"
       << "<material name='pad_body' rgba='0.25 0.30 0.42 1' specular='0'/>\n"
       << "</asset>\n";
 }
@@ -59,6 +61,14 @@ void WritePad(const VisualScene& scene, std::ostream& xml) {
   WriteGeom(deck, "deck", xml);
   WriteGeom(body, "pad_body", xml);
   WriteGeom(sheet, "pad", xml);
+  if (scene.occlusion > 0.0) {
+    const double half = 0.5 * estimation::kPadSheetSide;
+    const double edge = PlateEdge(scene.occlusion);
+    WriteGeom({{0.5 * (half + edge), 0.0, 0.5 * kPlateThickness},
+               {0.5 * (half - edge), half, 0.5 * kPlateThickness},
+               0.0},
+              "plate", xml);
+  }
   xml << "</body>\n";
 }
 

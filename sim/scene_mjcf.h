@@ -13,6 +13,7 @@ struct VisualScene {
   ObstacleField obstacles;
   PadGeometry pad;
   double deck_height = 0.3;  ///< upper face of the deck above the ground [m]
+  double occlusion = 0.0;    ///< share of the printed sheet under an opaque plate, in [0, 1)
 };
 
 /// How it is looked at: a pinhole camera with square pixels and its axis through the image's middle.

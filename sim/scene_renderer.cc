@@ -31,6 +31,7 @@ void Check(const VisualScene& scene, const ViewConfig& view) {
   Validate(scene.pad, scene.deck_height);
   CheckWithin("pad.deck_half_size of a rendered pad", scene.pad.deck_half_size,
               0.5 * estimation::kPadSheetSide, 5.0);
+  CheckWithin("occlusion", scene.occlusion, 0.0, 0.95);
   CheckWithin("view.width", view.width, 1, 4096);
   CheckWithin("view.height", view.height, 1, 4096);
   CheckAbove("view.fov_y_deg", view.fov_y_deg, 0.0, 170.0);

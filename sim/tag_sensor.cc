@@ -16,6 +16,7 @@
 #include "touchdown/estimation/pad_sheet.h"
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/pad_camera.h"
+#include "touchdown/sim/pad_geometry.h"
 
 namespace touchdown::sim {
 namespace {
@@ -99,6 +100,7 @@ TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacl
   CheckWithin("tag_camera.max_view_angle_deg", config.max_view_angle_deg, 0.0, 89.0);
   CheckWithin("tag_camera.attitude_sigma_deg", config.attitude_sigma_deg, 0.01, 45.0);
   CheckWithin("tag_camera.noise_scale", config.noise_scale, 0.0, 100.0);
+  CheckWithin("tag_camera.occlusion", config.occlusion, 0.0, 0.95);
   CheckAbove("tag_camera.model.spread", config.model.spread, 0.0, 1000.0);
   CheckWithin("length of tag_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
   intrinsics_.width = config.width;
@@ -113,6 +115,7 @@ std::array<bool, estimation::kPadTagCount> TagSensor::Visible(
   const Placement placement(vehicle, pad, config_.p_BC);
   const Eigen::Vector3d p_WC = vehicle.p_WB + vehicle.q_WB * config_.p_BC;
   const Eigen::Matrix3d R_WC = vehicle.q_WB.toRotationMatrix() * DownwardCameraAxes();
+  const double plate_edge = PlateEdge(config_.occlusion);
   const double cos_limit = std::cos(Radians(config_.max_view_angle_deg));
   const auto corner_seen = [&](const Eigen::Vector3d& corner_C) {
     return InImage(intrinsics_, corner_C) &&
@@ -124,7 +127,7 @@ std::array<bool, estimation::kPadTagCount> TagSensor::Visible(
     const Eigen::Vector3d center_C = placement.ToC(tag.center_P);
     if (-placement.R_CP.col(2).dot(center_C) < cos_limit * center_C.norm()) continue;
     const Corners corners = tag.Corners();
-    bool all = true;
+    bool all = config_.occlusion == 0.0 || corners.row(0).maxCoeff() < plate_edge;
     for (int k = 0; k < 4 && all; ++k) all = corner_seen(placement.ToC(corners.col(k)));
     visible[static_cast<std::size_t>(tag.id)] = all;
   }
@@ -156,7 +159,8 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
     any = any || image.found[id];
   }
   if (!any) return image;
-  image.aligned = SheetIsAligned(placement, intrinsics_);
+  // A sheet that is partly covered does not look like the print: PadAlignment turns it down.
+  image.aligned = config_.occlusion == 0.0 && SheetIsAligned(placement, intrinsics_);
   const double sigma = config_.noise_scale *
                        At(model, image.aligned ? model.sheet_sigma : model.corner_sigma, largest);
   std::array<estimation::TagDetection, estimation::kPadTagCount> tags;
@@ -181,7 +185,12 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
 std::optional<estimation::PadSighting> TagSensor::Poll(double t,
                                                        const estimation::VehicleState& vehicle,
                                                        const estimation::PadState& pad) {
-  if (!clock_.Due(t)) return std::nullopt;
+  return clock_.Due(t) ? Sight(t, vehicle, pad) : std::nullopt;
+}
+
+std::optional<estimation::PadSighting> TagSensor::Sight(double t,
+                                                        const estimation::VehicleState& vehicle,
+                                                        const estimation::PadState& pad) {
   const Image image = Look(vehicle, pad);
   if (image.pose.status != estimation::PadPoseStatus::kSolved) return std::nullopt;
   estimation::PadSighting sighting =

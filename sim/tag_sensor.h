@@ -29,6 +29,7 @@ struct TagSensorConfig {
   double max_view_angle_deg = 75.0;  ///< between the line of sight and the deck's normal [deg]
   double attitude_sigma_deg = 1.0;   ///< claimed of the vehicle's attitude [deg], in [0.01, 45]
   double noise_scale = 1.0;          ///< factor on the corners' noise, in [0, 100]
+  double occlusion = 0.0;  ///< share of the sheet under an opaque plate (PlateEdge), in [0, 0.95]
   TagModel model;
 };
 
@@ -45,6 +46,10 @@ class TagSensor {
   std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
                                               const estimation::PadState& pad);
 
+  /// The same without asking whether an image is due.
+  std::optional<estimation::PadSighting> Sight(double t, const estimation::VehicleState& vehicle,
+                                               const estimation::PadState& pad);
+
   /// Takes an image at once: the tags that are found, and the pad's pose in it.
   struct Image {
     std::array<bool, estimation::kPadTagCount> found{};
@@ -54,7 +59,7 @@ class TagSensor {
   Image Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad);
 
   /// Which of estimation::PadTags() a camera at this pose has in view: all four corners in the
-  /// image, at an admissible angle, nothing in between.
+  /// image, at an admissible angle, nothing in between or on them.
   std::array<bool, estimation::kPadTagCount> Visible(const estimation::VehicleState& vehicle,
                                                      const estimation::PadState& pad) const;
 

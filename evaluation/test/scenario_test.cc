@@ -57,6 +57,17 @@ TEST_F(ScenarioTest, AFileWithoutAKeyIsRefused) {
   }
 }
 
+TEST_F(ScenarioTest, SensorKeysAreChecked) {
+  EXPECT_THAT(Refusal("sensing: guessed\n"), HasSubstr("sensing must be fast or rendered"));
+  EXPECT_THAT(Refusal("gps: {outage: [5, 3]}\n"), HasSubstr("must not end before it begins"));
+  EXPECT_THAT(Refusal("camera: {drop: 1.5}\n"), HasSubstr("camera.drop must be"));
+  EXPECT_THAT(Refusal("camera: {occlusion: 0.95}\n"), HasSubstr("camera.occlusion must be"));
+  EXPECT_THAT(Refusal("camera: {zoom: 2}\n"), HasSubstr("camera.zoom"));
+  EXPECT_EQ(Refusal("pad: {deck_size: 1.0}\n"), "accepted");
+  EXPECT_THAT(Refusal("pad: {deck_size: 1.0}\nsensing: rendered\n"),
+              HasSubstr("pad.deck_size must be in [1.28, 5] m"));
+}
+
 TEST_F(ScenarioTest, NestedAndDottedKeysAreTheSame) {
   const Scenario a = Load("pad: {speed: 1.25, start: [3, -4.5]}\nplanning: {latency: measured}\n");
   const Scenario b = Load("pad.speed: 1.25\npad.start: [3, -4.5]\nplanning.latency: measured\n");

@@ -9,6 +9,39 @@
 namespace touchdown::sim {
 namespace {
 
+TEST(PadGps, OutagesAndOutliersLeaveTheOtherFixesAlone) {
+  PadGps plain({0.5, 10.0}, 5);
+  PadGpsConfig config;
+  config.sigma = 0.5;
+  config.outage_begin_s = 20.0;
+  config.outage_end_s = 22.0;
+  config.outlier_probability = 0.1;
+  config.outlier_size = 10.0;
+  PadGps faulty(config, 5);
+  int missing = 0;
+  int outliers = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const auto good = plain.Poll(0.1 * i, {});
+    const auto fix = faulty.Poll(0.1 * i, {});
+    ASSERT_TRUE(good.has_value());
+    if (!fix) {
+      ++missing;
+      EXPECT_GE(good->t, 20.0 - 1e-9);
+      EXPECT_LT(good->t, 22.0);
+      continue;
+    }
+    EXPECT_EQ(fix->sigma, 0.5);
+    const double off = (fix->p_WP - good->p_WP).norm();
+    if (off == 0.0) continue;
+    EXPECT_NEAR(off, 10.0, 1e-9);
+    ++outliers;
+  }
+  EXPECT_NEAR(missing, 20, 1);
+  EXPECT_NEAR(outliers, 1000, 120);
+  config.outlier_probability = 1.5;
+  EXPECT_THROW(PadGps(config, 5), std::invalid_argument);
+}
+
 TEST(PadGps, NoiseHasTheStatedSpreadAndNoMemory) {
   const double sigma = 0.5;
   PadGps gps({sigma, 10.0}, 11);

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/depth_eye.h"
+#include "touchdown/evaluation/pad_eye.h"
+#include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/trial_json.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+Scenario Open(const Overrides& overrides) {
+  return LoadScenario(FindScenario("open"), overrides, StandardRegistries());
+}
+
+std::string Deterministic(const Scenario& scenario, const TrialResult& result) {
+  nlohmann::ordered_json json = LandJson(scenario, result);
+  json.erase("wall_clock");
+  return json.dump();
+}
+
+/// What an eye sees of a standing pad, from `height` above it and `aside` of it.
+struct Watch {
+  std::vector<PadGlimpse> glimpses;
+  std::vector<double> arrivals;
+  SensingTimes times;
+};
+
+/// @param speed at which the vehicle passes over the pad [m/s].
+Watch WatchPad(const Overrides& overrides, int images, double height, double aside = 0.0,
+               double speed = 0.0, bool thrifty = true) {
+  const Scenario scenario = Open(overrides);
+  const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1));
+  const auto eye = MakePadEye(scenario, world, 7, thrifty);
+  estimation::PadState pad;
+  pad.p_WP = {3.0, 2.0, scenario.pad.deck_height};
+  estimation::PadFilterOptions options;
+  options.pad_height = scenario.pad.deck_height;
+  estimation::PadFilter filter(options);
+  Watch watch;
+  for (int k = 0; k < images; ++k) {
+    estimation::VehicleState vehicle;
+    vehicle.t = k / scenario.tag_rate;
+    vehicle.v_WB.x() = speed;
+    vehicle.p_WB = pad.p_WP + Eigen::Vector3d(aside + speed * vehicle.t, 0.0, height);
+    filter.AddGps({vehicle.t, pad.p_WP.head<2>(), 0.05});
+    eye->Look(vehicle, pad, filter, &watch.times);
+    while (const auto glimpse = eye->Poll(vehicle.t)) {
+      watch.glimpses.push_back(*glimpse);
+      watch.arrivals.push_back(vehicle.t);
+    }
+  }
+  return watch;
+}
+
+double ErrorOf(const PadGlimpse& glimpse, double deck_height) {
+  const Eigen::Vector3d p_WP =
+      glimpse.vehicle.p_WB + glimpse.vehicle.q_WB * glimpse.sighting.p_BP_B;
+  return (p_WP - Eigen::Vector3d(3.0, 2.0, deck_height)).norm();
+}
+
+TEST(PadEye, BothKindsSeeThePadWhereItIs) {
+  for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
+    const Watch watch = WatchPad({kind}, 10, 2.0);
+    ASSERT_EQ(watch.glimpses.size(), 10U) << kind;
+    for (const PadGlimpse& glimpse : watch.glimpses) EXPECT_LT(ErrorOf(glimpse, 0.5), 0.01) << kind;
+  }
+}
+
+TEST(PadEye, DropsItsShareOfTheImages) {
+  const std::size_t fast = WatchPad({"camera.drop=0.3"}, 1000, 2.0).glimpses.size();
+  EXPECT_NEAR(static_cast<double>(fast), 700.0, 60.0);
+  // The same stream drops the same images of both kinds.
+  const Watch few = WatchPad({"camera.drop=0.3"}, 40, 2.0);
+  const Watch rendered = WatchPad({"camera.drop=0.3", "sensing=rendered"}, 40, 2.0);
+  EXPECT_LT(rendered.glimpses.size(), 40U);
+  ASSERT_EQ(few.glimpses.size(), rendered.glimpses.size());
+  for (std::size_t i = 0; i < few.glimpses.size(); ++i) {
+    EXPECT_EQ(few.glimpses[i].sighting.t, rendered.glimpses[i].sighting.t);
+  }
+}
+
+TEST(PadEye, LatencyDelaysButKeepsStampAndState) {
+  const Watch watch = WatchPad({"camera.latency_ms=120"}, 40, 2.0);
+  ASSERT_GE(watch.glimpses.size(), 30U);
+  for (std::size_t i = 0; i < watch.glimpses.size(); ++i) {
+    const double age = watch.arrivals[i] - watch.glimpses[i].sighting.t;
+    EXPECT_NEAR(age, 0.15, 1e-9);  // the first look after 120 ms
+    EXPECT_EQ(watch.glimpses[i].vehicle.t, watch.glimpses[i].sighting.t);
+  }
+}
+
+TEST(PadEye, AHalfCoveredPadShowsTwoTagsAndIsStillWhereItIs) {
+  for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
+    for (const double height : {1.0, 2.0, 3.0}) {
+      const Watch watch = WatchPad({kind, "camera.occlusion=0.5"}, 6, height);
+      EXPECT_GE(watch.glimpses.size(), 5U) << kind << " at " << height;
+      for (const PadGlimpse& glimpse : watch.glimpses) {
+        EXPECT_LE(glimpse.sighting.tags_seen, 2) << kind;
+        EXPECT_LT(ErrorOf(glimpse, 0.5), 0.08) << kind << " at " << height;
+      }
+    }
+  }
+  EXPECT_TRUE(WatchPad({"camera.occlusion=0.9"}, 10, 2.0).glimpses.empty());
+  EXPECT_TRUE(WatchPad({"camera.occlusion=0.9", "sensing=rendered"}, 5, 2.0).glimpses.empty());
+}
+
+TEST(PadEye, PassingOverImagesOnlySavesTime) {
+  const auto pass = [](bool thrifty) {
+    return WatchPad({"sensing=rendered"}, 50, 2.0, -8.0, 5.0, thrifty);
+  };
+  const Watch thrifty = pass(true);
+  const Watch all = pass(false);
+  ASSERT_GT(all.glimpses.size(), 10U);
+  ASSERT_EQ(thrifty.glimpses.size(), all.glimpses.size());
+  for (std::size_t i = 0; i < all.glimpses.size(); ++i) {
+    EXPECT_EQ(thrifty.glimpses[i].sighting.t, all.glimpses[i].sighting.t);
+    EXPECT_EQ(thrifty.glimpses[i].sighting.p_BP_B, all.glimpses[i].sighting.p_BP_B);
+    EXPECT_EQ(thrifty.glimpses[i].sighting.yaw_BP, all.glimpses[i].sighting.yaw_BP);
+  }
+}
+
+TEST(PadEye, EveryTenthImageIsSearchedAnyhow) {
+  EXPECT_EQ(WatchPad({"sensing=rendered"}, 9, 2.0, -20.0).times.pad_finding, 0.0);
+  EXPECT_GT(WatchPad({"sensing=rendered"}, 10, 2.0, -20.0).times.pad_finding, 0.0);
+}
+
+TEST(PadEye, WhereThePadMayShow) {
+  estimation::CameraIntrinsics camera{320, 240, 120.0, 160.0, 120.0};
+  EXPECT_TRUE(MayShowPad({0, 0, 2}, 0.1, camera));
+  EXPECT_TRUE(MayShowPad({0, 0, -0.05}, 0.1, camera));
+  EXPECT_FALSE(MayShowPad({0, 0, -0.2}, 0.1, camera));
+  EXPECT_FALSE(MayShowPad({0, 0, 14}, 1.0, camera));
+  EXPECT_TRUE(MayShowPad({0, 2.1, 2}, 0.1, camera));   // 45 deg: 0.07 m beyond the border
+  EXPECT_FALSE(MayShowPad({0, 2.2, 2}, 0.1, camera));  // 0.14 m beyond it
+  EXPECT_FALSE(MayShowPad({-5, 0, 2}, 1.0, camera));
+  EXPECT_TRUE(MayShowPad({-5, 0, 2}, 3.0, camera));
+}
+
+TEST(DepthEye, DropsAndDelaysItsImages) {
+  for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
+    const Scenario scenario =
+        Open({kind, "depth.drop=0.5", "depth.latency_ms=150", "depth.width=40", "depth.height=30"});
+    const auto eye = MakeDepthEye(scenario, WorldOf(scenario, DrawTrial(scenario, 1)), 3);
+    SensingTimes times;
+    int arrived = 0;
+    for (int k = 0; k < 100; ++k) {
+      estimation::VehicleState vehicle;
+      vehicle.t = 0.1 * k;
+      vehicle.p_WB.z() = 2.0;
+      eye->Look(vehicle, {}, &times);
+      while (auto glimpse = eye->Poll(vehicle.t)) {
+        EXPECT_NEAR(vehicle.t - glimpse->frame.t, 0.2, 1e-9);
+        EXPECT_EQ(glimpse->frame.depth.size(), 1200U);
+        ++arrived;
+        eye->Recycle(std::move(*glimpse));
+      }
+    }
+    EXPECT_NEAR(arrived, 50, 20) << kind;
+  }
+}
+
+// Side by side in two threads, each with its own cameras.
+TEST(SensingFlight, ARenderedFlightLandsAndRepeatsBitByBit) {
+  const Scenario scenario = Open({"sensing=rendered", "gps.sigma=0.5", "camera.drop=0.1"});
+  TrialRecord records[2];
+  std::string results[2];
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 2; ++i) {
+    threads.emplace_back([&, i] {
+      const TrialResult result = RunTrial(scenario, 3, StandardRegistries(), &records[i]);
+      EXPECT_TRUE(result.landed()) << result.detail;
+      EXPECT_GT(result.timing.sensing_stages.pad_image, 0.0);
+      EXPECT_GT(result.timing.sensing_stages.depth_image, 0.0);
+      results[i] = Deterministic(scenario, result);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(results[0], results[1]);
+  ASSERT_EQ(records[0].samples.size(), records[1].samples.size());
+  for (std::size_t i = 0; i < records[0].samples.size(); ++i) {
+    const RecordSample& a = records[0].samples[i];
+    const RecordSample& b = records[1].samples[i];
+    ASSERT_EQ(a.vehicle.p_WB, b.vehicle.p_WB) << "at " << a.t;
+    ASSERT_EQ(a.pad_estimate.p_WP, b.pad_estimate.p_WP) << "at " << a.t;
+    ASSERT_EQ(a.rotor_thrusts, b.rotor_thrusts) << "at " << a.t;
+  }
+}
+
+TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
+  const auto fly = [](const Overrides& overrides) {
+    const Scenario scenario = Open(overrides);
+    const TrialResult result = RunTrial(scenario, 1, StandardRegistries());
+    EXPECT_TRUE(result.landed()) << result.detail << " with "
+                                 << (overrides.empty() ? "" : overrides[0]);
+    return Deterministic(scenario, result);
+  };
+  std::vector<std::string> seen = {fly({})};
+  // No key without its fault changes anything.
+  EXPECT_EQ(fly({"gps.outlier_size=50", "gps.outage=[3, 3]", "camera.noise=5"}), seen[0]);
+  for (const Overrides& fault :
+       std::vector<Overrides>{{"gps.outage=[2, 4]"},
+                              {"gps.outliers=0.1"},
+                              {"camera.drop=0.3"},
+                              {"camera.occlusion=0.4"},
+                              {"camera.occlusion=0.5", "camera.fov_deg=110"},
+                              {"camera.latency_ms=60"},
+                              {"depth.noise=0.01"},
+                              {"depth.drop=0.3"},
+                              {"depth.latency_ms=60"}}) {
+    seen.push_back(fly(fault));
+    // The empty field has nothing for the depth camera to err about but the pad vehicle itself.
+    if (fault[0].rfind("depth", 0) != 0) {
+      EXPECT_NE(seen.back(), seen[0]) << fault[0];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
