@@ -60,8 +60,12 @@ class PlanAttempt {
   ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
 
   /// The last attempt bound its control points to one way, and found no plan on it: with more time there
-  /// may be one, for a solve or two.
-  bool GoesOn() const { return bound_ && finder_.ways_closed() == 0; }
+  /// may be one, for a solve or two. Not with hard limits: where they leave the pairs no room, an interior
+  /// point takes longer than a fresh start.
+  bool GoesOn() const {
+    return bound_ && finder_.ways_closed() == 0 &&
+           options_.problem.limits_mode == LimitsMode::kSoft;
+  }
 
  private:
   struct Prepared {
