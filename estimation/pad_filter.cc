@@ -8,28 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "touchdown/estimation/chi_squared.h"
 #include "touchdown/estimation/pad_predictor.h"
 
 namespace touchdown::estimation {
 namespace {
-
-// Chi-squared quantile for 1 to 3 degrees of freedom, by bisection of the closed-form distribution.
-double ChiSquaredQuantile(int degrees, double probability) {
-  const auto cdf = [degrees](double x) {
-    if (degrees == 2) return 1.0 - std::exp(-0.5 * x);
-    const double one = std::erf(std::sqrt(0.5 * x));
-    return degrees == 1 ? one : one - std::sqrt(2.0 * x / std::numbers::pi) * std::exp(-0.5 * x);
-  };
-  double low = 0.0;
-  double high = 200.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (cdf(middle) < probability ? low : high) = middle;
-  }
-  return high;
-}
 
 // Heading in W of the pad's x axis, known to be horizontal in W, from its direction in B's x-y
 // plane: the component along z_B is what makes it horizontal.
