@@ -107,36 +107,53 @@ std::uint64_t BlockedBits::OfBlocks(int row, int word) {
   return bits;
 }
 
+/// Of the cells of a row from `first` on, those over the pad: only within the strip's box need to be asked.
+std::uint64_t BlockedBits::OverPad(const CellIndex& first, int count) const {
+  const OccupancyMap& map = *space_.map;
+  const Eigen::Vector2d reach =
+      Eigen::Vector2d::Constant(space_.pad_radius + map.resolution());  // room for rounding
+  const Eigen::Vector2d low = space_.pad_from.cwiseMin(space_.pad_to) - reach;
+  const Eigen::Vector2d high = space_.pad_from.cwiseMax(space_.pad_to) + reach;
+  const Eigen::Vector3d centre = map.CentreOf(first);
+  std::uint64_t bits = 0;
+  if (centre.y() < low.y() || centre.y() > high.y()) return bits;
+  const auto place = [&](double x) {
+    const double cells = (x - centre.x()) / map.resolution();
+    return static_cast<int>(std::clamp(cells, -1.0, static_cast<double>(kWord)));
+  };
+  for (int i = std::max(0, place(low.x())); i < std::min(count, place(high.x()) + 1); ++i) {
+    const bool over = space_.OverPad(map.CentreOf(first + CellIndex(i, 0, 0)));
+    bits |= static_cast<std::uint64_t>(over) << i;
+  }
+  return bits;
+}
+
 /// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
 std::uint64_t BlockedBits::OfCells(int row, int word) const {
   const OccupancyMap& map = *space_.map;
   const CellIndex& size = layer(Lattice::kCells).size;
   const CellIndex first = map.origin() + CellIndex(word * kWord, row % size.y(), row / size.y());
   const int count = std::min(kWord, size.x() - word * kWord);
-  std::uint64_t bits = map.BlockedRow(first, count);
+  const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
   const Eigen::Vector3d centre = map.CentreOf(first);
   const double resolution = map.resolution();
-  const auto add_where = [&](const auto& blocked) {
-    for (int i = 0; i < count; ++i) {
-      const Eigen::Vector3d at = map.CentreOf(first + CellIndex(i, 0, 0));
-      if (blocked(at)) bits |= std::uint64_t{1} << i;
-    }
-  };
-  const double low =
-      space_.pad_radius > 0.0 ? std::min(space_.floor, space_.pad_floor) : space_.floor;
-  const double high =
-      space_.pad_radius > 0.0 ? std::max(space_.floor, space_.pad_floor) : space_.floor;
-  if (centre.z() > space_.ceiling || centre.z() < low) {
-    bits = ~std::uint64_t{0} >> (kWord - count);
-  } else if (centre.z() < high) {
-    add_where([&](const Eigen::Vector3d& at) { return at.z() < space_.FloorAt(at); });
+  const bool too_low = centre.z() < space_.floor;
+  const bool too_low_over_pad = space_.pad_radius > 0.0 ? centre.z() < space_.pad_floor : too_low;
+  if (centre.z() > space_.ceiling || (too_low && too_low_over_pad)) return all;
+  std::uint64_t bits = map.BlockedRow(first, count);
+  if (too_low != too_low_over_pad) {
+    const std::uint64_t over = OverPad(first, count);
+    bits |= too_low_over_pad ? over : all & ~over;
   }
   for (const Barrier& barrier : barriers_) {
     const double from = DistanceAlong(barrier, centre);
     const double to = from + (count - 1) * resolution * barrier.normal.x();
     const double reach = kBarrierThickness * resolution;
     if (std::min(from, to) > reach || std::max(from, to) < -reach) continue;
-    add_where([&](const Eigen::Vector3d& at) { return Closes(barrier, at, resolution); });
+    for (int i = 0; i < count; ++i) {
+      const bool closed = Closes(barrier, map.CentreOf(first + CellIndex(i, 0, 0)), resolution);
+      bits |= static_cast<std::uint64_t>(closed) << i;
+    }
   }
   return bits;
 }

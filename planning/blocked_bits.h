@@ -54,6 +54,7 @@ class BlockedBits {
   Layer& layer(Lattice lattice) { return layers_[static_cast<std::size_t>(lattice)]; }
   std::uint64_t Word(Lattice lattice, int row, int word);
   std::uint64_t OfCells(int row, int word) const;
+  std::uint64_t OverPad(const CellIndex& first, int count) const;
   std::uint64_t OfBlocks(int row, int word);
 
   FreeSpace space_;
