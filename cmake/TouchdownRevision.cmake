@@ -1,3 +1,4 @@
+cmake_policy(VERSION 3.25)
 # Run at every build (cmake -P): writes the revision of the sources to HEADER, and touches it only
 # when it changed.
 #   cmake -DSOURCE_DIR=<repository> -DHEADER=<file> -P TouchdownRevision.cmake

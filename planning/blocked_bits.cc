@@ -5,6 +5,7 @@
 #include "touchdown/planning/blocked_bits.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace touchdown::planning {
 
@@ -128,6 +129,31 @@ std::uint64_t BlockedBits::OverPad(const CellIndex& first, int count) const {
   return bits;
 }
 
+/// Of the cells of a row, those that belong to the barrier: only near its plane they need to be asked.
+std::uint64_t BlockedBits::Of(const Barrier& barrier, const CellIndex& first, int count) const {
+  const OccupancyMap& map = *space_.map;
+  const double from = DistanceAlong(barrier, map.CentreOf(first));
+  const double step = map.resolution() * barrier.normal.x();           // from cell to cell
+  const double reach = (kBarrierThickness + 1e-6) * map.resolution();  // room for rounding
+  int begin = 0, end = count;
+  if (std::abs(step) * count > reach) {
+    const auto place = [&](double along) {
+      return std::clamp((along - from) / step, -1.0, static_cast<double>(kWord));
+    };
+    const auto [low, high] = std::minmax({place(-reach), place(reach)});
+    begin = std::max(0, static_cast<int>(std::floor(low)));
+    end = std::min(count, static_cast<int>(std::ceil(high)) + 1);
+  } else if (std::abs(from) > reach + std::abs(step) * count) {
+    return 0;
+  }
+  std::uint64_t bits = 0;
+  for (int i = begin; i < end; ++i) {
+    const bool closed = Closes(barrier, map.CentreOf(first + CellIndex(i, 0, 0)), map.resolution());
+    bits |= static_cast<std::uint64_t>(closed) << i;
+  }
+  return bits;
+}
+
 /// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
 std::uint64_t BlockedBits::OfCells(int row, int word) const {
   const OccupancyMap& map = *space_.map;
@@ -136,7 +162,6 @@ std::uint64_t BlockedBits::OfCells(int row, int word) const {
   const int count = std::min(kWord, size.x() - word * kWord);
   const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
   const Eigen::Vector3d centre = map.CentreOf(first);
-  const double resolution = map.resolution();
   const bool too_low = centre.z() < space_.floor;
   const bool too_low_over_pad = space_.pad_radius > 0.0 ? centre.z() < space_.pad_floor : too_low;
   if (centre.z() > space_.ceiling || (too_low && too_low_over_pad)) return all;
@@ -145,16 +170,7 @@ std::uint64_t BlockedBits::OfCells(int row, int word) const {
     const std::uint64_t over = OverPad(first, count);
     bits |= too_low_over_pad ? over : all & ~over;
   }
-  for (const Barrier& barrier : barriers_) {
-    const double from = DistanceAlong(barrier, centre);
-    const double to = from + (count - 1) * resolution * barrier.normal.x();
-    const double reach = kBarrierThickness * resolution;
-    if (std::min(from, to) > reach || std::max(from, to) < -reach) continue;
-    for (int i = 0; i < count; ++i) {
-      const bool closed = Closes(barrier, map.CentreOf(first + CellIndex(i, 0, 0)), resolution);
-      bits |= static_cast<std::uint64_t>(closed) << i;
-    }
-  }
+  for (const Barrier& barrier : barriers_) bits |= Of(barrier, first, count);
   return bits;
 }
 

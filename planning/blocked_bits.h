@@ -55,6 +55,7 @@ class BlockedBits {
   std::uint64_t Word(Lattice lattice, int row, int word);
   std::uint64_t OfCells(int row, int word) const;
   std::uint64_t OverPad(const CellIndex& first, int count) const;
+  std::uint64_t Of(const Barrier& barrier, const CellIndex& first, int count) const;
   std::uint64_t OfBlocks(int row, int word);
 
   FreeSpace space_;

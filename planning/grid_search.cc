@@ -30,6 +30,10 @@ constexpr std::uint32_t StepsTo(int axis, int side) {
   return bits;
 }
 
+// Room at first; a search that needs more makes more.
+constexpr std::size_t kUsualHeap = 1 << 16;
+constexpr std::size_t kUsualWay = 1024;
+
 constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
 constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
 constexpr std::uint32_t kAbove[] = {StepsTo(0, 1), StepsTo(1, 1), StepsTo(2, 1)};
@@ -122,6 +126,8 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
 
 void GridSearch::Reserve(const OccupancyMap& map) {
   blocked_.Reserve(map);
+  heap_.reserve(kUsualHeap);
+  way_.reserve(kUsualWay);
   const auto cells = static_cast<std::size_t>(map.size().cast<std::int64_t>().prod());
   if (cells_.size() == cells) return;
   cells_.assign(cells, Cell());

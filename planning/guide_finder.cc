@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "touchdown/planning/voxel_traversal.h"
+
 namespace touchdown::planning {
 
 namespace {
@@ -14,7 +16,9 @@ namespace {
 constexpr double kGuideStep = 0.05;   // sampling of a curve as a guide [s]
 constexpr double kGreed = 4.0;        // of A*
 constexpr double kTightCost = 8.0;    // of A*, beside obstacles
+constexpr double kBeside = 0.5;       // a curve that is on a way's side stays there for so long [s]
 constexpr double kLevelMargin = 0.3;  // of a guide from floor and ceiling, out of the window [m]
+constexpr int kDetourExpansions = 1000;
 /// A way that is found only after so many cells is a long one.
 constexpr int kOtherWayExpansions = 1000;
 constexpr int kOtherWayAtRest = 12000;
@@ -42,9 +46,27 @@ GuideFinder::GuideFinder(double vertical_cost)
 
 void GuideFinder::Begin(int max_expansions, bool at_rest) {
   barriers_.clear();
-  committed_ = nullptr;
+  committed_.Clear();
   expansions_left_ = max_expansions;
   at_rest_ = at_rest;
+}
+
+void GuideFinder::Keep(const UniformBspline& committed, double t_from, const FreeSpace& space) {
+  const int budget = std::min(expansions_left_, kDetourExpansions);
+  const int spent = committed_.Follow(committed, t_from, space, budget, &search_);
+  expansions_left_ = std::max(1, expansions_left_ - spent);
+}
+
+void GuideFinder::EndBesideKept(const FreeSpace& space, const UniformBspline& curve,
+                                BlockedRun* run) const {
+  const auto is_free = [&](const CellIndex& cell) { return !space.Blocked(cell); };
+  const auto sees_way = [&](double t) {
+    const Eigen::Vector3d way = committed_.At((t - curve.t0()) / curve.duration());
+    return TraverseCells(curve.Evaluate(t).p_WB, way, space.map->resolution(), is_free);
+  };
+  for (double t = run->t_out; t < curve.t_end(); t += kGuideStep) {
+    if (!sees_way(t)) run->t_out = std::min(t + kBeside, curve.t_end());
+  }
 }
 
 SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run,
@@ -52,10 +74,8 @@ SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& cur
   EndInWindow(curve, *space.map, run);
   if (Keeps(*run)) {
     // The same share of the way that is left, wherever the arrival is now.
-    const double t0 = curve.t0();
-    const double rate = (committed_->t_end() - t0) / (curve.t_end() - t0);
-    const auto then = [&](double t) { return t0 + rate * (t - t0); };
-    SampleGuide(*committed_, then(run->t_in), then(run->t_out), guide);
+    const auto share = [&](double t) { return (t - curve.t0()) / curve.duration(); };
+    committed_.Sample(share(run->t_in), share(run->t_out), guide);
     return SearchStatus::kFound;
   }
   const int other_way = at_rest_ ? kOtherWayAtRest : kOtherWayExpansions;

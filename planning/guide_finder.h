@@ -5,14 +5,16 @@
 #include <vector>
 
 #include "touchdown/planning/barrier.h"
+#include "touchdown/planning/committed_way.h"
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {
 
-/// Finds guides past the blocked stretches of a curve: along the committed curve while it is clear, so that
-/// the side of an obstacle is kept, else by A*. All searches of one attempt share a budget.
+/// Finds guides past the blocked stretches of a curve: along the committed curve, with detours where it is
+/// blocked by now, so that the side of an obstacle is kept, else by A*. All searches of one attempt share a
+/// budget.
 class GuideFinder {
  public:
   explicit GuideFinder(double vertical_cost);
@@ -24,13 +26,17 @@ class GuideFinder {
   /// @param max_expansions of all its searches. @param at_rest there is time to look for long ways round.
   void Begin(int max_expansions, bool at_rest);
 
-  /// `committed`, which must outlive the attempt, is clear.
-  void Keep(const UniformBspline* committed) { committed_ = committed; }
+  /// Guides follow the committed curve from t_from [s] on, where it still knows a way.
+  void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space);
 
   /// The committed curve leads past this stretch, and no way was closed yet.
   bool Keeps(const BlockedRun& run) const {
-    return committed_ != nullptr && barriers_.empty() && !run.at_start;
+    return committed_.known() && barriers_.empty() && !run.at_start;
   }
+
+  /// Ends a run that is kept only where the curve is on the committed curve's side of everything: a curve
+  /// that leaves an obstacle seen from the front is behind its front, not past it. @pre Keeps(*run).
+  void EndBesideKept(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run) const;
 
   /// From here on guides do not cross this.
   void Close(const Barrier& barrier) { barriers_.push_back(barrier); }
@@ -45,7 +51,7 @@ class GuideFinder {
  private:
   GridSearch search_;
   std::vector<Barrier> barriers_;
-  const UniformBspline* committed_ = nullptr;
+  CommittedWay committed_;
   int expansions_left_ = 0;
   bool at_rest_ = false;
 };

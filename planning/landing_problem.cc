@@ -51,6 +51,7 @@ LandingProblem::LandingProblem(int segments, const LandingProblemOptions& option
   context_.limits = options.limits;
   pairs_.reserve(static_cast<std::size_t>(max_pairs_));
   obstacles_.reserve(static_cast<std::size_t>(max_obstacles_));
+  x_.reserve(static_cast<std::size_t>(3 * (segments_ + 3)));
   AddTerms(options);
   solvers::AffineLift structure = solvers::AffineLift::Identity(segments + 3);
   if (options.endpoint == EndpointMode::kEliminated) {

@@ -2,7 +2,7 @@
 // One attempt at a plan: solve without obstacles, then find a guide past what is in the way, bind the
 // control points to free space along it, solve and check, until the whole curve is clear. Pairs start
 // empty at every attempt, so that none outlives the obstacle it was made for; the side of an obstacle is
-// kept by taking the committed curve, while it is clear, as the guide, and only else a new A* path.
+// kept by taking the committed curve as the guide, and only where it knows no way a new A* path.
 
 #include "touchdown/planning/plan_attempt.h"
 
@@ -101,6 +101,10 @@ void PlanAttempt::PrepareProblem(int segments, ArrivalMode arrival) {
   prepared.backend->Prepare(prepared.problem->view());
   prepared.start.y.resize(prepared.problem->view().num_variables());
   prepared.solver.x = prepared.first_guess = prepared.start.y;
+  const solvers::Problem& problem = prepared.problem->view().problem();
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    prepared.solver.cost_by_term.push_back({problem.term(i).info().name, 0.0});
+  }
 }
 
 /// Without the terms whose weights grow from round to round.
@@ -186,13 +190,13 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
   const BlockedRun first = runs_.front();
   if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
   if (request.previous && request.previous->t_end() > request.t0) {
-    StageTimer timer(&result->times.check);
-    const double hit = FirstBlockedTime(*request.previous, request.t0, *request.space);
-    if (!std::isfinite(hit)) finder_.Keep(request.previous);
+    StageTimer timer(&result->times.search);
+    finder_.Keep(*request.previous, request.t0, *request.space);
   }
   // One path past everything that is in the way, so that one detour does not lead into the next.
   BlockedRun span = {first.t_in, runs_.back().t_out, first.at_start, false};
   const bool keeps_side = finder_.Keeps(span);
+  if (keeps_side) finder_.EndBesideKept(*request.space, first_curve_, &span);
   const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
   for (int i = 0; i < guides; ++i) {
     if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;

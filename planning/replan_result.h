@@ -113,6 +113,10 @@ class PathList {
   bool empty() const { return size_ == 0; }
   const Path& operator[](std::size_t i) const { return paths_[i]; }
 
+  void Reserve(std::size_t paths, std::size_t points) {
+    if (paths_.size() < paths) paths_.resize(paths);
+    for (Path& path : paths_) path.reserve(points);
+  }
   void Clear() { size_ = 0; }
   void Add(const Path& path) {
     if (size_ == paths_.size()) paths_.emplace_back();

@@ -21,12 +21,14 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kMaxAttempts = 7;
-constexpr double kStretch = 1.3;         // of the duration after an attempt that failed
-constexpr double kFinest = 1.5;          // attempts after the first have so many times its segments
-constexpr int kRescueGuides = 2;         // ways around an obstacle that later attempts try
-constexpr int kGuidesAtRest = 4;         // ... and from rest
-constexpr double kReTimeBelow = 0.75;    // a fresh guess this much shorter replaces the arrival
-constexpr double kStripMemory = 2.0;     // the strip over a pad that was lost holds this long [s]
+constexpr double kStretch = 1.3;       // of the duration after an attempt that failed
+constexpr double kFinest = 1.5;        // attempts after the first have so many times its segments
+constexpr int kRescueGuides = 2;       // ways around an obstacle that later attempts try
+constexpr int kGuidesAtRest = 4;       // ... and from rest
+constexpr double kReTimeBelow = 0.75;  // a fresh guess this much shorter replaces the arrival
+constexpr double kStripMemory = 2.0;   // the strip over a pad that was lost holds this long [s]
+constexpr int kUsualPaths = 32;        // room for those of one step
+constexpr int kUsualPathPoints = 512;
 constexpr double kMoving = 1e-6;         // [m/s]
 constexpr double kPadSlack = 0.15;       // of a plan over the pad below both its ends [m]
 constexpr double kClimb = 1.5;           // [m]
@@ -58,6 +60,7 @@ class Replanner::Impl {
     for (UniformBspline* curve : {&current_, &next_, &braking_, &result_.curve}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
     }
+    result_.guide_paths.Reserve(kUsualPaths, kUsualPathPoints);
   }
 
   void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }

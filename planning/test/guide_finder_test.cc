@@ -45,7 +45,7 @@ TEST(GuideFinder, KeepsToTheCommittedCurveUntilAWayIsClosed) {
   GuidePath guide;
   finder.Begin(100000, false);
   EXPECT_FALSE(finder.Keeps(run));
-  finder.Keep(&committed);
+  finder.Keep(committed, 0.0, space);
   EXPECT_TRUE(finder.Keeps(run));
   ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kFound);
   for (const Eigen::Vector3d& p : guide) EXPECT_NEAR(p.y(), -1.5, 1e-9);
@@ -63,6 +63,36 @@ TEST(GuideFinder, KeepsToTheCommittedCurveUntilAWayIsClosed) {
   finder.Begin(100000, false);
   EXPECT_EQ(finder.ways_closed(), 0);
   EXPECT_FALSE(finder.Keeps(run));
+}
+
+// The curve enters the front of an obstacle whose back was not seen: where it is free again it is behind the
+// front, and a guide that ended there would lead in.
+TEST(GuideFinder, ARunEndsWhereTheCurveIsOnTheCommittedSide) {
+  OccupancyMap map = Wall();
+  for (double x = 0.05; x < 1.5; x += 0.1) {  // the side that the committed curve passes
+    for (double z = -1.55; z < 1.6; z += 0.1) map.SetOccupied({x, -0.55, z});
+  }
+  const FreeSpace space = SpaceOf(map);
+  const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.5, 0.0, 0.05});
+  const UniformBspline committed = Straight({-2.0, -1.5, 0.05}, {2.5, -1.5, 0.05});
+  BlockedRun run = OnlyRun(curve, space);
+  EXPECT_LT(curve.Evaluate(run.t_out).p_WB.x(), 0.5);
+  GuideFinder finder(kUp);
+  finder.Begin(100000, false);
+  finder.Keep(committed, 0.0, space);
+  ASSERT_TRUE(finder.Keeps(run));
+  finder.EndBesideKept(space, curve, &run);
+  EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 1.5);
+  EXPECT_LE(run.t_out, curve.t_end());
+  // Nothing is between: it ends where it ended.
+  const OccupancyMap plain = Wall();
+  BlockedRun short_run = OnlyRun(curve, SpaceOf(plain));
+  const double t_out = short_run.t_out;
+  const UniformBspline beside = Straight({-2.0, -0.9, 0.05}, {2.5, 0.0, 0.05});
+  finder.Begin(100000, false);
+  finder.Keep(beside, 0.0, SpaceOf(plain));
+  finder.EndBesideKept(SpaceOf(plain), curve, &short_run);
+  EXPECT_LT(short_run.t_out, t_out + 1.0);
 }
 
 TEST(GuideFinder, ARunThatLeavesTheWindowEndsInIt) {

@@ -88,6 +88,36 @@ TEST(ReplannerGuides, ASideOnceFlownIsKept) {
 }
 
 // The way is right and the arrival too early: the same control points stay bound and get more time.
+// The end of a wall comes into sight bit by bit. What is flown moves with it, without a search for another
+// way and without trying another arrival.
+TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {
+  OccupancyMap map = ObservedMap();
+  const auto add_wall = [&](double from, double to) {
+    for (double y = from; y < to; y += 0.1) {
+      for (double z = 0.05; z < 3.1; z += 0.1) map.SetOccupied({0.05, y, z});
+    }
+  };
+  add_wall(-3.0, 0.35);
+  const ArcPad pad({4.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
+  Replanner replanner(WithGuides(1), solvers::StandardBackends());
+  const Eigen::Vector3d start(-4.0, 0.0, 1.6);
+  FlyAlong(start, {1.5, 0.0, 0.0}, &replanner);
+  ReplanLog log;
+  replanner.set_log(&log);
+  double t = 0.0;
+  for (int step = 0; step < 8; ++step, t += 0.1) {
+    if (step > 0) add_wall(0.35 + 0.12 * (step - 1), 0.35 + 0.12 * step);
+    ReplanInput input = Input(replanner.Reference(t).p_WB, pad, t);
+    input.vehicle.v_WB = replanner.Reference(t).v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    ASSERT_EQ(result.status, ReplanStatus::kPlanned) << step;
+    EXPECT_GT(SideOf(result.curve), 0.35 + 0.12 * step) << step;
+    if (step == 0) continue;
+    EXPECT_EQ(log.attempts.size(), 1u) << step;
+    EXPECT_TRUE(result.guide_paths.empty()) << step;
+  }
+}
+
 TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
   Draw draw(17);
   int went_on = 0;
