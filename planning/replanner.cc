@@ -287,6 +287,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
+    if (reason == ReplanReason::kNone) return reason;
     if (reason == ReplanReason::kCollisionRemains && NoTimeToBrake(start, space)) return reason;
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
