@@ -24,6 +24,7 @@ constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 5e-
 constexpr double kLongestSegment = 0.75;  // at full speed [m]
 constexpr double kSlowestSegment = 0.30;  // [s]
 constexpr double kFine = 0.67;            // of these, where an attempt failed before
+constexpr double kNear = 2.5;             // segments until an obstacle
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = PlanAttempt::kMostControlPoints - 3;
 constexpr int kSegmentStep = 4;         // keeps the number of prepared problems small
@@ -138,7 +139,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   if (request.log) {
     request.log->duration = request.duration;
     request.log->arrival = request.arrival;
-    request.log->segments = request.segments;
+    request.log->segments = segments_;
     request.log->best = best_.round;
     request.log->certificate = best_.certificate;
     request.log->reason = best_.reason;
@@ -148,7 +149,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 
 /// Refuses ends that no plan can have.
 ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
-  now_ = &prepared_.at({request.segments, request.arrival});
+  now_ = &prepared_.at({segments_, request.arrival});
   LandingProblem& problem = *now_->problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
   problem.SetDuration(request.duration);
@@ -163,10 +164,7 @@ ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
   return ReplanReason::kNone;
 }
 
-ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
-  bound_ = false;
-  finder_.Begin(options_.max_expansions, request.at_rest);
-  pairs_.clear();
+ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, ReplanResult* result) {
   const ReplanReason refused = SetEnds(request);
   if (refused != ReplanReason::kNone) return refused;
   LandingProblem& problem = *now_->problem;
@@ -176,8 +174,26 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
     problem.Guess(&now_->start.y);
   }
   now_->first_guess = now_->start.y;
+  return SolveAndCheck(request, &best_, result);
+}
+
+/// So near that the first control point that is free comes too late to pass it.
+bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
+  if (runs_.empty() || runs_.front().at_start) return false;
+  return runs_.front().t_in - request.t0 < kNear * best_.curve.interval();
+}
+
+ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
+  bound_ = false;
+  finder_.Begin(options_.max_expansions, request.at_rest);
+  pairs_.clear();
   pressure_ = {};
-  const ReplanReason reason = SolveAndCheck(request, &best_, result);
+  segments_ = request.segments;
+  ReplanReason reason = SolveWithoutPairs(request, result);
+  if (reason == ReplanReason::kNone && ObstacleNear(request) && segments_ < request.near_segments) {
+    segments_ = request.near_segments;
+    reason = SolveWithoutPairs(request, result);
+  }
   if (reason != ReplanReason::kNone) return reason;
   if (!runs_.empty() && options_.max_rebinds > 0) return TryGuides(request, result);
   return KeepLimits(request, &best_, result);

@@ -30,7 +30,8 @@ struct AttemptRequest {
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget target;
   double duration = 1.0;  ///< T, or its first guess [s]
-  int segments = 0;       ///< as SegmentsFor gives them
+  int segments = 0;       ///< as SegmentsFor gives them ...
+  int near_segments = 0;  ///< ... and where an obstacle is near
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
@@ -94,6 +95,8 @@ class PlanAttempt {
 
   void PrepareProblem(int segments, ArrivalMode arrival);
   ReplanReason SetEnds(const AttemptRequest& request);
+  ReplanReason SolveWithoutPairs(const AttemptRequest& request, ReplanResult* result);
+  bool ObstacleNear(const AttemptRequest& request) const;
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
   ReplanReason SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
@@ -121,6 +124,7 @@ class PlanAttempt {
   std::vector<std::string> pressed_;  // terms whose weights are scaled
 
   // Of the attempt under way.
+  int segments_ = 0;
   Prepared* now_ = nullptr;
   Pressure pressure_;
   bool bound_ = false;          // control points of best_, to one way

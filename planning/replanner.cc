@@ -278,9 +278,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
-    if (!request.go_on) {
-      request.segments = SegmentsFor(std::min(T, kFinest * first), options_.limits, i > 0);
-    }
+    const double longest = std::min(T, kFinest * first);
+    request.segments = SegmentsFor(longest, options_.limits, i > 0);
+    request.near_segments = SegmentsFor(longest, options_.limits, true);
     request.space = &space;
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
