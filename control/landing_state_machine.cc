@@ -33,9 +33,9 @@ Conditions Assess(const MissionInputs& in, const MissionParameters& p) {
                       std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
                       !std::isnan(in.pad_sigma) && !std::isnan(in.tag_age) &&
                       !std::isnan(in.plan_failed_for);
-  now.pad_good = now.numbers_valid && in.pad_available && in.pad_converged;
-  now.gate_open = now.numbers_valid && in.pad_available && in.pad_sigma <= p.gate_sigma &&
-                  in.tag_age <= p.gate_tag_age;
+  now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
+  now.gate_open = now.numbers_valid && in.own_usable && in.own_fresh && in.pad_available &&
+                  in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
@@ -59,8 +59,9 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
                   double dt, MissionState& state) {
   const double t = state.t;
   Track(now.pad_good, t, state.converged_since);
-  // Without numbers the invalid-input timer decides, not the pad's.
-  Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
+  // Without numbers the invalid-input timer decides, not the pad's; alike without an own state.
+  Track(now.numbers_valid && in.own_usable && !now.pad_good, t, state.pad_missing_since);
+  Track(!in.own_usable, t, state.own_lost_since);
   Track(now.pad_good && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);
   Track(!now.numbers_valid, t, state.invalid_since);
   Track(!in.emergency, t, state.calm_since);
@@ -79,6 +80,9 @@ struct Transition {
 
 Transition FromLanding(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   const double abort = s.committed ? p.commit_abort_distance : p.abort_distance;
+  if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
+    return {MissionMode::kGoAround, TransitionReason::kOwnStateLost};
+  }
   if (in.horizontal_distance > abort) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
@@ -102,6 +106,9 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
 
 Transition FromTracking(const MissionState& s, const MissionInputs& in, const Conditions& now,
                         const MissionParameters& p) {
+  if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
+    return {MissionMode::kHold, TransitionReason::kOwnStateLost};
+  }
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kHold, TransitionReason::kPadLost};
   }
@@ -122,6 +129,7 @@ Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Co
   const bool high = s.foot_height >= enough && (in.height >= enough || !now.pad_good);
   const bool timeout = LastedLonger(s.mode_since, s.t, p.climb_timeout);
   if (!high && !timeout) return {s.mode, TransitionReason::kNone};
+  if (!in.own_usable) return {MissionMode::kHold, TransitionReason::kOwnStateLost};
   if (!now.pad_good) return {MissionMode::kHold, TransitionReason::kPadLost};
   return {MissionMode::kTracking,
           high ? TransitionReason::kClimbComplete : TransitionReason::kClimbTimeout};
