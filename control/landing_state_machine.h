@@ -28,8 +28,8 @@
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
 // error beyond commit_abort_distance, no_contact, own_state_lost, invalid_input or emergency. A pad
-// counts as converged only while the vehicle's own state is usable; while that is dead reckoning
-// the gate is closed.
+// counts as converged only while the vehicle's own state is usable. Dead reckoning closes the gate
+// for own_patience: a short outage of position and velocity is waited out.
 // clang-format on
 #pragma once
 
@@ -145,6 +145,7 @@ struct MissionParameters {
   double climb_tolerance = 0.25;  ///< of the follow height for climb_complete [m]
   double invalid_timeout = 0.2;   ///< [s]
   double own_timeout = 0.2;       ///< [s]
+  double own_patience = 2.0;      ///< dead reckoning closes the gate for no longer [s]
   double emergency_time = 1.0;    ///< [s]
 };
 
@@ -169,6 +170,7 @@ struct MissionState {
   double recovered_since = std::numeric_limits<double>::infinity();
   double invalid_since = std::numeric_limits<double>::infinity();
   double own_lost_since = std::numeric_limits<double>::infinity();
+  double own_stale_since = std::numeric_limits<double>::infinity();
   double calm_since = std::numeric_limits<double>::infinity();  ///< emergency flag down
 };
 

@@ -79,12 +79,13 @@ void Validate(const MissionParameters& p) {
   for (const Named& item : positive) {
     require(item.value > 0.0 && std::isfinite(item.value), item.name, item.value, "> 0");
   }
-  const std::array<Named, 5> not_negative = {{
+  const std::array<Named, 6> not_negative = {{
       {"align_timeout", p.align_timeout},
       {"corridor_slope", p.corridor_slope},
       {"hold_time", p.hold_time},
       {"invalid_timeout", p.invalid_timeout},
       {"own_timeout", p.own_timeout},
+      {"own_patience", p.own_patience},
   }};
   for (const Named& item : not_negative) {
     require(item.value >= 0.0 && std::isfinite(item.value), item.name, item.value, ">= 0");

@@ -89,6 +89,15 @@ TEST_F(OwnStateLost, DeadReckoningPausesAtTheGateAndIsNotCommitted) {
   EXPECT_TRUE(out_.committed);
 }
 
+TEST_F(OwnStateLost, DeadReckoningThatLastsIsNotWaitedOut) {
+  DescendTo(1.3);
+  in_.own_fresh = false;
+  Run(parameters_.own_patience);
+  EXPECT_EQ(out_.descent_hold, DescentHold::kGate);
+  DescendTo(0.3);
+  EXPECT_TRUE(out_.committed);
+}
+
 TEST_F(OwnStateLost, ALandingGoesAroundCommittedOrNotAndThenHolds) {
   for (const double height : {0.6, 0.3}) {
     state_ = {};
