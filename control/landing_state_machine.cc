@@ -37,7 +37,7 @@ void Track(bool holds, double t, double& since) {
 
 bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
 
-Conditions Assess(const MissionInputs& in, const MissionParameters& p, const MissionState& s) {
+Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   Conditions now{};
   // pad_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
@@ -276,7 +276,7 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
   s.t += dt;
 
   Track(!inputs.own_fresh, s.t, s.own_stale_since);
-  const Conditions now = Assess(inputs, parameters, s);
+  const Conditions now = Assess(s, inputs, parameters);
   UpdateTimers(inputs, parameters, now, dt, s);
   const Transition transition = Decide(s, inputs, now, parameters);
   if (transition.mode != s.mode) {

@@ -114,10 +114,8 @@ void Perception::SenseOwn(const estimation::VehicleState& vehicle) {
   sensing_times_.own_state += solvers::ThreadCpuSeconds() - begin;
 }
 
-void Perception::AddFix(estimation::PadGpsFix fix) {
-  if (own_.estimated() && pad_filter_.TagAge(fix.t) < kTagsGuide) return;
-  fix.sigma = std::hypot(fix.sigma, own_.PositionSigma());
-  pad_filter_.AddGps(fix);
+bool Perception::TagsGuide(double t) const {
+  return own_.estimated() && pad_filter_.TagAge(t) < kTagsGuide;
 }
 
 void Perception::SensePad(const estimation::VehicleState& vehicle,
@@ -130,7 +128,10 @@ void Perception::SensePad(const estimation::VehicleState& vehicle,
     sensing_times_.pad_filter += solvers::ThreadCpuSeconds() - begin;
     pad_measured_ = true;
   };
-  if (const auto fix = gps_.Poll(vehicle.t, pad)) timed([&] { AddFix(*fix); });
+  if (auto fix = gps_.Poll(vehicle.t, pad); fix && !TagsGuide(vehicle.t)) {
+    fix->sigma = std::hypot(fix->sigma, own_.PositionSigma());
+    timed([&] { pad_filter_.AddGps(*fix); });
+  }
   pad_eye_->Look(vehicle, own_.now(), pad, pad_filter_, &sensing_times_);
   while (const auto glimpse = pad_eye_->Poll(vehicle.t)) {
     timed([&] { pad_filter_.AddSighting(glimpse->sighting, own_.At(glimpse->vehicle)); });

@@ -63,7 +63,7 @@ class Perception {
  private:
   void SenseOwn(const estimation::VehicleState& vehicle);
   void SensePad(const estimation::VehicleState& vehicle, const estimation::PadState& pad);
-  void AddFix(estimation::PadGpsFix fix);
+  bool TagsGuide(double t) const;
   void UpdateMap(double t, double hull_radius, const estimation::DepthFrame& frame);
   planning::ExcludedVolume PadVolume(double t, double stamp) const;
 

@@ -125,8 +125,6 @@ TEST(OwnFlight, BothOfThePapersCasesLandByTheEstimateAndRepeatBitByBit) {
     EXPECT_GE(apart, result.own_state->max_position_m);
     const TrialResult again = RunTrial(scenario, 1, StandardRegistries());
     EXPECT_EQ(Deterministic(scenario, result), Deterministic(scenario, again)) << name;
-    const TrialResult other = RunTrial(scenario, 2, StandardRegistries());
-    EXPECT_NE(Deterministic(scenario, result), Deterministic(scenario, other)) << name;
   }
 }
 
