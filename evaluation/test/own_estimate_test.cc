@@ -81,7 +81,7 @@ TEST(OwnEstimate, AnOutageIsToldAndItsDoubtGrows) {
   EXPECT_EQ(own.status(), estimation::OwnStatus::kGood);
   EXPECT_LT((own.now().p_WB - truth.p_WB).norm(), 0.1);
   truth.t = 4.7;
-  EXPECT_EQ(own.At(truth).t, 4.7);
+  EXPECT_NEAR(own.At(truth).t, 4.7, 1e-9);
   EXPECT_LT((own.At(truth).p_WB - truth.p_WB).norm(), 0.1);
 }
 
