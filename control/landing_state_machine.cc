@@ -26,6 +26,26 @@ struct Conditions {
   bool touching;
 };
 
+Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
+  Conditions now{};
+  // pad_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
+  now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
+                      std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
+                      !std::isnan(in.pad_sigma) && !std::isnan(in.tag_age) &&
+                      !std::isnan(in.plan_failed_for);
+  now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
+  // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
+  const bool own_good = in.own_usable && (in.own_fresh || s.t - s.own_stale_since > p.own_patience);
+  now.gate_open = now.numbers_valid && own_good && in.pad_available &&
+                  in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
+  now.in_corridor =
+      now.numbers_valid &&
+      in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
+  now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
+                 std::abs(in.height) <= p.contact_height;
+  return now;
+}
+
 // Keeps the time since when a condition has held.
 void Track(bool holds, double t, double& since) {
   if (!holds) {
@@ -36,27 +56,6 @@ void Track(bool holds, double t, double& since) {
 }
 
 bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
-
-Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
-  Conditions now{};
-  // pad_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
-  now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
-                      std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
-                      !std::isnan(in.pad_sigma) && !std::isnan(in.tag_age) &&
-                      !std::isnan(in.plan_failed_for);
-  now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
-  // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
-  const bool own_good =
-      in.own_usable && (in.own_fresh || LastedLonger(s.own_stale_since, s.t, p.own_patience));
-  now.gate_open = now.numbers_valid && own_good && in.pad_available &&
-                  in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
-  now.in_corridor =
-      now.numbers_valid &&
-      in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
-  now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
-                 std::abs(in.height) <= p.contact_height;
-  return now;
-}
 
 void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
                   double dt, MissionState& state) {
