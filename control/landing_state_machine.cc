@@ -26,16 +26,18 @@ struct Conditions {
   bool touching;
 };
 
-Conditions Assess(const MissionInputs& in, const MissionParameters& p) {
+Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   Conditions now{};
   // pad_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
                       std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
                       !std::isnan(in.pad_sigma) && !std::isnan(in.tag_age) &&
                       !std::isnan(in.plan_failed_for);
-  now.pad_good = now.numbers_valid && in.pad_available && in.pad_converged;
-  now.gate_open = now.numbers_valid && in.pad_available && in.pad_sigma <= p.gate_sigma &&
-                  in.tag_age <= p.gate_tag_age;
+  now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
+  // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
+  const bool own_good = in.own_usable && (in.own_fresh || s.t - s.own_stale_since > p.own_patience);
+  now.gate_open = now.numbers_valid && own_good && in.pad_available &&
+                  in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
@@ -59,8 +61,9 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
                   double dt, MissionState& state) {
   const double t = state.t;
   Track(now.pad_good, t, state.converged_since);
-  // Without numbers the invalid-input timer decides, not the pad's.
-  Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
+  // Without numbers the invalid-input timer decides, not the pad's; alike without an own state.
+  Track(now.numbers_valid && in.own_usable && !now.pad_good, t, state.pad_missing_since);
+  Track(!in.own_usable, t, state.own_lost_since);
   Track(now.pad_good && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);
   Track(!now.numbers_valid, t, state.invalid_since);
   Track(!in.emergency, t, state.calm_since);
@@ -79,6 +82,9 @@ struct Transition {
 
 Transition FromLanding(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   const double abort = s.committed ? p.commit_abort_distance : p.abort_distance;
+  if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
+    return {MissionMode::kGoAround, TransitionReason::kOwnStateLost};
+  }
   if (in.horizontal_distance > abort) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
@@ -102,6 +108,9 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
 
 Transition FromTracking(const MissionState& s, const MissionInputs& in, const Conditions& now,
                         const MissionParameters& p) {
+  if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
+    return {MissionMode::kHold, TransitionReason::kOwnStateLost};
+  }
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kHold, TransitionReason::kPadLost};
   }
@@ -122,6 +131,7 @@ Transition FromGoAround(const MissionState& s, const MissionInputs& in, const Co
   const bool high = s.foot_height >= enough && (in.height >= enough || !now.pad_good);
   const bool timeout = LastedLonger(s.mode_since, s.t, p.climb_timeout);
   if (!high && !timeout) return {s.mode, TransitionReason::kNone};
+  if (!in.own_usable) return {MissionMode::kHold, TransitionReason::kOwnStateLost};
   if (!now.pad_good) return {MissionMode::kHold, TransitionReason::kPadLost};
   return {MissionMode::kTracking,
           high ? TransitionReason::kClimbComplete : TransitionReason::kClimbTimeout};
@@ -264,7 +274,8 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
   const double dt = std::max(0.0, inputs.t - s.t);
   s.t += dt;
 
-  const Conditions now = Assess(inputs, parameters);
+  Track(!inputs.own_fresh, s.t, s.own_stale_since);
+  const Conditions now = Assess(s, inputs, parameters);
   UpdateTimers(inputs, parameters, now, dt, s);
   const Transition transition = Decide(s, inputs, now, parameters);
   if (transition.mode != s.mode) {

@@ -8,15 +8,18 @@
 //   tracking       landing         above_pad          descent vertical, near the pad, slow over it
 //   tracking       hold            pad_lost           no converged pad for over pad_timeout
 //   tracking       hold            plan_failed        no plan for over plan_timeout
+//   tracking       hold            own_state_lost     own state not usable for over own_timeout
 //   landing        disarmed        contact            foot force for contact_time, feet at the deck
 //   landing        go_around       pad_lost           no converged pad for over pad_timeout
 //   landing        go_around       tags_lost          gate closed for over gate_timeout
 //   landing        go_around       error_too_large    horizontal error beyond abort_distance
 //   landing        go_around       plan_failed        no plan for over plan_timeout
 //   landing        go_around       no_contact         committed for over commit_timeout
+//   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged
 //   go_around      hold            pad_lost           climb over or too long, no converged pad
+//   go_around      hold            own_state_lost     climb over or too long, own state not usable
 //   hold           tracking        recovered          pad converged and a plan, for hold_time
 //   (flying)       hold            invalid_input      not a number for over invalid_timeout
 //   (armed)        emergency_stop  emergency          emergency flag
@@ -24,7 +27,9 @@
 //
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance, no_contact, invalid_input or emergency.
+// error beyond commit_abort_distance, no_contact, own_state_lost, invalid_input or emergency. A pad
+// counts as converged only while the vehicle's own state is usable. Dead reckoning closes the gate
+// for own_patience: a short outage of position and velocity is waited out.
 // clang-format on
 #pragma once
 
@@ -62,6 +67,7 @@ enum class TransitionReason {
   kInvalidInput,
   kEmergency,
   kEmergencyCleared,
+  kOwnStateLost,
 };
 std::string_view ToString(TransitionReason reason);
 
@@ -92,8 +98,10 @@ struct MissionInputs {
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
-  double foot_force = 0.0;                                   ///< sum over the feet [N]
-  bool has_plan = false;                                     ///< a certified plan exists
+  bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning
+  bool own_usable = true;   ///< own state is good enough to fly to the pad by
+  double foot_force = 0.0;  ///< sum over the feet [N]
+  bool has_plan = false;    ///< a certified plan exists
   double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
   bool yaw_aligned = true;       ///< body heading along the direction of travel
   bool emergency = false;        ///< obstacle too close, operator's stop, …
@@ -136,6 +144,8 @@ struct MissionParameters {
   double climb_timeout = 5.0;     ///< [s]
   double climb_tolerance = 0.25;  ///< of the follow height for climb_complete [m]
   double invalid_timeout = 0.2;   ///< [s]
+  double own_timeout = 0.2;       ///< [s]
+  double own_patience = 2.0;      ///< dead reckoning closes the gate for no longer [s]
   double emergency_time = 1.0;    ///< [s]
 };
 
@@ -159,6 +169,8 @@ struct MissionState {
   double contact_since = std::numeric_limits<double>::infinity();
   double recovered_since = std::numeric_limits<double>::infinity();
   double invalid_since = std::numeric_limits<double>::infinity();
+  double own_lost_since = std::numeric_limits<double>::infinity();
+  double own_stale_since = std::numeric_limits<double>::infinity();
   double calm_since = std::numeric_limits<double>::infinity();  ///< emergency flag down
 };
 

@@ -17,11 +17,12 @@ std::string_view ToString(MissionMode mode) {
 }
 
 std::string_view ToString(TransitionReason reason) {
-  static constexpr std::array<std::string_view, 16> kNames = {
-      "none",        "pad_converged", "align_timeout",  "above_pad",
-      "contact",     "pad_lost",      "tags_lost",      "error_too_large",
-      "plan_failed", "no_contact",    "climb_complete", "climb_timeout",
-      "recovered",   "invalid_input", "emergency",      "emergency_cleared"};
+  static constexpr std::array<std::string_view, 17> kNames = {
+      "none",          "pad_converged", "align_timeout",  "above_pad",
+      "contact",       "pad_lost",      "tags_lost",      "error_too_large",
+      "plan_failed",   "no_contact",    "climb_complete", "climb_timeout",
+      "recovered",     "invalid_input", "emergency",      "emergency_cleared",
+      "own_state_lost"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
@@ -78,11 +79,13 @@ void Validate(const MissionParameters& p) {
   for (const Named& item : positive) {
     require(item.value > 0.0 && std::isfinite(item.value), item.name, item.value, "> 0");
   }
-  const std::array<Named, 4> not_negative = {{
+  const std::array<Named, 6> not_negative = {{
       {"align_timeout", p.align_timeout},
       {"corridor_slope", p.corridor_slope},
       {"hold_time", p.hold_time},
       {"invalid_timeout", p.invalid_timeout},
+      {"own_timeout", p.own_timeout},
+      {"own_patience", p.own_patience},
   }};
   for (const Named& item : not_negative) {
     require(item.value >= 0.0 && std::isfinite(item.value), item.name, item.value, ">= 0");

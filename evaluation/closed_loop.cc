@@ -32,7 +32,7 @@ class Trial {
         TrialRecord* record, TrialSamples* samples)
       : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
         perception_(scenario, world_, seed),
-        pilot_(scenario, world_.model(), world_.pad_motion(), registries, world_.vehicle(),
+        pilot_(scenario, world_.model(), world_.pad_motion(), registries, perception_.own().now(),
                perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
         follow_(scenario.descent == DescentKind::kNone),
@@ -77,13 +77,15 @@ class Trial {
       samples_->frames.push_back({world_.time(), perception_.frame_times()});
     }
     const estimation::VehicleState vehicle = world_.vehicle();
+    const estimation::VehicleState believed = perception_.own().now();
     const estimation::PadState pad = world_.pad();
+    NoteOwnStatus(vehicle.t);
     Timed(&result_.timing.control_cpu_s, [&] {
-      if (mission_clock_.Due(vehicle.t)) StepMission(vehicle);
+      if (mission_clock_.Due(vehicle.t)) StepMission(believed);
     });
-    if (replan_clock_.Due(vehicle.t)) Replan(vehicle);
+    if (replan_clock_.Due(vehicle.t)) Replan(believed);
     control::MixerOutput mix;
-    Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(vehicle); });
+    Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(believed); });
     std::array<double, 4> command;
     for (int i = 0; i < 4; ++i) command[i] = mix.thrusts[i];
     Timed(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
@@ -99,23 +101,23 @@ class Trial {
     }
   }
 
-  void StepMission(const estimation::VehicleState& vehicle) {
-    pilot_.StepMission(vehicle, perception_.pad_filter(), world_.foot_force().force,
-                       1.0 / kMissionRate);
+  void StepMission(const estimation::VehicleState& believed) {
+    pilot_.StepMission(believed, perception_.own().status(), perception_.pad_filter(),
+                       world_.foot_force().force, 1.0 / kMissionRate);
     const control::MissionOutputs& mission = pilot_.mission();
     if (mission.reason != control::TransitionReason::kNone) {
-      Note(vehicle.t, "mode",
+      Note(believed.t, "mode",
            fmt::format("{} ({})", control::ToString(mission.mode),
                        control::ToString(mission.reason)));
     }
   }
 
-  void Replan(const estimation::VehicleState& vehicle) {
+  void Replan(const estimation::VehicleState& believed) {
     const planning::ReplanResult* plan = nullptr;
     planning::ReplannerState before;
     if (record_ != nullptr) before = pilot_.replanner_state();
     Timed(&result_.timing.planning_cpu_s,
-          [&] { plan = pilot_.Replan(vehicle, perception_.pad_filter(), perception_.map()); });
+          [&] { plan = pilot_.Replan(believed, perception_.pad_filter(), perception_.map()); });
     if (plan == nullptr) return;
     ++result_.replans;
     ++result_.replans_by_status[planning::ToString(plan->status)];
@@ -127,7 +129,7 @@ class Trial {
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
     if (total.wall > pilot_.last_replan().latency_s) ++result_.timing.deadline_misses;
-    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(vehicle.t, *plan));
+    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(believed.t, *plan));
     if (record_ == nullptr) return;
     RecordPlan row;
     row.request = pilot_.last_replan().request;
@@ -157,6 +159,7 @@ class Trial {
       through_air_.Add(vehicle.t, vehicle.v_WB);  // the air stands still
       if (in_flight) {
         metrics_.Sample(vehicle.t, vehicle, pad);
+        if (perception_.own().estimated()) metrics_.OwnState(perception_.own().now(), vehicle);
       }
       if (record_ != nullptr) RecordState(vehicle, pad);
     }
@@ -202,7 +205,7 @@ class Trial {
     RecordSample row;
     row.t = vehicle.t;
     row.vehicle = vehicle;
-    row.vehicle_estimate = vehicle;  // own_state: true
+    row.vehicle_estimate = perception_.own().now();
     row.pad = pad;
     row.pad_known = perception_.pad_filter().initialized();
     if (row.pad_known) row.pad_estimate = perception_.pad_filter().Estimate(vehicle.t);
@@ -210,6 +213,13 @@ class Trial {
     row.rotor_thrusts = world_.rotor_thrusts();
     row.mode = control::ToString(pilot_.mission().mode).data();
     record_->samples.push_back(row);
+  }
+
+  void NoteOwnStatus(double t) {
+    const estimation::OwnStatus status = perception_.own().status();
+    if (status == own_status_) return;
+    own_status_ = status;
+    Note(t, "own_state", std::string(estimation::ToString(status)));
   }
 
   void Note(double t, const char* kind, const std::string& text) {
@@ -242,6 +252,7 @@ class Trial {
   bool follow_;  ///< no landing is asked for
   LandingJudge judge_;
   Metrics metrics_;
+  estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   SlidingMean through_air_;
   sim::SampleClock mission_clock_;
   sim::SampleClock replan_clock_;

@@ -57,6 +57,12 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
   if (r.min_clearance_m) {
     text += fmt::format("  least true clearance   {:.3f} m\n", *r.min_clearance_m);
   }
+  if (r.own_state) {
+    const OwnStateQuality& own = *r.own_state;
+    text +=
+        fmt::format("  own state, RMS error   {:.3f} m, {:.3f} m/s, {:.2f} deg\n",
+                    own.rmse_position_m, own.rmse_velocity_mps, own.rmse_attitude_rad * kDegPerRad);
+  }
   text += fmt::format("  replans                {}", r.replans);
   for (const auto& [status, count] : r.replans_by_status) {
     text += fmt::format(", {} {}", count, status);

@@ -47,8 +47,16 @@ void DepthEye::Look(const estimation::VehicleState& vehicle, const estimation::P
     const planning::StageTimer timer(&glimpse.sense);
     Capture(vehicle, pad, &glimpse.frame);
   }
+  glimpse.vehicle = vehicle;
   times->depth_image += glimpse.sense.cpu;
   delivery_.Hold(vehicle.t, std::move(glimpse));
+}
+
+void PlaceFrame(const estimation::VehicleState& truth, const estimation::VehicleState& believed,
+                estimation::DepthFrame* frame) {
+  const Eigen::Matrix3d turn = (believed.q_WB * truth.q_WB.conjugate()).toRotationMatrix();
+  frame->p_WC = believed.p_WB + turn * (frame->p_WC - truth.p_WB);
+  frame->R_WC = turn * frame->R_WC;
 }
 
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,

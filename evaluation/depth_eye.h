@@ -19,9 +19,10 @@
 
 namespace touchdown::evaluation {
 
-/// A depth image and what it took to make it.
+/// A depth image with its true pose, the vehicle's true state when it was taken, and what it took to make it.
 struct DepthGlimpse {
   estimation::DepthFrame frame;
+  estimation::VehicleState vehicle;
   planning::StageTimes::Span sense{"sense"};
 };
 
@@ -54,6 +55,11 @@ class DepthEye {
   sim::FrameDelivery<DepthGlimpse> delivery_;
   DepthGlimpse spare_;
 };
+
+/// The pose of `frame` as a vehicle that takes itself to be at `believed` knows it; it was taken at
+/// the true state `truth`. The camera's place in the vehicle is known exactly.
+void PlaceFrame(const estimation::VehicleState& truth, const estimation::VehicleState& believed,
+                estimation::DepthFrame* frame);
 
 /// The eye of the scenario's `sensing`; as MakePadEye.
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,

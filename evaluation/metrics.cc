@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "touchdown/estimation/pad_motion_model.h"
 
 namespace touchdown::evaluation {
@@ -47,6 +49,19 @@ void Metrics::Estimate(const estimation::PadState& estimate, const estimation::P
   ++estimates_;
 }
 
+void Metrics::Spread::Add(double error) {
+  sum += error * error;
+  max = std::max(max, error);
+}
+
+void Metrics::OwnState(const estimation::VehicleState& estimate,
+                       const estimation::VehicleState& truth) {
+  own_position_.Add((estimate.p_WB - truth.p_WB).norm());
+  own_velocity_.Add((estimate.v_WB - truth.v_WB).norm());
+  own_attitude_.Add(estimate.q_WB.angularDistance(truth.q_WB));
+  ++own_states_;
+}
+
 void Metrics::Fill(TrialResult* result) const {
   result->effort_n2s = effort_;
   if (steps_ > 0) {
@@ -59,6 +74,11 @@ void Metrics::Fill(TrialResult* result) const {
     result->estimator =
         EstimatorQuality{std::sqrt(sum_position_ / estimates_),
                          std::sqrt(sum_velocity_ / estimates_), sum_nees_ / estimates_, estimates_};
+  }
+  if (own_states_ > 0) {
+    const auto rms = [this](const Spread& spread) { return std::sqrt(spread.sum / own_states_); };
+    result->own_state = OwnStateQuality{rms(own_position_), own_position_.max,  rms(own_velocity_),
+                                        own_velocity_.max,  rms(own_attitude_), own_attitude_.max};
   }
   if (!result->touchdown || recent_.empty()) return;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();

@@ -28,6 +28,9 @@ class Metrics {
   /// The filter's estimate against the truth, after a measurement while it is converged.
   void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth);
 
+  /// The vehicle's estimate of its own state against the truth, every 20 ms.
+  void OwnState(const estimation::VehicleState& estimate, const estimation::VehicleState& truth);
+
   /// Writes the figures into `result`; those at contact only if `touchdown` is set there.
   void Fill(TrialResult* result) const;
 
@@ -54,6 +57,16 @@ class Metrics {
   double sum_velocity_ = 0.0;
   double sum_nees_ = 0.0;
   int estimates_ = 0;
+  /// Sum of squares and largest of an error.
+  struct Spread {
+    double sum = 0.0;
+    double max = 0.0;
+    void Add(double error);
+  };
+  Spread own_position_;
+  Spread own_velocity_;
+  Spread own_attitude_;
+  int own_states_ = 0;
 };
 
 }  // namespace touchdown::evaluation

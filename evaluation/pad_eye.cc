@@ -46,11 +46,12 @@ class FastPadEye final : public PadEye {
   }
 
   std::optional<estimation::PadSighting> Sight(const estimation::VehicleState& vehicle,
+                                               const estimation::VehicleState& believed,
                                                const estimation::PadState& pad,
                                                const estimation::PadFilter& /*expected*/,
                                                SensingTimes* times) override {
     const double begin = solvers::ThreadCpuSeconds();
-    const auto sighting = tags_.Sight(vehicle.t, vehicle, pad);
+    const auto sighting = tags_.Sight(vehicle.t, vehicle, pad, believed.q_WB);
     times->pad_finding += solvers::ThreadCpuSeconds() - begin;
     return sighting;
   }
@@ -87,6 +88,7 @@ class RenderedPadEye final : public PadEye {
   }
 
   std::optional<estimation::PadSighting> Sight(const estimation::VehicleState& vehicle,
+                                               const estimation::VehicleState& believed,
                                                const estimation::PadState& pad,
                                                const estimation::PadFilter& expected,
                                                SensingTimes* times) override {
@@ -94,11 +96,11 @@ class RenderedPadEye final : public PadEye {
     camera_.Capture(vehicle, pad, &image_);
     const double taken = solvers::ThreadCpuSeconds();
     times->pad_image += taken - begin;
-    if (PassOver(vehicle, expected)) return std::nullopt;
+    if (PassOver(believed, expected)) return std::nullopt;
     const Eigen::Matrix3d R_BC = sim::DownwardCameraAxes();
     const estimation::PadView view = finder_.Find(
         image_.View(), camera_.intrinsics(),
-        estimation::LevelPadNormal(vehicle.q_WB.toRotationMatrix(), R_BC, kAttitudeSigma));
+        estimation::LevelPadNormal(believed.q_WB.toRotationMatrix(), R_BC, kAttitudeSigma));
     times->pad_finding += solvers::ThreadCpuSeconds() - taken;
     if (view.pose.status != estimation::PadPoseStatus::kSolved) return std::nullopt;
     estimation::PadSighting sighting =
@@ -107,21 +109,21 @@ class RenderedPadEye final : public PadEye {
     return sighting;
   }
 
-  bool PassOver(const estimation::VehicleState& vehicle, const estimation::PadFilter& expected) {
+  bool PassOver(const estimation::VehicleState& believed, const estimation::PadFilter& expected) {
     const bool search = !thrifty_ || passed_over_ == kMostPassedOver || !expected.initialized() ||
-                        MayShow(vehicle, expected);
+                        MayShow(believed, expected);
     passed_over_ = search ? 0 : passed_over_ + 1;
     return !search;
   }
 
-  bool MayShow(const estimation::VehicleState& vehicle,
+  bool MayShow(const estimation::VehicleState& believed,
                const estimation::PadFilter& expected) const {
     const Eigen::Vector3d p_BP =
-        vehicle.q_WB.conjugate() * (expected.Estimate(vehicle.t).p_WP - vehicle.p_WB);
+        believed.q_WB.conjugate() * (expected.Estimate(believed.t).p_WP - believed.p_WB);
     const Eigen::Vector3d p_C =
         sim::DownwardCameraAxes().transpose() * (p_BP - camera_.config().p_BC);
     const double radius = estimation::kPadSheetSide * std::sqrt(0.5) + kMargin +
-                          kSigmas * expected.PositionSigma(vehicle.t);
+                          kSigmas * expected.PositionSigma(believed.t);
     return MayShowPad(p_C, radius, camera_.intrinsics());
   }
 
@@ -138,10 +140,11 @@ PadEye::PadEye(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.tag_rate),
       delivery_({scenario.camera.latency_ms, scenario.camera.drop}, seed, "pad camera delivery") {}
 
-void PadEye::Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
-                  const estimation::PadFilter& expected, SensingTimes* times) {
+void PadEye::Look(const estimation::VehicleState& vehicle, const estimation::VehicleState& believed,
+                  const estimation::PadState& pad, const estimation::PadFilter& expected,
+                  SensingTimes* times) {
   if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
-  if (const auto sighting = Sight(vehicle, pad, expected, times)) {
+  if (const auto sighting = Sight(vehicle, believed, pad, expected, times)) {
     delivery_.Hold(vehicle.t, {*sighting, vehicle});
   }
 }

@@ -17,7 +17,7 @@
 
 namespace touchdown::evaluation {
 
-/// A sighting, with the vehicle's state at its time stamp.
+/// A sighting, with the vehicle's true state at its time stamp.
 struct PadGlimpse {
   estimation::PadSighting sighting;
   estimation::VehicleState vehicle;
@@ -32,9 +32,12 @@ class PadEye {
   PadEye& operator=(const PadEye&) = delete;
 
   /// Takes an image if one is due at the vehicle's time. Call once per physics step.
+  /// @param vehicle true state, from where the image is taken.
+  /// @param believed what the vehicle takes for its state.
   /// @param expected where the pad should be: an eye may leave out work that cannot find it.
-  void Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
-            const estimation::PadFilter& expected, SensingTimes* times);
+  void Look(const estimation::VehicleState& vehicle, const estimation::VehicleState& believed,
+            const estimation::PadState& pad, const estimation::PadFilter& expected,
+            SensingTimes* times);
 
   /// The oldest glimpse that has arrived by the time t [s]; call until there is none.
   std::optional<PadGlimpse> Poll(double t) { return delivery_.Poll(t); }
@@ -44,6 +47,7 @@ class PadEye {
 
  private:
   virtual std::optional<estimation::PadSighting> Sight(const estimation::VehicleState& vehicle,
+                                                       const estimation::VehicleState& believed,
                                                        const estimation::PadState& pad,
                                                        const estimation::PadFilter& expected,
                                                        SensingTimes* times) = 0;

@@ -2,6 +2,12 @@
 // Sensors at their own rates feed the pad filter and the map. The pad vehicle is left out of the
 // map by a cylinder about its estimated position that grows with the estimate's doubt: else the
 // goal of the flight would be an obstacle.
+// Map and pad filter live in the frame of the vehicle's own estimate: where it takes W to be. In it
+// a sighting is good to the tags' accuracy, but the frame wanders as the estimate does, which the
+// pad filter takes for a motion of the pad; and the pad's GPS is off by the estimate's whole error.
+// So GPS leads to the pad, with the estimate's doubt added to its own, and tags, once seen, guide
+// alone: what the vehicle lands by, the place relative to it, does not suffer from an estimate that
+// has drifted.
 #include "touchdown/evaluation/perception.h"
 
 #include <algorithm>
@@ -19,12 +25,23 @@ constexpr double kVolumeMargin = 0.3;    // around and above the deck [m]
 constexpr double kVolumeSigmas = 2.0;    // of the estimate, added to the radius
 constexpr double kVolumeSigmaMax = 1.0;  // no more doubt than this is covered [m]
 
+// With an estimated own state; docs/own_state.md says what they are read off.
+constexpr double kOwnPositionSigma = 0.01;  // what the estimate jumps by between images [m]
+constexpr double kOwnAttitudeSigma = 0.01;  // [rad]
+constexpr double kFrameWander = 1e-3;       // 0.03 m/s that last for about a second [m^2/s]
+constexpr double kTagsGuide = 0.5;          // GPS is left out while tags are younger than this [s]
+
 estimation::PadFilterOptions FilterOptions(const Scenario& scenario) {
   estimation::PadFilterOptions options;
   options.model = scenario.pad_estimator == PadEstimatorKind::kPaper
                       ? estimation::PadModel::kPaper
                       : estimation::PadModel::kTurnRate;
   options.pad_height = scenario.pad.deck_height;
+  if (scenario.own_state == OwnStateKind::kEstimated) {
+    options.own_position_sigma = kOwnPositionSigma;
+    options.own_attitude_sigma = kOwnAttitudeSigma;
+    options.noise.position += kFrameWander;
+  }
   return options;
 }
 
@@ -48,7 +65,8 @@ planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
 }
 
 Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed)
-    : gps_(GpsConfig(scenario), seed),
+    : own_(scenario, world.vehicle(), world.timestep(), seed),
+      gps_(GpsConfig(scenario), seed),
       pad_eye_(MakePadEye(scenario, world.config(), seed)),
       depth_eye_(MakeDepthEye(scenario, world.config(), seed)),
       pad_filter_(FilterOptions(scenario)),
@@ -58,7 +76,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       deck_height_(scenario.pad.deck_height) {
   if (scenario.map_prior == "none") return;
   ReadMapFile(scenario.map_prior, &persistent_map_);
-  map_.Recentre(world.vehicle().p_WB);
+  map_.Recentre(own_.now().p_WB);
   persistent_map_.Refill(&map_);
 }
 
@@ -67,7 +85,8 @@ void Perception::Sense(const sim::World& world) {
   const double t = world.time();
   const estimation::VehicleState vehicle = world.vehicle();
   const estimation::PadState pad = world.pad();
-  SensePad(t, vehicle, pad);
+  SenseOwn(vehicle);
+  SensePad(vehicle, pad);
   depth_eye_->Look(vehicle, pad, &sensing_times_);
   const double sensed = solvers::ThreadCpuSeconds();
   sensing_cpu_s_ += sensed - begin;
@@ -78,14 +97,28 @@ void Perception::Sense(const sim::World& world) {
     frame_times_.sense = glimpse->sense;
     {
       const planning::StageTimer timer(&frame_times_.map);
-      UpdateMap(t, vehicle, world.model().hull_radius, glimpse->frame);
+      if (own_.estimated()) {
+        PlaceFrame(glimpse->vehicle, own_.At(glimpse->vehicle), &glimpse->frame);
+      }
+      UpdateMap(t, world.model().hull_radius, glimpse->frame);
     }
     depth_eye_->Recycle(std::move(*glimpse));
   }
   if (image_taken_) mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;
 }
 
-void Perception::SensePad(double t, const estimation::VehicleState& vehicle,
+void Perception::SenseOwn(const estimation::VehicleState& vehicle) {
+  if (!own_.estimated()) return own_.Sense(vehicle);
+  const double begin = solvers::ThreadCpuSeconds();
+  own_.Sense(vehicle);
+  sensing_times_.own_state += solvers::ThreadCpuSeconds() - begin;
+}
+
+bool Perception::TagsGuide(double t) const {
+  return own_.estimated() && pad_filter_.TagAge(t) < kTagsGuide;
+}
+
+void Perception::SensePad(const estimation::VehicleState& vehicle,
                           const estimation::PadState& pad) {
   pad_measured_ = false;
   // Most steps bring nothing: the clock is read only if something has arrived.
@@ -95,18 +128,21 @@ void Perception::SensePad(double t, const estimation::VehicleState& vehicle,
     sensing_times_.pad_filter += solvers::ThreadCpuSeconds() - begin;
     pad_measured_ = true;
   };
-  if (const auto fix = gps_.Poll(t, pad)) timed([&] { pad_filter_.AddGps(*fix); });
-  pad_eye_->Look(vehicle, pad, pad_filter_, &sensing_times_);
-  while (const auto glimpse = pad_eye_->Poll(t)) {
-    timed([&] { pad_filter_.AddSighting(glimpse->sighting, glimpse->vehicle); });
+  if (auto fix = gps_.Poll(vehicle.t, pad); fix && !TagsGuide(vehicle.t)) {
+    fix->sigma = std::hypot(fix->sigma, own_.PositionSigma());
+    timed([&] { pad_filter_.AddGps(*fix); });
+  }
+  pad_eye_->Look(vehicle, own_.now(), pad, pad_filter_, &sensing_times_);
+  while (const auto glimpse = pad_eye_->Poll(vehicle.t)) {
+    timed([&] { pad_filter_.AddSighting(glimpse->sighting, own_.At(glimpse->vehicle)); });
   }
 }
 
-void Perception::UpdateMap(double t, const estimation::VehicleState& vehicle, double hull_radius,
-                           const estimation::DepthFrame& frame) {
-  persistent_map_.Recentre(vehicle.p_WB, &map_);
+void Perception::UpdateMap(double t, double hull_radius, const estimation::DepthFrame& frame) {
+  const Eigen::Vector3d p_WB = own_.now().p_WB;
+  persistent_map_.Recentre(p_WB, &map_);
   const planning::ExcludedVolume volume = PadVolume(t, frame.t);
-  map_.MarkOwnVolume(vehicle.p_WB, hull_radius);
+  map_.MarkOwnVolume(p_WB, hull_radius);
   map_.Clear(volume);
   map_.Integrate(frame, volume);
 }

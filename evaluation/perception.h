@@ -6,6 +6,7 @@
 
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/evaluation/depth_eye.h"
+#include "touchdown/evaluation/own_estimate.h"
 #include "touchdown/evaluation/pad_eye.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/sensing_times.h"
@@ -25,8 +26,10 @@ struct FrameTimes {
   planning::StageTimes::Span sense{"sense"}, map{"map"};
 };
 
-/// The vehicle's senses in a simulated world: GPS of the pad, downward camera, depth camera, and what is
-/// made of them, the pad filter and the obstacle map with its memory. Belongs to the thread that made it.
+/// The vehicle's senses in a simulated world: what tells it of itself, GPS of the pad, downward camera, depth
+/// camera, and what is made of them, its own state, the pad filter and the obstacle map with its memory. The
+/// cameras see from where the vehicle truly is; what they see is put where it believes itself to be.
+/// Belongs to the thread that made it.
 class Perception {
  public:
   /// `world` only gives the configuration and the start. Every sensor has its own stream of `seed`.
@@ -37,6 +40,7 @@ class Perception {
   /// Takes the images that are due at the world's time and the measurements that arrive at it. Call once per physics step.
   void Sense(const sim::World& world);
 
+  const OwnEstimate& own() const { return own_; }
   const estimation::PadFilter& pad_filter() const { return pad_filter_; }
   const planning::OccupancyMap& map() const { return map_; }
 
@@ -57,11 +61,13 @@ class Perception {
   double mapping_cpu_s() const { return mapping_cpu_s_; }  ///< fusing depth into the map
 
  private:
-  void SensePad(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);
-  void UpdateMap(double t, const estimation::VehicleState& vehicle, double hull_radius,
-                 const estimation::DepthFrame& frame);
+  void SenseOwn(const estimation::VehicleState& vehicle);
+  void SensePad(const estimation::VehicleState& vehicle, const estimation::PadState& pad);
+  bool TagsGuide(double t) const;
+  void UpdateMap(double t, double hull_radius, const estimation::DepthFrame& frame);
   planning::ExcludedVolume PadVolume(double t, double stamp) const;
 
+  OwnEstimate own_;
   sim::PadGps gps_;
   std::unique_ptr<PadEye> pad_eye_;
   std::unique_ptr<DepthEye> depth_eye_;

@@ -71,7 +71,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   heading_wanted_ = yaw_.yaw;
 }
 
-void Pilot::StepMission(const estimation::VehicleState& vehicle,
+void Pilot::StepMission(const estimation::VehicleState& vehicle, estimation::OwnStatus own,
                         const estimation::PadFilter& filter, double foot_force, double dt) {
   const double t = vehicle.t;
   control::MissionInputs inputs;
@@ -86,6 +86,9 @@ void Pilot::StepMission(const estimation::VehicleState& vehicle,
   }
   inputs.pad_sigma = filter.PositionSigma(t);
   inputs.tag_age = filter.TagAge(t);
+  inputs.own_fresh = own == estimation::OwnStatus::kGood;
+  inputs.own_usable = inputs.own_fresh || own == estimation::OwnStatus::kOutage;
+  own_usable_ = inputs.own_usable;
   inputs.foot_force = foot_force;
   inputs.has_plan = has_plan_;
   // Between replans the last one counts: no plan has failed since it succeeded.
@@ -141,8 +144,9 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
 bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
   if (!filter.initialized()) return false;
   if (mission_.guidance == control::Guidance::kFollowPad) return true;
-  // Holding ends with a plan to a known pad, so one is tried; without the pad the vehicle rests.
-  return mission_.mode == control::MissionMode::kHold && filter.Converged(t);
+  // Holding ends with a plan to a known pad, so one is tried; without the pad, or without knowing
+  // where it is itself, the vehicle rests.
+  return mission_.mode == control::MissionMode::kHold && own_usable_ && filter.Converged(t);
 }
 
 double Pilot::RestClimb() const {

@@ -9,6 +9,7 @@
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/mixer.h"
 #include "touchdown/control/yaw_planner.h"
+#include "touchdown/estimation/own_state_options.h"
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/evaluation/replan_request.h"
@@ -34,9 +35,9 @@ class Pilot {
         const sim::PadMotion& truth, const Registries& registries,
         const estimation::VehicleState& start, const planning::OccupancyMap& map);
 
-  /// Mission and heading. Call at a fixed rate.
-  void StepMission(const estimation::VehicleState& vehicle, const estimation::PadFilter& filter,
-                   double foot_force, double dt);
+  /// Mission and heading. Call at a fixed rate. @param own how far `vehicle` is to be trusted.
+  void StepMission(const estimation::VehicleState& vehicle, estimation::OwnStatus own,
+                   const estimation::PadFilter& filter, double foot_force, double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at PlannerRate. The result
@@ -81,6 +82,7 @@ class Pilot {
   double yaw_t_ = 0.0;  ///< time of yaw_
   double heading_wanted_ = 0.0;
   PilotReplan replan_;
+  bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
   bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
   std::optional<double> planned_t_;    ///< when the last new plan was made

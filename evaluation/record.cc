@@ -223,6 +223,7 @@ void WriteTiming(SqliteDb& db, const TrialTiming& timing) {
   insert.Run("sensing: pad image", timing.sensing_stages.pad_image);
   insert.Run("sensing: pad finding", timing.sensing_stages.pad_finding);
   insert.Run("sensing: pad filter", timing.sensing_stages.pad_filter);
+  insert.Run("sensing: own state", timing.sensing_stages.own_state);
   insert.Run("mapping", timing.mapping_cpu_s);
   insert.Run("planning", timing.planning_cpu_s);
   insert.Run("control", timing.control_cpu_s);

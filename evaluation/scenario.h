@@ -20,7 +20,7 @@ enum class ControllerKind { kGeometric, kPaper };
 enum class DescentKind { kNone, kVertical };
 enum class PlannerKind { kLanding, kEgo, kEgoVelocity };
 enum class SensingKind { kFast, kRendered };
-enum class OwnStateKind { kTrue };
+enum class OwnStateKind { kTrue, kEstimated };
 enum class ArrivalKind { kFixed, kFree };
 enum class EndpointKind { kEliminated, kExplicit };
 enum class LimitsKind { kSoft, kHard };
@@ -104,6 +104,30 @@ struct Scenario {
   } depth;
   SensingKind sensing = SensingKind::kFast;
   OwnStateKind own_state = OwnStateKind::kTrue;
+  /// The vehicle's own sensors where own_state is estimated; docs/own_state.md says what they are.
+  struct Own {
+    double imu_noise = 1.0;  ///< factor on the noise and the biases of the IMU
+    struct OwnGps {
+      double rate = 10.0;                                ///< [Hz], 0: none
+      double sigma = 0.02;                               ///< horizontal [m]
+      double drift = 0.0;                                ///< of an error with memory [m]
+      double latency_ms = 100.0;                         ///< [ms]
+      Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no fix from first to second [s]
+    } gps;
+    struct Odometry {
+      double rate = 0.0;    ///< [Hz], 0: none
+      double sigma = 0.03;  ///< [m/s]
+      double drift = 0.01;  ///< of an error with memory [m/s]
+    } odometry;
+    struct Height {
+      double rate = 25.0;  ///< [Hz], 0: none
+      double sigma = 0.1;  ///< [m]
+    } height;
+    struct Heading {
+      double rate = 25.0;      ///< [Hz], 0: none
+      double sigma_deg = 2.0;  ///< [deg]
+    } heading;
+  } own;
   PadEstimatorKind pad_estimator = PadEstimatorKind::kTurnRate;
 
   /// An OctoMap file that is known before the flight, or none.

@@ -173,12 +173,23 @@ void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& m
   throw BadInput(fmt::format("{}: {}.", source.WhereOf(key).ToString(), refusal));
 }
 
+void CheckOutage(const ScenarioSource& source, const std::string& key,
+                 const Eigen::Vector2d& outage) {
+  if (outage[1] >= outage[0]) return;
+  throw BadInput(fmt::format("{}: {} must not end before it begins, and is [{}, {}] s.",
+                             source.WhereOf(key).ToString(), key, outage[0], outage[1]));
+}
+
 void CheckSensors(const ScenarioSource& source) {
   const Scenario& s = source.scenario;
-  if (s.gps.outage[1] < s.gps.outage[0]) {
-    throw BadInput(fmt::format("{}: gps.outage must not end before it begins, and is [{}, {}] s.",
-                               source.WhereOf("gps.outage").ToString(), s.gps.outage[0],
-                               s.gps.outage[1]));
+  CheckOutage(source, "gps.outage", s.gps.outage);
+  CheckOutage(source, "own.gps.outage", s.own.gps.outage);
+  if (s.own_state == OwnStateKind::kEstimated && s.own.gps.rate <= 0.0 &&
+      s.own.odometry.rate <= 0.0) {
+    throw BadInput(fmt::format(
+        "{}: own.gps.rate must be in (0, 100] Hz with own_state: estimated, or own.odometry.rate "
+        "in (0, 200] Hz: without both the vehicle cannot tell where it is.",
+        source.WhereOf("own.gps.rate").ToString()));
   }
   if (s.sensing == SensingKind::kRendered && s.pad.deck_size < estimation::kPadSheetSide) {
     throw BadInput(fmt::format(

@@ -33,6 +33,7 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
                                  {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m", {}},
                                  {"min_clearance_m", "least true clearance", "m", {}},
                                  {"estimator_nees_position", "pad NEES (2 expected)", "", {}},
+                                 {"own_rmse_position_m", "own position error, RMS", "m", {}},
                                  {"following_error_m", "following error, last 10 s", "m", {}},
                                  {"following_speed_mps", "relative speed, last 10 s", "m/s", {}}};
   for (const SweepRow& row : rows) {
@@ -46,9 +47,10 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
     }
     if (r.min_clearance_m) columns[5].values.push_back(*r.min_clearance_m);
     if (r.estimator) columns[6].values.push_back(r.estimator->nees_position_mean);
+    if (r.own_state) columns[7].values.push_back(r.own_state->rmse_position_m);
     if (r.following && r.succeeded()) {
-      columns[7].values.push_back(r.following->mean_error_m);
-      columns[8].values.push_back(r.following->relative_speed_mps);
+      columns[8].values.push_back(r.following->mean_error_m);
+      columns[9].values.push_back(r.following->relative_speed_mps);
     }
   }
   return columns;

@@ -107,7 +107,7 @@ void FitSigma(const TagStudyOptions& options, const std::vector<TagStudyRow>& ro
     const std::size_t at = ClassOf(row, *model);
     rendered[at].push_back(1e3 * row.position_error);
     for (int i = 0; i < kRepeats; ++i) {
-      const sim::TagSensor::Image image = sensor.Look(row.vehicle, row.pad);
+      const sim::TagSensor::Image image = sensor.Look(row.vehicle, row.pad, row.vehicle.q_WB);
       if (image.pose.status != estimation::PadPoseStatus::kSolved) continue;
       fast[at].push_back(PositionErrorMm(row, image, options.camera.p_BC));
     }
@@ -159,7 +159,7 @@ TagAgreement CompareTagCameras(const TagStudyOptions& options, const std::vector
     ++part.views;
     if (row.Solved()) rendered.push_back(1e3 * row.position_error);
     for (int k = 0; k < kLooks; ++k) {
-      const sim::TagSensor::Image image = sensor.Look(row.vehicle, row.pad);
+      const sim::TagSensor::Image image = sensor.Look(row.vehicle, row.pad, row.vehicle.q_WB);
       if (image.pose.status != estimation::PadPoseStatus::kSolved) continue;
       fast.push_back(PositionErrorMm(row, image, options.camera.p_BC));
     }

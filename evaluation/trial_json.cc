@@ -38,6 +38,16 @@ Json EstimatorJson(const std::optional<EstimatorQuality>& quality) {
           {"samples", quality->samples}};
 }
 
+Json OwnStateJson(const std::optional<OwnStateQuality>& quality) {
+  if (!quality) return nullptr;
+  return {{"rmse_position_m", quality->rmse_position_m},
+          {"max_position_m", quality->max_position_m},
+          {"rmse_velocity_mps", quality->rmse_velocity_mps},
+          {"max_velocity_mps", quality->max_velocity_mps},
+          {"rmse_attitude_deg", quality->rmse_attitude_rad * kDegPerRad},
+          {"max_attitude_deg", quality->max_attitude_rad * kDegPerRad}};
+}
+
 Json FollowingJson(const std::optional<Following>& following) {
   if (!following) return nullptr;
   return {{"mean_error_m", following->mean_error_m},
@@ -64,7 +74,8 @@ Json WallClockJson(const TrialTiming& timing) {
   json["sensing_cpu_s"] = {{"depth_image", timing.sensing_stages.depth_image},
                            {"pad_image", timing.sensing_stages.pad_image},
                            {"pad_finding", timing.sensing_stages.pad_finding},
-                           {"pad_filter", timing.sensing_stages.pad_filter}};
+                           {"pad_filter", timing.sensing_stages.pad_filter},
+                           {"own_state", timing.sensing_stages.own_state}};
   return json;
 }
 
@@ -100,6 +111,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["replans_by_status"] = result.replans_by_status;
   json["replans_by_reason"] = result.replans_by_reason;
   json["estimator"] = EstimatorJson(result.estimator);
+  json["own_state"] = OwnStateJson(result.own_state);
   json["planner"] = FindScenarioKey("planner")->get(scenario);
   // The baseline has a solver of its own.
   json["backend"] =

@@ -31,7 +31,7 @@ struct RecordSample {
 
 struct RecordEvent {
   double t = 0.0;
-  std::string kind;  ///< "mode", "contact", "outcome"
+  std::string kind;  ///< "mode", "own_state", "contact", "outcome"
   std::string text;
 };
 

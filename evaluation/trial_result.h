@@ -23,6 +23,17 @@ struct EstimatorQuality {
   int samples = 0;
 };
 
+/// How far the vehicle's estimate of its own state was off, in flight until first contact, every
+/// 20 ms: lengths of the error of position and velocity, angle of that of the attitude.
+struct OwnStateQuality {
+  double rmse_position_m = 0.0;
+  double max_position_m = 0.0;
+  double rmse_velocity_mps = 0.0;
+  double max_velocity_mps = 0.0;
+  double rmse_attitude_rad = 0.0;
+  double max_attitude_rad = 0.0;
+};
+
 /// How well the vehicle kept above the pad over the last 10 s of a flight.
 struct Following {
   double mean_error_m = 0.0;        ///< horizontal distance of B to the pad's centre
@@ -65,7 +76,8 @@ struct TrialResult {
   std::map<std::string, int> replans_by_status;
   std::map<std::string, int> replans_by_reason;  ///< of those that made no new plan
   std::optional<EstimatorQuality> estimator;
-  std::optional<Following> following;  ///< of trials without a descent that lasted 10 s
+  std::optional<OwnStateQuality> own_state;  ///< where it is estimated
+  std::optional<Following> following;        ///< of trials without a descent that lasted 10 s
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }

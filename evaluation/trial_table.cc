@@ -22,13 +22,15 @@ CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outc
   effort_n2s REAL, saturation_share REAL, max_speed_mps REAL, max_acceleration_mps2 REAL,
   replans INTEGER, replans_planned INTEGER, estimator_rmse_position_m REAL,
   estimator_rmse_velocity_mps REAL, estimator_nees_position REAL, following_mean_error_m REAL,
-  following_max_error_m REAL, following_relative_speed_mps REAL);
+  following_max_error_m REAL, following_relative_speed_mps REAL, own_rmse_position_m REAL,
+  own_max_position_m REAL, own_rmse_velocity_mps REAL, own_max_velocity_mps REAL,
+  own_rmse_attitude_rad REAL, own_max_attitude_rad REAL);
 CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT);
 CREATE TABLE timing(trial INTEGER PRIMARY KEY, wall_s REAL, cpu_s REAL, physics_cpu_s REAL,
   sensing_cpu_s REAL, mapping_cpu_s REAL, planning_cpu_s REAL, control_cpu_s REAL,
   judging_cpu_s REAL, replan_median_ms REAL, replan_p95_ms REAL, replan_max_ms REAL,
   deadline_misses INTEGER, depth_image_cpu_s REAL, pad_image_cpu_s REAL, pad_finding_cpu_s REAL,
-  pad_filter_cpu_s REAL);
+  pad_filter_cpu_s REAL, own_state_cpu_s REAL);
 )sql";
 
 using OptionalReal = std::optional<double>;
@@ -60,13 +62,23 @@ void WriteTrial(SqliteStatement& insert, const SweepRow& row) {
     following_max = r.following->max_error_m;
     following_speed = r.following->relative_speed_mps;
   }
+  OptionalReal own_p, own_p_max, own_v, own_v_max, own_q, own_q_max;
+  if (r.own_state) {
+    own_p = r.own_state->rmse_position_m;
+    own_p_max = r.own_state->max_position_m;
+    own_v = r.own_state->rmse_velocity_mps;
+    own_v_max = r.own_state->max_velocity_mps;
+    own_q = r.own_state->rmse_attitude_rad;
+    own_q_max = r.own_state->max_attitude_rad;
+  }
   const auto planned = r.replans_by_status.find("planned");
   insert.Run(row.trial.index, static_cast<std::int64_t>(r.seed), r.landed(), ToString(r.outcome),
              r.detail, time, error, vx, vy, vz, tilt, over, mean_x, mean_y, r.min_clearance_m,
              r.simulated_s, r.effort_n2s, r.saturation_share, r.max_speed_mps,
              r.max_acceleration_mps2, r.replans,
              planned == r.replans_by_status.end() ? 0 : planned->second, rmse_position,
-             rmse_velocity, nees, following_mean, following_max, following_speed);
+             rmse_velocity, nees, following_mean, following_max, following_speed, own_p, own_p_max,
+             own_v, own_v_max, own_q, own_q_max);
 }
 
 void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
@@ -75,7 +87,7 @@ void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
              t.planning_cpu_s, t.control_cpu_s, t.judging_cpu_s, Quantile(t.replan_wall_ms, 0.5),
              Quantile(t.replan_wall_ms, 0.95), Quantile(t.replan_wall_ms, 1.0), t.deadline_misses,
              t.sensing_stages.depth_image, t.sensing_stages.pad_image, t.sensing_stages.pad_finding,
-             t.sensing_stages.pad_filter);
+             t.sensing_stages.pad_filter, t.sensing_stages.own_state);
 }
 
 void WriteManifest(SqliteDb& db, const SweepOptions& options, const std::vector<SweepRow>& rows) {
@@ -108,10 +120,10 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
     WriteManifest(db, options, rows);
     SqliteStatement trial = db.Prepare(
         "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-        "?, ?, ?, ?, ?, ?, ?)");
+        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement variation = db.Prepare("INSERT INTO variation VALUES(?, ?, ?)");
-    SqliteStatement timing =
-        db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    SqliteStatement timing = db.Prepare(
+        "INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (const SweepRow& row : rows) {
       WriteTrial(trial, row);
       for (const auto& [key, value] : row.trial.varied) variation.Run(row.trial.index, key, value);

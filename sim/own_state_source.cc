@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,13 @@ estimation::OwnStateOptions FilterOptions(const OwnStateSourceConfig& config) {
     latency = std::max(latency, 1e-3 * sensor->latency_ms);
   }
   options.max_delay = std::max(options.max_delay, latency + 0.1);
+  // Between two fixes of a slow sensor nothing is missing yet.
+  double period = std::numeric_limits<double>::infinity();
+  for (const OwnSensorConfig* sensor : {&config.sensors.gps.sensor, &config.sensors.odometry}) {
+    if (sensor->rate_hz <= 0.0) continue;
+    period = std::min(period, 1.0 / sensor->rate_hz + 1e-3 * sensor->latency_ms);
+  }
+  if (std::isfinite(period)) options.outage_after = std::max(options.outage_after, 2.0 * period);
   return options;
 }
 

@@ -13,7 +13,8 @@ namespace touchdown::sim {
 struct OwnStateSourceConfig {
   ImuConfig imu;
   OwnSensorsConfig sensors;  ///< the GPS outage is in the trial's time, after the hover
-  /// Its IMU noise, bias priors, IMU rate and reach are taken from the sensors above.
+  /// Its IMU noise, bias priors, IMU rate and reach are taken from the sensors above; its outage_after
+  /// is no less than what two fixes of the faster of GPS and odometry take.
   estimation::OwnStateOptions filter;
   /// The vehicle hovers at its start for so long before t = 0, for the filter to start and settle
   /// [s], in [0.5, 600].

@@ -135,7 +135,8 @@ std::array<bool, estimation::kPadTagCount> TagSensor::Visible(
 }
 
 TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
-                                 const estimation::PadState& pad) {
+                                 const estimation::PadState& pad,
+                                 const Eigen::Quaterniond& believed) {
   const TagModel& model = config_.model;
   const std::array<bool, estimation::kPadTagCount> visible = Visible(vehicle, pad);
   Image image;
@@ -177,7 +178,7 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   options.corner_sigma_floor = options.corner_sigma;
   image.pose = estimation::SolvePadPose(
       std::span(tags.data(), count), intrinsics_, options,
-      estimation::LevelPadNormal(vehicle.q_WB.toRotationMatrix(), DownwardCameraAxes(),
+      estimation::LevelPadNormal(believed.toRotationMatrix(), DownwardCameraAxes(),
                                  Radians(config_.attitude_sigma_deg)));
   return image;
 }
@@ -185,13 +186,14 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
 std::optional<estimation::PadSighting> TagSensor::Poll(double t,
                                                        const estimation::VehicleState& vehicle,
                                                        const estimation::PadState& pad) {
-  return clock_.Due(t) ? Sight(t, vehicle, pad) : std::nullopt;
+  return clock_.Due(t) ? Sight(t, vehicle, pad, vehicle.q_WB) : std::nullopt;
 }
 
 std::optional<estimation::PadSighting> TagSensor::Sight(double t,
                                                         const estimation::VehicleState& vehicle,
-                                                        const estimation::PadState& pad) {
-  const Image image = Look(vehicle, pad);
+                                                        const estimation::PadState& pad,
+                                                        const Eigen::Quaterniond& believed) {
+  const Image image = Look(vehicle, pad, believed);
   if (image.pose.status != estimation::PadPoseStatus::kSolved) return std::nullopt;
   estimation::PadSighting sighting =
       estimation::ToSighting(image.pose, t, DownwardCameraAxes(), config_.p_BC);

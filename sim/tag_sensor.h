@@ -46,17 +46,20 @@ class TagSensor {
   std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
                                               const estimation::PadState& pad);
 
-  /// The same without asking whether an image is due.
+  /// The same without asking whether an image is due. @param believed the attitude, B to W, that the
+  /// vehicle takes for its own: the deck's normal is read off it.
   std::optional<estimation::PadSighting> Sight(double t, const estimation::VehicleState& vehicle,
-                                               const estimation::PadState& pad);
+                                               const estimation::PadState& pad,
+                                               const Eigen::Quaterniond& believed);
 
-  /// Takes an image at once: the tags that are found, and the pad's pose in it.
+  /// Takes an image at once: the tags that are found, and the pad's pose in it. `believed` as above.
   struct Image {
     std::array<bool, estimation::kPadTagCount> found{};
     bool aligned = false;  ///< the pose is that of the whole sheet
     estimation::PadPose pose;
   };
-  Image Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad);
+  Image Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+             const Eigen::Quaterniond& believed);
 
   /// Which of estimation::PadTags() a camera at this pose has in view: all four corners in the
   /// image, at an admissible angle, nothing in between or on them.

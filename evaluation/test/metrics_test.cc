@@ -55,6 +55,25 @@ TEST(Metrics, FieldsAtContactStayEmptyWithoutContact) {
   EXPECT_FALSE(result.mean_abs_error_x_m.has_value());
   EXPECT_FALSE(result.min_clearance_m.has_value());
   EXPECT_FALSE(result.estimator.has_value());
+  EXPECT_FALSE(result.own_state.has_value());
+}
+
+TEST(Metrics, TheOwnStatesErrorIsMeanSquareAndLargest) {
+  Metrics metrics;
+  estimation::VehicleState truth, estimate;
+  estimate.p_WB = {0.3, 0.0, 0.4};
+  metrics.OwnState(estimate, truth);
+  estimate.p_WB.setZero();
+  estimate.v_WB.y() = -2.0;
+  estimate.q_WB = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX());
+  metrics.OwnState(estimate, truth);
+  TrialResult result;
+  metrics.Fill(&result);
+  ASSERT_TRUE(result.own_state);
+  EXPECT_NEAR(result.own_state->rmse_position_m, 0.5 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(result.own_state->max_position_m, 0.5, 1e-12);
+  EXPECT_NEAR(result.own_state->rmse_velocity_mps, 2.0 / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(result.own_state->max_attitude_rad, 0.2, 1e-12);
 }
 
 TEST(Metrics, EffortAndSaturationAddUp) {

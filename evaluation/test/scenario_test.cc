@@ -60,6 +60,13 @@ TEST_F(ScenarioTest, AFileWithoutAKeyIsRefused) {
 TEST_F(ScenarioTest, SensorKeysAreChecked) {
   EXPECT_THAT(Refusal("sensing: guessed\n"), HasSubstr("sensing must be fast or rendered"));
   EXPECT_THAT(Refusal("gps: {outage: [5, 3]}\n"), HasSubstr("must not end before it begins"));
+  EXPECT_THAT(Refusal("own: {gps: {outage: [5, 3]}}\n"), HasSubstr("own.gps.outage must not end"));
+  EXPECT_THAT(Refusal("own_state: guessed\n"), HasSubstr("own_state must be true or estimated"));
+  EXPECT_EQ(Refusal("own: {gps: {rate: 0}}\n"), "accepted");
+  EXPECT_THAT(Refusal("own_state: estimated\nown: {gps: {rate: 0}}\n"),
+              HasSubstr("cannot tell where it is"));
+  EXPECT_EQ(Refusal("own_state: estimated\nown: {gps.rate: 0, odometry: {rate: 30}}\n"),
+            "accepted");
   EXPECT_THAT(Refusal("camera: {drop: 1.5}\n"), HasSubstr("camera.drop must be"));
   EXPECT_THAT(Refusal("camera: {occlusion: 0.95}\n"), HasSubstr("camera.occlusion must be"));
   EXPECT_THAT(Refusal("camera: {zoom: 2}\n"), HasSubstr("camera.zoom"));
@@ -81,7 +88,9 @@ TEST_F(ScenarioTest, EveryKeyRoundTrips) {
   const Scenario s = Load(
       "pad: {motion: circle, speed: 0.123456789012345678, phase_spread: 1.5, prediction: oracle}\n"
       "start: {position: [0.1, -0.2, 3.3], position_spread: [1, 1, 0.25], yaw_random: true}\n"
-      "gps: {sigma: 1e-3}\nestimator: {pad: paper}\ncontroller: paper\ndescent: none\n"
+      "gps: {sigma: 1e-3}\nown_state: estimated\n"
+      "own: {imu.noise: 2, gps: {sigma: 0.3, outage: [1, 2]}}\nestimator: {pad: "
+      "paper}\ncontroller: paper\ndescent: none\n"
       "solver: {arrival: free}\nseed: 9007199254740991\n"
       "obstacles:\n  boxes:\n    - {centre: [-8, -3], size: [1, 2, 3]}\n"
       "  cylinders:\n    - {centre: [-5, 0.5], radius: 0.3, height: 4}\n");

@@ -51,7 +51,7 @@ Watch WatchPad(const Overrides& overrides, int images, double height, double asi
     vehicle.v_WB.x() = speed;
     vehicle.p_WB = pad.p_WP + Eigen::Vector3d(aside + speed * vehicle.t, 0.0, height);
     filter.AddGps({vehicle.t, pad.p_WP.head<2>(), 0.05});
-    eye->Look(vehicle, pad, filter, &watch.times);
+    eye->Look(vehicle, vehicle, pad, filter, &watch.times);
     while (const auto glimpse = eye->Poll(vehicle.t)) {
       watch.glimpses.push_back(*glimpse);
       watch.arrivals.push_back(vehicle.t);

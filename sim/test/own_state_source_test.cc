@@ -198,5 +198,22 @@ TEST(OwnStateSource, AHoverTooShortIsRefused) {
   EXPECT_THROW(OwnStateSource(config, 1, Start().start, 0.002), std::invalid_argument);
 }
 
+TEST(OwnStateSource, ASlowGpsIsNoOutageBetweenItsFixes) {
+  OwnStateSourceConfig config;
+  config.sensors.gps.sensor.rate_hz = 1.0;
+  config.sensors.gps.outage_begin = 3.5;
+  config.sensors.gps.outage_length = 10.0;
+  estimation::VehicleState hover;
+  OwnStateSource source(config, 1, hover, 0.002);
+  for (int k = 1; k <= 3500; ++k) {
+    hover.t = 0.002 * k;
+    source.Step(hover);
+    // The last fix is that of 3 s; two more and their latency may be missing.
+    const double late = hover.t - (3.0 + 2.2);
+    if (std::abs(late) < 0.003) continue;
+    ASSERT_EQ(source.status() == estimation::OwnStatus::kOutage, late > 0.0) << hover.t;
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::sim

@@ -50,7 +50,8 @@ TEST(TagSensor, WhichTagsAreInViewByHeight) {
 double ShareFound(std::size_t id, double height) {
   TagSensor sensor({}, {}, 2);
   int found = 0;
-  for (int i = 0; i < 1000; ++i) found += sensor.Look(Above(height), Pad()).found[id] ? 1 : 0;
+  for (int i = 0; i < 1000; ++i)
+    found += sensor.Look(Above(height), Pad(), Above(height).q_WB).found[id] ? 1 : 0;
   return found / 1000.0;
 }
 

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keys of tracking, planning, solving and limits, and of the EGO-Planner baseline.
+#include <cctype>
+
+#include "touchdown/evaluation/scenario_keys.h"
+
+namespace touchdown::evaluation::schema {
+
+void AddPlanningKeys(KeyList& keys) {
+  keys.push_back(
+      Choice("controller", {"geometric", "paper"}, "tracking law", TOUCHDOWN_AT(controller)));
+  keys.push_back(Choice("descent", {"none", "vertical"},
+                        "none follows above the pad, vertical approaches and then sinks over it",
+                        TOUCHDOWN_AT(descent)));
+  keys.push_back(
+      Choice("planner", {"landing", "ego", "ego-velocity"},
+             "landing: this project's; ego: the EGO-Planner baseline, at rest at the pad; "
+             "ego-velocity: the same with the pad's velocity at the end",
+             TOUCHDOWN_AT(planner)));
+  keys.push_back(Number<Scenario>("planning.rate", Above(0, 100, "Hz"), "rate of replanning",
+                                  TOUCHDOWN_AT(planning.rate)));
+  const ValueRange latency = In(0, 1000, "ms");
+  keys.push_back({"planning.latency", "number or word", "ms", latency.ToString() + " or measured",
+                  "time from the question to the plan that is flown, no more than the period of "
+                  "planning.rate; measured: the wall clock's",
+                  [latency](Scenario& s, const YAML::Node& n, const Where& w) {
+                    s.planning.latency.measured = n.IsScalar() && n.Scalar() == "measured";
+                    if (s.planning.latency.measured) return;
+                    if (n.IsScalar() && !n.Scalar().empty() && std::isalpha(n.Scalar()[0]) != 0) {
+                      RefuseValue(w, "planning.latency",
+                                  "a number in " + latency.ToString() + " or measured", n);
+                    }
+                    s.planning.latency.ms = ReadNumber(n, w, "planning.latency", latency);
+                  },
+                  [](const Scenario& s) {
+                    return s.planning.latency.measured ? "measured"
+                                                       : WriteNumber(s.planning.latency.ms);
+                  }});
+  keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 1, "m"),
+                                  "obstacles are grown by this in the map; no less than the "
+                                  "radius of the vehicle's hull",
+                                  TOUCHDOWN_AT(planning.clearance)));
+  keys.push_back(Number<Scenario>("planning.ceiling", Above(0, 1000, "m"),
+                                  "flight ceiling of the vehicle's centre above the ground; above "
+                                  "the start and the height at which the pad is followed",
+                                  TOUCHDOWN_AT(planning.ceiling)));
+  keys.push_back(
+      Whole("planning.guides", 1, 8,
+            "most ways around the first obstacle that a step of the landing planner tries; "
+            "the cheapest plan wins",
+            TOUCHDOWN_AT(planning.guides)));
+  keys.push_back(Text("solver.backend", "a name of `touchdown list backends`",
+                      "optimiser of planner landing; the baseline has lbfgs",
+                      TOUCHDOWN_AT(solver.backend)));
+  keys.push_back(Choice("solver.arrival", {"fixed", "free"},
+                        "arrival time chosen before the solve or optimised in it",
+                        TOUCHDOWN_AT(solver.arrival)));
+  keys.push_back(Choice("solver.endpoint", {"eliminated", "explicit"},
+                        "both ends of a plan eliminated exactly, or equality constraints",
+                        TOUCHDOWN_AT(solver.endpoint)));
+  keys.push_back(Choice("solver.limits", {"soft", "hard"},
+                        "limits as penalties, or as constraints at the full limit",
+                        TOUCHDOWN_AT(solver.limits)));
+  keys.push_back(Number<Scenario>("limits.speed", In(0.5, 20, "m/s"), "norm of the velocity",
+                                  TOUCHDOWN_AT(limits.speed)));
+  keys.push_back(Number<Scenario>("limits.acceleration", In(0.5, 20, "m/s^2"),
+                                  "norm of the acceleration; plans keep the lesser of this and "
+                                  "g tan(limits.tilt_deg)",
+                                  TOUCHDOWN_AT(limits.acceleration)));
+  keys.push_back(Number<Scenario>("limits.tilt_deg", In(5, 60, "deg"),
+                                  "plans accelerate no more than this tilt gives in level flight; "
+                                  "the controller may tilt 10 deg more",
+                                  TOUCHDOWN_AT(limits.tilt_deg)));
+}
+
+void AddEgoKeys(KeyList& keys) {
+  keys.push_back(Number<Scenario>("ego.goal_rate", In(0.1, 100, "Hz"),
+                                  "planner ego: the pad's position is sent as a new goal so often",
+                                  TOUCHDOWN_AT(ego.goal_rate)));
+  keys.push_back(Number<Scenario>("ego.horizon", In(1, 50, "m"),
+                                  "planner ego: distance of the local target",
+                                  TOUCHDOWN_AT(ego.horizon)));
+  keys.push_back(Number<Scenario>("ego.control_point_distance", In(0.05, 2, "m"),
+                                  "planner ego: nominal spacing of control points",
+                                  TOUCHDOWN_AT(ego.control_point_distance)));
+  keys.push_back(Number<Scenario>("ego.clearance", In(0, 3, "m"),
+                                  "planner ego: wanted beyond the grown obstacles",
+                                  TOUCHDOWN_AT(ego.clearance)));
+  keys.push_back(Number<Scenario>("ego.replan_distance", In(0, 50, "m"),
+                                  "planner ego: flown before it replans for no other reason",
+                                  TOUCHDOWN_AT(ego.replan_distance)));
+  keys.push_back(Number<Scenario>("ego.no_replan_distance", In(0, 50, "m"),
+                                  "planner ego: to the goal, nearer it replans for none",
+                                  TOUCHDOWN_AT(ego.no_replan_distance)));
+  keys.push_back(Number<Scenario>("ego.emergency_time", In(0, 10, "s"),
+                                  "planner ego: a collision sooner than this stops the vehicle",
+                                  TOUCHDOWN_AT(ego.emergency_time)));
+}
+
+}  // namespace touchdown::evaluation::schema

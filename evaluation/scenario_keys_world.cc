@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keys of what is there and of the trial: pad, vehicle, time-out and seed.
+#include "touchdown/evaluation/scenario_keys.h"
+
+namespace touchdown::evaluation::schema {
+
+void AddPadKeys(KeyList& keys) {
+  keys.push_back(Choice("pad.motion", {"straight_turn", "circle", "line", "static"},
+                        "path of the pad vehicle", TOUCHDOWN_AT(pad.motion)));
+  keys.push_back(Number<Scenario>("pad.speed", In(0.01, 3, "m/s"),
+                                  "speed along the path; at most 0.9 limits.speed",
+                                  TOUCHDOWN_AT(pad.speed)));
+  keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
+                                     "pad centre at the start of the path, in W",
+                                     TOUCHDOWN_AT(pad.start)));
+  keys.push_back(Number<Scenario>("pad.heading_deg", In(-360, 360, "deg"),
+                                  "heading at the start of the path",
+                                  TOUCHDOWN_AT(pad.heading_deg)));
+  keys.push_back(Number<Scenario>("pad.turn_start", In(0, 200, "m"),
+                                  "straight_turn: driven before the turn begins",
+                                  TOUCHDOWN_AT(pad.turn_start)));
+  keys.push_back(Number<Scenario>("pad.turn_deg", In(-180, 180, "deg"),
+                                  "straight_turn: angle of the turn, left positive",
+                                  TOUCHDOWN_AT(pad.turn_deg)));
+  keys.push_back(Number<Scenario>("pad.turn_rate", In(-2, 2, "rad/s"),
+                                  "circle: turn rate, left positive; straight_turn: its magnitude",
+                                  TOUCHDOWN_AT(pad.turn_rate)));
+  keys.push_back(Number<Scenario>("pad.phase", In(-100, 100, "m"),
+                                  "path already travelled at t = 0", TOUCHDOWN_AT(pad.phase)));
+  keys.push_back(Number<Scenario>("pad.phase_spread", In(0, 100, "m"),
+                                  "drawn per seed: uniform in +- this, added to pad.phase",
+                                  TOUCHDOWN_AT(pad.phase_spread)));
+  keys.push_back(Number<Scenario>("pad.deck_size", In(0.6, 5, "m"), "edge of the square deck",
+                                  TOUCHDOWN_AT(pad.deck_size)));
+  keys.push_back(Number<Scenario>("pad.deck_height", In(0.1, 3, "m"),
+                                  "upper face of the deck above the ground",
+                                  TOUCHDOWN_AT(pad.deck_height)));
+  keys.push_back(
+      Choice("pad.prediction", {"paper", "turn_rate", "oracle"},
+             "extrapolation of the pad: straight, along an arc (straight if estimator.pad "
+             "is paper), or the true future",
+             TOUCHDOWN_AT(pad.prediction)));
+}
+
+void AddVehicleKeys(KeyList& keys) {
+  keys.push_back(Text("vehicle", "default or the path of an MJCF file", "the quadrotor",
+                      TOUCHDOWN_AT(vehicle)));
+  keys.push_back(Vector<3, Scenario>("start.position", In(-100, 100, "m"),
+                                     "the vehicle hovers here at t = 0, in W",
+                                     TOUCHDOWN_AT(start.position)));
+  keys.push_back(Vector<3, Scenario>("start.position_spread", In(0, 20, "m"),
+                                     "drawn per seed: uniform in +- this, per axis",
+                                     TOUCHDOWN_AT(start.position_spread)));
+  keys.push_back(Number<Scenario>("start.yaw_deg", In(-360, 360, "deg"), "heading at t = 0",
+                                  TOUCHDOWN_AT(start.yaw_deg)));
+  keys.push_back(Bool("start.yaw_random", "draw the heading per seed from the whole circle instead",
+                      TOUCHDOWN_AT(start.yaw_random)));
+}
+
+void AddTrialKeys(KeyList& keys) {
+  keys.push_back(Number<Scenario>("timeout", In(1, 600, "s"), "a trial ends here at the latest",
+                                  TOUCHDOWN_AT(timeout)));
+  keys.push_back(
+      {"seed", "whole number", "", "[0, 2^53]", "seed of every random stream",
+       [](Scenario& s, const YAML::Node& n, const Where& w) { s.seed = ReadSeed(n, w, "seed"); },
+       [](const Scenario& s) { return std::to_string(s.seed); }});
+}
+
+}  // namespace touchdown::evaluation::schema
