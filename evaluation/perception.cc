@@ -19,15 +19,6 @@ constexpr double kVolumeMargin = 0.3;    // around and above the deck [m]
 constexpr double kVolumeSigmas = 2.0;    // of the estimate, added to the radius
 constexpr double kVolumeSigmaMax = 1.0;  // no more doubt than this is covered [m]
 
-estimation::PadFilterOptions FilterOptions(const Scenario& scenario) {
-  estimation::PadFilterOptions options;
-  options.model = scenario.pad_estimator == PadEstimatorKind::kPaper
-                      ? estimation::PadModel::kPaper
-                      : estimation::PadModel::kTurnRate;
-  options.pad_height = scenario.pad.deck_height;
-  return options;
-}
-
 sim::PadGpsConfig GpsConfig(const Scenario& scenario) {
   sim::PadGpsConfig config;
   config.sigma = scenario.gps.sigma;
@@ -41,6 +32,15 @@ sim::PadGpsConfig GpsConfig(const Scenario& scenario) {
 
 }  // namespace
 
+estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
+  estimation::PadFilterOptions options;
+  options.model = scenario.pad_estimator == PadEstimatorKind::kPaper
+                      ? estimation::PadModel::kPaper
+                      : estimation::PadModel::kTurnRate;
+  options.pad_height = scenario.pad.deck_height;
+  return options;
+}
+
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
   planning::OccupancyMapOptions options;
   options.inflation_radius = scenario.planning.clearance;
@@ -51,7 +51,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
     : gps_(GpsConfig(scenario), seed),
       pad_eye_(MakePadEye(scenario, world.config(), seed)),
       depth_eye_(MakeDepthEye(scenario, world.config(), seed)),
-      pad_filter_(FilterOptions(scenario)),
+      pad_filter_(PadFilterOptionsOf(scenario)),
       map_(MapOptions(scenario)),
       persistent_map_(map_.options()),
       deck_half_diagonal_(scenario.pad.deck_size * std::sqrt(0.5)),
@@ -89,16 +89,17 @@ void Perception::SensePad(double t, const estimation::VehicleState& vehicle,
                           const estimation::PadState& pad) {
   pad_measured_ = false;
   // Most steps bring nothing: the clock is read only if something has arrived.
-  const auto timed = [this](const auto& update) {
+  const auto timed = [this, t](const auto& measurement, const auto& update) {
+    if (pad_log_ != nullptr) pad_log_->push_back({t, measurement});
     const double begin = solvers::ThreadCpuSeconds();
     update();
     sensing_times_.pad_filter += solvers::ThreadCpuSeconds() - begin;
     pad_measured_ = true;
   };
-  if (const auto fix = gps_.Poll(t, pad)) timed([&] { pad_filter_.AddGps(*fix); });
+  if (const auto fix = gps_.Poll(t, pad)) timed(*fix, [&] { pad_filter_.AddGps(*fix); });
   pad_eye_->Look(vehicle, pad, pad_filter_, &sensing_times_);
   while (const auto glimpse = pad_eye_->Poll(t)) {
-    timed([&] { pad_filter_.AddSighting(glimpse->sighting, glimpse->vehicle); });
+    timed(*glimpse, [&] { pad_filter_.AddSighting(glimpse->sighting, glimpse->vehicle); });
   }
 }
 
