@@ -3,6 +3,7 @@
 // bootstrap draws flights with replacement (B. Efron, 1979; percentile interval).
 #include "touchdown/evaluation/pad_summary.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -41,6 +42,12 @@ Interval RatioInterval(const std::vector<FlightSums>& flights) {
     ratios.push_back(std::sqrt(turn_rate / paper));
   }
   return {*Quantile(ratios, 0.025), *Quantile(ratios, 0.975)};
+}
+
+bool DrivesCircle(const std::vector<PadStudyRow>& rows, int scenario) {
+  return std::none_of(rows.begin(), rows.end(), [scenario](const PadStudyRow& row) {
+    return row.scenario == scenario && row.course != PadCourse::kTurn;
+  });
 }
 
 }  // namespace
@@ -109,10 +116,12 @@ std::vector<PadDemand> PadDemands(const PadStudyOptions& options,
       ask(cell, "NEES of the state over its size", cell.turn_rate.nees_state, 1.5);
     } else if (cell.course == PadCourse::kStraight && any_source) {
       ask(cell, "prediction on straights, turn_rate over paper", cell.ratio, 1.5);
-    } else if (cell.course == PadCourse::kTurn && any_source) {
-      ask(cell, "prediction on turns, turn_rate over paper", cell.ratio,
+    } else if (cell.course != PadCourse::kTurn || !DrivesCircle(rows, cell.scenario)) {
+      continue;
+    } else if (any_source) {
+      ask(cell, "prediction on the circle, turn_rate over paper", cell.ratio,
           good_gps ? 1.0 / 3.0 : 0.7);
-    } else if (cell.course == PadCourse::kTurn && *cell.tags) {
+    } else if (*cell.tags) {
       ask(cell, "the same with tags", cell.ratio, 1.0 / 3.0);
     }
   }

@@ -45,8 +45,9 @@ struct PadDemand {
   bool met() const { return value <= limit; }
 };
 
-/// Of the prediction's error over the paper model's: on turns 1/3 at a GPS up to kPadGoodGps and with
-/// tags, 0.7 at a coarser one; on straights 1.5. Of the state's NEES over its degrees of freedom: 1.5.
+/// Of the prediction's error over the paper model's: where the pad does nothing but turn 1/3 at a GPS
+/// up to kPadGoodGps and with tags, 0.7 at a coarser one; on straights 1.5. Of the state's NEES over its
+/// degrees of freedom: 1.5.
 std::vector<PadDemand> PadDemands(const PadStudyOptions& options,
                                   const std::vector<PadStudyRow>& rows);
 inline constexpr double kPadGoodGps = 0.05;  ///< [m]

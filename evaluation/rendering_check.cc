@@ -16,10 +16,10 @@ void RequireRendering(const std::string& who) {
   } catch (const std::runtime_error& error) {
     std::string why = error.what();
     while (!why.empty() && why.back() == '.') why.pop_back();
-    throw BadInput(fmt::format(
-        "{} needs off-screen rendering, which this machine does not offer ({}): mend its "
-        "OSMesa (Debian: libosmesa6), or fly with sensing: fast.",
-        who, why));
+    throw BadInput(
+        fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend "
+                    "its OSMesa (Debian: libosmesa6); sensing: fast flies without it.",
+                    who, why));
   }
 }
 
