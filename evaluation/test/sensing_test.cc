@@ -205,16 +205,15 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
   std::vector<std::string> seen = {fly({})};
   // No key without its fault changes anything.
   EXPECT_EQ(fly({"gps.outlier_size=50", "gps.outage=[3, 3]", "camera.noise=5"}), seen[0]);
-  for (const Overrides& fault :
-       std::vector<Overrides>{{"gps.outage=[2, 4]"},
-                              {"gps.outliers=0.1"},
-                              {"camera.drop=0.3"},
-                              {"camera.occlusion=0.4"},
-                              {"camera.occlusion=0.5"},
-                              {"camera.latency_ms=60"},
-                              {"depth.noise=0.01"},
-                              {"depth.drop=0.3"},
-                              {"depth.latency_ms=60"}}) {
+  for (const Overrides& fault : std::vector<Overrides>{{"gps.outage=[2, 4]"},
+                                                       {"gps.outliers=0.1"},
+                                                       {"camera.drop=0.3"},
+                                                       {"camera.occlusion=0.4"},
+                                                       {"camera.occlusion=0.5"},
+                                                       {"camera.latency_ms=60"},
+                                                       {"depth.noise=0.01"},
+                                                       {"depth.drop=0.3"},
+                                                       {"depth.latency_ms=60"}}) {
     seen.push_back(fly(fault));
     // The empty field has nothing for the depth camera to err about but the pad vehicle itself.
     if (fault[0].rfind("depth", 0) != 0) {
