@@ -26,18 +26,27 @@ struct Conditions {
   bool touching;
 };
 
+// Whether what is known now lasts until contact, were nothing measured on the way.
+bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
+  return s.foot_height <= p.gate_height &&
+         in.tag_age + TimeToContact(s, in.height, p) <= p.bridge_time &&
+         in.contact_sigma <= p.bridge_sigma;
+}
+
 Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   Conditions now{};
-  // pad_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
+  // pad_sigma, contact_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
                       std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
-                      !std::isnan(in.pad_sigma) && !std::isnan(in.tag_age) &&
-                      !std::isnan(in.plan_failed_for);
+                      !std::isnan(in.pad_sigma) && !std::isnan(in.contact_sigma) &&
+                      !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
   // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
   const bool own_good = in.own_usable && (in.own_fresh || s.t - s.own_stale_since > p.own_patience);
-  now.gate_open = now.numbers_valid && own_good && in.pad_available &&
-                  in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
+  const bool seen = in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
+  // A bridge is what is foretold in W, and dead reckoning leaves W.
+  const bool bridged = in.own_fresh && CanBridge(s, in, p);
+  now.gate_open = now.numbers_valid && own_good && in.pad_available && (seen || bridged);
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
@@ -89,6 +98,9 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
   if (s.committed) {  // blind last part: no tags needed, but it must end
+    if (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma) {
+      return {MissionMode::kGoAround, TransitionReason::kTagsLost};
+    }
     if (LastedLonger(s.committed_since, s.t, p.commit_timeout)) {
       return {MissionMode::kGoAround, TransitionReason::kNoContact};
     }
@@ -257,6 +269,15 @@ MissionOutputs OutputsOf(const MissionState& s, TransitionReason reason, Descent
 }
 
 }  // namespace
+
+double TimeToContact(const MissionState& state, double height,
+                     const MissionParameters& p) noexcept {
+  if (!std::isfinite(height)) return kNever;
+  const double way = std::max({0.0, height, state.foot_height});
+  const double faster = std::max(0.0, p.slow_rate + state.foot_height_rate);  // yet to be gained
+  const double speeding_up = 0.5 * faster * faster / (p.height_acceleration * p.slow_rate);
+  return way / p.slow_rate + speeding_up + p.contact_reserve;
+}
 
 MissionStep Step(const MissionState& state, const MissionInputs& inputs,
                  const MissionParameters& parameters) noexcept {

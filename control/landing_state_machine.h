@@ -11,7 +11,8 @@
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
 //   landing        disarmed        contact            foot force for contact_time, feet at the deck
 //   landing        go_around       pad_lost           no converged pad for over pad_timeout
-//   landing        go_around       tags_lost          gate closed for over gate_timeout
+//   landing        go_around       tags_lost          gate closed for over gate_timeout, or
+//                                                     committed and the bridge is over
 //   landing        go_around       error_too_large    horizontal error beyond abort_distance
 //   landing        go_around       plan_failed        no plan for over plan_timeout
 //   landing        go_around       no_contact         committed for over commit_timeout
@@ -27,10 +28,16 @@
 //
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance, no_contact, own_state_lost, invalid_input or emergency. A pad
-// counts as converged only while the vehicle's own state is usable. Dead reckoning closes the gate
-// for own_patience: a short outage of position and velocity is waited out.
+// error beyond commit_abort_distance, the end of the bridge, no_contact, own_state_lost, invalid_input
+// or emergency. A pad counts as converged only while the vehicle's own state is usable. Dead reckoning
+// closes the gate for own_patience: a short outage of position and velocity is waited out.
 // clang-format on
+//
+// The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is known
+// well, and it stays open without tags where the rest of the way can be bridged: contact is foretold
+// within bridge_time of the last sighting, with a pad that is by then still known to bridge_sigma.
+// Without sightings neither improves, so a descent that pauses, or that lost the tags too high up,
+// closes the gate; and a committed descent is given up where the bridge has ended without contact.
 #pragma once
 
 #include <limits>
@@ -97,6 +104,8 @@ struct MissionInputs {
   double height = 0.0;               ///< feet above the deck, estimated [m]
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
+  /// The same foretold for TimeToContact from now, without further measurements; may be inf.
+  double contact_sigma = std::numeric_limits<double>::infinity();
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
   bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning
   bool own_usable = true;   ///< own state is good enough to fly to the pad by
@@ -120,12 +129,15 @@ struct MissionParameters {
   double climb_rate = 0.8;           ///< go-around [m/s]
   double height_acceleration = 1.0;  ///< of the commanded height [m/s^2]
 
-  double gate_height = 1.0;     ///< no descent below it with the gate closed [m]
-  double gate_sigma = 0.08;     ///< the gate is open at pad_sigma up to this [m] ...
-  double gate_tag_age = 0.3;    ///< ... and tag_age up to this [s]
-  double gate_timeout = 3.0;    ///< closed for longer at the gate or below it: go around [s]
-  double commit_height = 0.35;  ///< below it the descent goes on by prediction [m]
-  double commit_timeout = 4.0;  ///< committed for longer without contact: go around [s]
+  double gate_height = 1.0;      ///< no descent below it with the gate closed [m]
+  double gate_sigma = 0.08;      ///< the gate is open at pad_sigma up to this [m] ...
+  double gate_tag_age = 0.3;     ///< ... and tag_age up to this [s], or else if it can be bridged:
+  double bridge_time = 2.6;      ///< last sighting to contact [s]
+  double bridge_sigma = 0.19;    ///< contact_sigma up to this, by the size of the deck [m]
+  double contact_reserve = 0.4;  ///< by which contact may be later than the commanded height [s]
+  double gate_timeout = 3.0;     ///< closed for longer at the gate or below it: go around [s]
+  double commit_height = 0.35;   ///< below it the descent goes on by prediction [m]
+  double commit_timeout = 4.0;   ///< committed for longer without contact: go around [s]
 
   double corridor_radius = 0.12;       ///< horizontal error allowed at the deck [m] ...
   double corridor_slope = 0.35;        ///< ... and more by so much per metre of height [-]
@@ -192,6 +204,12 @@ struct MissionStep {
   MissionState state;
   MissionOutputs outputs;
 };
+
+/// Time until the feet are on the deck, at the latest, if the descent goes on without a pause [s]:
+/// from the higher of the command and the vehicle's `height` [m]. For heights up to gate_height.
+/// Infinite where `height` is not finite.
+double TimeToContact(const MissionState& state, double height,
+                     const MissionParameters& parameters) noexcept;
 
 /// One step. Pure: no hidden state, no exception, no allocation. Inputs that are not finite count
 /// as missing and, if they last, lead to hold; they never disarm.

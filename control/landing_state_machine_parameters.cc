@@ -48,7 +48,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 26> positive = {{
+  const std::array<Named, 28> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -59,6 +59,8 @@ void Validate(const MissionParameters& p) {
       {"gate_height", p.gate_height},
       {"gate_sigma", p.gate_sigma},
       {"gate_tag_age", p.gate_tag_age},
+      {"bridge_time", p.bridge_time},
+      {"bridge_sigma", p.bridge_sigma},
       {"gate_timeout", p.gate_timeout},
       {"commit_height", p.commit_height},
       {"commit_timeout", p.commit_timeout},
@@ -79,9 +81,10 @@ void Validate(const MissionParameters& p) {
   for (const Named& item : positive) {
     require(item.value > 0.0 && std::isfinite(item.value), item.name, item.value, "> 0");
   }
-  const std::array<Named, 6> not_negative = {{
+  const std::array<Named, 7> not_negative = {{
       {"align_timeout", p.align_timeout},
       {"corridor_slope", p.corridor_slope},
+      {"contact_reserve", p.contact_reserve},
       {"hold_time", p.hold_time},
       {"invalid_timeout", p.invalid_timeout},
       {"own_timeout", p.own_timeout},

@@ -45,9 +45,12 @@ struct PadFilterOptions {
   PadNoise noise;
 
   double speed_prior = 1.5;      ///< 1 sigma of each velocity component at the start [m/s]
-  double turn_rate_prior = 0.3;  ///< 1 sigma of omega when the heading becomes known [rad/s]
+  double turn_rate_prior = 0.2;  ///< 1 sigma of omega when the heading becomes known [rad/s]
   /// Heading is read off the motion at this ratio of speed to its 1 sigma, above min_speed.
-  double heading_significance = 5.0;
+  double heading_significance = 2.5;
+  /// kPaper measures the heading between fixes that lie this many of their 1 sigma apart. The fixes
+  /// are used twice then, for the position too: rare measurements keep the covariance honest.
+  double chord_significance = 5.0;
   double min_speed = 0.05;          ///< [m/s]
   double heading_lost_sigma = 0.7;  ///< back to kVelocity beyond this [rad]
 

@@ -68,6 +68,7 @@ void Validate(const PadFilterOptions& options) {
   RequirePositive("speed_prior", options.speed_prior);
   RequirePositive("turn_rate_prior", options.turn_rate_prior);
   RequirePositive("heading_significance", options.heading_significance);
+  RequirePositive("chord_significance", options.chord_significance);
   RequirePositive("min_speed", options.min_speed);
   RequirePositive("heading_lost_sigma", options.heading_lost_sigma);
   Require(options.gate_probability > 0.0 && options.gate_probability < 1.0, "gate_probability",

@@ -120,7 +120,7 @@ bool PadFilter::UpdateGps(const Measurement& measurement, Snapshot& state) const
   const double variance = measurement.cov_p(0, 0);
   const Eigen::Vector2d chord = measurement.p_WP - anchor.p_WP;
   const double spread = variance + anchor.variance;
-  const double limit = options_.heading_significance * options_.heading_significance;
+  const double limit = options_.chord_significance * options_.chord_significance;
   const bool significant = anchor.set && chord.squaredNorm() > limit * spread;
   if (!significant) {
     const bool accepted = UpdatePosition(belief, measurement.p_WP, measurement.cov_p, gate_[2]);

@@ -13,9 +13,11 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/equilibrium.h"
 #include "touchdown/evaluation/metrics.h"
+#include "touchdown/evaluation/pad_log.h"
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/pilot.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/sim/true_clearance.h"
 #include "touchdown/solvers/thread_clock.h"
@@ -23,8 +25,8 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kMissionRate = 100.0;  // [Hz]
-constexpr double kSampleRate = 50.0;    // of metrics and record [Hz]
+constexpr double kMissionRate = 100.0;       // [Hz]
+constexpr double kSampleRate = kPadLogRate;  // of metrics, record and pad log [Hz]
 
 class Trial {
  public:
@@ -43,6 +45,7 @@ class Trial {
         record_(record),
         samples_(samples) {
     result_.seed = seed;
+    if (samples_ != nullptr) perception_.LogPadTo(&samples_->pad.arrivals);
     if (record_ != nullptr) {
       record_->map_resolution = perception_.map().resolution();
       record_->map_size = perception_.map().size();
@@ -162,6 +165,7 @@ class Trial {
         if (perception_.own().estimated()) metrics_.OwnState(perception_.own().now(), vehicle);
       }
       if (record_ != nullptr) RecordState(vehicle, pad);
+      if (samples_ != nullptr) samples_->pad.truth.push_back({vehicle.t, in_flight, pad});
     }
     if (in_flight) {
       metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
@@ -268,6 +272,7 @@ class Trial {
 // What the simulator or a backend refuses before the flight is the user's to mend.
 Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
             TrialRecord* record, TrialSamples* samples) {
+  if (scenario.sensing == SensingKind::kRendered) RequireRendering("sensing: rendered");
   try {
     return Trial(scenario, seed, registries, record, samples);
   } catch (const std::invalid_argument& error) {

@@ -17,7 +17,8 @@ namespace touchdown::evaluation {
 /// result's timing, unless planning.latency is `measured`. Any number may run in threads at a time.
 /// @param record filled if not null.
 /// @param map what was known at the end, filled if not null.
-/// @param samples filled with what every replanning step and depth image cost, if not null.
+/// @param samples filled with what every replanning step and depth image cost, and with what the pad
+/// filter was given, if not null.
 /// Physics that fails is an outcome, `unstable`.
 /// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
 /// a part of the program fails.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown study: the standing studies. `replan`: the replanner's latency, success and safety in
-// random forests, and how faithful its baseline is. `tags`: see command_study_tags.cc.
+// random forests, and how faithful its baseline is. `tags` and `pad`: see command_study_tags.cc and
+// command_study_pad.cc.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -11,6 +12,7 @@
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/command_study_pad.h"
 #include "touchdown/evaluation/command_study_tags.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
@@ -224,6 +226,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
 void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
   CLI::App* study = app.add_subcommand("study", "The standing studies");
   study->require_subcommand(1);
+  AddPadStudyCommand(*study, registries, run);
   AddTagStudyCommand(*study, run);
   CLI::App* command = study->add_subcommand(
       "replan", "Latency, success and safety of replanning steps in random forests");

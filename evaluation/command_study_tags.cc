@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/tag_fit.h"
 #include "touchdown/evaluation/tag_picture.h"
 #include "touchdown/evaluation/tag_report.h"
@@ -58,6 +59,7 @@ void CheckFrames(const std::string& directory) {
 
 int Run(const TagStudyArguments& arguments) {
   CheckFrames(arguments.frames);
+  RequireRendering("study tags");
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
   if (arguments.fit && arguments.fovs.size() * arguments.noises.size() != 1) {
     throw BadInput(

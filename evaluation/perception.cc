@@ -31,20 +31,6 @@ constexpr double kOwnAttitudeSigma = 0.01;  // [rad]
 constexpr double kFrameWander = 1e-3;       // 0.03 m/s that last for about a second [m^2/s]
 constexpr double kTagsGuide = 0.5;          // GPS is left out while tags are younger than this [s]
 
-estimation::PadFilterOptions FilterOptions(const Scenario& scenario) {
-  estimation::PadFilterOptions options;
-  options.model = scenario.pad_estimator == PadEstimatorKind::kPaper
-                      ? estimation::PadModel::kPaper
-                      : estimation::PadModel::kTurnRate;
-  options.pad_height = scenario.pad.deck_height;
-  if (scenario.own_state == OwnStateKind::kEstimated) {
-    options.own_position_sigma = kOwnPositionSigma;
-    options.own_attitude_sigma = kOwnAttitudeSigma;
-    options.noise.position += kFrameWander;
-  }
-  return options;
-}
-
 sim::PadGpsConfig GpsConfig(const Scenario& scenario) {
   sim::PadGpsConfig config;
   config.sigma = scenario.gps.sigma;
@@ -58,6 +44,20 @@ sim::PadGpsConfig GpsConfig(const Scenario& scenario) {
 
 }  // namespace
 
+estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
+  estimation::PadFilterOptions options;
+  options.model = scenario.pad_estimator == PadEstimatorKind::kPaper
+                      ? estimation::PadModel::kPaper
+                      : estimation::PadModel::kTurnRate;
+  options.pad_height = scenario.pad.deck_height;
+  if (scenario.own_state == OwnStateKind::kEstimated) {
+    options.own_position_sigma = kOwnPositionSigma;
+    options.own_attitude_sigma = kOwnAttitudeSigma;
+    options.noise.position += kFrameWander;
+  }
+  return options;
+}
+
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
   planning::OccupancyMapOptions options;
   options.inflation_radius = scenario.planning.clearance;
@@ -69,7 +69,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       gps_(GpsConfig(scenario), seed),
       pad_eye_(MakePadEye(scenario, world.config(), seed)),
       depth_eye_(MakeDepthEye(scenario, world.config(), seed)),
-      pad_filter_(FilterOptions(scenario)),
+      pad_filter_(PadFilterOptionsOf(scenario)),
       map_(MapOptions(scenario)),
       persistent_map_(map_.options()),
       deck_half_diagonal_(scenario.pad.deck_size * std::sqrt(0.5)),
@@ -120,21 +120,24 @@ bool Perception::TagsGuide(double t) const {
 
 void Perception::SensePad(const estimation::VehicleState& vehicle,
                           const estimation::PadState& pad) {
+  const double t = vehicle.t;
   pad_measured_ = false;
   // Most steps bring nothing: the clock is read only if something has arrived.
-  const auto timed = [this](const auto& update) {
+  const auto timed = [this, t](const auto& measurement, const auto& update) {
+    if (pad_log_ != nullptr) pad_log_->push_back({t, measurement});
     const double begin = solvers::ThreadCpuSeconds();
     update();
     sensing_times_.pad_filter += solvers::ThreadCpuSeconds() - begin;
     pad_measured_ = true;
   };
-  if (auto fix = gps_.Poll(vehicle.t, pad); fix && !TagsGuide(vehicle.t)) {
+  if (auto fix = gps_.Poll(t, pad); fix && !TagsGuide(t)) {
     fix->sigma = std::hypot(fix->sigma, own_.PositionSigma());
-    timed([&] { pad_filter_.AddGps(*fix); });
+    timed(*fix, [&] { pad_filter_.AddGps(*fix); });
   }
   pad_eye_->Look(vehicle, own_.now(), pad, pad_filter_, &sensing_times_);
-  while (const auto glimpse = pad_eye_->Poll(vehicle.t)) {
-    timed([&] { pad_filter_.AddSighting(glimpse->sighting, own_.At(glimpse->vehicle)); });
+  while (auto glimpse = pad_eye_->Poll(t)) {
+    glimpse->vehicle = own_.At(glimpse->vehicle);
+    timed(*glimpse, [&] { pad_filter_.AddSighting(glimpse->sighting, glimpse->vehicle); });
   }
 }
 

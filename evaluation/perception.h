@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/evaluation/depth_eye.h"
 #include "touchdown/evaluation/own_estimate.h"
 #include "touchdown/evaluation/pad_eye.h"
+#include "touchdown/evaluation/pad_log.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/sensing_times.h"
 #include "touchdown/planning/occupancy_map.h"
@@ -17,6 +19,9 @@
 #include "touchdown/sim/world.h"
 
 namespace touchdown::evaluation {
+
+/// The pad filter that a scenario flies with.
+estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario);
 
 /// The map that a scenario's planner asks.
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario);
@@ -36,6 +41,9 @@ class Perception {
   /// @throws std::invalid_argument naming the file if map.prior cannot be used,
   /// std::runtime_error if there is no off-screen rendering for `sensing: rendered`.
   Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed);
+
+  /// Keeps a copy of whatever comes to the pad filter from now on.
+  void LogPadTo(std::vector<PadArrival>* log) { pad_log_ = log; }
 
   /// Takes the images that are due at the world's time and the measurements that arrive at it. Call once per physics step.
   void Sense(const sim::World& world);
@@ -76,6 +84,7 @@ class Perception {
   planning::PersistentMap persistent_map_;
   double deck_half_diagonal_;
   double deck_height_;
+  std::vector<PadArrival>* pad_log_ = nullptr;
   bool pad_measured_ = false;
   bool image_taken_ = false;
   FrameTimes frame_times_;

@@ -64,6 +64,9 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
           scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
           TrackingOptions(scenario))),
       mixer_(model) {
+  // Three standard deviations, and the feet are still on the deck.
+  parameters_.bridge_sigma =
+      std::max(1e-3, (0.5 * scenario.pad.deck_size - model.foot_radius) / 3.0);
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
@@ -85,6 +88,8 @@ void Pilot::StepMission(const estimation::VehicleState& vehicle, estimation::Own
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
   }
   inputs.pad_sigma = filter.PositionSigma(t);
+  inputs.contact_sigma =
+      filter.PositionSigma(t + control::TimeToContact(mission_state_, inputs.height, parameters_));
   inputs.tag_age = filter.TagAge(t);
   inputs.own_fresh = own == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || own == estimation::OwnStatus::kOutage;

@@ -15,6 +15,10 @@ void DrawComparison(const std::string& table_path, const std::string& picture_pa
 /// Draws the picture of a replanning study's part growth (replan_report.h). @throws as DrawLanding
 void DrawGrowth(const std::string& table_path, const std::string& picture_path);
 
+/// Draws the picture of a study of the pad filter from its table (pad_report.h). @throws as
+/// DrawLanding
+void DrawPadStudy(const std::string& table_path, const std::string& picture_path);
+
 /// Draws the picture of a solved step from its document (plan_report.h). @throws as DrawLanding
 void DrawPlan(const std::string& document_path, const std::string& picture_path);
 

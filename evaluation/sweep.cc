@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Monte Carlo on threads. Each trial is a pure function of its scenario and seed, and threads take
-// the next index from a counter, so that the rows are the same for any number of threads.
+// Monte Carlo on threads. Each trial is a pure function of its scenario and seed, so that the rows are
+// the same for any number of threads.
 #include "touchdown/evaluation/sweep.h"
 
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <exception>
-#include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/on_threads.h"
+#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/sim/random_stream.h"
@@ -128,6 +127,10 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
         same ? trials.front().scenario : LoadScenario(options.scenario_path, overrides, registries);
     trials.push_back(std::move(trial));
   }
+  const bool rendered = std::any_of(trials.begin(), trials.end(), [](const SweepTrial& trial) {
+    return trial.scenario.sensing == SensingKind::kRendered;
+  });
+  if (rendered) RequireRendering("sensing: rendered");  // or every trial would say so
   return trials;
 }
 
@@ -135,20 +138,13 @@ std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
                                const Registries& registries,
                                const std::function<void(int done)>& progress) {
   std::vector<SweepRow> rows(trials.size());
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  int done = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < trials.size(); i = next++) {
-      rows[i] = RunOne(trials[i], registries);
-      const std::lock_guard lock(mutex);
-      progress(++done);
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int j = 1; j < jobs; ++j) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  RunOnThreads(
+      static_cast<int>(trials.size()), jobs,
+      [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        rows[at] = RunOne(trials[at], registries);
+      },
+      progress);
   return rows;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a flight cost, sample by sample: the raw material of a profile.
+// What a flight cost, sample by sample, the raw material of a profile; and what its pad filter was given.
 #pragma once
 
 #include <vector>
 
+#include "touchdown/evaluation/pad_log.h"
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/planning/replan_result.h"
 
@@ -28,9 +29,11 @@ struct FrameSample {
   FrameTimes times;
 };
 
+/// All of it from one flight.
 struct TrialSamples {
   std::vector<ReplanSample> replans;
   std::vector<FrameSample> frames;
+  PadLog pad;
 };
 
 /// `t_now`: when the step was asked for [s].

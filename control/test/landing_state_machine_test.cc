@@ -202,8 +202,8 @@ TEST(LandingStateMachine, CommittedDescentNeedsNoTags) {
   Mission mission;
   mission.DescendTo(0.3);
   EXPECT_TRUE(mission.outputs.committed);
-  mission.in.tag_age = 10.0;
-  mission.in.pad_sigma = 0.2;
+  mission.in.tag_age = 1.0;
+  mission.in.pad_sigma = 0.15;
   mission.in.pad_converged = false;
   mission.Run(1.5);
   EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
@@ -213,6 +213,104 @@ TEST(LandingStateMachine, CommittedDescentNeedsNoTags) {
   EXPECT_GE(mission.outputs.foot_height, -mission.parameters.press_depth - 1e-9);
   EXPECT_EQ(mission.outputs.guidance, Guidance::kClimb);  // no pad to follow
   EXPECT_EQ(mission.RunUntil(MissionMode::kHold), TransitionReason::kPadLost);
+}
+
+/// The tags are out of view from `height` down: their age grows, and the pad's 1 sigma with it.
+Mission::Change Blind(const Mission& mission, double growth = 0.05) {
+  return [&mission, growth, since = mission.in.t](MissionInputs& in) {
+    in.tag_age = in.t - since;
+    in.pad_sigma = 0.02 + growth * in.tag_age;
+    in.contact_sigma =
+        in.pad_sigma + growth * TimeToContact(mission.state, in.height, mission.parameters);
+  };
+}
+
+TEST(LandingStateMachine, TagsLostNearTheDeckAreBridged) {
+  Mission mission;
+  mission.DescendTo(0.55);
+  const Mission::Change blind = Blind(mission);
+  double last = mission.outputs.foot_height;
+  for (int k = 0; k < 300 && mission.outputs.foot_height > 0.0; ++k) {
+    mission.Tick(blind);
+    EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone);
+    EXPECT_LT(mission.outputs.foot_height, last);  // no pause on the way
+    last = mission.outputs.foot_height;
+  }
+  EXPECT_LE(mission.outputs.foot_height, 0.0);
+  EXPECT_TRUE(mission.outputs.committed);
+  EXPECT_LE(mission.in.tag_age, mission.parameters.bridge_time);
+}
+
+TEST(LandingStateMachine, WhatCannotBeBridgedIsNotDescended) {
+  // Too long a way, and too vague a pad by its end.
+  for (const bool vague : {false, true}) {
+    Mission mission;
+    mission.DescendTo(vague ? 0.55 : 0.8);
+    const Mission::Change blind = Blind(mission, vague ? 0.2 : 0.01);
+    const double lost = mission.outputs.foot_height;
+    double lowest = lost;
+    for (int k = 0; k < 600 && mission.outputs.mode == MissionMode::kLanding; ++k) {
+      mission.Tick(blind);
+      lowest = std::min(lowest, mission.outputs.foot_height);
+    }
+    EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost) << vague;
+    // Of what can still be seen for gate_tag_age, and braking; no farther.
+    EXPECT_GT(lowest, lost - 0.2) << vague;
+    EXPECT_FALSE(mission.outputs.committed);
+  }
+}
+
+TEST(LandingStateMachine, ABridgeThatPausesIsGivenUp) {
+  Mission mission;
+  mission.DescendTo(0.55);
+  const Mission::Change blind = Blind(mission);
+  mission.Run(0.5, blind);
+  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone);
+  mission.in.horizontal_distance = 0.6;  // out of the corridor for a while
+  mission.Run(1.2, blind);
+  mission.in.horizontal_distance = 0.1;
+  mission.Run(0.5, blind);
+  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate);  // the time has run out
+  EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
+  for (int k = 0; k < 400 && mission.outputs.mode == MissionMode::kLanding; ++k) {
+    mission.Tick(blind);
+  }
+  EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost);
+  mission.in.tag_age = 0.05;  // seen again on the way up
+  mission.in.pad_sigma = mission.in.contact_sigma = 0.02;
+  EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kClimbComplete);
+}
+
+TEST(LandingStateMachine, CommittedBlindDescentEndsWithTheBridge) {
+  for (const bool vague : {false, true}) {
+    Mission mission;
+    mission.DescendTo(0.2);
+    ASSERT_TRUE(mission.outputs.committed);
+    const double begin = mission.in.t;
+    const Mission::Change blind = Blind(mission, vague ? 0.1 : 0.001);
+    for (int k = 0; k < 600 && mission.outputs.mode == MissionMode::kLanding; ++k) {
+      mission.Tick(blind);  // no deck comes
+    }
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kGoAround) << vague;
+    EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost) << vague;
+    const MissionParameters& p = mission.parameters;
+    const double expected = vague ? (p.bridge_sigma - 0.02) / 0.1 : p.bridge_time;
+    EXPECT_NEAR(mission.in.t - begin, expected, 0.05) << vague;
+  }
+}
+
+TEST(LandingStateMachine, TimeToContactIsThatOfTheDescent) {
+  Mission mission;
+  mission.DescendTo(0.7);
+  mission.in.horizontal_distance = 0.6;  // paused: it has to gain speed again
+  mission.Run(1.0);
+  mission.in.horizontal_distance = 0.1;
+  const double foretold = TimeToContact(mission.state, mission.in.height, mission.parameters);
+  const double begin = mission.in.t;
+  for (int k = 0; k < 600 && mission.outputs.foot_height > 0.0; ++k) mission.Tick({});
+  EXPECT_NEAR(mission.in.t - begin, foretold - mission.parameters.contact_reserve, 0.02);
+  EXPECT_EQ(TimeToContact(mission.state, kNan, mission.parameters),
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(LandingStateMachine, VehicleThatLagsBehindIsNotCommitted) {
@@ -323,6 +421,7 @@ TEST(LandingStateMachine, BrokenNumbersHold) {
       [](MissionInputs& in) { in.height = kNan; },
       [](MissionInputs& in) { in.horizontal_speed = kNan; },
       [](MissionInputs& in) { in.pad_sigma = kNan; },
+      [](MissionInputs& in) { in.contact_sigma = kNan; },
       [](MissionInputs& in) { in.tag_age = kNan; },
       [](MissionInputs& in) { in.foot_force = kNan; },
       [](MissionInputs& in) { in.plan_failed_for = kNan; },

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown study pad: how well the pad is known and foretold in flights, by each model of the filter.
+#include "touchdown/evaluation/command_study_pad.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/pad_report.h"
+#include "touchdown/evaluation/pad_summary.h"
+#include "touchdown/evaluation/report_program.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+struct PadStudyArguments {
+  PadStudyOptions options;
+  std::string db;
+  std::string picture;
+  bool json = false;
+};
+
+class Progress {
+ public:
+  void operator()(int done, int all) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(2) && done < all) return;
+    last_ = now;
+    const double elapsed = std::chrono::duration<double>(now - begin_).count();
+    spdlog::info("{} of {} flights, {:.0f} s left", done, all, elapsed / done * (all - done));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+};
+
+// The picture is drawn from a table; without --db that one is not kept.
+void Write(const PadStudyArguments& arguments, const std::vector<PadStudyRow>& rows) {
+  if (!arguments.db.empty()) WritePadStudy(arguments.db, arguments.options, rows);
+  if (arguments.picture.empty()) return;
+  if (!arguments.db.empty()) return DrawPadStudy(arguments.db, arguments.picture);
+  const AtomicFile unkept(arguments.picture + ".table");
+  WritePadStudy(unkept.working_path(), arguments.options, rows);
+  DrawPadStudy(unkept.working_path(), arguments.picture);
+}
+
+int Run(const PadStudyArguments& arguments, const Registries& registries) {
+  CheckOutputs(arguments.db, arguments.picture);
+  Progress progress;
+  const std::vector<PadStudyRow> rows =
+      RunPadStudy(arguments.options, registries, std::ref(progress));
+  if (arguments.json) {
+    std::cout << PadStudyJson(arguments.options, rows).dump(2) << std::endl;
+  } else {
+    std::cout << PadStudyText(arguments.options, rows) << std::flush;
+  }
+  Write(arguments, rows);
+  const std::vector<PadDemand> demands = PadDemands(arguments.options, rows);
+  const bool met = std::all_of(demands.begin(), demands.end(),
+                               [](const PadDemand& demand) { return demand.met(); });
+  return met ? kDone : kFellShort;
+}
+
+}  // namespace
+
+void AddPadStudyCommand(CLI::App& study, const Registries& registries, CommandRun* run) {
+  CLI::App* command = study.add_subcommand(
+      "pad", "How well the pad is known and foretold in flights, by both models of its filter");
+  const auto arguments = std::make_shared<PadStudyArguments>();
+  PadStudyOptions& options = arguments->options;
+  options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("--scenarios", options.scenarios, "Names or files")
+      ->delimiter(',')
+      ->type_name("NAME,...")
+      ->capture_default_str();
+  command->add_option("--sigmas", options.sigmas, "Of the pad's GPS [m]")
+      ->delimiter(',')
+      ->type_name("0.01,0.5,...")
+      ->check(FiniteRange(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--trials", options.trials, "Flights of each scenario and sigma")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--set", options.overrides, "Change a key of the scenarios")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--jobs", options.jobs, "Threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "Seed of the study; trial seeds follow from it")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      ->capture_default_str();
+  AddFileOption(*command, "--db", &arguments->db, "Write the table, an SQLite file", "F.db");
+  AddFileOption(*command, "--picture", &arguments->picture, "Draw the prediction's errors",
+                "F.png");
+  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
+  command->callback([arguments, &registries, run] {
+    *run = [arguments, &registries] { return Run(*arguments, registries); };
+  });
+}
+
+}  // namespace touchdown::evaluation

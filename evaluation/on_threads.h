@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+namespace touchdown::evaluation {
+
+/// Calls run(i) once for every i in [0, count) on `jobs` threads, the caller's among them, in no set
+/// order. `progress` is called after each with the number done, never from two threads at a time.
+/// What `run` throws is thrown again, the first of it, once the calls under way have ended.
+void RunOnThreads(int count, int jobs, const std::function<void(int)>& run,
+                  const std::function<void(int done)>& progress);
+
+}  // namespace touchdown::evaluation

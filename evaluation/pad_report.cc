@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The study of the pad filter in words, in JSON and as a table of its flights.
+#include "touchdown/evaluation/pad_report.h"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/pad_summary.h"
+#include "touchdown/evaluation/sqlite_db.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char kSchema[] = R"sql(
+CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE flight(scenario TEXT, gps_sigma_m REAL, trial INTEGER, seed INTEGER, outcome TEXT,
+  model TEXT, course TEXT, tags INTEGER, samples INTEGER, position2_m2 REAL, velocity2_m2ps2 REAL,
+  prediction2_m2 REAL, nees_position REAL, nees_state REAL, nees_prediction REAL);
+CREATE TABLE cell(scenario TEXT, gps_sigma_m REAL, course TEXT, source TEXT, model TEXT,
+  samples INTEGER, flights INTEGER, position_m REAL, velocity_mps REAL, prediction_m REAL,
+  nees_position REAL, nees_state REAL, nees_prediction REAL, ratio REAL, ratio_lo REAL,
+  ratio_hi REAL);
+)sql";
+
+const char* CourseName(const PadStudyCell& cell) {
+  return cell.course ? ToString(*cell.course) : "all";
+}
+
+const char* SourceName(const PadStudyCell& cell) {
+  if (!cell.tags) return "all";
+  return *cell.tags ? "tags" : "gps";
+}
+
+std::string ModelLine(const PadModelFigures& f) {
+  return fmt::format("{:>8.3f}{:>7.3f}{:>7.3f}{:>6.2f}{:>6.2f}{:>6.2f}", f.position_m,
+                     f.velocity_mps, f.prediction_m, f.nees_position, f.nees_state,
+                     f.nees_prediction);
+}
+
+Json ModelJson(const PadModelFigures& f) {
+  return {{"rmse_position_m", f.position_m},     {"rmse_velocity_mps", f.velocity_mps},
+          {"rmse_prediction_m", f.prediction_m}, {"nees_position_per_dof", f.nees_position},
+          {"nees_state_per_dof", f.nees_state},  {"nees_prediction_per_dof", f.nees_prediction}};
+}
+
+struct OutcomeCount {
+  int flights = 0, landed = 0;
+};
+
+OutcomeCount CountOutcomes(const std::vector<PadStudyRow>& rows, int scenario, int sigma) {
+  std::set<int> flown, landed;
+  for (const PadStudyRow& row : rows) {
+    if (row.scenario != scenario || row.sigma != sigma) continue;
+    flown.insert(row.trial);
+    if (row.outcome == Outcome::kLanded) landed.insert(row.trial);
+  }
+  return {static_cast<int>(flown.size()), static_cast<int>(landed.size())};
+}
+
+}  // namespace
+
+std::string PadStudyText(const PadStudyOptions& options, const std::vector<PadStudyRow>& rows) {
+  std::string text;
+  int scenario = -1, sigma = -1;
+  for (const PadStudyCell& cell : PadStudyCells(options, rows)) {
+    if (cell.scenario != scenario || cell.sigma != sigma) {
+      scenario = cell.scenario;
+      sigma = cell.sigma;
+      const OutcomeCount count = CountOutcomes(rows, scenario, sigma);
+      text += fmt::format("{}{}, GPS {:g} m, {} flights, {} landed, seed {}\n",
+                          text.empty() ? "" : "\n", options.scenarios[cell.scenario],
+                          options.sigmas[cell.sigma], count.flights, count.landed, options.seed);
+      text += fmt::format("{:<9}{:<5}{:>8}{:>40}{:>40}{:>24}\n", "course", "by", "samples", "paper",
+                          "turn_rate", "prediction");
+      text += fmt::format("{:<22}", "");
+      for (int model = 0; model < 2; ++model) {
+        text += fmt::format("{:>8}{:>7}{:>7}{:>6}{:>6}{:>6}", "p [m]", "v", "1.5 s", "NEESp",
+                            "state", "1.5 s");
+      }
+      text += fmt::format("{:>24}\n", "turn_rate/paper, 95 %");
+    }
+    text += fmt::format("{:<9}{:<5}{:>8}{}{}{:>8.2f} [{:>5.2f}, {:>5.2f}]\n", CourseName(cell),
+                        SourceName(cell), cell.samples, ModelLine(cell.paper),
+                        ModelLine(cell.turn_rate), cell.ratio, cell.interval.lo, cell.interval.hi);
+  }
+  text += "\nDemands on turn_rate:\n";
+  for (const PadDemand& demand : PadDemands(options, rows)) {
+    text += fmt::format("  {:<74}{:>6.2f}, at most {:.2f}: {}\n", demand.text, demand.value,
+                        demand.limit, demand.met() ? "yes" : "no");
+  }
+  return text;
+}
+
+Json PadStudyJson(const PadStudyOptions& options, const std::vector<PadStudyRow>& rows) {
+  Json json = {{"seed", options.seed},     {"trials", options.trials}, {"set", options.overrides},
+               {"horizon_s", kPadHorizon}, {"cells", Json::array()},   {"demands", Json::array()}};
+  for (const PadStudyCell& cell : PadStudyCells(options, rows)) {
+    json["cells"].push_back({{"scenario", options.scenarios[cell.scenario]},
+                             {"gps_sigma_m", options.sigmas[cell.sigma]},
+                             {"course", CourseName(cell)},
+                             {"source", SourceName(cell)},
+                             {"samples", cell.samples},
+                             {"flights", cell.flights},
+                             {"paper", ModelJson(cell.paper)},
+                             {"turn_rate", ModelJson(cell.turn_rate)},
+                             {"prediction_ratio", cell.ratio},
+                             {"interval_95", {cell.interval.lo, cell.interval.hi}}});
+  }
+  for (const PadDemand& demand : PadDemands(options, rows)) {
+    json["demands"].push_back({{"demand", demand.text},
+                               {"value", demand.value},
+                               {"limit", demand.limit},
+                               {"met", demand.met()}});
+  }
+  return json;
+}
+
+void WritePadStudy(const std::string& path, const PadStudyOptions& options,
+                   const std::vector<PadStudyRow>& rows) {
+  AtomicFile file(path);
+  {
+    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
+    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
+    SqliteTransaction transaction(db);
+    db.Execute(kSchema);
+    SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
+    manifest.Run("format", "touchdown pad study");
+    manifest.Run("version", "1");
+    manifest.Run("seed", std::to_string(options.seed));
+    for (std::size_t i = 0; i < options.overrides.size(); ++i) {
+      manifest.Run(fmt::format("set_{}", i), options.overrides[i]);
+    }
+    for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
+    SqliteStatement flight =
+        db.Prepare("INSERT INTO flight VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const PadStudyRow& row : rows) {
+      const PadSums& sums = row.sums;
+      flight.Run(options.scenarios[row.scenario], options.sigmas[row.sigma], row.trial,
+                 static_cast<std::int64_t>(row.seed), ToString(row.outcome),
+                 std::string(ToString(row.model)), ToString(row.course), row.tags, sums.samples,
+                 sums.position2, sums.velocity2, sums.prediction2, sums.nees_position,
+                 sums.nees_state, sums.nees_prediction);
+    }
+    SqliteStatement insert =
+        db.Prepare("INSERT INTO cell VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    for (const PadStudyCell& cell : PadStudyCells(options, rows)) {
+      for (const bool paper : {true, false}) {
+        const PadModelFigures& f = paper ? cell.paper : cell.turn_rate;
+        insert.Run(options.scenarios[cell.scenario], options.sigmas[cell.sigma], CourseName(cell),
+                   SourceName(cell), paper ? "paper" : "turn_rate", cell.samples, cell.flights,
+                   f.position_m, f.velocity_mps, f.prediction_m, f.nees_position, f.nees_state,
+                   f.nees_prediction, cell.ratio, cell.interval.lo, cell.interval.hi);
+      }
+    }
+    transaction.Commit();
+  }
+  file.Commit();
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A machine whose OSMesa can make no context: said in one sentence, before anything is flown."""
+import os
+import subprocess
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("land", "open", "--set", "sensing=rendered", "--record", "out"),
+        ("sweep", "open", "--trials", "2", "--set", "sensing=rendered", "--db", "out"),
+        ("study", "tags", "--poses", "2", "--db", "out"),
+    ],
+)
+def test_without_rendering_it_ends_with_one_sentence(program, tmp_path, arguments):
+    library = os.environ.get("TOUCHDOWN_NO_OSMESA")
+    if not library:
+        pytest.skip("TOUCHDOWN_NO_OSMESA is not set; CTest sets it where nothing is sanitized")
+    done = subprocess.run(
+        [program, *arguments],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        env={**os.environ, "LD_PRELOAD": library},
+    )
+    assert done.returncode == 2 and done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "OSMesa" in done.stderr and "sensing: fast" in done.stderr
+    assert not list(tmp_path.iterdir())

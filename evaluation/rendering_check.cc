@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/rendering_check.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/sim/gl_context.h"
+
+namespace touchdown::evaluation {
+
+void RequireRendering(const std::string& who) {
+  try {
+    sim::GlContext().MakeCurrent();
+  } catch (const std::runtime_error& error) {
+    std::string why = error.what();
+    while (!why.empty() && why.back() == '.') why.pop_back();
+    throw BadInput(
+        fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend "
+                    "its OSMesa (Debian: libosmesa6); sensing: fast flies without it.",
+                    who, why));
+  }
+}
+
+}  // namespace touchdown::evaluation

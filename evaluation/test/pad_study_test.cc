@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/pad_study.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/pad_report.h"
+#include "touchdown/evaluation/pad_summary.h"
+#include "touchdown/evaluation/perception.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kSpeed = 0.8;     // [m/s]
+constexpr double kTurnRate = 0.4;  // [rad/s]
+
+/// A pad on a circle, or straight on; exact fixes at 10 Hz, and sightings from straight above.
+PadLog DrivenLog(double turn_rate, bool tags, double duration = 8.0) {
+  const auto pad_at = [turn_rate](double t) {
+    estimation::PadState pad;
+    pad.yaw = turn_rate * t;
+    pad.yaw_rate = turn_rate;
+    if (turn_rate == 0.0) {
+      pad.p_WP << kSpeed * t, 0.0, 0.5;
+    } else {
+      const double radius = kSpeed / turn_rate;
+      pad.p_WP << radius * std::sin(pad.yaw), radius * (1.0 - std::cos(pad.yaw)), 0.5;
+    }
+    pad.v_WP << kSpeed * std::cos(pad.yaw), kSpeed * std::sin(pad.yaw), 0.0;
+    return pad;
+  };
+  PadLog log;
+  for (int k = 0; k <= duration * kPadLogRate; ++k) {
+    const double t = k / kPadLogRate;
+    const estimation::PadState pad = pad_at(t);
+    if (k % 5 == 0) log.arrivals.push_back({t, estimation::PadGpsFix{t, pad.p_WP.head<2>(), 0.01}});
+    if (tags && k % 3 == 0) {
+      PadGlimpse glimpse;
+      glimpse.vehicle.t = t;
+      glimpse.vehicle.p_WB = pad.p_WP + Eigen::Vector3d(0.0, 0.0, 1.0);
+      glimpse.sighting = {t, {0.0, 0.0, -1.0}, pad.yaw, Eigen::Vector3d::Constant(0.005), 0.01, 4};
+      log.arrivals.push_back({t, glimpse});
+    }
+    log.truth.push_back({t, true, pad});
+  }
+  return log;
+}
+
+std::vector<PadStudyRow> Replay(const PadLog& log, estimation::PadModel model) {
+  estimation::PadFilterOptions options;
+  options.pad_height = 0.5;
+  options.model = model;
+  return ReplayPadLog(log, options);
+}
+
+TEST(PadStudy, ToldByTagsTheTurnIsForetoldAndThePaperGoesStraightOn) {
+  const PadLog log = DrivenLog(kTurnRate, true);
+  const auto turn_rate = Replay(log, estimation::PadModel::kTurnRate);
+  const auto paper = Replay(log, estimation::PadModel::kPaper);
+  ASSERT_EQ(turn_rate.size(), 1U);
+  ASSERT_EQ(paper.size(), 1U);
+  EXPECT_EQ(turn_rate[0].course, PadCourse::kTurn);
+  EXPECT_TRUE(turn_rate[0].tags);
+  // From 3 s to 6.5 s: later the log does not reach the horizon.
+  EXPECT_EQ(turn_rate[0].sums.samples, 176);
+  EXPECT_EQ(paper[0].sums.samples, 176);
+  const auto rms = [](const PadStudyRow& row) {
+    return std::sqrt(row.sums.prediction2 / row.sums.samples);
+  };
+  EXPECT_LT(rms(turn_rate[0]), 0.01);
+  // Straight on from the circle: off by its sagitta, r (1 - cos(angle)), and a little along it.
+  const double angle = kTurnRate * kPadHorizon;
+  EXPECT_NEAR(rms(paper[0]), kSpeed / kTurnRate * (1.0 - std::cos(angle)), 0.08);
+}
+
+TEST(PadStudy, SamplesAreToldApartByCourseAndSource) {
+  const auto straight = Replay(DrivenLog(0.0, false), estimation::PadModel::kTurnRate);
+  ASSERT_EQ(straight.size(), 1U);
+  EXPECT_EQ(straight[0].course, PadCourse::kStraight);
+  EXPECT_FALSE(straight[0].tags);
+  EXPECT_LT(straight[0].sums.nees_state / straight[0].sums.samples, 1.0);
+
+  PadLog bend = DrivenLog(0.0, false);
+  for (PadTruth& truth : bend.truth) {
+    if (truth.t > 5.0) truth.pad.yaw_rate = 0.3;
+  }
+  int changing = 0;
+  for (const PadStudyRow& row : Replay(bend, estimation::PadModel::kTurnRate)) {
+    if (row.course == PadCourse::kChanging) changing = row.sums.samples;
+  }
+  EXPECT_EQ(changing, 75);  // as long as the bend lies within the horizon
+}
+
+TEST(PadStudy, EndsAtContact) {
+  PadLog log = DrivenLog(0.0, false);
+  for (PadTruth& truth : log.truth) truth.flying = truth.t < 5.0;
+  const auto rows = Replay(log, estimation::PadModel::kPaper);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].sums.samples, 100);
+}
+
+TEST(PadStudy, RatioAndIntervalAreOfTheFlights) {
+  PadStudyOptions options;
+  options.scenarios = {"circle"};
+  options.sigmas = {0.01};
+  std::vector<PadStudyRow> rows;
+  for (int trial = 0; trial < 40; ++trial) {
+    for (const auto model : {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate}) {
+      PadStudyRow row;
+      row.trial = trial;
+      row.model = model;
+      row.course = PadCourse::kTurn;
+      row.sums.samples = 10;
+      row.sums.prediction2 = model == estimation::PadModel::kPaper ? 40.0 : 8.0 + 4.0 * (trial % 2);
+      rows.push_back(row);
+    }
+  }
+  const auto cell = Summarise(rows, {});
+  ASSERT_TRUE(cell);
+  EXPECT_EQ(cell->flights, 40);
+  EXPECT_DOUBLE_EQ(cell->paper.prediction_m, 2.0);
+  EXPECT_DOUBLE_EQ(cell->ratio, 0.5);
+  // The mean of 40 draws of 8 or 12 has a deviation of 0.32.
+  EXPECT_NEAR(cell->interval.lo, std::sqrt((10.0 - 1.96 * 0.316) / 40.0), 0.005);
+  EXPECT_NEAR(cell->interval.hi, std::sqrt((10.0 + 1.96 * 0.316) / 40.0), 0.005);
+  PadStudyCell straight;
+  straight.course = PadCourse::kStraight;
+  EXPECT_FALSE(Summarise(rows, straight));
+  bool asked = false;
+  for (const PadDemand& demand : PadDemands(options, rows)) {
+    if (demand.limit > 0.34 || demand.limit < 0.33) continue;
+    asked = true;
+    EXPECT_FALSE(demand.met()) << demand.text;  // 0.5 where a third is asked
+  }
+  EXPECT_TRUE(asked);
+}
+
+TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnThreads) {
+  PadStudyOptions options;
+  options.scenarios = {"open"};
+  options.sigmas = {0.05};
+  options.trials = 2;
+  const auto quiet = [](int, int) {};
+  const auto one = RunPadStudy(options, StandardRegistries(), quiet);
+  options.jobs = 2;
+  const auto two = RunPadStudy(options, StandardRegistries(), quiet);
+  EXPECT_EQ(PadStudyJson(options, one).dump(), PadStudyJson(options, two).dump());
+
+  // The log of a flight, replayed, gives the filter that it was flown with.
+  const Scenario scenario = LoadScenario(FindScenario("open"), {}, StandardRegistries());
+  TrialSamples samples;
+  TrialRecord record;
+  RunTrial(scenario, 3, StandardRegistries(), &record, nullptr, &samples);
+  ASSERT_EQ(samples.pad.truth.size(), record.samples.size());
+  estimation::PadFilter filter(PadFilterOptionsOf(scenario));
+  std::size_t arrived = 0;
+  for (const RecordSample& sample : record.samples) {
+    for (; arrived < samples.pad.arrivals.size() && samples.pad.arrivals[arrived].t <= sample.t;
+         ++arrived) {
+      const PadArrival& arrival = samples.pad.arrivals[arrived];
+      if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
+        filter.AddGps(*fix);
+      } else {
+        const PadGlimpse& glimpse = std::get<PadGlimpse>(arrival.measurement);
+        filter.AddSighting(glimpse.sighting, glimpse.vehicle);
+      }
+    }
+    if (!sample.pad_known) continue;
+    ASSERT_EQ(filter.Estimate(sample.t).p_WP, sample.pad_estimate.p_WP) << sample.t;
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
