@@ -100,8 +100,7 @@ void Draw(const LandArguments& arguments, const Scenario& scenario, const TrialR
 
 // The result is printed first: a file or picture that fails does not take it along.
 int Land(const LandArguments& arguments, const Registries& registries) {
-  const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
-                                         arguments.scenario.Overrides(), registries);
+  const Scenario scenario = arguments.scenario.Load(registries);
   CheckOutputs(arguments);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty();

@@ -61,8 +61,7 @@ SolvedStep SolveRecorded(const PlanArguments& arguments, const Registries& regis
 }
 
 SolvedStep SolveStart(const PlanArguments& arguments, const Registries& registries) {
-  const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
-                                         arguments.scenario.Overrides(), registries);
+  const Scenario scenario = arguments.scenario.Load(registries);
   SolvedStep solved = SolveStep(StepFromStart(scenario, registries), 0, registries);
   solved.source = fmt::format("first plan of {} (seed {}), obstacles and pad known", scenario.name,
                               scenario.seed);
@@ -104,7 +103,7 @@ void AddPlanCommand(CLI::App& app, const Registries& registries, CommandRun* run
   AddFileOption(*command, "--from", &arguments->from,
                 "Solve replanning step N of a record again (`land --record`) instead of a first "
                 "plan from the scenario's start, where obstacles and pad are known. --backend, "
-                "--set solver.* and --set terms.* change the planner",
+                "--set solver.*, terms.* and planning.guides change the planner",
                 "RECORD:N")
       ->excludes(seed)
       ->excludes(command->get_option("SCENARIO"));

@@ -55,8 +55,7 @@ Profile Run(const ProfileArguments& arguments, const Registries& registries,
     begin();
     return ProfileRecord(flight, options, registries, progress);
   }
-  const Scenario scenario = LoadScenario(FindScenario(arguments.scenario.scenario),
-                                         arguments.scenario.Overrides(), registries);
+  const Scenario scenario = arguments.scenario.Load(registries);
   begin();
   return ProfileFlights(scenario, options, registries, progress);
 }
@@ -104,7 +103,8 @@ void AddProfileCommand(CLI::App& app, const Registries& registries, CommandRun* 
       *command, "--from", &arguments->record,
       "Replay every replanning step of a record (`land --record`) instead of flying: with the map, "
       "the pad prediction, the committed trajectory and the input that it had, whatever the step "
-      "before it answers. --backend, --set solver.* and --set terms.* change the planner",
+      "before it answers. --backend, --set solver.*, terms.* and planning.guides change the "
+      "planner",
       "RECORD");
   from->excludes(seed)->excludes(trials)->excludes(command->get_option("SCENARIO"));
   command

@@ -293,6 +293,10 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
         if (command->count(option) == 0 || Asked(*arguments, "flights")) continue;
         throw BadInput(fmt::format("{} goes with --parts flights.", option));
       }
+      const bool only_growth = Asked(*arguments, "growth") && !Asked(*arguments, "safety");
+      if (only_growth && command->count("--kinds") > 0 && arguments->kinds.size() != 1) {
+        throw BadInput("--kinds: the part growth is of one kind.");
+      }
       for (const LonePart& part : LoneParts()) {
         if (Asked(*arguments, part.name)) CheckLonePart(part, *arguments, *command);
       }

@@ -40,7 +40,10 @@ struct ScenarioArguments {
   void AddTo(CLI::App& command, bool scenario_required);
   /// --set and its short forms, in the order in which they count.
   std::vector<std::string> Overrides() const;
-  /// The same for a recorded flight, of which only the planner can be changed. @throws BadInput
+  /// The scenario with these. @throws BadInput as LoadScenario does, and for a --backend of a planner that
+  /// has its own.
+  Scenario Load(const Registries& registries) const;
+  /// The overrides for a recorded flight, of which only the planner can be changed. @throws BadInput
   std::vector<std::string> ReplayOverrides() const;
 };
 

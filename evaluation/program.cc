@@ -17,6 +17,7 @@
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
+#include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
 
 namespace touchdown::evaluation {
@@ -44,12 +45,26 @@ std::vector<std::string> ScenarioArguments::Overrides() const {
   return overrides;
 }
 
+Scenario ScenarioArguments::Load(const Registries& registries) const {
+  Scenario loaded = LoadScenario(FindScenario(scenario), Overrides(), registries);
+  if (!backend.empty() && loaded.planner != PlannerKind::kLanding) {
+    throw BadInput(
+        fmt::format("--backend {}: the planner {} has its own solver; backends are of the "
+                    "planner landing.",
+                    backend, FindScenarioKey("planner")->get(loaded)));
+  }
+  return loaded;
+}
+
 std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
   std::vector<std::string> overrides = Overrides();
   for (const std::string& text : overrides) {
-    if (text.rfind("solver.", 0) != 0 && text.rfind("terms.", 0) != 0) {
-      throw BadInput(fmt::format(
-          "--set {}: of a recorded flight only keys of solver and terms can be changed.", text));
+    const auto begins = [&](const char* key) { return text.rfind(key, 0) == 0; };
+    if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=")) {
+      throw BadInput(
+          fmt::format("--set {}: of a recorded flight only keys of solver and terms, and "
+                      "planning.guides, can be changed.",
+                      text));
     }
   }
   return overrides;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The replanning step: start from the committed trajectory (or from the vehicle where tracking lost
 // it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified.
-// If nothing is: keep the previous plan while it is safe, else brake, else climb, and say so.
+// If nothing is, the ladder of fallback.h: keep the previous plan while it is safe, else come to rest.
 
 #include "touchdown/planning/replanner.h"
 
@@ -9,11 +9,10 @@
 #include <cmath>
 #include <limits>
 
-#include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/duration_guess.h"
+#include "touchdown/planning/fallback.h"
 #include "touchdown/planning/plan_attempt.h"
 #include "touchdown/planning/replan_checks.h"
-#include "touchdown/planning/rest_trajectory.h"
 #include "touchdown/planning/stage_timer.h"
 
 namespace touchdown::planning {
@@ -29,13 +28,8 @@ constexpr double kReTimeBelow = 0.75;  // a fresh guess this much shorter replac
 constexpr double kStripMemory = 2.0;   // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;        // room for those of one step
 constexpr int kUsualPathPoints = 512;
-constexpr double kMoving = 1e-6;         // [m/s]
 constexpr double kPadSlack = 0.15;       // of a plan over the pad below both its ends [m]
-constexpr double kClimb = 1.5;           // [m]
 constexpr double kClockRounding = 1e-6;  // [s]
-constexpr double kAtRest = 0.05;         // below this speed and way to go [m/s, m]
-
-const Eigen::Vector3d kNoShift = Eigen::Vector3d::Zero();
 
 /// State on a curve; past its end it goes on at the end's velocity.
 FlatState StateOn(const UniformBspline& curve, double t) {
@@ -56,8 +50,10 @@ SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat
 class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-      : options_(options), attempt_(options, backends) {
-    for (UniformBspline* curve : {&current_, &next_, &braking_, &result_.curve}) {
+      : options_(options),
+        attempt_(options, backends),
+        fallback_(options.limits, options.reaction) {
+    for (UniformBspline* curve : {&current_, &next_, &result_.curve}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
     }
     result_.guide_paths.Reserve(kUsualPaths, kUsualPathPoints);
@@ -94,16 +90,12 @@ class Replanner::Impl {
   SplineState Start(const ReplanInput& input);
   bool InTime(const ReplanInput& input) const;
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
-  bool Stays(const SplineState& start) const;
   bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
   void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
-  bool NoTimeToBrake(const SplineState& start, const FreeSpace& space);
-  bool TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
-               const FreeSpace& space);
 
   PlanAttempt attempt_;
+  Fallback fallback_;
   ReplanResult result_;
-  UniformBspline braking_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
@@ -271,7 +263,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pad = input.pad;
   request.target = input.endpoint;
   request.arrival = options_.arrival;
-  request.at_rest = Stays(start);
+  request.at_rest = Fallback::Stays(next_, start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
@@ -288,7 +280,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
     if (reason == ReplanReason::kNone) return reason;
-    if (reason == ReplanReason::kCollisionRemains && NoTimeToBrake(start, space)) return reason;
+    if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
+      return reason;
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
@@ -309,71 +302,15 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   return reason;
 }
 
-/// The start itself leads into an obstacle: arriving later does not change that.
-bool Replanner::Impl::NoTimeToBrake(const SplineState& start, const FreeSpace& space) {
-  MakeRestTrajectory(start, 0.0, kNoShift, options_.limits, &braking_);
-  return std::isfinite(FirstBlockedTime(braking_, 0.0, space));
-}
-
-bool Replanner::Impl::TryRest(const SplineState& start, double t0, const Eigen::Vector3d& shift,
-                              const FreeSpace& space) {
-  MakeRestTrajectory(start, t0, shift, options_.limits, &result_.curve);
-  StageTimer timer(&result_.times.certificate);
-  result_.certificate =
-      Certify(result_.curve, t0, nullptr, nullptr, options_.limits, options_.reaction, space);
-  return result_.certificate.passed();
-}
-
-/// The vehicle is at rest, and so it remains on the committed curve.
-bool Replanner::Impl::Stays(const SplineState& start) const {
-  const SplineState last = next_.AtKnot(next_.segments());
-  return start.v.norm() <= kAtRest && last.v.norm() <= kMoving &&
-         (last.p - start.p).norm() <= kAtRest;
-}
-
-/// True if the committed curve may go on: at rest and free, or clear for longer than braking takes
-/// and slow enough for what was observed.
 bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState& start,
                                     const FreeSpace& space) {
-  if (result_.from_odometry) return false;
-  const Certificate now =
-      Certify(next_, input.t_start, nullptr, nullptr, options_.limits, options_.reaction, space);
-  const bool moves_at_end = next_.AtKnot(next_.segments()).v.norm() > kMoving;
-  const bool at_rest = !space.Blocked(start.p) && Stays(start);
-  const bool leaves = now.escaping && now.passed();
-  if (!at_rest && !leaves) {
-    if (!now.stops_in_observed_space) return false;
-    MakeRestTrajectory(start, input.t_start, kNoShift, options_.limits, &braking_);
-    const double never = std::numeric_limits<double>::infinity();
-    const double hit = now.clear ? never : now.first_hit_t;
-    const double end = moves_at_end ? next_.t_end() : never;
-    if (std::min(hit, end) <= input.t_start + braking_.duration() + options_.reaction) return false;
-  }
-  result_.status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
-  result_.curve = next_;
-  result_.certificate = now;
-  return true;
+  return !result_.from_odometry &&
+         fallback_.KeepsCommitted(next_, input.t_start, start, space, &result_);
 }
 
-/// Out of an inflated zone first; else what the caller wants; else brake; else climb.
 void Replanner::Impl::ComeToRest(double t0, const SplineState& start, double climb,
                                  const FreeSpace& space) {
-  CellIndex way_out = space.map->CellOf(start.p);
-  const bool inside = space.Blocked(start.p) && GridSearch::NearestFree(space, &way_out);
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  if (inside && TryRest(start, t0, space.map->CentreOf(way_out) - start.p, space)) {
-    result_.status = ReplanStatus::kEscaping;
-  } else if (climb > 0.0 && TryRest(start, t0, climb * up, space)) {
-    result_.status = ReplanStatus::kClimbing;
-  } else if (TryRest(start, t0, kNoShift, space)) {
-    result_.status = ReplanStatus::kBraking;
-  } else if (climb <= 0.0 && TryRest(start, t0, kClimb * up, space)) {
-    result_.status = ReplanStatus::kClimbing;
-  } else {
-    // Nothing is certified. Of what is left, braking meets any obstacle slowest.
-    result_.status = ReplanStatus::kUnsafe;
-    TryRest(start, t0, kNoShift, space);
-  }
+  fallback_.ComeToRest(t0, start, climb, space, &result_);
   Commit(result_.curve);
 }
 

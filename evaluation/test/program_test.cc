@@ -81,6 +81,18 @@ TEST(Program, AScenarioThatIsRefusedIsBadInput) {
   EXPECT_THAT(ran.err, AllOf(HasSubstr("solver.backend"), HasSubstr("broken")));
 }
 
+TEST(Program, WhatDoesNotGoTogetherIsBadInput) {
+  const Ran ego = Call({"land", "open", "--planner", "ego", "--backend", "banded"});
+  EXPECT_EQ(ego.status, 2);
+  EXPECT_THAT(ego.err, AllOf(HasSubstr("--backend banded"), HasSubstr("planner ego")));
+  const Ran growth = Call({"study", "replan", "--parts", "growth", "--kinds", "B,C"});
+  EXPECT_EQ(growth.status, 2);
+  EXPECT_THAT(growth.err, HasSubstr("--kinds"));
+  const Ran replay = Call({"profile", "--from", "none.db", "--set", "planning.rate=5"});
+  EXPECT_EQ(replay.status, 2);
+  EXPECT_THAT(replay.err, HasSubstr("planning.guides"));
+}
+
 TEST(Program, CompareTimesNoBuildThatIsNotOptimised) {
   const Ran ran = Call({"compare", "--problems", "1", "--points", "12", "--backends", "banded"});
   if (TimingsMeanSomething()) {

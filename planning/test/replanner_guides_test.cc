@@ -137,6 +137,9 @@ TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
     const AttemptLog &first = log.attempts[0], &second = log.attempts[1];
     if (second.rounds.empty()) continue;  // the pad is blocked then
     ++went_on;
+    if (second.reason == ReplanReason::kNone) {
+      EXPECT_EQ(log.attempts.size(), 2u);
+    }
     EXPECT_EQ(second.segments, first.segments);
     EXPECT_GT(second.duration, first.duration);
     // It begins with the pairs that the first ended with, not with a straight curve.
@@ -150,6 +153,28 @@ TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
     EXPECT_GT(log.attempts[2].segments, second.segments);
   }
   EXPECT_GT(went_on, 3);
+}
+
+// Coarse segments leave the first half second to the start; an obstacle there is passed with fine ones.
+TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
+  const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.2, 0.0, 0.0);
+  for (const bool near : {true, false}) {
+    OccupancyMap map = ObservedMap();
+    AddPillar(near ? -3.85 : 0.0, 0.05, &map);
+    Replanner replanner(WithGuides(1), solvers::StandardBackends());
+    ReplanLog log;
+    replanner.set_log(&log);
+    FlyAlong(start, v_WB, &replanner);
+    ReplanInput input = Input(start, pad, 0.0);
+    input.vehicle.v_WB = v_WB;
+    EXPECT_EQ(replanner.Replan(input, map).status, ReplanStatus::kPlanned);
+    ASSERT_FALSE(log.attempts.empty());
+    const AttemptLog& first = log.attempts.front();
+    const bool fine = first.rounds.back().curve.segments() > first.rounds.front().curve.segments();
+    EXPECT_EQ(fine, near);
+    EXPECT_EQ(first.segments, first.rounds.back().curve.segments());
+  }
 }
 
 TEST(ReplannerGuides, AStepDoesNotAllocateOnceWarm) {

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Arrival, BothArrivals,
 
 TEST_P(BothArrivals, EveryAcceptedPlanEndsOnThePadAndIsCertified) {
   Draw draw(31);
-  int planned = 0;
+  int planned = 0, first_arrival = 0;
   constexpr int kTrials = 60;
   for (int trial = 0; trial < kTrials; ++trial) {
     OccupancyMap map = ObservedMap();
@@ -36,14 +36,23 @@ TEST_P(BothArrivals, EveryAcceptedPlanEndsOnThePadAndIsCertified) {
     const ArcPad pad({draw.Uniform(3, 7), draw.Uniform(-4, 4), 0.3}, draw.Uniform(0, 1.2),
                      draw.Uniform(-3, 3), draw.Uniform(-0.3, 0.3));
     Replanner replanner(Options(GetParam()), solvers::StandardBackends());
+    ReplanLog log;
+    replanner.set_log(&log);
     const double t = draw.Uniform(0.0, 50.0);
     replanner.CommitHover(start, t);
     ReplanInput input = Input(start, pad, t);
     input.endpoint.sink_rate = trial % 3 == 0 ? 0.1 : 0.0;
     input.endpoint.height_floor = 0.5;
     const ReplanResult& result = replanner.Replan(input, map);
+    // A step ends with its first success: nothing is tried after it.
+    for (const AttemptLog& attempt : log.attempts) {
+      if (attempt.reason == ReplanReason::kNone) {
+        EXPECT_EQ(&attempt, &log.attempts.back());
+      }
+    }
     if (result.status != ReplanStatus::kPlanned) continue;
     ++planned;
+    first_arrival += log.attempts.size() == 1 && log.attempts.front().arrival == GetParam();
     EXPECT_TRUE(result.certificate.passed());
 
     // Independent of the certificate: ends, limits and clearance by sampling.
@@ -61,6 +70,7 @@ TEST_P(BothArrivals, EveryAcceptedPlanEndsOnThePadAndIsCertified) {
     }
   }
   EXPECT_GE(planned, kTrials * 9 / 10);
+  EXPECT_GE(first_arrival, kTrials / 2);
 }
 
 TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
