@@ -5,17 +5,15 @@
 
 #include <nlohmann/json.hpp>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/compare_report.h"
 #include "touchdown/evaluation/compare_summary.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
 namespace {
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE problem(points INTEGER, problem INTEGER, draws INTEGER, not_clear INTEGER,
   unsolved INTEGER, rounds INTEGER, clear INTEGER, pairs INTEGER, duration_s REAL, start_speed_mps REAL, pad_speed_mps REAL, pad_rate_radps REAL,
   distance_m REAL, reference_cost REAL, reference_backend TEXT,
@@ -34,17 +32,13 @@ CREATE TABLE summary(points INTEGER, backend TEXT, problems INTEGER, solved INTE
   PRIMARY KEY(points, backend));
 )sql";
 
-void WriteManifest(SqliteDb& db, const CompareOptions& options, const MachineState& machine) {
-  SqliteStatement insert = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-  insert.Run("format", "touchdown comparison");
-  insert.Run("version", "1");
-  insert.Run("problems", std::to_string(options.problems));
+ManifestFacts Facts(const CompareOptions& options, const MachineState& machine) {
+  ManifestFacts facts;
+  facts.emplace_back("problems", std::to_string(options.problems));
   const nlohmann::ordered_json settings = CompareSettings(options);
-  for (const auto& [key, value] : settings.items()) insert.Run(key, value.dump());
-  insert.Run("pinned_cpu", machine.pinned ? std::to_string(*machine.pinned) : "none");
-  insert.Run("load_before", std::to_string(machine.load_before));
-  insert.Run("load_after", std::to_string(machine.load_after));
-  for (const auto& [key, value] : BuildManifest()) insert.Run(key, value);
+  for (const auto& [key, value] : settings.items()) facts.emplace_back(key, value.dump());
+  AddMachine(machine, &facts);
+  return facts;
 }
 
 void WriteProblems(SqliteDb& db, const CompareResult& result) {
@@ -90,21 +84,15 @@ void WriteSummary(SqliteDb& db, const CompareOptions& options, const CompareResu
 
 void WriteCompareTable(const std::string& path, const CompareOptions& options,
                        const CompareResult& result, const MachineState& machine) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    WriteManifest(db, options, machine);
-    WriteProblems(db, result);
-    WriteSolves(db, result);
-    SqliteStatement refusal = db.Prepare("INSERT INTO refusal VALUES(?, ?, ?)");
-    for (const Refusal& row : result.refusals) refusal.Run(row.points, row.backend, row.reason);
-    WriteSummary(db, options, result);
-    transaction.Commit();
-  }
-  file.Commit();
+  WriteResultFile(path, "touchdown comparison", kSchema, Facts(options, machine),
+                  [&](SqliteDb& db) {
+                    WriteProblems(db, result);
+                    WriteSolves(db, result);
+                    SqliteStatement refusal = db.Prepare("INSERT INTO refusal VALUES(?, ?, ?)");
+                    for (const Refusal& row : result.refusals)
+                      refusal.Run(row.points, row.backend, row.reason);
+                    WriteSummary(db, options, result);
+                  });
 }
 
 }  // namespace touchdown::evaluation

@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
@@ -16,7 +15,6 @@ constexpr FlightOutcome kOutcomes[] = {FlightOutcome::kReached, FlightOutcome::k
                                        FlightOutcome::kStuck, FlightOutcome::kCrashed};
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE flight(planner TEXT, kind TEXT, flight INTEGER, seed INTEGER, outcome TEXT,
   message TEXT, time_s REAL, length_m REAL, clearance_m REAL, max_speed_mps REAL,
   max_acceleration_mps2 REAL, plans INTEGER, steps_without_plan INTEGER,
@@ -112,16 +110,7 @@ Json ForestFlightJson(const std::vector<ForestFlightPart>& parts) {
 }
 
 void WriteForestFlights(const std::string& path, const std::vector<ForestFlightPart>& parts) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-    manifest.Run("format", "touchdown forest flights");
-    manifest.Run("version", "1");
-    for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
+  WriteResultFile(path, "touchdown forest flights", kSchema, {}, [&](SqliteDb& db) {
     SqliteStatement insert =
         db.Prepare("INSERT INTO flight VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement timing = db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?)");
@@ -137,9 +126,7 @@ void WriteForestFlights(const std::string& path, const std::vector<ForestFlightP
         }
       }
     }
-    transaction.Commit();
-  }
-  file.Commit();
+  });
 }
 
 }  // namespace touchdown::evaluation

@@ -6,9 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/pad_summary.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
@@ -17,7 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE flight(scenario TEXT, gps_sigma_m REAL, trial INTEGER, seed INTEGER, outcome TEXT,
   model TEXT, course TEXT, tags INTEGER, samples INTEGER, position2_m2 REAL, velocity2_m2ps2 REAL,
   prediction2_m2 REAL, nees_position REAL, nees_state REAL, nees_prediction REAL);
@@ -122,20 +120,12 @@ Json PadStudyJson(const PadStudyOptions& options, const std::vector<PadStudyRow>
 
 void WritePadStudy(const std::string& path, const PadStudyOptions& options,
                    const std::vector<PadStudyRow>& rows) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-    manifest.Run("format", "touchdown pad study");
-    manifest.Run("version", "1");
-    manifest.Run("seed", std::to_string(options.seed));
-    for (std::size_t i = 0; i < options.overrides.size(); ++i) {
-      manifest.Run(fmt::format("set_{}", i), options.overrides[i]);
-    }
-    for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
+  ManifestFacts facts;
+  facts.emplace_back("seed", std::to_string(options.seed));
+  for (std::size_t i = 0; i < options.overrides.size(); ++i) {
+    facts.emplace_back(fmt::format("set_{}", i), options.overrides[i]);
+  }
+  WriteResultFile(path, "touchdown pad study", kSchema, facts, [&](SqliteDb& db) {
     SqliteStatement flight =
         db.Prepare("INSERT INTO flight VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (const PadStudyRow& row : rows) {
@@ -157,9 +147,7 @@ void WritePadStudy(const std::string& path, const PadStudyOptions& options,
                    f.nees_prediction, cell.ratio, cell.interval.lo, cell.interval.hi);
       }
     }
-    transaction.Commit();
-  }
-  file.Commit();
+  });
 }
 
 }  // namespace touchdown::evaluation

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One row per replanning step and stage: every figure of the report can be made again from the file.
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/profile_report.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
 namespace {
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE run(run INTEGER PRIMARY KEY, seed INTEGER, outcome TEXT, warm_up INTEGER);
 CREATE TABLE replan(run INTEGER, replan INTEGER, t_now REAL, status TEXT, reason TEXT,
   from_odometry INTEGER, pairs INTEGER, solves INTEGER, rebinds INTEGER, iterations INTEGER,
@@ -20,18 +18,14 @@ CREATE TABLE frame(run INTEGER, frame INTEGER, t REAL, stage TEXT, wall_ms REAL,
   allocations INTEGER, PRIMARY KEY(run, frame, stage));
 )sql";
 
-void WriteManifest(SqliteDb& db, const Profile& profile, const MachineState& machine) {
-  SqliteStatement insert = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-  insert.Run("format", "touchdown profile");
-  insert.Run("version", "1");
-  insert.Run("scenario", profile.scenario.name);
-  insert.Run("scenario_yaml", DumpScenario(profile.scenario));
-  insert.Run("record", profile.record);
-  insert.Run("deadline_ms", std::to_string(profile.deadline_ms));
-  insert.Run("pinned_cpu", machine.pinned ? std::to_string(*machine.pinned) : "none");
-  insert.Run("load_before", std::to_string(machine.load_before));
-  insert.Run("load_after", std::to_string(machine.load_after));
-  for (const auto& [key, value] : BuildManifest()) insert.Run(key, value);
+ManifestFacts Facts(const Profile& profile, const MachineState& machine) {
+  ManifestFacts facts;
+  facts.emplace_back("scenario", profile.scenario.name);
+  facts.emplace_back("scenario_yaml", DumpScenario(profile.scenario));
+  facts.emplace_back("record", profile.record);
+  facts.emplace_back("deadline_ms", std::to_string(profile.deadline_ms));
+  AddMachine(machine, &facts);
+  return facts;
 }
 
 // Allocations are NULL where nobody counted.
@@ -76,13 +70,7 @@ void WriteFrames(SqliteDb& db, const Profile& profile, int run,
 
 void WriteProfileTable(const std::string& path, const Profile& profile,
                        const MachineState& machine) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    WriteManifest(db, profile, machine);
+  WriteResultFile(path, "touchdown profile", kSchema, Facts(profile, machine), [&](SqliteDb& db) {
     SqliteStatement insert = db.Prepare("INSERT INTO run VALUES(?, ?, ?, ?)");
     int id = 0;
     for (const ProfileRun& run : profile.runs) {
@@ -91,9 +79,7 @@ void WriteProfileTable(const std::string& path, const Profile& profile,
       WriteFrames(db, profile, id, run.samples.frames);
       ++id;
     }
-    transaction.Commit();
-  }
-  file.Commit();
+  });
 }
 
 }  // namespace touchdown::evaluation

@@ -6,9 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/replan_growth.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
@@ -17,7 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, varied TEXT, kind TEXT, backend TEXT, arrival TEXT,
   limits TEXT, guides INTEGER, horizon_m REAL, resolution_m REAL, inflation_m REAL,
   density_per_m2 REAL, speed_limit_mps REAL, acceleration_limit_mps2 REAL, seed INTEGER);
@@ -182,19 +180,9 @@ Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineSta
 
 void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart>& parts,
                       const MachineState& machine) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-    manifest.Run("format", "touchdown replan study");
-    manifest.Run("version", "1");
-    manifest.Run("pinned_cpu", machine.pinned ? std::to_string(*machine.pinned) : "none");
-    manifest.Run("load_before", std::to_string(machine.load_before));
-    manifest.Run("load_after", std::to_string(machine.load_after));
-    for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
+  ManifestFacts facts;
+  AddMachine(machine, &facts);
+  WriteResultFile(path, "touchdown replan study", kSchema, facts, [&](SqliteDb& db) {
     SqliteStatement insert_part =
         db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement insert = db.Prepare(
@@ -224,9 +212,7 @@ void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart
                    1e3 * t.certificate.cpu, 1e3 * t.total.cpu, 1e3 * t.total.wall);
       }
     }
-    transaction.Commit();
-  }
-  file.Commit();
+  });
 }
 
 }  // namespace touchdown::evaluation

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
@@ -14,7 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE part(part INTEGER PRIMARY KEY, seed INTEGER, width_px INTEGER, height_px INTEGER,
   fov_y_deg REAL, noise_gray REAL, exposure_ms REAL, speed_mps REAL, align INTEGER, enlarge INTEGER,
   attitude_sigma_deg REAL);
@@ -156,16 +154,7 @@ Json TagStudyJson(const std::vector<TagStudyPart>& parts) {
 }
 
 void WriteTagStudy(const std::string& path, const std::vector<TagStudyPart>& parts) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-    manifest.Run("format", "touchdown tag study");
-    manifest.Run("version", "1");
-    for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
+  WriteResultFile(path, "touchdown tag study", kSchema, {}, [&](SqliteDb& db) {
     SqliteStatement insert_part =
         db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement insert_view =
@@ -195,9 +184,7 @@ void WriteTagStudy(const std::string& path, const std::vector<TagStudyPart>& par
         }
       }
     }
-    transaction.Commit();
-  }
-  file.Commit();
+  });
 }
 
 }  // namespace touchdown::evaluation

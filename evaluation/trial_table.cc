@@ -5,8 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/statistics.h"
 
@@ -14,7 +13,6 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outcome TEXT,
   detail TEXT, time_to_land_s REAL, touchdown_error_m REAL, relative_vx_mps REAL,
   relative_vy_mps REAL, relative_vz_mps REAL, tilt_rad REAL, tilt_over_equilibrium_rad REAL,
@@ -90,34 +88,26 @@ void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
              t.sensing_stages.pad_filter, t.sensing_stages.own_state);
 }
 
-void WriteManifest(SqliteDb& db, const SweepOptions& options, const std::vector<SweepRow>& rows) {
-  SqliteStatement insert = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-  insert.Run("format", "touchdown trials");
-  insert.Run("version", "1");
-  insert.Run("sweep_seed", std::to_string(options.seed));
-  insert.Run("trials", std::to_string(rows.size()));
+ManifestFacts Facts(const SweepOptions& options, const std::vector<SweepRow>& rows) {
+  ManifestFacts facts;
+  facts.emplace_back("sweep_seed", std::to_string(options.seed));
+  facts.emplace_back("trials", std::to_string(rows.size()));
   nlohmann::json variations = nlohmann::json::array();
   for (const Variation& variation : options.variations) variations.push_back(variation.text);
-  insert.Run("set", nlohmann::json(options.overrides).dump());
-  insert.Run("vary", variations.dump());
+  facts.emplace_back("set", nlohmann::json(options.overrides).dump());
+  facts.emplace_back("vary", variations.dump());
   if (!rows.empty()) {
-    insert.Run("scenario", rows.front().trial.scenario.name);
-    insert.Run("scenario_yaml", DumpScenario(rows.front().trial.scenario));
+    facts.emplace_back("scenario", rows.front().trial.scenario.name);
+    facts.emplace_back("scenario_yaml", DumpScenario(rows.front().trial.scenario));
   }
-  for (const auto& [key, value] : BuildManifest()) insert.Run(key, value);
+  return facts;
 }
 
 }  // namespace
 
 void WriteTrialTable(const std::string& path, const SweepOptions& options,
                      const std::vector<SweepRow>& rows) {
-  AtomicFile file(path);
-  {
-    SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
-    db.Execute("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
-    SqliteTransaction transaction(db);
-    db.Execute(kSchema);
-    WriteManifest(db, options, rows);
+  WriteResultFile(path, "touchdown trials", kSchema, Facts(options, rows), [&](SqliteDb& db) {
     SqliteStatement trial = db.Prepare(
         "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
         "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
@@ -129,9 +119,7 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
       for (const auto& [key, value] : row.trial.varied) variation.Run(row.trial.index, key, value);
       WriteTiming(timing, row);
     }
-    transaction.Commit();
-  }
-  file.Commit();
+  });
 }
 
 }  // namespace touchdown::evaluation

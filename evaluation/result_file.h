@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/sqlite_db.h"
+
+namespace touchdown::evaluation {
+
+/// What a result file says of itself in its table `manifest`: pairs of key and value.
+using ManifestFacts = std::vector<std::pair<std::string, std::string>>;
+
+/// Where times were taken: `pinned_cpu`, `load_before`, `load_after`.
+void AddMachine(const MachineState& machine, ManifestFacts* facts);
+
+/// Writes a result file, an SQLite file that appears at `path` when it is complete: the table
+/// `manifest` (key, value) with `format`, `version`, the facts and the build, and the tables of
+/// `schema` (SQL), which `fill` fills in one transaction. @throws SqliteError,
+/// std::filesystem::filesystem_error
+void WriteResultFile(const std::string& path, const std::string& format, const char* schema,
+                     const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
+
+}  // namespace touchdown::evaluation
