@@ -26,6 +26,9 @@ struct Conditions {
   bool touching;
 };
 
+// False for a condition that does not hold.
+bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
+
 // Whether what is known now lasts until contact, were nothing measured on the way.
 bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   return s.foot_height <= p.gate_height &&
@@ -42,7 +45,8 @@ Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionP
                       !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
   // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
-  const bool own_good = in.own_usable && (in.own_fresh || s.t - s.own_stale_since > p.own_patience);
+  const bool own_good =
+      in.own_usable && (in.own_fresh || LastedLonger(s.own_stale_since, s.t, p.own_patience));
   const bool seen = in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
   // A bridge is what is foretold in W, and dead reckoning leaves W.
   const bool bridged = in.own_fresh && CanBridge(s, in, p);
@@ -64,14 +68,13 @@ void Track(bool holds, double t, double& since) {
   }
 }
 
-bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
-
 void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
                   double dt, MissionState& state) {
   const double t = state.t;
   Track(now.pad_good, t, state.converged_since);
-  // Without numbers the invalid-input timer decides, not the pad's; alike without an own state.
-  Track(now.numbers_valid && in.own_usable && !now.pad_good, t, state.pad_missing_since);
+  // Without numbers the invalid-input timer decides, not the pad's. Without an own state the pad's stands
+  // still, so that a state that comes and goes does not start it anew each time.
+  if (in.own_usable) Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
   Track(!in.own_usable, t, state.own_lost_since);
   Track(now.pad_good && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);
   Track(!now.numbers_valid, t, state.invalid_since);

@@ -95,6 +95,9 @@ void Validate(const MissionParameters& p) {
   }
   require(p.commit_height < p.gate_height, "commit_height", p.commit_height, "below gate_height");
   require(p.gate_height < p.follow_height, "gate_height", p.gate_height, "below follow_height");
+  require(p.gate_sigma <= p.bridge_sigma, "gate_sigma", p.gate_sigma, "at most bridge_sigma");
+  require(p.gate_tag_age <= p.bridge_time, "gate_tag_age", p.gate_tag_age, "at most bridge_time");
+  require(p.own_patience < p.gate_timeout, "own_patience", p.own_patience, "below gate_timeout");
   require(p.landing_distance < p.abort_distance, "landing_distance", p.landing_distance,
           "below abort_distance");
 }

@@ -105,8 +105,8 @@ class Trial {
   }
 
   void StepMission(const estimation::VehicleState& believed) {
-    pilot_.StepMission(believed, perception_.own().status(), perception_.pad_filter(),
-                       world_.foot_force().force, 1.0 / kMissionRate);
+    pilot_.StepMission(perception_.own(), perception_.pad_filter(), world_.foot_force().force,
+                       1.0 / kMissionRate);
     const control::MissionOutputs& mission = pilot_.mission();
     if (mission.reason != control::TransitionReason::kNone) {
       Note(believed.t, "mode",

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "touchdown/estimation/pad_predictor.h"
 #include "touchdown/evaluation/planner_options.h"
@@ -64,9 +67,13 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
           scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
           TrackingOptions(scenario))),
       mixer_(model) {
-  // Three standard deviations, and the feet are still on the deck.
-  parameters_.bridge_sigma =
-      std::max(1e-3, (0.5 * scenario.pad.deck_size - model.foot_radius) / 3.0);
+  // The pad off by three standard deviations, and feet led to its middle are still on the deck.
+  parameters_.bridge_sigma = (0.5 * scenario.pad.deck_size - model.foot_radius) / 3.0;
+  if (!(parameters_.bridge_sigma > 0.0)) {
+    throw std::invalid_argument(fmt::format("pad.deck_size is {:g}, it must be > {:g} for the feet",
+                                            scenario.pad.deck_size, 2.0 * model.foot_radius));
+  }
+  parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
@@ -74,8 +81,9 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   heading_wanted_ = yaw_.yaw;
 }
 
-void Pilot::StepMission(const estimation::VehicleState& vehicle, estimation::OwnStatus own,
-                        const estimation::PadFilter& filter, double foot_force, double dt) {
+void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& filter,
+                        double foot_force, double dt) {
+  const estimation::VehicleState& vehicle = own.now();
   const double t = vehicle.t;
   control::MissionInputs inputs;
   inputs.t = t;
@@ -87,12 +95,19 @@ void Pilot::StepMission(const estimation::VehicleState& vehicle, estimation::Own
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
   }
-  inputs.pad_sigma = filter.PositionSigma(t);
-  inputs.contact_sigma =
-      filter.PositionSigma(t + control::TimeToContact(mission_state_, inputs.height, parameters_));
   inputs.tag_age = filter.TagAge(t);
-  inputs.own_fresh = own == estimation::OwnStatus::kGood;
-  inputs.own_usable = inputs.own_fresh || own == estimation::OwnStatus::kOutage;
+  // Of the pad beside the vehicle: since the last sighting dead reckoning has moved the frame.
+  const auto sigma_after = [&](double ahead) {
+    const double drift = own.DriftSigma();
+    const double moved = drift > 0.0 ? drift * (inputs.tag_age + ahead) : 0.0;
+    return std::hypot(filter.PositionSigma(t + ahead), moved);
+  };
+  inputs.pad_sigma = sigma_after(0.0);
+  inputs.contact_sigma =
+      sigma_after(control::TimeToContact(mission_state_, inputs.height, parameters_));
+  const estimation::OwnStatus status = own.status();
+  inputs.own_fresh = status == estimation::OwnStatus::kGood;
+  inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
   own_usable_ = inputs.own_usable;
   inputs.foot_force = foot_force;
   inputs.has_plan = has_plan_;

@@ -9,9 +9,9 @@
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/mixer.h"
 #include "touchdown/control/yaw_planner.h"
-#include "touchdown/estimation/own_state_options.h"
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/estimation/vehicle_model.h"
+#include "touchdown/evaluation/own_estimate.h"
 #include "touchdown/evaluation/replan_request.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/planner.h"
@@ -35,9 +35,9 @@ class Pilot {
         const sim::PadMotion& truth, const Registries& registries,
         const estimation::VehicleState& start, const planning::OccupancyMap& map);
 
-  /// Mission and heading. Call at a fixed rate. @param own how far `vehicle` is to be trusted.
-  void StepMission(const estimation::VehicleState& vehicle, estimation::OwnStatus own,
-                   const estimation::PadFilter& filter, double foot_force, double dt);
+  /// Mission and heading, by what the vehicle knows of itself. Call at a fixed rate.
+  void StepMission(const OwnEstimate& own, const estimation::PadFilter& filter, double foot_force,
+                   double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at PlannerRate. The result

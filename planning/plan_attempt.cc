@@ -164,12 +164,13 @@ ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
   return ReplanReason::kNone;
 }
 
-ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, ReplanResult* result) {
+ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request,
+                                            const UniformBspline* guess, ReplanResult* result) {
   const ReplanReason refused = SetEnds(request);
   if (refused != ReplanReason::kNone) return refused;
   LandingProblem& problem = *now_->problem;
-  if (request.previous) {
-    problem.WarmGuess(*request.previous, &now_->start.y);
+  if (guess) {
+    problem.WarmGuess(*guess, &now_->start.y);
   } else {
     problem.Guess(&now_->start.y);
   }
@@ -189,10 +190,15 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   pairs_.clear();
   pressure_ = {};
   segments_ = request.segments;
-  ReplanReason reason = SolveWithoutPairs(request, result);
+  ReplanReason reason = SolveWithoutPairs(request, request.previous, result);
   if (reason == ReplanReason::kNone && ObstacleNear(request) && segments_ < request.near_segments) {
+    first_curve_ = best_.curve;
     segments_ = request.near_segments;
-    reason = SolveWithoutPairs(request, result);
+    reason = SolveWithoutPairs(request, &first_curve_, result);
+    if (reason == ReplanReason::kSolverFailed) {  // the coarse ones will have to do
+      segments_ = request.segments;
+      reason = SolveWithoutPairs(request, &first_curve_, result);
+    }
   }
   if (reason != ReplanReason::kNone) return reason;
   if (!runs_.empty() && options_.max_rebinds > 0) return TryGuides(request, result);

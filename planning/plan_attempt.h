@@ -37,7 +37,7 @@ struct AttemptRequest {
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   bool at_rest = false;   ///< there is time to look for long ways round
   bool go_on = false;  ///< on the way that the last attempt took, with as many segments; GoesOn()
-  const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice while clear
+  const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice
   AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };
 
@@ -95,7 +95,8 @@ class PlanAttempt {
 
   void PrepareProblem(int segments, ArrivalMode arrival);
   ReplanReason SetEnds(const AttemptRequest& request);
-  ReplanReason SolveWithoutPairs(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason SolveWithoutPairs(const AttemptRequest& request, const UniformBspline* guess,
+                                 ReplanResult* result);
   bool ObstacleNear(const AttemptRequest& request) const;
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);

@@ -29,7 +29,7 @@ struct RoundLog {
 struct AttemptLog {
   double duration = 0.0;  ///< T, or its first guess [s]
   ArrivalMode arrival = ArrivalMode::kFixed;
-  int segments = 0;
+  int segments = 0;  ///< of all rounds but the first, which may have had fewer
   std::vector<RoundLog> rounds;
   int best = -1;                           ///< the round that the answer is from; -1: none
   std::optional<Certificate> certificate;  ///< of that round, if it came to one

@@ -19,6 +19,8 @@
 namespace touchdown::sim {
 namespace {
 
+constexpr double kLongSilence = 3.0;  // [s]
+
 // The filter is told the truth about its sensors; a perfect one is taken as very good.
 estimation::OwnStateOptions FilterOptions(const OwnStateSourceConfig& config) {
   estimation::OwnStateOptions options = config.filter;
@@ -35,13 +37,15 @@ estimation::OwnStateOptions FilterOptions(const OwnStateSourceConfig& config) {
     latency = std::max(latency, 1e-3 * sensor->latency_ms);
   }
   options.max_delay = std::max(options.max_delay, latency + 0.1);
-  // Between two fixes of a slow sensor nothing is missing yet.
+  // Between two fixes of a slow sensor nothing is missing yet; but a silence that is long is one.
   double period = std::numeric_limits<double>::infinity();
   for (const OwnSensorConfig* sensor : {&config.sensors.gps.sensor, &config.sensors.odometry}) {
     if (sensor->rate_hz <= 0.0) continue;
     period = std::min(period, 1.0 / sensor->rate_hz + 1e-3 * sensor->latency_ms);
   }
-  if (std::isfinite(period)) options.outage_after = std::max(options.outage_after, 2.0 * period);
+  if (std::isfinite(period)) {
+    options.outage_after = std::max(options.outage_after, std::min(2.0 * period, kLongSilence));
+  }
   return options;
 }
 

@@ -89,6 +89,49 @@ TEST_F(OwnStateLost, DeadReckoningPausesAtTheGateAndIsNotCommitted) {
   EXPECT_TRUE(out_.committed);
 }
 
+TEST_F(OwnStateLost, NoBridgeBeginsOnDeadReckoning) {
+  for (const bool fresh : {true, false}) {
+    state_ = {};
+    in_ = {};
+    in_.pad_available = in_.pad_converged = in_.has_plan = true;
+    in_.horizontal_distance = 0.1;
+    in_.height = 1.5;
+    in_.pad_sigma = in_.contact_sigma = 0.02;
+    in_.tag_age = 0.05;
+    DescendTo(0.6);
+    in_.own_fresh = fresh;
+    bool committed = false;
+    for (int k = 0; k < 150; ++k) {  // the tags are lost
+      in_.tag_age += kStep;
+      Tick();
+      committed |= out_.committed;
+    }
+    EXPECT_EQ(committed, fresh);
+  }
+}
+
+// The pilot adds what dead reckoning may have moved since the last sighting: the bridge ends sooner.
+TEST_F(OwnStateLost, ACommittedLandingIsGivenUpWhereTheFrameMayHaveMovedTooFar) {
+  DescendTo(0.3);
+  ASSERT_TRUE(out_.committed);
+  in_.own_fresh = false;
+  in_.tag_age = 0.8;
+  in_.pad_sigma = parameters_.bridge_sigma + 0.01;
+  EXPECT_EQ(RunUntil(MissionMode::kGoAround), TransitionReason::kTagsLost);
+}
+
+TEST_F(OwnStateLost, AStateThatComesAndGoesDoesNotHideALostPad) {
+  in_.horizontal_distance = 5.0;
+  ASSERT_EQ(RunUntil(MissionMode::kTracking), TransitionReason::kPadConverged);
+  in_.pad_converged = false;
+  for (int k = 0; k < 2000 && out_.mode == MissionMode::kTracking; ++k) {
+    in_.own_usable = in_.own_fresh = k % 10 < 5;  // shorter than own_timeout
+    Tick();
+  }
+  EXPECT_EQ(out_.mode, MissionMode::kHold);
+  EXPECT_EQ(out_.reason, TransitionReason::kPadLost);
+}
+
 TEST_F(OwnStateLost, DeadReckoningThatLastsIsNotWaitedOut) {
   DescendTo(1.3);
   in_.own_fresh = false;

@@ -87,7 +87,6 @@ TEST(ReplannerGuides, ASideOnceFlownIsKept) {
   }
 }
 
-// The way is right and the arrival too early: the same control points stay bound and get more time.
 // The end of a wall comes into sight bit by bit. What is flown moves with it, without a search for another
 // way and without trying another arrival.
 TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {
@@ -118,6 +117,7 @@ TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {
   }
 }
 
+// The way is right and the arrival too early: the same control points stay bound and get more time.
 TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
   Draw draw(17);
   int went_on = 0;
@@ -161,7 +161,7 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
   const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.2, 0.0, 0.0);
   for (const bool near : {true, false}) {
     OccupancyMap map = ObservedMap();
-    AddPillar(near ? -3.85 : 0.0, 0.05, &map);
+    AddPillar(near ? -4.0 : 0.0, 0.05, &map);
     Replanner replanner(WithGuides(1), solvers::StandardBackends());
     ReplanLog log;
     replanner.set_log(&log);
