@@ -44,10 +44,9 @@ GuideFinder::GuideFinder(double vertical_cost)
   barriers_.reserve(8);
 }
 
-void GuideFinder::Begin(int max_expansions, bool at_rest) {
+void GuideFinder::Begin(bool at_rest) {
   barriers_.clear();
   committed_.Clear();
-  expansions_left_ = max_expansions;
   at_rest_ = at_rest;
 }
 

@@ -13,8 +13,8 @@
 namespace touchdown::planning {
 
 /// Finds guides past the blocked stretches of a curve: along the committed curve, with detours where it is
-/// blocked by now, so that the side of an obstacle is kept, else by A*. All searches of one attempt share a
-/// budget.
+/// blocked by now, so that the side of an obstacle is kept, else by A*. All searches share a budget until
+/// it is refilled.
 class GuideFinder {
  public:
   explicit GuideFinder(double vertical_cost);
@@ -22,9 +22,12 @@ class GuideFinder {
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
 
-  /// An attempt begins: no way is closed, nothing is kept.
-  /// @param max_expansions of all its searches. @param at_rest there is time to look for long ways round.
-  void Begin(int max_expansions, bool at_rest);
+  /// @param expansions of all searches from now on.
+  void Refill(int expansions) { expansions_left_ = expansions; }
+
+  /// An attempt begins: no way is closed, nothing is kept. @param at_rest there is time to look for long
+  /// ways round.
+  void Begin(bool at_rest);
 
   /// Guides follow the committed curve from t_from [s] on, where it still knows a way.
   void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space);

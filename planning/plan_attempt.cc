@@ -186,7 +186,8 @@ bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
   bound_ = false;
-  finder_.Begin(options_.max_expansions, request.at_rest);
+  if (request.at_rest) BeginStep();  // there is time for long searches
+  finder_.Begin(request.at_rest);
   pairs_.clear();
   pressure_ = {};
   segments_ = request.segments;
@@ -253,7 +254,8 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candi
 
 /// The control points are bound as the last attempt left them.
 ReplanReason PlanAttempt::GoOn(const AttemptRequest& request, ReplanResult* result) {
-  finder_.Begin(options_.max_expansions, request.at_rest);
+  if (request.at_rest) BeginStep();  // there is time for long searches
+  finder_.Begin(request.at_rest);
   const ReplanReason refused = SetEnds(request);
   if (refused != ReplanReason::kNone) return refused;
   now_->problem->WarmGuess(best_.curve, &now_->start.y);

@@ -55,6 +55,9 @@ class PlanAttempt {
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
 
+  /// All attempts until the next call share max_expansions; from rest each has as many.
+  void BeginStep() { finder_.Refill(options_.max_expansions); }
+
   /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
   /// does not allocate it does not either, once its buffers have grown.

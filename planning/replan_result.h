@@ -37,9 +37,9 @@ struct ReplannerOptions {
   double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
   int max_guides = 2;               ///< ways around the first obstacle that are tried
   int max_rebinds = 3;              ///< solve / check / re-bind rounds per attempt
-  int max_solves = 14;          ///< after so many no further arrival time is tried, but from rest
-  int max_iterations = 50;      ///< solver iterations per solve
-  int max_expansions = 200000;  ///< A* expansions per attempt
+  int max_solves = 14;         ///< after so many no further arrival time is tried, but from rest
+  int max_iterations = 50;     ///< solver iterations per solve
+  int max_expansions = 30000;  ///< of A* in a step; from rest in each attempt
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.

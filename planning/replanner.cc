@@ -256,6 +256,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
   double T = std::clamp(promised ? left : fresh, options_.min_duration, options_.max_duration);
 
+  attempt_.BeginStep();
   const double first = T;
   AttemptRequest request;
   request.start = start;

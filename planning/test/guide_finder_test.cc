@@ -43,7 +43,8 @@ TEST(GuideFinder, KeepsToTheCommittedCurveUntilAWayIsClosed) {
   BlockedRun run = OnlyRun(curve, space);
   GuideFinder finder(kUp);
   GuidePath guide;
-  finder.Begin(100000, false);
+  finder.Refill(100000);
+  finder.Begin(false);
   EXPECT_FALSE(finder.Keeps(run));
   finder.Keep(committed, 0.0, space);
   EXPECT_TRUE(finder.Keeps(run));
@@ -60,7 +61,8 @@ TEST(GuideFinder, KeepsToTheCommittedCurveUntilAWayIsClosed) {
     highest = std::max(highest, p.y());
   }
   EXPECT_GT(highest, 0.6);
-  finder.Begin(100000, false);
+  finder.Refill(100000);
+  finder.Begin(false);
   EXPECT_EQ(finder.ways_closed(), 0);
   EXPECT_FALSE(finder.Keeps(run));
 }
@@ -78,7 +80,8 @@ TEST(GuideFinder, ARunEndsWhereTheCurveIsOnTheCommittedSide) {
   BlockedRun run = OnlyRun(curve, space);
   EXPECT_LT(curve.Evaluate(run.t_out).p_WB.x(), 0.5);
   GuideFinder finder(kUp);
-  finder.Begin(100000, false);
+  finder.Refill(100000);
+  finder.Begin(false);
   finder.Keep(committed, 0.0, space);
   ASSERT_TRUE(finder.Keeps(run));
   finder.EndBesideKept(space, curve, &run);
@@ -89,7 +92,8 @@ TEST(GuideFinder, ARunEndsWhereTheCurveIsOnTheCommittedSide) {
   BlockedRun short_run = OnlyRun(curve, SpaceOf(plain));
   const double t_out = short_run.t_out;
   const UniformBspline beside = Straight({-2.0, -0.9, 0.05}, {2.5, 0.0, 0.05});
-  finder.Begin(100000, false);
+  finder.Refill(100000);
+  finder.Begin(false);
   finder.Keep(beside, 0.0, SpaceOf(plain));
   ASSERT_TRUE(finder.Keeps(short_run));
   finder.EndBesideKept(SpaceOf(plain), curve, &short_run);
@@ -104,7 +108,8 @@ TEST(GuideFinder, ARunThatLeavesTheWindowEndsInIt) {
   run.t_out = 7.5;  // at x = 5.5
   GuideFinder finder(kUp);
   GuidePath guide;
-  finder.Begin(100000, false);
+  finder.Refill(100000);
+  finder.Begin(false);
   ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kFound);
   EXPECT_TRUE(map.InWindow(map.CellOf(curve.Evaluate(run.t_out).p_WB)));
   EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 3.0);
@@ -119,7 +124,8 @@ TEST(GuideFinder, OutOfTheWindowTheGuideStaysBetweenFloorAndCeiling) {
   BlockedRun run = {0.0, curve.duration(), false, false};
   GuideFinder finder(kUp);
   GuidePath guide;
-  finder.Begin(100000, false);
+  finder.Refill(100000);
+  finder.Begin(false);
   ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kEndsOutside);
   ASSERT_GT(guide.size(), 10u);
   for (const Eigen::Vector3d& p : guide) {
@@ -134,7 +140,8 @@ TEST(GuideFinder, AllSearchesOfAnAttemptShareTheBudget) {
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
   GuideFinder finder(kUp);
   GuidePath guide;
-  finder.Begin(60, false);
+  finder.Refill(60);
+  finder.Begin(false);
   BlockedRun run = OnlyRun(curve, space);
   int found = 0;
   while (found < 100 && finder.Find(space, curve, &run, &guide) == SearchStatus::kFound) ++found;
