@@ -78,8 +78,8 @@ void Give(const PadArrival& arrival, estimation::PadFilter* filter) {
   if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
     filter->AddGps(*fix);
   } else {
-    const PadGlimpse& glimpse = std::get<PadGlimpse>(arrival.measurement);
-    filter->AddSighting(glimpse.sighting, glimpse.vehicle);
+    const auto& seen = std::get<BelievedSighting>(arrival.measurement);
+    filter->AddSighting(seen.sighting, seen.believed);
   }
 }
 
@@ -118,7 +118,7 @@ std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
     const double t = log.truth[k].t;
     for (; arrived < log.arrivals.size() && log.arrivals[arrived].t <= t; ++arrived) {
       Give(log.arrivals[arrived], &filter);
-      if (std::holds_alternative<PadGlimpse>(log.arrivals[arrived].measurement)) {
+      if (std::holds_alternative<BelievedSighting>(log.arrivals[arrived].measurement)) {
         tag_t = log.arrivals[arrived].t;
       }
     }

@@ -38,11 +38,11 @@ PadLog DrivenLog(double turn_rate, bool tags, double duration = 8.0) {
     const estimation::PadState pad = pad_at(t);
     if (k % 5 == 0) log.arrivals.push_back({t, estimation::PadGpsFix{t, pad.p_WP.head<2>(), 0.01}});
     if (tags && k % 3 == 0) {
-      PadGlimpse glimpse;
-      glimpse.vehicle.t = t;
-      glimpse.vehicle.p_WB = pad.p_WP + Eigen::Vector3d(0.0, 0.0, 1.0);
-      glimpse.sighting = {t, {0.0, 0.0, -1.0}, pad.yaw, Eigen::Vector3d::Constant(0.005), 0.01, 4};
-      log.arrivals.push_back({t, glimpse});
+      BelievedSighting seen;
+      seen.believed.t = t;
+      seen.believed.p_WB = pad.p_WP + Eigen::Vector3d(0.0, 0.0, 1.0);
+      seen.sighting = {t, {0.0, 0.0, -1.0}, pad.yaw, Eigen::Vector3d::Constant(0.005), 0.01, 4};
+      log.arrivals.push_back({t, seen});
     }
     log.truth.push_back({t, true, pad});
   }
@@ -164,8 +164,8 @@ TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnThreads) {
       if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
         filter.AddGps(*fix);
       } else {
-        const PadGlimpse& glimpse = std::get<PadGlimpse>(arrival.measurement);
-        filter.AddSighting(glimpse.sighting, glimpse.vehicle);
+        const auto& seen = std::get<BelievedSighting>(arrival.measurement);
+        filter.AddSighting(seen.sighting, seen.believed);
       }
     }
     if (!sample.pad_known) continue;
