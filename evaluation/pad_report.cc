@@ -99,7 +99,7 @@ std::string PadStudyText(const PadStudyOptions& options, const PadStudy& study) 
   for (const PadDemand& demand : PadDemands(options, study)) {
     const std::string value =
         demand.value ? fmt::format("{:.2f}", *demand.value) : std::string("no samples");
-    text += fmt::format("  {:<70}{:>10}, at most {:.2f}: {}\n", demand.text, value, demand.limit,
+    text += fmt::format("  {:<76}{:>10}, at most {:.2f}: {}\n", demand.text, value, demand.limit,
                         demand.met() ? "yes" : "no");
   }
   return text;
