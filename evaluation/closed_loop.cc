@@ -170,7 +170,8 @@ class Trial {
     if (in_flight) {
       metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
       if (perception_.pad_measured() && perception_.pad_filter().Converged(vehicle.t)) {
-        metrics_.Estimate(perception_.pad_filter().Estimate(vehicle.t), pad);
+        metrics_.Estimate(perception_.pad_filter().Estimate(vehicle.t), pad,
+                          perception_.own().now().p_WB - vehicle.p_WB);
       }
     }
     if (in_flight && sample.foot_on_pad) {

@@ -44,27 +44,26 @@ class Progress {
 };
 
 // The picture is drawn from a table; without --db that one is not kept.
-void Write(const PadStudyArguments& arguments, const std::vector<PadStudyRow>& rows) {
-  if (!arguments.db.empty()) WritePadStudy(arguments.db, arguments.options, rows);
+void Write(const PadStudyArguments& arguments, const PadStudy& study) {
+  if (!arguments.db.empty()) WritePadStudy(arguments.db, arguments.options, study);
   if (arguments.picture.empty()) return;
   if (!arguments.db.empty()) return DrawPadStudy(arguments.db, arguments.picture);
   const AtomicFile unkept(arguments.picture + ".table");
-  WritePadStudy(unkept.working_path(), arguments.options, rows);
+  WritePadStudy(unkept.working_path(), arguments.options, study);
   DrawPadStudy(unkept.working_path(), arguments.picture);
 }
 
 int Run(const PadStudyArguments& arguments, const Registries& registries) {
   CheckOutputs(arguments.db, arguments.picture);
   Progress progress;
-  const std::vector<PadStudyRow> rows =
-      RunPadStudy(arguments.options, registries, std::ref(progress));
+  const PadStudy study = RunPadStudy(arguments.options, registries, std::ref(progress));
   if (arguments.json) {
-    std::cout << PadStudyJson(arguments.options, rows).dump(2) << std::endl;
+    std::cout << PadStudyJson(arguments.options, study).dump(2) << std::endl;
   } else {
-    std::cout << PadStudyText(arguments.options, rows) << std::flush;
+    std::cout << PadStudyText(arguments.options, study) << std::flush;
   }
-  Write(arguments, rows);
-  const std::vector<PadDemand> demands = PadDemands(arguments.options, rows);
+  Write(arguments, study);
+  const std::vector<PadDemand> demands = PadDemands(arguments.options, study);
   const bool met = std::all_of(demands.begin(), demands.end(),
                                [](const PadDemand& demand) { return demand.met(); });
   return met ? kDone : kFellShort;

@@ -42,10 +42,12 @@ void Metrics::Sample(double t, const estimation::VehicleState& vehicle,
   t_previous_ = t;
 }
 
-void Metrics::Estimate(const estimation::PadState& estimate, const estimation::PadState& truth) {
-  sum_position_ += (estimate.p_WP - truth.p_WP).head<2>().squaredNorm();
+void Metrics::Estimate(const estimation::PadState& estimate, const estimation::PadState& truth,
+                       const Eigen::Vector3d& own_error) {
+  const Eigen::Vector2d p = (truth.p_WP + own_error).head<2>();  // in the frame of the filter
+  sum_position_ += (estimate.p_WP.head<2>() - p).squaredNorm();
   sum_velocity_ += (estimate.v_WP - truth.v_WP).head<2>().squaredNorm();
-  sum_nees_ += estimation::PositionNees(estimate, truth.p_WP.head<2>());
+  sum_nees_ += estimation::PositionNees(estimate, p);
   ++estimates_;
 }
 

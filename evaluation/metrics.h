@@ -26,7 +26,10 @@ class Metrics {
   void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);
 
   /// The filter's estimate against the truth, after a measurement while it is converged.
-  void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth);
+  /// @param own_error the vehicle's estimate of its own position less the truth [m]: so far the frame
+  /// of the filter is off. The positions are compared as seen from the vehicle.
+  void Estimate(const estimation::PadState& estimate, const estimation::PadState& truth,
+                const Eigen::Vector3d& own_error);
 
   /// The vehicle's estimate of its own state against the truth, every 20 ms.
   void OwnState(const estimation::VehicleState& estimate, const estimation::VehicleState& truth);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads take the next index from a counter.
+// Threads take the next index from a counter. Whatever is thrown, on any thread and also where a thread
+// cannot be had, ends the counting, waits for the calls under way and comes out on the caller's thread.
 #include "touchdown/evaluation/on_threads.h"
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -13,27 +15,34 @@ namespace touchdown::evaluation {
 void RunOnThreads(int count, int jobs, const std::function<void(int)>& run,
                   const std::function<void(int done)>& progress) {
   std::atomic<int> next{0};
-  std::mutex mutex;
+  std::mutex mutex;  // of failure
+  std::mutex telling;
   std::exception_ptr failure;
   int done = 0;
+  const auto stop = [&] {
+    next = count;
+    const std::lock_guard lock(mutex);
+    if (!failure) failure = std::current_exception();
+  };
   const auto work = [&] {
-    for (int i = next++; i < count; i = next++) {
-      try {
+    try {
+      for (int i = next++; i < count; i = next++) {
         run(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-        next = count;
-        return;
+        const std::lock_guard lock(telling);
+        progress(++done);
       }
-      const std::lock_guard lock(mutex);
-      progress(++done);
+    } catch (...) {
+      stop();
     }
   };
-  std::vector<std::thread> threads;
-  for (int j = 1; j < jobs; ++j) threads.emplace_back(work);
+  std::vector<std::jthread> threads;
+  try {
+    for (int j = 1; j < std::min(jobs, count); ++j) threads.emplace_back(work);
+  } catch (...) {
+    stop();
+  }
   work();
-  for (std::thread& thread : threads) thread.join();
+  threads.clear();  // joins
   if (failure) std::rethrow_exception(failure);
 }
 

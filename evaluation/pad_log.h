@@ -7,14 +7,20 @@
 
 #include "touchdown/estimation/measurements.h"
 #include "touchdown/estimation/pad_prediction.h"
-#include "touchdown/evaluation/pad_eye.h"
+#include "touchdown/estimation/vehicle_state.h"
 
 namespace touchdown::evaluation {
+
+/// A sighting, with what the vehicle took for its state at the sighting's time stamp when it came.
+struct BelievedSighting {
+  estimation::PadSighting sighting;
+  estimation::VehicleState believed;
+};
 
 /// A measurement as it came to the filter.
 struct PadArrival {
   double t = 0.0;  ///< when it came [s]; its own time stamp is older if it came late
-  std::variant<estimation::PadGpsFix, PadGlimpse> measurement;
+  std::variant<estimation::PadGpsFix, BelievedSighting> measurement;
 };
 
 /// The pad as it was at the time t [s].

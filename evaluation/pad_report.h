@@ -11,14 +11,12 @@
 namespace touchdown::evaluation {
 
 /// Tables for people.
-std::string PadStudyText(const PadStudyOptions& options, const std::vector<PadStudyRow>& rows);
+std::string PadStudyText(const PadStudyOptions& options, const PadStudy& study);
 
-nlohmann::ordered_json PadStudyJson(const PadStudyOptions& options,
-                                    const std::vector<PadStudyRow>& rows);
+nlohmann::ordered_json PadStudyJson(const PadStudyOptions& options, const PadStudy& study);
 
-/// Every row and every cell of the study as an SQLite file, with a manifest. The file appears whole or
+/// Every flight, every row and every cell of the study as an SQLite file, with a manifest. The file appears whole or
 /// not at all. @throws SqliteError
-void WritePadStudy(const std::string& path, const PadStudyOptions& options,
-                   const std::vector<PadStudyRow>& rows);
+void WritePadStudy(const std::string& path, const PadStudyOptions& options, const PadStudy& study);
 
 }  // namespace touchdown::evaluation

@@ -7,15 +7,17 @@
 #include "touchdown/evaluation/pad_study.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
 #include <Eigen/Core>
 
 #include "touchdown/estimation/pad_predictor.h"
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/on_threads.h"
 #include "touchdown/evaluation/perception.h"
@@ -78,9 +80,35 @@ void Give(const PadArrival& arrival, estimation::PadFilter* filter) {
   if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
     filter->AddGps(*fix);
   } else {
-    const PadGlimpse& glimpse = std::get<PadGlimpse>(arrival.measurement);
-    filter->AddSighting(glimpse.sighting, glimpse.vehicle);
+    const auto& seen = std::get<BelievedSighting>(arrival.measurement);
+    filter->AddSighting(seen.sighting, seen.believed);
   }
+}
+
+// The flights of a scenario and a sigma. The sigma goes before the user's own changes, which shows
+// whether they touch it. @throws BadInput
+std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t scenario,
+                                 std::size_t sigma, const Registries& registries) {
+  SweepOptions sweep;
+  sweep.scenario_path = FindScenario(options.scenarios[scenario]);
+  sweep.overrides = options.overrides;
+  sweep.overrides.insert(sweep.overrides.begin(),
+                         "gps.sigma=" + WriteNumber(options.sigmas[sigma]));
+  sweep.trials = options.trials;
+  sweep.seed = options.seed;
+  std::vector<SweepTrial> trials = PlanSweep(sweep, registries);
+  for (const SweepTrial& trial : trials) {
+    if (trial.scenario.gps.sigma != options.sigmas[sigma]) {
+      throw BadInput("--set gps.sigma: study pad takes the sigmas of its cells from --sigmas.");
+    }
+    if (trial.scenario.own_state == OwnStateKind::kEstimated) {
+      throw BadInput(
+          fmt::format("{}: own_state: estimated does not go with study pad, whose truth "
+                      "is in W while that pad filter lives in the estimate's frame.",
+                      options.scenarios[scenario]));
+    }
+  }
+  return trials;
 }
 
 }  // namespace
@@ -110,79 +138,69 @@ void PadSums::Add(const PadSums& other) {
 std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
                                       const estimation::PadFilterOptions& options) {
   constexpr auto kAhead = static_cast<std::size_t>(kPadHorizon * kPadLogRate + 0.5);
-  estimation::PadFilter filter(options);
-  std::map<std::pair<PadCourse, bool>, PadSums> sums;
+  constexpr std::array kModels = {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate};
+  std::vector<estimation::PadFilter> filters;
+  for (const auto model : kModels) {
+    estimation::PadFilterOptions of_model = options;
+    of_model.model = model;
+    filters.emplace_back(of_model);
+  }
+  std::map<std::pair<PadCourse, bool>, std::array<PadSums, kModels.size()>> sums;
   std::size_t arrived = 0;
-  double tag_t = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + kAhead < log.truth.size() && log.truth[k].flying; ++k) {
     const double t = log.truth[k].t;
     for (; arrived < log.arrivals.size() && log.arrivals[arrived].t <= t; ++arrived) {
-      Give(log.arrivals[arrived], &filter);
-      if (std::holds_alternative<PadGlimpse>(log.arrivals[arrived].measurement)) {
-        tag_t = log.arrivals[arrived].t;
-      }
+      for (estimation::PadFilter& filter : filters) Give(log.arrivals[arrived], &filter);
     }
-    if (t < kPadSettled || !filter.initialized()) continue;
-    sums[{CourseOf(log, k, k + kAhead), t - tag_t <= kPadTagsFresh}].Add(
-        Compare(filter, log.truth[k], log.truth[k + kAhead]));
+    if (t < kPadSettled || !filters[0].initialized() || !filters[1].initialized()) continue;
+    const bool tags = std::max(filters[0].TagAge(t), filters[1].TagAge(t)) <= kPadTagsFresh;
+    auto& of_models = sums[{CourseOf(log, k, k + kAhead), tags}];
+    for (std::size_t m = 0; m < kModels.size(); ++m) {
+      of_models[m].Add(Compare(filters[m], log.truth[k], log.truth[k + kAhead]));
+    }
   }
   std::vector<PadStudyRow> rows;
-  for (const auto& [key, sum] : sums) {
-    PadStudyRow row;
-    row.model = options.model;
-    row.course = key.first;
-    row.tags = key.second;
-    row.sums = sum;
-    rows.push_back(row);
+  for (const auto& [key, of_models] : sums) {
+    for (std::size_t m = 0; m < kModels.size(); ++m) {
+      PadStudyRow row;
+      row.model = kModels[m];
+      row.course = key.first;
+      row.tags = key.second;
+      row.sums = of_models[m];
+      rows.push_back(row);
+    }
   }
   return rows;
 }
 
-std::vector<PadStudyRow> RunPadStudy(const PadStudyOptions& options, const Registries& registries,
-                                     const std::function<void(int done, int all)>& progress) {
-  struct Flight {
-    int scenario, sigma, trial;
-    SweepTrial plan;
-  };
-  std::vector<Flight> flights;
+PadStudy RunPadStudy(const PadStudyOptions& options, const Registries& registries,
+                     const std::function<void(int done, int all)>& progress) {
+  PadStudy study;
+  std::vector<Scenario> scenario_of;  // by flight
   for (std::size_t s = 0; s < options.scenarios.size(); ++s) {
     for (std::size_t g = 0; g < options.sigmas.size(); ++g) {
-      SweepOptions sweep;
-      sweep.scenario_path = FindScenario(options.scenarios[s]);
-      sweep.overrides = options.overrides;
-      sweep.overrides.push_back("gps.sigma=" + WriteNumber(options.sigmas[g]));
-      sweep.trials = options.trials;
-      sweep.seed = options.seed;
-      for (SweepTrial& trial : PlanSweep(sweep, registries)) {
-        flights.push_back(
-            {static_cast<int>(s), static_cast<int>(g), trial.index, std::move(trial)});
+      for (SweepTrial& trial : PlanCell(options, s, g, registries)) {
+        study.motions.resize(s + 1, trial.scenario.pad.motion);
+        study.flights.push_back(
+            {static_cast<int>(s), static_cast<int>(g), trial.index, trial.seed, {}});
+        scenario_of.push_back(std::move(trial.scenario));
       }
     }
   }
-  const int all = static_cast<int>(flights.size());
-  std::vector<std::vector<PadStudyRow>> of_flight(flights.size());
+  const int all = static_cast<int>(study.flights.size());
+  std::vector<std::vector<PadStudyRow>> rows_of(study.flights.size());
   const auto fly = [&](int i) {
-    const Flight& flight = flights[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(i);
     TrialSamples samples;
-    const TrialResult result =
-        RunTrial(flight.plan.scenario, flight.plan.seed, registries, nullptr, nullptr, &samples);
-    for (const auto model : {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate}) {
-      estimation::PadFilterOptions filter = PadFilterOptionsOf(flight.plan.scenario);
-      filter.model = model;
-      for (PadStudyRow row : ReplayPadLog(samples.pad, filter)) {
-        row.scenario = flight.scenario;
-        row.sigma = flight.sigma;
-        row.trial = flight.trial;
-        row.seed = flight.plan.seed;
-        row.outcome = result.outcome;
-        of_flight[static_cast<std::size_t>(i)].push_back(row);
-      }
-    }
+    study.flights[at].outcome =
+        RunTrial(scenario_of[at], study.flights[at].seed, registries, nullptr, nullptr, &samples)
+            .outcome;
+    rows_of[at] = ReplayPadLog(samples.pad, PadFilterOptionsOf(scenario_of[at]));
+    for (PadStudyRow& row : rows_of[at]) row.flight = i;
   };
   RunOnThreads(all, options.jobs, fly, [&](int done) { progress(done, all); });
-  std::vector<PadStudyRow> rows;
-  for (const auto& some : of_flight) rows.insert(rows.end(), some.begin(), some.end());
-  return rows;
+  for (const auto& some : rows_of) study.rows.insert(study.rows.end(), some.begin(), some.end());
+  return study;
 }
 
 }  // namespace touchdown::evaluation

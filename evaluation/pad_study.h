@@ -17,7 +17,7 @@ namespace touchdown::evaluation {
 struct PadStudyOptions {
   std::vector<std::string> scenarios = {"straight_turn", "circle"};
   std::vector<double> sigmas = {0.01, 0.5, 1.0};  ///< gps.sigma [m]
-  std::vector<std::string> overrides;             ///< as --set
+  std::vector<std::string> overrides;             ///< as --set, of other keys
   int trials = 100;                               ///< of each scenario and sigma
   std::uint64_t seed = 1;                         ///< trial seeds follow from it as in a sweep
   int jobs = 1;
@@ -25,7 +25,7 @@ struct PadStudyOptions {
 
 inline constexpr double kPadHorizon = 1.5;  ///< so far ahead is foretold [s]
 inline constexpr double kPadSettled = 3.0;  ///< flights count from here on [s]
-/// A tag seen at most so long ago: the filter goes by tags, else by GPS alone [s].
+/// The filter took a sighting at most so old: it goes by tags, else by GPS alone [s].
 inline constexpr double kPadTagsFresh = 0.5;
 
 /// How the pad drove from a sample to its horizon.
@@ -42,27 +42,41 @@ struct PadSums {
   void Add(const PadSums& other);
 };
 
-/// One model's errors in one flight, of one course and one kind of information.
-struct PadStudyRow {
+/// One flight, whether it left samples or not.
+struct PadStudyFlight {
   int scenario = 0, sigma = 0;  ///< indices in the options
   int trial = 0;
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kError;
+};
+
+/// One model's errors in one flight, of one course and one kind of information.
+struct PadStudyRow {
+  int flight = 0;  ///< index in the study
   estimation::PadModel model = estimation::PadModel::kTurnRate;
   PadCourse course = PadCourse::kStraight;
   bool tags = false;
   PadSums sums;
 };
 
-/// Runs a filter on what came to the flight's, and compares it with the truth at every sample from
-/// kPadSettled to contact whose horizon the log reaches. One row for each course and information that
-/// occurred; only model, course, tags and sums are set.
+struct PadStudy {
+  std::vector<PadMotionKind> motions;   ///< how the pad drives, by scenario
+  std::vector<PadStudyFlight> flights;  ///< every one that was flown
+  std::vector<PadStudyRow> rows;
+};
+
+/// Runs a filter of each model on what came to the flight's, and compares it with the truth at every
+/// sample from kPadSettled to contact whose horizon the log reaches. A sample is by tags if it is for
+/// both, so that both models have the same samples. One row for each model, course and information that
+/// occurred; the flight is left open. @param options of both; their model is not read.
 std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
                                       const estimation::PadFilterOptions& options);
 
 /// Flies the trials, each once, and runs both models on what its filter was given. Rows do not
-/// depend on `jobs`. @throws BadInput for a scenario that cannot be had, and what RunTrial throws.
-std::vector<PadStudyRow> RunPadStudy(const PadStudyOptions& options, const Registries& registries,
-                                     const std::function<void(int done, int all)>& progress);
+/// depend on `jobs`. @throws BadInput for a scenario that cannot be had, for a gps.sigma among the
+/// overrides that is not that of every cell, and where the vehicle's own state is estimated: its pad
+/// filter lives in that estimate's frame, the truth in W. Also what RunTrial throws.
+PadStudy RunPadStudy(const PadStudyOptions& options, const Registries& registries,
+                     const std::function<void(int done, int all)>& progress);
 
 }  // namespace touchdown::evaluation

@@ -29,6 +29,11 @@ PadModelFigures FiguresOf(const PadSums& sums) {
       sums.nees_position / n,        sums.nees_state / n,           sums.nees_prediction / n};
 }
 
+// Of two sums of squares. What nothing errs in, neither of them does better.
+double RatioOfRoots(double of, double over) {
+  return of == 0.0 && over == 0.0 ? 1.0 : std::sqrt(of / over);
+}
+
 Interval RatioInterval(const std::vector<FlightSums>& flights) {
   sim::RandomStream draw(1, "pad study bootstrap");
   std::vector<double> ratios;
@@ -39,46 +44,40 @@ Interval RatioInterval(const std::vector<FlightSums>& flights) {
       paper += flights[at].paper.prediction2;
       turn_rate += flights[at].turn_rate.prediction2;
     }
-    ratios.push_back(std::sqrt(turn_rate / paper));
+    ratios.push_back(RatioOfRoots(turn_rate, paper));
   }
   return {*Quantile(ratios, 0.025), *Quantile(ratios, 0.975)};
 }
 
-bool DrivesCircle(const std::vector<PadStudyRow>& rows, int scenario) {
-  return std::none_of(rows.begin(), rows.end(), [scenario](const PadStudyRow& row) {
-    return row.scenario == scenario && row.course != PadCourse::kTurn;
-  });
-}
-
 }  // namespace
 
-std::optional<PadStudyCell> Summarise(const std::vector<PadStudyRow>& rows, PadStudyCell cell) {
-  std::map<int, FlightSums> by_trial;
+std::optional<PadStudyCell> Summarise(const PadStudy& study, PadStudyCell cell) {
+  std::map<int, FlightSums> by_flight;
   FlightSums total;
-  for (const PadStudyRow& row : rows) {
-    if (row.scenario != cell.scenario || row.sigma != cell.sigma) continue;
+  for (const PadStudyRow& row : study.rows) {
+    const PadStudyFlight& flown = study.flights[static_cast<std::size_t>(row.flight)];
+    if (flown.scenario != cell.scenario || flown.sigma != cell.sigma) continue;
     if ((cell.course && row.course != *cell.course) || (cell.tags && row.tags != *cell.tags)) {
       continue;
     }
     const bool paper = row.model == estimation::PadModel::kPaper;
-    FlightSums& flight = by_trial[row.trial];
+    FlightSums& flight = by_flight[row.flight];
     (paper ? flight.paper : flight.turn_rate).Add(row.sums);
     (paper ? total.paper : total.turn_rate).Add(row.sums);
   }
   if (total.paper.samples == 0) return std::nullopt;
   cell.samples = total.paper.samples;
-  cell.flights = static_cast<int>(by_trial.size());
+  cell.flights = static_cast<int>(by_flight.size());
   cell.paper = FiguresOf(total.paper);
   cell.turn_rate = FiguresOf(total.turn_rate);
-  cell.ratio = cell.turn_rate.prediction_m / cell.paper.prediction_m;
+  cell.ratio = RatioOfRoots(total.turn_rate.prediction2, total.paper.prediction2);
   std::vector<FlightSums> flights;
-  for (const auto& [trial, sums] : by_trial) flights.push_back(sums);
+  for (const auto& [index, sums] : by_flight) flights.push_back(sums);
   cell.interval = RatioInterval(flights);
   return cell;
 }
 
-std::vector<PadStudyCell> PadStudyCells(const PadStudyOptions& options,
-                                        const std::vector<PadStudyRow>& rows) {
+std::vector<PadStudyCell> PadStudyCells(const PadStudyOptions& options, const PadStudy& study) {
   const std::vector<std::optional<PadCourse>> courses = {PadCourse::kStraight, PadCourse::kTurn,
                                                          PadCourse::kChanging, std::nullopt};
   const std::vector<std::optional<bool>> sources = {false, true, std::nullopt};
@@ -92,7 +91,7 @@ std::vector<PadStudyCell> PadStudyCells(const PadStudyOptions& options,
           asked.sigma = static_cast<int>(g);
           asked.course = course;
           asked.tags = tags;
-          if (const auto cell = Summarise(rows, asked)) cells.push_back(*cell);
+          if (const auto cell = Summarise(study, asked)) cells.push_back(*cell);
         }
       }
     }
@@ -100,29 +99,36 @@ std::vector<PadStudyCell> PadStudyCells(const PadStudyOptions& options,
   return cells;
 }
 
-std::vector<PadDemand> PadDemands(const PadStudyOptions& options,
-                                  const std::vector<PadStudyRow>& rows) {
+std::vector<PadDemand> PadDemands(const PadStudyOptions& options, const PadStudy& study) {
   std::vector<PadDemand> demands;
-  const auto ask = [&](const PadStudyCell& cell, const std::string& what, double value,
-                       double limit) {
-    demands.push_back({fmt::format("{}, sigma {:g} m: {}", options.scenarios[cell.scenario],
-                                   options.sigmas[cell.sigma], what),
-                       value, limit});
-  };
-  for (const PadStudyCell& cell : PadStudyCells(options, rows)) {
-    const bool any_source = !cell.tags;
-    const bool good_gps = options.sigmas[cell.sigma] <= kPadGoodGps;
-    if (!cell.course && any_source) {
-      ask(cell, "NEES of the state over its size", cell.turn_rate.nees_state, 1.5);
-    } else if (cell.course == PadCourse::kStraight && any_source) {
-      ask(cell, "prediction on straights, turn_rate over paper", cell.ratio, 1.5);
-    } else if (cell.course != PadCourse::kTurn || !DrivesCircle(rows, cell.scenario)) {
-      continue;
-    } else if (any_source) {
-      ask(cell, "prediction on the circle, turn_rate over paper", cell.ratio,
-          good_gps ? 1.0 / 3.0 : 0.7);
-    } else if (*cell.tags) {
-      ask(cell, "the same with tags", cell.ratio, 1.0 / 3.0);
+  for (std::size_t s = 0; s < options.scenarios.size(); ++s) {
+    for (std::size_t g = 0; g < options.sigmas.size(); ++g) {
+      PadStudyCell all;
+      all.scenario = static_cast<int>(s);
+      all.sigma = static_cast<int>(g);
+      const auto ask = [&](const PadStudyCell& asked, const char* what, const auto& figure,
+                           double limit) {
+        PadDemand demand;
+        demand.text =
+            fmt::format("{}, sigma {:g} m: {}", options.scenarios[s], options.sigmas[g], what);
+        if (const auto cell = Summarise(study, asked)) demand.value = figure(*cell);
+        demand.limit = limit;
+        demands.push_back(demand);
+      };
+      const auto nees = [](const PadStudyCell& cell) { return cell.turn_rate.nees_state; };
+      const auto ratio = [](const PadStudyCell& cell) { return cell.ratio; };
+      PadStudyCell on = all;
+      if (study.motions[s] == PadMotionKind::kCircle) {
+        on.course = PadCourse::kTurn;
+        ask(on, "prediction on the circle, turn_rate over paper", ratio,
+            options.sigmas[g] <= kPadGoodGps ? 1.0 / 3.0 : 0.7);
+        on.tags = true;
+        ask(on, "the same with tags", ratio, 1.0 / 3.0);
+      } else {
+        on.course = PadCourse::kStraight;
+        ask(on, "prediction on straights, turn_rate over paper", ratio, 1.5);
+      }
+      ask(all, "NEES of the state over its size", nees, 1.5);
     }
   }
   return demands;

@@ -31,25 +31,24 @@ struct PadStudyCell {
 };
 
 /// What the cell's members ask of the rows; without samples nothing.
-std::optional<PadStudyCell> Summarise(const std::vector<PadStudyRow>& rows, PadStudyCell asked);
+std::optional<PadStudyCell> Summarise(const PadStudy& study, PadStudyCell asked);
 
 /// Every course, with tags, by GPS alone, and both, and all courses, of every scenario and sigma.
-std::vector<PadStudyCell> PadStudyCells(const PadStudyOptions& options,
-                                        const std::vector<PadStudyRow>& rows);
+std::vector<PadStudyCell> PadStudyCells(const PadStudyOptions& options, const PadStudy& study);
 
 /// A demand on the turn-rate model, and whether the study fulfils it.
 struct PadDemand {
   std::string text;
-  double value = 0.0;
+  std::optional<double> value;  ///< none: no samples
   double limit = 0.0;
-  bool met() const { return value <= limit; }
+  bool met() const { return value && *value <= limit; }
 };
 
-/// Of the prediction's error over the paper model's: where the pad does nothing but turn 1/3 at a GPS
-/// up to kPadGoodGps and with tags, 0.7 at a coarser one; on straights 1.5. Of the state's NEES over its
-/// degrees of freedom: 1.5.
-std::vector<PadDemand> PadDemands(const PadStudyOptions& options,
-                                  const std::vector<PadStudyRow>& rows);
+/// What every scenario and sigma of the options has to show, with samples or not. Of the prediction's
+/// error over the paper model's: where the pad's motion is the circle 1/3 at a GPS up to kPadGoodGps and
+/// with tags, 0.7 at a coarser one; of any other motion 1.5 on its straights. Of the state's NEES over
+/// its degrees of freedom: 1.5.
+std::vector<PadDemand> PadDemands(const PadStudyOptions& options, const PadStudy& study);
 inline constexpr double kPadGoodGps = 0.05;  ///< [m]
 
 }  // namespace touchdown::evaluation

@@ -135,9 +135,9 @@ void Perception::SensePad(const estimation::VehicleState& vehicle,
     timed(*fix, [&] { pad_filter_.AddGps(*fix); });
   }
   pad_eye_->Look(vehicle, own_.now(), pad, pad_filter_, &sensing_times_);
-  while (auto glimpse = pad_eye_->Poll(t)) {
-    glimpse->vehicle = own_.At(glimpse->vehicle);
-    timed(*glimpse, [&] { pad_filter_.AddSighting(glimpse->sighting, glimpse->vehicle); });
+  while (const auto glimpse = pad_eye_->Poll(t)) {
+    const BelievedSighting seen{glimpse->sighting, own_.At(glimpse->vehicle)};
+    timed(seen, [&] { pad_filter_.AddSighting(seen.sighting, seen.believed); });
   }
 }
 

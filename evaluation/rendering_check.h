@@ -5,8 +5,9 @@
 
 namespace touchdown::evaluation {
 
-/// Tries to render off screen. @throws BadInput, one sentence with what the user can do, if this
-/// machine cannot. @param who needs it, as the sentence shall name it.
+/// Whether an OpenGL context in memory can be made and used; nothing is drawn. Tried once per process,
+/// the first answer holds for all threads. @throws BadInput, one sentence with what the user can do, if
+/// it cannot. @param who needs it, as the sentence shall name it.
 void RequireRendering(const std::string& who);
 
 }  // namespace touchdown::evaluation

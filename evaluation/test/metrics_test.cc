@@ -90,11 +90,26 @@ TEST(Metrics, NeesOfAnHonestErrorIsItsChiSquare) {
   estimation::PadState estimate;
   estimate.cov_p = Eigen::Matrix2d::Identity() * 0.04;
   estimate.p_WP = {0.2, -0.2, 0.0};
-  metrics.Estimate(estimate, {});
+  metrics.Estimate(estimate, {}, Eigen::Vector3d::Zero());
   TrialResult result;
   metrics.Fill(&result);
   EXPECT_NEAR(result.estimator->nees_position_mean, 2.0, 1e-12);
   EXPECT_NEAR(result.estimator->rmse_position_m, std::sqrt(0.08), 1e-12);
+}
+
+TEST(Metrics, ThePadIsComparedAsSeenFromTheVehicle) {
+  Metrics metrics;
+  estimation::PadState estimate, truth;
+  estimate.cov_p = Eigen::Matrix2d::Identity() * 0.01;
+  truth.p_WP = {5.0, 1.0, 0.3};
+  // The vehicle takes itself to be 3 m off, and so the pad; relative to it that errs by 0.1 m.
+  const Eigen::Vector3d own_error(3.0, 0.0, 0.5);
+  estimate.p_WP = {8.0, 1.1, 0.3};
+  metrics.Estimate(estimate, truth, own_error);
+  TrialResult result;
+  metrics.Fill(&result);
+  EXPECT_NEAR(result.estimator->rmse_position_m, 0.1, 1e-12);
+  EXPECT_NEAR(result.estimator->nees_position_mean, 1.0, 1e-12);
 }
 
 TEST(EquilibriumAxis, IsUprightInStillAir) {

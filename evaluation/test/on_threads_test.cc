@@ -2,7 +2,9 @@
 #include "touchdown/evaluation/on_threads.h"
 
 #include <atomic>
+#include <latch>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -33,6 +35,20 @@ TEST(RunOnThreads, WhatIsThrownComesOutAndEndsTheRun) {
   };
   EXPECT_THROW(RunOnThreads(1000, 2, run, [](int) {}), std::invalid_argument);
   EXPECT_LT(runs, 1000);
+}
+
+TEST(RunOnThreads, WhatProgressThrowsOnAnotherThreadComesOutToo) {
+  const auto caller = std::this_thread::get_id();
+  std::latch told(1);
+  const auto run = [&](int) {
+    if (std::this_thread::get_id() == caller) told.wait();
+  };
+  const auto progress = [&](int) {
+    if (std::this_thread::get_id() == caller) return;
+    told.count_down();
+    throw std::invalid_argument("progress");
+  };
+  EXPECT_THROW(RunOnThreads(1000, 2, run, progress), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/pad_study.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/pad_report.h"
-#include "touchdown/evaluation/pad_summary.h"
 #include "touchdown/evaluation/perception.h"
 
 namespace touchdown::evaluation {
@@ -38,11 +40,11 @@ PadLog DrivenLog(double turn_rate, bool tags, double duration = 8.0) {
     const estimation::PadState pad = pad_at(t);
     if (k % 5 == 0) log.arrivals.push_back({t, estimation::PadGpsFix{t, pad.p_WP.head<2>(), 0.01}});
     if (tags && k % 3 == 0) {
-      PadGlimpse glimpse;
-      glimpse.vehicle.t = t;
-      glimpse.vehicle.p_WB = pad.p_WP + Eigen::Vector3d(0.0, 0.0, 1.0);
-      glimpse.sighting = {t, {0.0, 0.0, -1.0}, pad.yaw, Eigen::Vector3d::Constant(0.005), 0.01, 4};
-      log.arrivals.push_back({t, glimpse});
+      BelievedSighting seen;
+      seen.believed.t = t;
+      seen.believed.p_WB = pad.p_WP + Eigen::Vector3d(0.0, 0.0, 1.0);
+      seen.sighting = {t, {0.0, 0.0, -1.0}, pad.yaw, Eigen::Vector3d::Constant(0.005), 0.01, 4};
+      log.arrivals.push_back({t, seen});
     }
     log.truth.push_back({t, true, pad});
   }
@@ -52,8 +54,9 @@ PadLog DrivenLog(double turn_rate, bool tags, double duration = 8.0) {
 std::vector<PadStudyRow> Replay(const PadLog& log, estimation::PadModel model) {
   estimation::PadFilterOptions options;
   options.pad_height = 0.5;
-  options.model = model;
-  return ReplayPadLog(log, options);
+  std::vector<PadStudyRow> rows = ReplayPadLog(log, options);
+  std::erase_if(rows, [model](const PadStudyRow& row) { return row.model != model; });
+  return rows;
 }
 
 TEST(PadStudy, ToldByTagsTheTurnIsForetoldAndThePaperGoesStraightOn) {
@@ -102,40 +105,42 @@ TEST(PadStudy, EndsAtContact) {
   EXPECT_EQ(rows[0].sums.samples, 100);
 }
 
-TEST(PadStudy, RatioAndIntervalAreOfTheFlights) {
+TEST(PadStudy, ASightingThatTheFilterRefusesIsNoTagSeen) {
+  PadLog log = DrivenLog(kTurnRate, false);
+  const PadLog seen = DrivenLog(kTurnRate, true);
+  for (const PadArrival& arrival : seen.arrivals) {
+    if (!std::holds_alternative<BelievedSighting>(arrival.measurement)) continue;
+    if (arrival.t < 4.0 || arrival.t > 4.05) continue;
+    PadArrival off = arrival;  // one image, 20 m beside the pad
+    std::get<BelievedSighting>(off.measurement).believed.p_WB.x() += 20.0;
+    log.arrivals.push_back(off);
+    break;
+  }
+  std::stable_sort(log.arrivals.begin(), log.arrivals.end(),
+                   [](const PadArrival& a, const PadArrival& b) { return a.t < b.t; });
+  for (const auto model : {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate}) {
+    const auto rows = Replay(log, model);
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_FALSE(rows[0].tags);
+  }
+}
+
+TEST(PadStudy, RefusesWhatItWouldOverwriteAndAFilterInAnotherFrame) {
   PadStudyOptions options;
-  options.scenarios = {"circle"};
-  options.sigmas = {0.01};
-  std::vector<PadStudyRow> rows;
-  for (int trial = 0; trial < 40; ++trial) {
-    for (const auto model : {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate}) {
-      PadStudyRow row;
-      row.trial = trial;
-      row.model = model;
-      row.course = PadCourse::kTurn;
-      row.sums.samples = 10;
-      row.sums.prediction2 = model == estimation::PadModel::kPaper ? 40.0 : 8.0 + 4.0 * (trial % 2);
-      rows.push_back(row);
+  options.scenarios = {"open"};
+  options.trials = 1;
+  const auto refusal = [&](const std::string& set) -> std::string {
+    options.overrides = {set};
+    try {
+      RunPadStudy(options, StandardRegistries(), [](int, int) { FAIL(); });
+    } catch (const BadInput& error) {
+      return error.what();
     }
-  }
-  const auto cell = Summarise(rows, {});
-  ASSERT_TRUE(cell);
-  EXPECT_EQ(cell->flights, 40);
-  EXPECT_DOUBLE_EQ(cell->paper.prediction_m, 2.0);
-  EXPECT_DOUBLE_EQ(cell->ratio, 0.5);
-  // The mean of 40 draws of 8 or 12 has a deviation of 0.32.
-  EXPECT_NEAR(cell->interval.lo, std::sqrt((10.0 - 1.96 * 0.316) / 40.0), 0.005);
-  EXPECT_NEAR(cell->interval.hi, std::sqrt((10.0 + 1.96 * 0.316) / 40.0), 0.005);
-  PadStudyCell straight;
-  straight.course = PadCourse::kStraight;
-  EXPECT_FALSE(Summarise(rows, straight));
-  bool asked = false;
-  for (const PadDemand& demand : PadDemands(options, rows)) {
-    if (demand.limit > 0.34 || demand.limit < 0.33) continue;
-    asked = true;
-    EXPECT_FALSE(demand.met()) << demand.text;  // 0.5 where a third is asked
-  }
-  EXPECT_TRUE(asked);
+    return "accepted";
+  };
+  EXPECT_NE(refusal("gps.sigma=1").find("--sigmas"), std::string::npos);
+  EXPECT_NE(refusal("gps={sigma: 0.3}").find("--sigmas"), std::string::npos);
+  EXPECT_NE(refusal("own_state=estimated").find("own_state"), std::string::npos);
 }
 
 TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnThreads) {
@@ -164,8 +169,8 @@ TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnThreads) {
       if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
         filter.AddGps(*fix);
       } else {
-        const PadGlimpse& glimpse = std::get<PadGlimpse>(arrival.measurement);
-        filter.AddSighting(glimpse.sighting, glimpse.vehicle);
+        const auto& seen = std::get<BelievedSighting>(arrival.measurement);
+        filter.AddSighting(seen.sighting, seen.believed);
       }
     }
     if (!sample.pad_known) continue;

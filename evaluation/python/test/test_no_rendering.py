@@ -11,6 +11,7 @@ import pytest
     [
         ("land", "open", "--set", "sensing=rendered", "--record", "out"),
         ("sweep", "open", "--trials", "2", "--set", "sensing=rendered", "--db", "out"),
+        ("study", "pad", "--trials", "1", "--set", "sensing=rendered", "--db", "out"),
         ("study", "tags", "--poses", "2", "--db", "out"),
     ],
 )

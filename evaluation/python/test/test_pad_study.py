@@ -35,6 +35,8 @@ def test_bad_input_is_one_sentence_and_writes_nothing(run, tmp_path):
         ("--scenarios", "nowhere"),
         ("--sigmas", "nan"),
         ("--set", "gps.rate=-1"),
+        ("--set", "gps.sigma=1"),
+        ("--set", "own_state=estimated"),
         ("--db", str(tmp_path / "missing" / "s.db")),
     ):
         done = run("study", "pad", "--trials", "1", *arguments)
