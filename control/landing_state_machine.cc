@@ -101,7 +101,9 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
   if (s.committed) {  // blind last part: no tags needed, but it must end
-    if (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma) {
+    // Feet that touch are not pulled off again: the contact is about to be confirmed.
+    const bool touches = s.contact_since != kNever;
+    if (!touches && (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma)) {
       return {MissionMode::kGoAround, TransitionReason::kTagsLost};
     }
     if (LastedLonger(s.committed_since, s.t, p.commit_timeout)) {

@@ -28,7 +28,7 @@
 //
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance, the end of the bridge, no_contact, own_state_lost, invalid_input
+// error beyond commit_abort_distance, the end of the bridge before the feet touch, no_contact, own_state_lost, invalid_input
 // or emergency. A pad counts as converged only while the vehicle's own state is usable. Dead reckoning
 // closes the gate for own_patience: a short outage of position and velocity is waited out.
 // clang-format on

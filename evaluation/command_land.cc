@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/map_file.h"
@@ -84,6 +85,9 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
 }
 
 void CheckOutputs(const LandArguments& arguments) {
+  if (!arguments.record.empty() && arguments.record == arguments.plot) {
+    throw BadInput(fmt::format("--record and --plot are the same file, {}.", arguments.record));
+  }
   if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);

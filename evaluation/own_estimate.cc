@@ -56,18 +56,8 @@ estimation::OwnStatus OwnEstimate::status() const {
 }
 
 double OwnEstimate::PositionSigma() const {
-  return source_ ? LargerSigma(estimation::kPositionError) : 0.0;
-}
-
-double OwnEstimate::DriftSigma() const {
-  return source_ && status() != estimation::OwnStatus::kGood
-             ? LargerSigma(estimation::kVelocityError)
-             : 0.0;
-}
-
-/// Of the horizontal part of the error states from `first` on.
-double OwnEstimate::LargerSigma(int first) const {
-  const Eigen::Matrix2d cov = source_->filter().belief().cov.block<2, 2>(first, first);
+  if (!source_) return 0.0;
+  const Eigen::Matrix2d cov = source_->filter().belief().cov.topLeftCorner<2, 2>();
   // Larger eigenvalue of a symmetric 2x2 matrix.
   return std::sqrt(0.5 * cov.trace() + std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1)));
 }

@@ -41,14 +41,7 @@ class OwnEstimate {
   /// Larger horizontal 1 sigma of the position in W [m]; 0 for the truth.
   double PositionSigma() const;
 
-  /// By how much a place that was measured from the vehicle moves in the estimate's frame, 1 sigma [m/s]: the
-  /// larger horizontal doubt of the velocity while that is dead reckoning; 0 else, when GPS or odometry hold
-  /// the frame.
-  double DriftSigma() const;
-
  private:
-  double LargerSigma(int first) const;
-
   std::optional<sim::OwnStateSource> source_;
   estimation::VehicleState now_;
 };

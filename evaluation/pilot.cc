@@ -96,15 +96,9 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
   }
   inputs.tag_age = filter.TagAge(t);
-  // Of the pad beside the vehicle: since the last sighting dead reckoning has moved the frame.
-  const auto sigma_after = [&](double ahead) {
-    const double drift = own.DriftSigma();
-    const double moved = drift > 0.0 ? drift * (inputs.tag_age + ahead) : 0.0;
-    return std::hypot(filter.PositionSigma(t + ahead), moved);
-  };
-  inputs.pad_sigma = sigma_after(0.0);
+  inputs.pad_sigma = filter.PositionSigma(t);
   inputs.contact_sigma =
-      sigma_after(control::TimeToContact(mission_state_, inputs.height, parameters_));
+      filter.PositionSigma(t + control::TimeToContact(mission_state_, inputs.height, parameters_));
   const estimation::OwnStatus status = own.status();
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;

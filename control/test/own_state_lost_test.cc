@@ -110,14 +110,24 @@ TEST_F(OwnStateLost, NoBridgeBeginsOnDeadReckoning) {
   }
 }
 
-// The pilot adds what dead reckoning may have moved since the last sighting: the bridge ends sooner.
-TEST_F(OwnStateLost, ACommittedLandingIsGivenUpWhereTheFrameMayHaveMovedTooFar) {
-  DescendTo(0.3);
-  ASSERT_TRUE(out_.committed);
-  in_.own_fresh = false;
-  in_.tag_age = 0.8;
-  in_.pad_sigma = parameters_.bridge_sigma + 0.01;
-  EXPECT_EQ(RunUntil(MissionMode::kGoAround), TransitionReason::kTagsLost);
+TEST_F(OwnStateLost, ACommittedLandingEndsWhereThePadMayBeTooFarOffUnlessItTouches) {
+  for (const bool touching : {false, true}) {
+    state_ = {};
+    in_ = {};
+    in_.pad_available = in_.pad_converged = in_.has_plan = true;
+    in_.horizontal_distance = 0.1;
+    in_.height = 1.5;
+    in_.pad_sigma = 0.02;
+    in_.tag_age = 0.05;
+    DescendTo(0.02);
+    ASSERT_TRUE(out_.committed);
+    in_.foot_force = touching ? 2.0 * parameters_.contact_force : 0.0;
+    Tick();
+    in_.tag_age = 0.8;
+    in_.pad_sigma = parameters_.bridge_sigma + 0.01;
+    Tick();
+    EXPECT_EQ(out_.mode, touching ? MissionMode::kLanding : MissionMode::kGoAround);
+  }
 }
 
 TEST_F(OwnStateLost, AStateThatComesAndGoesDoesNotHideALostPad) {
