@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown compare: solver backends on the same random landing problems.
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
@@ -17,6 +15,7 @@
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/sim/forest.h"
 
@@ -61,23 +60,6 @@ std::vector<std::string> SplitNames(const std::vector<std::string>& lists) {
   }
   return names;
 }
-
-// Reports about every two seconds.
-class Progress {
- public:
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{} of {} problems, {:.0f} s left", done, all, elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-};
 
 /// "terms.reach.weight=3" becomes a setting of the problem.
 planning::TermSettings ParseTermSetting(const std::string& text,
@@ -137,7 +119,8 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   machine.pinned = arguments.pin;
   if (arguments.pin) PinToCpu(*arguments.pin);
   machine.load_before = LoadAverage();
-  const CompareResult result = RunCompare(options, registries.backends, Progress());
+  const CompareResult result =
+      RunCompare(options, registries.backends, Progress({.things = "problems"}));
   machine.load_after = LoadAverage();
   if (arguments.json) {
     std::cout << CompareJson(options, result, machine).dump(2) << std::endl;

@@ -3,12 +3,10 @@
 // random forests, and how faithful its baseline is. `tags` and `pad`: see command_study_tags.cc and
 // command_study_pad.cc.
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
@@ -18,6 +16,7 @@
 #include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/forest_flight_report.h"
 #include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/replan_report.h"
 #include "touchdown/evaluation/replan_study.h"
@@ -41,27 +40,6 @@ struct StudyArguments {
   bool allow_debug = false;
 };
 
-class Progress {
- public:
-  explicit Progress(std::string what, const char* of = "scenes")
-      : what_(std::move(what)), of_(of) {}
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{}: {} of {} {}, {:.0f} s left", what_, done, all, of_,
-                 elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string what_;
-  const char* of_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-};
-
 void RunSafety(const StudyArguments& arguments, const Registries& registries,
                std::vector<ReplanStudyPart>* parts) {
   for (const std::string& kind : arguments.kinds) {
@@ -69,7 +47,8 @@ void RunSafety(const StudyArguments& arguments, const Registries& registries,
     part.part = "safety";
     part.options = arguments.options;
     part.options.scenes.kind = SceneKindNamed(kind);
-    part.rows = RunReplanStudy(part.options, registries.backends, Progress("kind " + kind));
+    part.rows = RunReplanStudy(part.options, registries.backends,
+                               Progress({.things = "scenes", .of = "kind " + kind}));
     parts->push_back(std::move(part));
   }
 }
@@ -84,8 +63,9 @@ void RunGrowth(const StudyArguments& arguments, const Registries& registries,
     part.varied = point.varied;
     part.options = point.options;
     const double value = VariedValue(point.varied, point.options.scenes);
-    part.rows = RunReplanStudy(part.options, registries.backends,
-                               Progress(fmt::format("{} = {:.4g}", point.varied, value)));
+    part.rows = RunReplanStudy(
+        part.options, registries.backends,
+        Progress({.things = "scenes", .of = fmt::format("{} = {:.4g}", point.varied, value)}));
     parts->push_back(std::move(part));
   }
 }
@@ -97,7 +77,7 @@ int RunFidelity(const StudyArguments& arguments) {
   for (const std::string& name : arguments.kinds) {
     const SceneKind& kind = SceneKindNamed(name);
     const auto results = RunEgoScenes(kind, arguments.options.count, arguments.options.scenes.seed,
-                                      Progress("kind " + name));
+                                      Progress({.things = "scenes", .of = "kind " + name}));
     const auto compared = CompareWithUpstream(kind, results, path);
     rows.insert(rows.end(), compared.begin(), compared.end());
   }
@@ -123,7 +103,7 @@ int RunFlights(const StudyArguments& arguments, const Registries& registries) {
       part.options.replanner = arguments.options.replanner;
       part.options.replanner.problem.terms = registries.terms;
       part.options.seed = arguments.options.scenes.seed;
-      Progress progress(fmt::format("kind {}, {}", kind, planner), "flights");
+      Progress progress({.things = "flights", .of = fmt::format("kind {}, {}", kind, planner)});
       for (int index = 0; index < arguments.flights; ++index) {
         part.flights.push_back(FlyThroughForest(part.options, registries.backends, index));
         const bool reached = part.flights.back().outcome == FlightOutcome::kReached;

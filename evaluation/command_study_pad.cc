@@ -3,18 +3,17 @@
 #include "touchdown/evaluation/command_study_pad.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/pad_report.h"
 #include "touchdown/evaluation/pad_summary.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/report_program.h"
 
 namespace touchdown::evaluation {
@@ -25,22 +24,6 @@ struct PadStudyArguments {
   std::string db;
   std::string picture;
   bool json = false;
-};
-
-class Progress {
- public:
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{} of {} flights, {:.0f} s left", done, all, elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
 };
 
 // The picture is drawn from a table; without --db that one is not kept.
@@ -55,8 +38,8 @@ void Write(const PadStudyArguments& arguments, const PadStudy& study) {
 
 int Run(const PadStudyArguments& arguments, const Registries& registries) {
   CheckOutputs(arguments.db, arguments.picture);
-  Progress progress;
-  const PadStudy study = RunPadStudy(arguments.options, registries, std::ref(progress));
+  const PadStudy study =
+      RunPadStudy(arguments.options, registries, Progress({.things = "flights"}));
   if (arguments.json) {
     std::cout << PadStudyJson(arguments.options, study).dump(2) << std::endl;
   } else {

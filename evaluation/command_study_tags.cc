@@ -2,15 +2,14 @@
 // touchdown study tags: how well the pad is found in rendered images.
 #include "touchdown/evaluation/command_study_tags.h"
 
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/tag_fit.h"
 #include "touchdown/evaluation/tag_picture.h"
@@ -30,25 +29,6 @@ struct TagStudyArguments {
   std::string db;
   std::string frames;
   bool json = false;
-};
-
-class Progress {
- public:
-  explicit Progress(std::string what) : what_(std::move(what)) {}
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{}: {} of {} views, {:.0f} s left", what_, done, all,
-                 elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string what_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
 };
 
 void CheckFrames(const std::string& directory) {
@@ -86,7 +66,7 @@ int Run(const TagStudyArguments& arguments) {
                           camera);
         };
       }
-      part.rows = RunTagStudy(part.options, Progress(name), save);
+      part.rows = RunTagStudy(part.options, Progress({.things = "views", .of = name}), save);
       fulfilled = fulfilled && FulfilsDemand(part.rows);
       parts.push_back(std::move(part));
     }

@@ -136,7 +136,7 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
 
 std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
                                const Registries& registries,
-                               const std::function<void(int done)>& progress) {
+                               const std::function<void(int done, int all)>& progress) {
   std::vector<SweepRow> rows(trials.size());
   RunOnThreads(
       static_cast<int>(trials.size()), jobs,

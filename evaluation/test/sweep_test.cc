@@ -79,7 +79,7 @@ TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
   SweepOptions options = OpenSweep(3);
   std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
   trials[1].scenario.solver.backend = "none";
-  const std::vector<SweepRow> rows = RunSweep(trials, 2, StandardRegistries(), [](int) {});
+  const std::vector<SweepRow> rows = RunSweep(trials, 2, StandardRegistries(), [](int, int) {});
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[1].result.outcome, Outcome::kError);
   EXPECT_FALSE(rows[1].result.detail.empty());
@@ -96,7 +96,7 @@ TEST(RunSweep, OneAndTwoThreadsGiveTheSameRows) {
   const std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
   const auto rows = [&](int jobs) {
     nlohmann::ordered_json json =
-        SweepJson(options, RunSweep(trials, jobs, StandardRegistries(), [](int) {}));
+        SweepJson(options, RunSweep(trials, jobs, StandardRegistries(), [](int, int) {}));
     json.erase("wall_clock");
     return json.dump();
   };
