@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/compare.h"
@@ -86,15 +85,6 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   return settings;
 }
 
-// The picture is drawn from a table; without --db that one is not kept.
-void Draw(const CompareArguments& arguments, const CompareResult& result,
-          const MachineState& machine) {
-  if (!arguments.db.empty()) return DrawComparison(arguments.db, arguments.picture);
-  const AtomicFile unkept(arguments.picture + ".db");
-  WriteCompareTable(unkept.working_path(), arguments.options, result, machine);
-  DrawComparison(unkept.working_path(), arguments.picture);
-}
-
 int Compare(CompareArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CompareOptions& options = arguments.options;
@@ -127,8 +117,13 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   } else {
     std::cout << CompareText(options, result) << std::flush;
   }
-  if (!arguments.db.empty()) WriteCompareTable(arguments.db, options, result, machine);
-  if (!arguments.picture.empty()) Draw(arguments, result, machine);
+  const auto write = [&](const std::string& path) {
+    WriteCompareTable(path, options, result, machine);
+  };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) {
+    DrawFrom(arguments.db, arguments.picture, write, DrawComparison);
+  }
   return kDone;
 }
 

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
@@ -93,15 +92,6 @@ void CheckOutputs(const LandArguments& arguments) {
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
-// The picture is drawn from a record; without --record that one is not kept.
-void Draw(const LandArguments& arguments, const Scenario& scenario, const TrialResult& result,
-          const TrialRecord& record) {
-  if (!arguments.record.empty()) return DrawLanding(arguments.record, arguments.plot);
-  const AtomicFile unkept(arguments.plot + ".record");
-  WriteRecord(unkept.working_path(), scenario, result, record);
-  DrawLanding(unkept.working_path(), arguments.plot);
-}
-
 // The result is printed first: a file or picture that fails does not take it along.
 int Land(const LandArguments& arguments, const Registries& registries) {
   const Scenario scenario = arguments.scenario.Load(registries);
@@ -117,9 +107,10 @@ int Land(const LandArguments& arguments, const Registries& registries) {
   } else {
     std::cout << Summary(scenario, result) << std::flush;
   }
-  if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
+  const auto write = [&](const std::string& path) { WriteRecord(path, scenario, result, record); };
+  if (!arguments.record.empty()) write(arguments.record);
   if (map) WriteMapFile(arguments.save_map, &*map);
-  if (!arguments.plot.empty()) Draw(arguments, scenario, result, record);
+  if (!arguments.plot.empty()) DrawFrom(arguments.record, arguments.plot, write, DrawLanding);
   return result.succeeded() ? kDone : kFellShort;
 }
 

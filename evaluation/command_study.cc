@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/command_study_pad.h"
 #include "touchdown/evaluation/command_study_tags.h"
@@ -154,15 +153,6 @@ bool Asked(const StudyArguments& arguments, const char* part) {
   return std::find(parts.begin(), parts.end(), part) != parts.end();
 }
 
-// The picture is drawn from a table; without --db that one is not kept.
-void Draw(const StudyArguments& arguments, const std::vector<ReplanStudyPart>& parts,
-          const MachineState& machine) {
-  if (!arguments.db.empty()) return DrawGrowth(arguments.db, arguments.picture);
-  const AtomicFile unkept(arguments.picture + ".db");
-  WriteReplanStudy(unkept.working_path(), parts, machine);
-  DrawGrowth(unkept.working_path(), arguments.picture);
-}
-
 /// No accepted plan that was looked at collides or is beyond a limit.
 bool AllSafe(const std::vector<ReplanStudyPart>& parts) {
   return std::all_of(parts.begin(), parts.end(), [](const ReplanStudyPart& part) {
@@ -196,8 +186,9 @@ int Study(StudyArguments arguments, const Registries& registries) {
   } else {
     std::cout << ReplanStudyText(parts) << std::flush;
   }
-  if (!arguments.db.empty()) WriteReplanStudy(arguments.db, parts, machine);
-  if (!arguments.picture.empty()) Draw(arguments, parts, machine);
+  const auto write = [&](const std::string& path) { WriteReplanStudy(path, parts, machine); };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawGrowth);
   return AllSafe(parts) ? kDone : kFellShort;
 }
 

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/pad_report.h"
 #include "touchdown/evaluation/pad_summary.h"
@@ -26,16 +25,6 @@ struct PadStudyArguments {
   bool json = false;
 };
 
-// The picture is drawn from a table; without --db that one is not kept.
-void Write(const PadStudyArguments& arguments, const PadStudy& study) {
-  if (!arguments.db.empty()) WritePadStudy(arguments.db, arguments.options, study);
-  if (arguments.picture.empty()) return;
-  if (!arguments.db.empty()) return DrawPadStudy(arguments.db, arguments.picture);
-  const AtomicFile unkept(arguments.picture + ".table");
-  WritePadStudy(unkept.working_path(), arguments.options, study);
-  DrawPadStudy(unkept.working_path(), arguments.picture);
-}
-
 int Run(const PadStudyArguments& arguments, const Registries& registries) {
   CheckOutputs(arguments.db, arguments.picture);
   const PadStudy study =
@@ -45,7 +34,11 @@ int Run(const PadStudyArguments& arguments, const Registries& registries) {
   } else {
     std::cout << PadStudyText(arguments.options, study) << std::flush;
   }
-  Write(arguments, study);
+  const auto write = [&](const std::string& path) {
+    WritePadStudy(path, arguments.options, study);
+  };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawPadStudy);
   const std::vector<PadDemand> demands = PadDemands(arguments.options, study);
   const bool met = std::all_of(demands.begin(), demands.end(),
                                [](const PadDemand& demand) { return demand.met(); });
