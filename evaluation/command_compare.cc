@@ -11,6 +11,7 @@
 #include "touchdown/evaluation/compare.h"
 #include "touchdown/evaluation/compare_report.h"
 #include "touchdown/evaluation/compare_table.h"
+#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/planner_options.h"
@@ -47,19 +48,6 @@ std::vector<std::string> ComparedForests() {
   return kinds;
 }
 
-// The parser's own delimiter drops empty names.
-std::vector<std::string> SplitNames(const std::vector<std::string>& lists) {
-  std::vector<std::string> names;
-  for (const std::string& list : lists) {
-    for (std::size_t from = 0; from <= list.size();) {
-      const std::size_t to = std::min(list.find(',', from), list.size());
-      names.push_back(list.substr(from, to - from));
-      from = to + 1;
-    }
-  }
-  return names;
-}
-
 /// "terms.reach.weight=3" becomes a setting of the problem.
 planning::TermSettings ParseTermSetting(const std::string& text,
                                         const planning::TermRegistry& terms) {
@@ -89,9 +77,6 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CompareOptions& options = arguments.options;
   std::sort(options.points.begin(), options.points.end());
-  options.points.erase(std::unique(options.points.begin(), options.points.end()),
-                       options.points.end());
-  options.backends = SplitNames(options.backends);
   options.cases.warm = arguments.start == "warm";
   planning::LandingProblemOptions& problem = options.cases.problem;
   problem.terms = registries.terms;
@@ -141,11 +126,8 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
   command->add_option("--problems", options.problems, "Number of problems of each size")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--points", options.points, "Control points: one size or several")
-      ->delimiter(',')
-      ->type_name("N,N,...")
-      ->check(CLI::Range(9, 1000))
-      ->capture_default_str();
+  AddListOption(*command, "--points", &options.points, "Control points: one size or several",
+                "N,N,...", CLI::Range(9, 1000));
   command
       ->add_option("--start", arguments->start, "From a Hermite guess, or shifted from 0.1 s ago")
       ->check(one_of({"cold", "warm"}))
@@ -159,8 +141,9 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
   command->add_option("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
       ->check(one_of({"eliminated", "explicit"}))
       ->capture_default_str();
-  command->add_option("--backends", options.backends, "Which ones; default: all that can solve it")
-      ->type_name("NAME,NAME,...");
+  AddListOption(*command, "--backends", &options.backends,
+                "Which ones; default: all that can solve it", "NAME,NAME,...",
+                CLI::IsMember(BackendNames(registries)));
   command
       ->add_option(
           "--set", arguments->set,

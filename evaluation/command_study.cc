@@ -14,6 +14,7 @@
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/forest_flight_report.h"
+#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/replan_growth.h"
@@ -148,9 +149,28 @@ void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const 
   }
 }
 
-bool Asked(const StudyArguments& arguments, const char* part) {
-  const std::vector<std::string>& parts = arguments.parts;
-  return std::find(parts.begin(), parts.end(), part) != parts.end();
+bool Named(const std::vector<std::string>& list, const char* name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// Options that change nothing beside the others are refused. @throws BadInput
+void CheckEffects(const StudyArguments& arguments, const CLI::App& command) {
+  const bool flights = Named(arguments.parts, "flights");
+  for (const char* option : {"--flights", "--planners"}) {
+    if (command.count(option) == 0 || flights) continue;
+    throw BadInput(fmt::format("{} goes with --parts flights.", option));
+  }
+  for (const char* option : {"--backend", "--guides"}) {
+    if (command.count(option) == 0 || !flights || Named(arguments.planners, "landing")) continue;
+    throw BadInput(fmt::format("{} is of the planner landing: name it in --planners.", option));
+  }
+  const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
+  if (only_growth && command.count("--kinds") > 0 && arguments.kinds.size() != 1) {
+    throw BadInput("--kinds: the part growth is of one kind.");
+  }
+  for (const LonePart& part : LoneParts()) {
+    if (Named(arguments.parts, part.name)) CheckLonePart(part, arguments, command);
+  }
 }
 
 /// No accepted plan that was looked at collides or is beyond a limit.
@@ -164,7 +184,7 @@ bool AllSafe(const std::vector<ReplanStudyPart>& parts) {
 int Study(StudyArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CheckOutputs(arguments.db, arguments.picture);
-  if (!arguments.picture.empty() && !Asked(arguments, "growth")) {
+  if (!arguments.picture.empty() && !Named(arguments.parts, "growth")) {
     throw BadInput("--picture shows the part growth: name it in --parts.");
   }
   planning::ReplannerOptions& replanner = arguments.options.replanner;
@@ -178,8 +198,8 @@ int Study(StudyArguments arguments, const Registries& registries) {
   if (arguments.pin) PinToCpu(*arguments.pin);
   machine.load_before = LoadAverage();
   std::vector<ReplanStudyPart> parts;
-  if (Asked(arguments, "safety")) RunSafety(arguments, registries, &parts);
-  if (Asked(arguments, "growth")) RunGrowth(arguments, registries, &parts);
+  if (Named(arguments.parts, "safety")) RunSafety(arguments, registries, &parts);
+  if (Named(arguments.parts, "growth")) RunGrowth(arguments, registries, &parts);
   machine.load_after = LoadAverage();
   if (arguments.json) {
     std::cout << ReplanStudyJson(parts, machine).dump(2) << std::endl;
@@ -203,32 +223,21 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       "replan", "Latency, success and safety of replanning steps in random forests");
   const auto arguments = std::make_shared<StudyArguments>();
   ReplanStudyOptions& options = arguments->options;
-  command
-      ->add_option(
-          "--parts", arguments->parts,
-          "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
-          "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
-          "stand alone")
-      ->delimiter(',')
-      ->type_name("safety,growth,...")
-      ->check(CLI::IsMember({"safety", "growth", "flights", "fidelity"}))
-      ->capture_default_str();
+  AddListOption(*command, "--parts", &arguments->parts,
+                "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
+                "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
+                "stand alone",
+                "safety,growth,...", CLI::IsMember({"safety", "growth", "flights", "fidelity"}));
   command->add_option("--scenes", options.count, "Scenes of each kind")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--kinds", arguments->kinds, "Kinds of scenes")
-      ->delimiter(',')
-      ->type_name("A,B,...")
-      ->check(CLI::IsMember({"A", "B", "C", "D"}))
-      ->capture_default_str();
+  AddListOption(*command, "--kinds", &arguments->kinds, "Kinds of scenes", "A,B,...",
+                CLI::IsMember({"A", "B", "C", "D"}));
   command->add_option("--flights", arguments->flights, "Flights of each kind and planner")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--planners", arguments->planners, "Whose flights")
-      ->delimiter(',')
-      ->type_name("landing,ego")
-      ->check(CLI::IsMember({"landing", "ego"}))
-      ->capture_default_str();
+  AddListOption(*command, "--planners", &arguments->planners, "Whose flights", "landing,ego",
+                CLI::IsMember({"landing", "ego"}));
   command->add_option("--backend", options.replanner.backend, "Solver backend")
       ->check(CLI::IsMember(BackendNames(registries)))
       ->capture_default_str();
@@ -260,19 +269,9 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
   command->callback([arguments, &registries, run, command] {
     *run = [arguments, &registries, command] {
-      for (const char* option : {"--flights", "--planners"}) {
-        if (command->count(option) == 0 || Asked(*arguments, "flights")) continue;
-        throw BadInput(fmt::format("{} goes with --parts flights.", option));
-      }
-      const bool only_growth = Asked(*arguments, "growth") && !Asked(*arguments, "safety");
-      if (only_growth && command->count("--kinds") > 0 && arguments->kinds.size() != 1) {
-        throw BadInput("--kinds: the part growth is of one kind.");
-      }
-      for (const LonePart& part : LoneParts()) {
-        if (Asked(*arguments, part.name)) CheckLonePart(part, *arguments, *command);
-      }
-      if (Asked(*arguments, "fidelity")) return RunFidelity(*arguments);
-      if (Asked(*arguments, "flights")) return RunFlights(*arguments, registries);
+      CheckEffects(*arguments, *command);
+      if (Named(arguments->parts, "fidelity")) return RunFidelity(*arguments);
+      if (Named(arguments->parts, "flights")) return RunFlights(*arguments, registries);
       return Study(*arguments, registries);
     };
   });

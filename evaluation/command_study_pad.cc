@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/pad_report.h"
 #include "touchdown/evaluation/pad_summary.h"
 #include "touchdown/evaluation/progress.h"
@@ -53,15 +54,9 @@ void AddPadStudyCommand(CLI::App& study, const Registries& registries, CommandRu
   const auto arguments = std::make_shared<PadStudyArguments>();
   PadStudyOptions& options = arguments->options;
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command->add_option("--scenarios", options.scenarios, "Names or files")
-      ->delimiter(',')
-      ->type_name("NAME,...")
-      ->capture_default_str();
-  command->add_option("--sigmas", options.sigmas, "Of the pad's GPS [m]")
-      ->delimiter(',')
-      ->type_name("0.01,0.5,...")
-      ->check(FiniteRange(0.0, 100.0))
-      ->capture_default_str();
+  AddListOption(*command, "--scenarios", &options.scenarios, "Names or files", "NAME,...", {});
+  AddListOption(*command, "--sigmas", &options.sigmas, "Of the pad's GPS [m]", "0.01,0.5,...",
+                FiniteRange(0.0, 100.0));
   command->add_option("--trials", options.trials, "Flights of each scenario and sigma")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

@@ -38,6 +38,7 @@ TEST(Variation, RefusesNonsense) {
   EXPECT_THROW(Variation::Parse("seed=1,2"), BadInput);
   EXPECT_THROW(Variation::Parse("pad.speed=2..1"), BadInput);
   EXPECT_THROW(Variation::Parse("pad.speed=a..1"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=0.2,0.4,0.2"), BadInput);
 }
 
 TEST(PlanSweep, SeedsAreDistinctAndRepeat) {
@@ -57,6 +58,17 @@ TEST(PlanSweep, ListsAreTakenInAllCombinations) {
     seen.insert(trial.varied[0].second + trial.varied[1].second);
   }
   EXPECT_EQ(seen.size(), 6U);
+}
+
+TEST(PlanSweep, AKeyIsVariedOnceAndNotSetBeside) {
+  SweepOptions options = OpenSweep(2);
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  options.overrides.push_back("pad.speed=1");
+  EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
+  options.overrides.pop_back();
+  EXPECT_NO_THROW(PlanSweep(options, kRegistries));
+  options.variations.push_back(Variation::Parse("pad.speed=0.2,0.4"));
+  EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
 }
 
 TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
