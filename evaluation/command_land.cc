@@ -121,11 +121,15 @@ void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run
   const auto arguments = std::make_shared<LandArguments>();
   arguments->scenario.AddTo(*command, false);
   command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=")->type_name("S");
-  AddFileOption(*command, "--record", &arguments->record, "Write the record, an SQLite file",
-                "F.db");
-  AddFileOption(*command, "--plot", &arguments->plot, "Draw plan and side view", "F.png");
-  AddFileOption(*command, "--save-map", &arguments->save_map,
-                "Write what was seen of the world, an OctoMap file; see map.prior", "F.bt|F.ot");
+  AddFileOption(*command, "--record", &arguments->record,
+                "Write the record, an SQLite file; an older one is overwritten", "F.db");
+  AddFileOption(*command, "--plot", &arguments->plot,
+                "Draw plan and side view; an older file is overwritten", "F.png");
+  AddFileOption(
+      *command, "--save-map", &arguments->save_map,
+      "Write what was seen of the world, an OctoMap file; an older file is overwritten; see "
+      "map.prior",
+      "F.bt|F.ot");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Land(*arguments, registries); };
