@@ -17,7 +17,7 @@
 #include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/planning/plan_attempt.h"
+#include "touchdown/planning/prepared_problems.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/vehicle_file.h"
 

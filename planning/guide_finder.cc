@@ -22,6 +22,7 @@ constexpr int kDetourExpansions = 1000;
 /// A way that is found only after so many cells is a long one.
 constexpr int kOtherWayExpansions = 1000;
 constexpr int kOtherWayAtRest = 12000;
+constexpr int kLocalExpansions = 3000;
 
 void SampleGuide(const UniformBspline& curve, double from, double to, GuidePath* guide) {
   guide->clear();
@@ -68,8 +69,8 @@ void GuideFinder::EndBesideKept(const FreeSpace& space, const UniformBspline& cu
   }
 }
 
-SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run,
-                               GuidePath* guide) {
+SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& curve, bool local,
+                               BlockedRun* run, GuidePath* guide) {
   EndInWindow(curve, *space.map, run);
   if (Keeps(*run)) {
     // The same share of the way that is left, wherever the arrival is now.
@@ -78,7 +79,9 @@ SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& cur
     return SearchStatus::kFound;
   }
   const int other_way = at_rest_ ? kOtherWayAtRest : kOtherWayExpansions;
-  const int budget = barriers_.empty() ? expansions_left_ : std::min(expansions_left_, other_way);
+  int budget = expansions_left_;
+  if (local) budget = std::min(budget, kLocalExpansions);
+  if (!barriers_.empty()) budget = std::min(budget, other_way);
   const SearchStatus status =
       search_.Search(space, curve.Evaluate(run->t_in).p_WB, curve.Evaluate(run->t_out).p_WB, budget,
                      guide, barriers_);

@@ -48,8 +48,9 @@ class GuideFinder {
   /// A guide past what blocks `curve` in `run`, at least one point. A run that leaves the map's window
   /// before it does ends there: the search knows no more; one that begins out of it is led along the curve,
   /// between floor and ceiling. kFound and kEndsOutside leave a guide.
-  SearchStatus Find(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run,
-                    GuidePath* guide);
+  /// @param local the way is looked for nearby only.
+  SearchStatus Find(const FreeSpace& space, const UniformBspline& curve, bool local,
+                    BlockedRun* run, GuidePath* guide);
 
  private:
   GridSearch search_;

@@ -11,23 +11,14 @@
 #include <limits>
 #include <utility>
 
+#include "touchdown/planning/pad_strip.h"
 #include "touchdown/planning/stage_timer.h"
 
 namespace touchdown::planning {
 
 namespace {
 
-// Not the last digits of an optimum make a plan, but its certificate: where the caller does not say
-// otherwise, solves end this near to it, as shares of the cost.
-constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 5e-3},
-                                                           {"function_tolerance", 1e-5}};
-constexpr double kLongestSegment = 0.75;  // at full speed [m]
-constexpr double kSlowestSegment = 0.30;  // [s]
-constexpr double kFine = 0.67;            // of these, where an attempt failed before
-constexpr double kNear = 1.5;             // segments until an obstacle
-constexpr int kFewestSegments = 12;
-constexpr int kMostSegments = PlanAttempt::kMostControlPoints - 3;
-constexpr int kSegmentStep = 4;         // keeps the number of prepared problems small
+constexpr double kNear = 1.5;           // segments until an obstacle
 constexpr double kPressure = 2.5;       // weight of the pairs grows by this every round
 constexpr double kProgress = 0.7;       // of the blocked time that a round leaves at most
 constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded grows by this, ...
@@ -44,38 +35,27 @@ double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
                   certificate.acceleration_bound / limits.acceleration);
 }
 
+double LengthOf(const UniformBspline& curve, double from, double to) {
+  constexpr int kChords = 24;
+  double length = 0.0;
+  Eigen::Vector3d last = curve.Evaluate(from).p_WB;
+  for (int i = 1; i <= kChords; ++i) {
+    const Eigen::Vector3d p = curve.Evaluate(from + i * (to - from) / kChords).p_WB;
+    length += (p - last).norm();
+    last = p;
+  }
+  return length;
+}
+
 }  // namespace
-
-int SegmentsFor(double duration, const Limits& limits, bool fine) {
-  const double coarse = std::min(kSlowestSegment, kLongestSegment / limits.speed);
-  const double interval = fine ? kFine * coarse : coarse;
-  const int wanted = static_cast<int>(std::ceil(duration / interval));
-  const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
-  return std::clamp(rounded, kFewestSegments, kMostSegments);
-}
-
-LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival) {
-  LandingProblemOptions problem = options.problem;
-  problem.arrival = arrival;
-  problem.limits = options.limits;
-  problem.min_duration = options.min_duration;
-  problem.max_duration = options.max_duration;
-  return problem;
-}
 
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options),
-      backends_(backends),
+      problems_(options, backends),
       finder_(options.vertical_cost),
       binder_(options.problem) {
   for (const TermEntry& entry : options.problem.terms) {
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
-  }
-  // All of it now: refusals surface here, and nothing is built in the middle of a flight. A free
-  // arrival falls back to a fixed one.
-  for (int segments = kFewestSegments; segments <= kMostSegments; segments += kSegmentStep) {
-    PrepareProblem(segments, ArrivalMode::kFixed);
-    if (options.arrival == ArrivalMode::kFree) PrepareProblem(segments, ArrivalMode::kFree);
   }
   // Room for all that usually comes.
   for (GuidePath* guide : {&first_guide_, &guide_}) guide->reserve(1024);
@@ -84,27 +64,6 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
   runs_.reserve(64);
   for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
     curve->Reserve(kMostControlPoints);
-  }
-}
-
-void PlanAttempt::PrepareProblem(int segments, ArrivalMode arrival) {
-  Prepared& prepared = prepared_[{segments, arrival}];
-  prepared.problem = std::make_unique<LandingProblem>(segments, ProblemOptions(options_, arrival));
-  prepared.backend = solvers::MakeBackend(backends_, options_.backend);
-  for (const solvers::OptionSpec& option : prepared.backend->options().specs()) {
-    for (const auto& [name, value] : kCloseEnough) {
-      if (option.name == name) prepared.backend->options().Set(name, value);
-    }
-  }
-  for (const auto& [name, value] : options_.solver_options) {
-    prepared.backend->options().Set(name, value);
-  }
-  prepared.backend->Prepare(prepared.problem->view());
-  prepared.start.y.resize(prepared.problem->view().num_variables());
-  prepared.solver.x = prepared.first_guess = prepared.start.y;
-  const solvers::Problem& problem = prepared.problem->view().problem();
-  for (int i = 0; i < problem.num_terms(); ++i) {
-    prepared.solver.cost_by_term.push_back({problem.term(i).info().name, 0.0});
   }
 }
 
@@ -130,6 +89,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   best_.pairs = 0;
   best_.round = -1;
   best_.reason = request.go_on ? GoOn(request, result) : Try(request, result);
+  if (request.arrival == ArrivalMode::kFree && best_.solved) duration_ = best_.curve.duration();
   if (best_.solved) {
     result->curve = best_.curve;
     result->solver = best_.solver;
@@ -137,7 +97,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   result->certificate = best_.certificate.value_or(Certificate());
   result->pairs = best_.pairs;
   if (request.log) {
-    request.log->duration = request.duration;
+    request.log->duration = duration_;
     request.log->arrival = request.arrival;
     request.log->segments = segments_;
     request.log->best = best_.round;
@@ -149,10 +109,11 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 
 /// Refuses ends that no plan can have.
 ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
-  now_ = &prepared_.at({segments_, request.arrival});
+  now_ = &problems_.At(segments_, request.arrival);
   LandingProblem& problem = *now_->problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
   problem.SetDuration(request.duration);
+  duration_ = request.duration;
   problem.SetPrevious(request.previous);
   const bool hard = options_.problem.limits_mode == LimitsMode::kHard;
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
@@ -186,7 +147,6 @@ bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
   bound_ = false;
-  if (request.at_rest) BeginStep();  // there is time for long searches
   finder_.Begin(request.at_rest);
   pairs_.clear();
   pressure_ = {};
@@ -207,7 +167,8 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
 }
 
 // The way around the first obstacle makes the difference: behind it the usual choices follow.
-ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult* result) {
+ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* result) {
+  AttemptRequest request = asked;
   if (!request.previous) now_->first_guess = now_->start.y;
   first_curve_ = best_.curve;
   const BlockedRun first = runs_.front();
@@ -223,9 +184,10 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
   const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
   for (int i = 0; i < guides; ++i) {
     if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;
-    const ReplanReason found = FindGuide(request, first_curve_, &span, result);
+    const ReplanReason found = FindGuide(request, first_curve_, /*local=*/false, &span, result);
     if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
     if (found != ReplanReason::kNone) return found;
+    if (i == 0 && !request.previous) Postpone(span, &request);
     first_guide_ = guide_;
     Candidate* candidate = i == 0 ? &best_ : &other_;
     candidate->curve = first_curve_;
@@ -243,6 +205,27 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& request, ReplanResult*
   return best_.reason;
 }
 
+/// The way round takes longer than the straight one, by as much as it is longer at full speed. An arrival
+/// that others reckon with already is not put off like that.
+void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
+  if (request->arrival == ArrivalMode::kFree) return;
+  const double longer = PathLength(guide_) - LengthOf(first_curve_, span.t_in, span.t_out);
+  AttemptRequest later = *request;
+  later.duration = std::min(request->duration + std::max(0.0, longer) / options_.limits.speed,
+                            options_.max_duration);
+  if (later.duration <= request->duration) return;
+  later_space_ = *request->space;
+  later.space = &later_space_;
+  LayPadStrip(*request->pad, request->target, request->start.p, request->t0,
+              request->t0 + later.duration, later_space_.pad_radius, &later_space_);
+  if (SetEnds(later) == ReplanReason::kNone) {
+    *request = later;
+    now_->problem->WarmGuess(first_curve_, &now_->first_guess);
+  } else {
+    SetEnds(*request);
+  }
+}
+
 /// Binds pairs along the guide and solves again until the curve is clear, or no clearer than before.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
@@ -254,7 +237,6 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candi
 
 /// The control points are bound as the last attempt left them.
 ReplanReason PlanAttempt::GoOn(const AttemptRequest& request, ReplanResult* result) {
-  if (request.at_rest) BeginStep();  // there is time for long searches
   finder_.Begin(request.at_rest);
   const ReplanReason refused = SetEnds(request);
   if (refused != ReplanReason::kNone) return refused;
@@ -381,7 +363,10 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
   for (BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
     if (!guide_is_known) {
-      const ReplanReason reason = FindGuide(request, curve, &run, result);
+      const ReplanReason reason =
+          FindGuide(request, curve, /*local=*/!request.at_rest, &run, result);
+      // A corner that cannot be looked past is one that a slower plan may not cut.
+      if (reason == ReplanReason::kSearchFailed) return ReplanReason::kCollisionRemains;
       if (reason != ReplanReason::kNone) return reason;
       binder_.AddCorner(curve, run, guide_, *request.space);
     }
@@ -393,10 +378,10 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
 }
 
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                                    BlockedRun* run, ReplanResult* result) {
+                                    bool local, BlockedRun* run, ReplanResult* result) {
   StageTimer timer(&result->times.search);
   const bool searches = !finder_.Keeps(*run);
-  const SearchStatus status = finder_.Find(*request.space, curve, run, &guide_);
+  const SearchStatus status = finder_.Find(*request.space, curve, local, run, &guide_);
   // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (run->at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   if (status == SearchStatus::kFound && searches) result->guide_paths.Add(guide_);

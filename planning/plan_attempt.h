@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,17 +9,12 @@
 #include "touchdown/planning/guide_finder.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/pair_binder.h"
+#include "touchdown/planning/prepared_problems.h"
 #include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/replan_result.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
-
-/// The options of the landing problems that a replanner with these options solves.
-LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
-
-/// Number of segments of a plan that takes so long [s] at these limits: few, or `fine` half as many again.
-int SegmentsFor(double duration, const Limits& limits, bool fine);
 
 /// What one attempt is made with.
 struct AttemptRequest {
@@ -55,13 +48,17 @@ class PlanAttempt {
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
 
-  /// All attempts until the next call share max_expansions; from rest each has as many.
-  void BeginStep() { finder_.Refill(options_.max_expansions); }
+  /// All attempts until the next call share max_expansions.
+  void RefillExpansions() { finder_.Refill(options_.max_expansions); }
 
   /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
   /// does not allocate it does not either, once its buffers have grown.
   ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
+
+  /// Of the plan that the last attempt tried [s]: as requested, or later where the way round took longer or
+  /// the arrival was free.
+  double duration() const { return duration_; }
 
   /// The last attempt bound its control points to one way, and found no plan on it: with more time there
   /// may be one, for a solve or two. Not with hard limits: where they leave the pairs no room, an interior
@@ -72,13 +69,6 @@ class PlanAttempt {
   }
 
  private:
-  struct Prepared {
-    std::unique_ptr<LandingProblem> problem;
-    std::unique_ptr<solvers::SolverBackend> backend;
-    solvers::WarmStart start{Eigen::VectorXd()};  // of the next solve
-    solvers::SolverResult solver;                 // of the last
-    Eigen::VectorXd first_guess;                  // of the solves with pairs
-  };
   /// A plan that was tried, and how it ended.
   struct Candidate {
     UniformBspline curve;
@@ -96,7 +86,6 @@ class PlanAttempt {
     double limits = 1.0;
   };
 
-  void PrepareProblem(int segments, ArrivalMode arrival);
   ReplanReason SetEnds(const AttemptRequest& request);
   ReplanReason SolveWithoutPairs(const AttemptRequest& request, const UniformBspline* guess,
                                  ReplanResult* result);
@@ -107,6 +96,7 @@ class PlanAttempt {
                              ReplanResult* result);
   ReplanReason KeepLimits(const AttemptRequest& request, Candidate* candidate,
                           ReplanResult* result);
+  void Postpone(const BlockedRun& span, AttemptRequest* request);
   ReplanReason Follow(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
   ReplanReason GoOn(const AttemptRequest& request, ReplanResult* result);
   ReplanReason SolveUntilClear(const AttemptRequest& request, Candidate* candidate, int first_round,
@@ -114,23 +104,24 @@ class PlanAttempt {
   ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool guide_is_known,
                     ReplanResult* result);
   ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
-  ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve,
+  ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve, bool local,
                          BlockedRun* run, ReplanResult* result);
   double BlockedTime() const;
   double CostOfShape(const solvers::SolverSummary& solver) const;
   bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
 
   ReplannerOptions options_;
-  solvers::BackendRegistry backends_;
-  std::map<std::pair<int, ArrivalMode>, Prepared> prepared_;
+  PreparedProblems problems_;
   GuideFinder finder_;
   PairBinder binder_;
   std::vector<std::string> pressed_;  // terms whose weights are scaled
 
   // Of the attempt under way.
   int segments_ = 0;
-  Prepared* now_ = nullptr;
+  PreparedProblem* now_ = nullptr;
   Pressure pressure_;
+  double duration_ = 0.0;
+  FreeSpace later_space_;
   bool bound_ = false;          // control points of best_, to one way
   UniformBspline first_curve_;  // before any pair
   std::vector<BlockedRun> runs_;

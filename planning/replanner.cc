@@ -11,6 +11,7 @@
 
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/fallback.h"
+#include "touchdown/planning/pad_strip.h"
 #include "touchdown/planning/plan_attempt.h"
 #include "touchdown/planning/replan_checks.h"
 #include "touchdown/planning/stage_timer.h"
@@ -20,15 +21,15 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kMaxAttempts = 7;
-constexpr double kStretch = 1.3;       // of the duration after an attempt that failed
-constexpr double kFinest = 1.5;        // attempts after the first have so many times its segments
-constexpr int kRescueGuides = 2;       // ways around an obstacle that later attempts try
-constexpr int kGuidesAtRest = 4;       // ... and from rest
-constexpr double kReTimeBelow = 0.75;  // a fresh guess this much shorter replaces the arrival
-constexpr double kStripMemory = 2.0;   // the strip over a pad that was lost holds this long [s]
-constexpr int kUsualPaths = 32;        // room for those of one step
+constexpr double kStretch = 1.3;        // of the duration after an attempt that failed
+constexpr double kLaterArrival = 1.05;  // ... and while the pad's end is blocked
+constexpr double kFinest = 1.5;         // attempts after the first have so many times its segments
+constexpr int kRescueGuides = 2;        // ways around an obstacle that later attempts try
+constexpr int kGuidesAtRest = 4;        // ... and from rest
+constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter replaces the arrival
+constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost holds this long [s]
+constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
-constexpr double kPadSlack = 0.15;       // of a plan over the pad below both its ends [m]
 constexpr double kClockRounding = 1e-6;  // [s]
 
 /// State on a curve; past its end it goes on at the end's velocity.
@@ -89,6 +90,7 @@ class Replanner::Impl {
   const ReplanResult& RefuseState();
   SplineState Start(const ReplanInput& input);
   bool InTime(const ReplanInput& input) const;
+  double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
   void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
@@ -113,13 +115,8 @@ FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
 FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineState& start,
                                         double t_end, const OccupancyMap& map) const {
   FreeSpace space = Space(map);
-  space.pad_from = input.pad->At(input.t_start).p_WP.head<2>();
-  space.pad_to = input.pad->At(t_end).p_WP.head<2>();
-  space.pad_radius = options_.pad_radius;
-  // Over the pad a plan goes no lower than where it ends, or starts if that is over the pad: the pad
-  // vehicle is there.
-  const double end = EndStateAt(*input.pad, input.endpoint, t_end).state.p.z();
-  space.pad_floor = (space.OverPad(start.p) ? std::min(start.p.z(), end) : end) - kPadSlack;
+  LayPadStrip(*input.pad, input.endpoint, start.p, input.t_start, t_end, options_.pad_radius,
+              &space);
   return space;
 }
 
@@ -243,6 +240,19 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return result_;
 }
 
+/// The first arrival from T on, and not much later, at which the plan's end is free, or T if there is none:
+/// a pad that passes an obstacle is met behind it.
+double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
+                                         const OccupancyMap& map) const {
+  const FreeSpace space = Space(map);
+  const double latest = std::min(kStretch * T, options_.max_duration);
+  for (double later = T; later <= latest; later *= kLaterArrival) {
+    const SplineState end = EndStateAt(*input.pad, input.endpoint, input.t_start + later).state;
+    if (!space.Blocked(end.p)) return later;
+  }
+  return T;
+}
+
 ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& start,
                                    const OccupancyMap& map) {
   double fresh;
@@ -256,7 +266,6 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
   double T = std::clamp(promised ? left : fresh, options_.min_duration, options_.max_duration);
 
-  attempt_.BeginStep();
   const double first = T;
   AttemptRequest request;
   request.start = start;
@@ -268,7 +277,10 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
+    if (request.arrival == ArrivalMode::kFixed) T = FirstFreeArrival(input, T, map);
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
+    // From rest there is time for long searches.
+    if (i == 0 || request.at_rest) attempt_.RefillExpansions();
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
     const double longest = std::min(T, kFinest * first);
@@ -295,8 +307,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.go_on =
         (i == 0 || request.go_on) && !went_on && slower_helps && !was_free && attempt_.GoesOn();
     if (went_on || !slower_helps) continue;
-    // Free arrival traded a limit for time: fix a longer one.
-    if (was_free) T = std::max(T, result_.curve.duration());
+    // Free arrival traded a limit for time, or a way round took longer: fix a longer one.
+    T = std::max(T, attempt_.duration());
     // A promise that cannot be kept binds no longer: the pad may have jumped.
     T = std::max(kStretch * T, fresh);
   }

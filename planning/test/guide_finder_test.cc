@@ -48,13 +48,13 @@ TEST(GuideFinder, KeepsToTheCommittedCurveUntilAWayIsClosed) {
   EXPECT_FALSE(finder.Keeps(run));
   finder.Keep(committed, 0.0, space);
   EXPECT_TRUE(finder.Keeps(run));
-  ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kFound);
+  ASSERT_EQ(finder.Find(space, curve, /*local=*/false, &run, &guide), SearchStatus::kFound);
   for (const Eigen::Vector3d& p : guide) EXPECT_NEAR(p.y(), -1.5, 1e-9);
   EXPECT_NEAR(guide.front().x(), curve.Evaluate(run.t_in).p_WB.x(), 1e-9);
   // That side is closed: A* has to take the other.
   finder.Close({{0.05, 0.0, 0.05}, Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY()});
   EXPECT_FALSE(finder.Keeps(run));
-  ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kFound);
+  ASSERT_EQ(finder.Find(space, curve, /*local=*/false, &run, &guide), SearchStatus::kFound);
   double highest = 0.0;
   for (const Eigen::Vector3d& p : guide) {
     EXPECT_FALSE(space.Blocked(p));
@@ -110,7 +110,7 @@ TEST(GuideFinder, ARunThatLeavesTheWindowEndsInIt) {
   GuidePath guide;
   finder.Refill(100000);
   finder.Begin(false);
-  ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kFound);
+  ASSERT_EQ(finder.Find(space, curve, /*local=*/false, &run, &guide), SearchStatus::kFound);
   EXPECT_TRUE(map.InWindow(map.CellOf(curve.Evaluate(run.t_out).p_WB)));
   EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 3.0);
 }
@@ -126,7 +126,7 @@ TEST(GuideFinder, OutOfTheWindowTheGuideStaysBetweenFloorAndCeiling) {
   GuidePath guide;
   finder.Refill(100000);
   finder.Begin(false);
-  ASSERT_EQ(finder.Find(space, curve, &run, &guide), SearchStatus::kEndsOutside);
+  ASSERT_EQ(finder.Find(space, curve, /*local=*/false, &run, &guide), SearchStatus::kEndsOutside);
   ASSERT_GT(guide.size(), 10u);
   for (const Eigen::Vector3d& p : guide) {
     EXPECT_GT(p.z(), space.floor);
@@ -144,7 +144,9 @@ TEST(GuideFinder, AllSearchesOfAnAttemptShareTheBudget) {
   finder.Begin(false);
   BlockedRun run = OnlyRun(curve, space);
   int found = 0;
-  while (found < 100 && finder.Find(space, curve, &run, &guide) == SearchStatus::kFound) ++found;
+  while (found < 100 &&
+         finder.Find(space, curve, /*local=*/false, &run, &guide) == SearchStatus::kFound)
+    ++found;
   EXPECT_GT(found, 0);
   EXPECT_LT(found, 60);
 }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The volume of the pad vehicle as a floor under plans: along the straight line between the predicted
+// pad at both ends of a plan.
+
+#include "touchdown/planning/pad_strip.h"
+
+#include <algorithm>
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kSlack = 0.15;  // of a plan over the pad below both its ends [m]
+
+}  // namespace
+
+void LayPadStrip(const estimation::PadPrediction& pad, const EndpointTarget& target,
+                 const Eigen::Vector3d& p_start, double t_start, double t_end, double radius,
+                 FreeSpace* space) noexcept {
+  space->pad_from = pad.At(t_start).p_WP.head<2>();
+  space->pad_to = pad.At(t_end).p_WP.head<2>();
+  space->pad_radius = radius;
+  const double end = EndStateAt(pad, target, t_end).state.p.z();
+  space->pad_floor = (space->OverPad(p_start) ? std::min(p_start.z(), end) : end) - kSlack;
+}
+
+}  // namespace touchdown::planning

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Landing problems by number of segments, in steps of four, so that a plan of any duration finds one whose
+// segments are about as long as they should be.
+
+#include "touchdown/planning/prepared_problems.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/planning/pair_binder.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+// Not the last digits of an optimum make a plan, but its certificate: where the caller does not say
+// otherwise, solves end this near to it, as shares of the cost.
+constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 5e-3},
+                                                           {"function_tolerance", 1e-5}};
+constexpr double kLongestSegment = 0.75;  // at full speed [m]
+constexpr double kSlowestSegment = 0.30;  // [s]
+constexpr double kFine = 0.67;            // of these
+constexpr int kFewestSegments = 12;
+constexpr int kMostSegments = PairBinder::kMostControlPoints - 3;
+constexpr int kSegmentStep = 4;  // keeps the number of prepared problems small
+
+PreparedProblem Prepare(const ReplannerOptions& options, const solvers::BackendRegistry& backends,
+                        int segments, ArrivalMode arrival) {
+  PreparedProblem prepared;
+  prepared.problem = std::make_unique<LandingProblem>(segments, ProblemOptions(options, arrival));
+  prepared.backend = solvers::MakeBackend(backends, options.backend);
+  for (const solvers::OptionSpec& option : prepared.backend->options().specs()) {
+    for (const auto& [name, value] : kCloseEnough) {
+      if (option.name == name) prepared.backend->options().Set(name, value);
+    }
+  }
+  for (const auto& [name, value] : options.solver_options) {
+    prepared.backend->options().Set(name, value);
+  }
+  prepared.backend->Prepare(prepared.problem->view());
+  prepared.start.y.resize(prepared.problem->view().num_variables());
+  prepared.solver.x = prepared.first_guess = prepared.start.y;
+  const solvers::Problem& problem = prepared.problem->view().problem();
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    prepared.solver.cost_by_term.push_back({problem.term(i).info().name, 0.0});
+  }
+  return prepared;
+}
+
+}  // namespace
+
+int SegmentsFor(double duration, const Limits& limits, bool fine) {
+  const double coarse = std::min(kSlowestSegment, kLongestSegment / limits.speed);
+  const double interval = fine ? kFine * coarse : coarse;
+  const int wanted = static_cast<int>(std::ceil(duration / interval));
+  const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
+  return std::clamp(rounded, kFewestSegments, kMostSegments);
+}
+
+LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival) {
+  LandingProblemOptions problem = options.problem;
+  problem.arrival = arrival;
+  problem.limits = options.limits;
+  problem.min_duration = options.min_duration;
+  problem.max_duration = options.max_duration;
+  return problem;
+}
+
+PreparedProblems::PreparedProblems(const ReplannerOptions& options,
+                                   const solvers::BackendRegistry& backends) {
+  for (int segments = kFewestSegments; segments <= kMostSegments; segments += kSegmentStep) {
+    for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+      if (arrival == ArrivalMode::kFree && options.arrival != ArrivalMode::kFree) continue;
+      prepared_.emplace(std::pair(segments, arrival),
+                        Prepare(options, backends, segments, arrival));
+    }
+  }
+}
+
+}  // namespace touchdown::planning
