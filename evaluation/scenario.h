@@ -13,7 +13,17 @@
 
 namespace touchdown::evaluation {
 
-enum class PadMotionKind { kStraightTurn, kCircle, kLine, kStatic };
+enum class PadMotionKind {
+  kStraightTurn,
+  kCircle,
+  kLine,
+  kStatic,
+  kFigureEight,
+  kStopAndGo,
+  kReversing,
+  kRandom,
+  kWaypoints
+};
 enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };
@@ -59,6 +69,11 @@ struct Scenario {
     double turn_start = 5.0;                            ///< driven before the turn begins [m]
     double turn_deg = 90.0;                             ///< left positive [deg]
     double turn_rate = 0.25;                            ///< circle: left positive [rad/s]
+    double go_time = 8.0;                               ///< stop_and_go, reversing [s]
+    double stop_time = 5.0;                             ///< stop_and_go [s]
+    double acceleration = 0.5;                          ///< of changing speeds [m/s^2]
+    double jerk = 1.0;                                  ///< random, waypoints [m/s^3]
+    std::string waypoints = "none";                     ///< path of a CSV file
     double phase = 0.0;                                 ///< path travelled before t = 0 [m]
     double phase_spread = 0.0;                          ///< drawn per trial: uniform in +- this [m]
     double deck_size = 1.5;                             ///< edge of the square deck [m]
@@ -172,7 +187,7 @@ struct Scenario {
   } limits;
 
   std::string vehicle = "default";  ///< or the path of an MJCF file
-  double timeout = 60.0;            ///< [s]
+  double timeout = 60.0;  ///< [s]
   std::uint64_t seed = 1;
 
   std::vector<BoxObstacle> boxes;

@@ -64,6 +64,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
   int feet = 0;
   model->foot_depth = 0.0;
   model->foot_radius = 0.0;
+  model->foot_reach = 0.0;
   for (int geom = 0; geom < m.ngeom; ++geom) {
     if (!GeomName(m, geom).starts_with("foot")) continue;
     const mjtNum* p = m.geom_pos + 3 * geom;
@@ -75,6 +76,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
     }
     model->foot_depth = std::max(model->foot_depth, radius - p[2]);
     model->foot_radius = std::max(model->foot_radius, std::hypot(p[0], p[1]));
+    model->foot_reach = std::max(model->foot_reach, mju_norm3(p) + radius);
     ++feet;
   }
   if (feet < 3) Refuse("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");

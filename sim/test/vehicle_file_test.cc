@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/sim/vehicle_file.h"
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -49,6 +50,7 @@ TEST(VehicleFile, ModelIsWhatTheFileSays) {
   EXPECT_DOUBLE_EQ(model.hull_top, 0.08);
   EXPECT_DOUBLE_EQ(model.foot_depth, 0.12);
   EXPECT_NEAR(model.foot_radius, 0.16, 1e-6);
+  EXPECT_NEAR(model.foot_reach, std::hypot(0.16, 0.105) + 0.015, 1e-6);
 }
 
 TEST(VehicleFile, ChangesInTheFileAreRead) {
