@@ -187,6 +187,14 @@ struct Scenario {
   } limits;
 
   std::string vehicle = "default";  ///< or the path of an MJCF file
+  /// What an MJCF file in the common form does not say; see sim/vehicle_import.h.
+  struct Airframe {
+    double rotor_lag = 0.03;                         ///< [s]
+    double rotor_drag = 0.0;                         ///< linear, along x and y of B [N s/m]
+    double body_drag_area = 0.0;                     ///< [m^2]
+    Eigen::Vector3d hull = Eigen::Vector3d::Zero();  ///< radius, bottom, top; 0: from the geoms [m]
+    Eigen::Vector2d feet = Eigen::Vector2d::Zero();  ///< radius, depth; 0: from the hull [m]
+  } airframe;
   double timeout = 60.0;  ///< [s]
   std::uint64_t seed = 1;
 

@@ -66,9 +66,38 @@ void AddPadKeys(KeyList& keys) {
              TOUCHDOWN_AT(pad.prediction)));
 }
 
+namespace {
+
+// Of vehicles whose MJCF file is not in the form of sim/vehicle_file.h.
+void AddAirframeKeys(KeyList& keys) {
+  keys.push_back(Number<Scenario>("airframe.rotor_lag", In(0.005, 1, "s"),
+                                  "imported vehicles: lag of motors that have none in the file",
+                                  TOUCHDOWN_AT(airframe.rotor_lag)));
+  keys.push_back(Number<Scenario>("airframe.rotor_drag", In(0, 10, "N s/m"),
+                                  "imported vehicles: linear drag along x and y of the body",
+                                  TOUCHDOWN_AT(airframe.rotor_drag)));
+  keys.push_back(Number<Scenario>("airframe.body_drag_area", In(0, 10, "m^2"),
+                                  "imported vehicles: Cd A of the quadratic drag",
+                                  TOUCHDOWN_AT(airframe.body_drag_area)));
+  keys.push_back(Vector<3, Scenario>(
+      "airframe.hull", In(-5, 5, "m"),
+      "imported vehicles: radius, bottom and top of the cylinder about the centre of mass that "
+      "collides; zeros: one around the file's geoms",
+      TOUCHDOWN_AT(airframe.hull)));
+  keys.push_back(
+      Vector<2, Scenario>("airframe.feet", In(0, 5, "m"),
+                          "imported vehicles: distance of the four feet from the middle, depth of "
+                          "their soles below the "
+                          "centre of mass; zeros: 0.6 of the hull's radius, the lowest geom",
+                          TOUCHDOWN_AT(airframe.feet)));
+}
+
+}  // namespace
+
 void AddVehicleKeys(KeyList& keys) {
   keys.push_back(Text("vehicle", "default or the path of an MJCF file",
-                      "the quadrotor", TOUCHDOWN_AT(vehicle)));
+                      "the quadrotor; docs/vehicles.md", TOUCHDOWN_AT(vehicle)));
+  AddAirframeKeys(keys);
   keys.push_back(Vector<3, Scenario>("start.position", In(-100, 100, "m"),
                                      "the vehicle hovers here at t = 0, in W",
                                      TOUCHDOWN_AT(start.position)));

@@ -12,6 +12,7 @@
 #include "touchdown/evaluation/waypoint_file.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/sim/vehicle_file.h"
+#include "touchdown/sim/vehicle_import.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -95,8 +96,10 @@ sim::PadGeometry PadGeometryOf(const Scenario& scenario) {
 }
 
 std::string VehicleMjcf(const Scenario& scenario) {
-  return scenario.vehicle == "default" ? sim::DefaultVehicleMjcf()
-                                       : sim::ReadVehicleFile(scenario.vehicle);
+  if (scenario.vehicle == "default") return sim::DefaultVehicleMjcf();
+  const Scenario::Airframe& frame = scenario.airframe;
+  return sim::ImportVehicle(scenario.vehicle, {frame.rotor_lag, frame.rotor_drag,
+                                               frame.body_drag_area, frame.hull, frame.feet});
 }
 
 TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
