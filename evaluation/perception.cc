@@ -25,6 +25,9 @@ constexpr double kVolumeMargin = 0.3;    // around and above the deck [m]
 constexpr double kVolumeSigmas = 2.0;    // of the estimate, added to the radius
 constexpr double kVolumeSigmaMax = 1.0;  // no more doubt than this is covered [m]
 
+// Taken as free around the vehicle at least: the depth camera sees no nearer, and a small vehicle
+// could not leave what was never seen [m].
+constexpr double kOwnVolume = 0.3;
 constexpr double kPriorShare = 0.5;  // of the vehicle's speed limit: 1 sigma of the pad's velocity
 
 // With an estimated own state; docs/own_state.md says what they are read off.
@@ -149,7 +152,7 @@ void Perception::UpdateMap(double t, double hull_radius, const estimation::Depth
   const Eigen::Vector3d p_WB = own_.now().p_WB;
   persistent_map_.Recentre(p_WB, &map_);
   const planning::ExcludedVolume volume = PadVolume(t, frame.t);
-  map_.MarkOwnVolume(p_WB, hull_radius);
+  map_.MarkOwnVolume(p_WB, std::max(hull_radius, kOwnVolume));
   map_.Clear(volume);
   map_.Integrate(frame, volume);
 }

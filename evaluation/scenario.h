@@ -113,6 +113,7 @@ struct Scenario {
   struct Depth {
     int width = 80;           ///< [pixel]
     int height = 60;          ///< [pixel]
+    double range = 6.0;       ///< [m]
     double noise = 0.0;       ///< standard deviation of a range over the range
     double latency_ms = 0.0;  ///< [ms]
     double drop = 0.0;        ///< probability of each image
