@@ -34,6 +34,7 @@ struct VehicleModel {
   double hull_top = 0.08;     ///< its upper face above B's origin [m]
   double foot_depth = 0.12;   ///< lowest point of the feet below B's origin [m], > 0
   double foot_radius = 0.16;  ///< horizontal distance of a foot from B's z axis [m]
+  double foot_reach = 0.21;   ///< greatest distance of a point of the feet from B's origin [m]
 
   double MaxThrust() const { return 4.0 * rotor_thrust_max; }  ///< [N]
   double HoverThrust() const { return mass_kg * kGravity; }    ///< [N]

@@ -5,6 +5,7 @@
 #include "touchdown/evaluation/closed_loop.h"
 
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -12,6 +13,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/equilibrium.h"
+#include "touchdown/evaluation/landing_time.h"
 #include "touchdown/evaluation/metrics.h"
 #include "touchdown/evaluation/pad_log.h"
 #include "touchdown/evaluation/perception.h"
@@ -28,6 +30,25 @@ namespace {
 constexpr double kMissionRate = 100.0;       // [Hz]
 constexpr double kSampleRate = kPadLogRate;  // of metrics, record and pad log [Hz]
 
+// What T* is asked: the trial's world without its obstacles, in still air.
+LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& world) {
+  const LandingRule rule;
+  LandingTimeTask task;
+  task.p_WB = world.vehicle().p_WB;
+  task.speed = scenario.limits.speed;
+  task.acceleration = scenario.limits.acceleration;
+  task.deck_radius = std::sqrt(2.0) * world.config().pad.deck_half_size;
+  task.foot_reach = world.model().foot_reach;
+  task.horizontal_speed = rule.horizontal_speed;
+  task.vertical_speed = rule.vertical_speed;
+  task.horizon = scenario.timeout;
+  task.pad_rates = world.pad_motion().bounds();
+  const sim::World::PadLag lag = world.MaxPadLag();
+  task.pad_position_error = lag.position;
+  task.pad_velocity_error = lag.velocity;
+  return task;
+}
+
 class Trial {
  public:
   Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
@@ -38,6 +59,8 @@ class Trial {
                perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
         follow_(scenario.descent == DescentKind::kNone),
+        limits_(scenario.limits),
+        landing_time_(LandingTimeTaskOf(scenario, world_)),
         judge_(LandingRule{}, scenario.timeout, follow_),
         mission_clock_(kMissionRate),
         replan_clock_(PlannerRate(scenario)),
@@ -242,6 +265,9 @@ class Trial {
       result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
     }
     metrics_.Fill(&result_);
+    result_.within_limits = result_.max_speed_mps <= limits_.speed &&
+                            result_.max_acceleration_mps2 <= limits_.acceleration;
+    if (!follow_) Timed(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
     if (follow_) result_.following = metrics_.LastFollowing();
     result_.timing.simulated_s = world_.time();
     result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
@@ -250,11 +276,19 @@ class Trial {
     Note(world_.time(), "outcome", ToString(result_.outcome));
   }
 
+  void BoundLandingTime() {
+    const sim::OraclePadPrediction pad(world_.pad_motion());
+    result_.t_star_s = LandingTimeLowerBound(landing_time_, pad);
+    result_.t_star_upper_s = LandingTimeUpperBound(landing_time_, pad, *result_.t_star_s);
+  }
+
   sim::World world_;
   Perception perception_;
   Pilot pilot_;
   sim::TrueClearance clearance_;
   bool follow_;  ///< no landing is asked for
+  Scenario::Limits limits_;
+  LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;

@@ -12,6 +12,7 @@ sim::DepthCameraConfig ConfigOf(const Scenario& scenario) {
   sim::DepthCameraConfig config;
   config.width = scenario.depth.width;
   config.height = scenario.depth.height;
+  config.max_range = scenario.depth.range;
   config.range_noise = scenario.depth.noise;
   return config;
 }

@@ -25,6 +25,11 @@ constexpr double kVolumeMargin = 0.3;    // around and above the deck [m]
 constexpr double kVolumeSigmas = 2.0;    // of the estimate, added to the radius
 constexpr double kVolumeSigmaMax = 1.0;  // no more doubt than this is covered [m]
 
+// Taken as free around the vehicle at least: the depth camera sees no nearer, and a small vehicle
+// could not leave what was never seen [m].
+constexpr double kOwnVolume = 0.3;
+constexpr double kPriorShare = 0.5;  // of the vehicle's speed limit: 1 sigma of the pad's velocity
+
 // With an estimated own state; docs/own_state.md says what they are read off.
 constexpr double kOwnPositionSigma = 0.01;  // what the estimate jumps by between images [m]
 constexpr double kOwnAttitudeSigma = 0.01;  // [rad]
@@ -50,6 +55,8 @@ estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
                       ? estimation::PadModel::kPaper
                       : estimation::PadModel::kTurnRate;
   options.pad_height = scenario.pad.deck_height;
+  // A pad may be nearly as fast as the vehicle: a narrow prior would gate its first fixes for ever.
+  options.speed_prior = std::max(options.speed_prior, kPriorShare * scenario.limits.speed);
   if (scenario.own_state == OwnStateKind::kEstimated) {
     options.own_position_sigma = kOwnPositionSigma;
     options.own_attitude_sigma = kOwnAttitudeSigma;
@@ -145,7 +152,7 @@ void Perception::UpdateMap(double t, double hull_radius, const estimation::Depth
   const Eigen::Vector3d p_WB = own_.now().p_WB;
   persistent_map_.Recentre(p_WB, &map_);
   const planning::ExcludedVolume volume = PadVolume(t, frame.t);
-  map_.MarkOwnVolume(p_WB, hull_radius);
+  map_.MarkOwnVolume(p_WB, std::max(hull_radius, kOwnVolume));
   map_.Clear(volume);
   map_.Integrate(frame, volume);
 }

@@ -23,6 +23,7 @@ constexpr double kLookAhead = 0.8;        // the heading is where the vehicle wi
 constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says nothing [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
+constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 
 control::DescentStyle StyleOf(DescentKind kind) {
   return kind == DescentKind::kNone ? control::DescentStyle::kNone
@@ -74,6 +75,9 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
                                             scenario.pad.deck_size, 2.0 * model.foot_radius));
   }
   parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
+  // A light vehicle never presses as hard as the default asks.
+  parameters_.contact_force =
+      std::min(parameters_.contact_force, kContactShare * model.HoverThrust());
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);

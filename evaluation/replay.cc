@@ -15,7 +15,8 @@ namespace touchdown::evaluation {
 namespace {
 
 sim::PadMotion TruthOf(const Scenario& scenario) {
-  return sim::PadMotion(PadMotionOf(scenario, DrawTrial(scenario, scenario.seed).phase));
+  const TrialDraw draw = DrawTrial(scenario, scenario.seed);
+  return sim::PadMotion(PadMotionOf(scenario, draw.phase, draw.seed));
 }
 
 // What a backend or the vehicle's file refuses is the user's to mend.

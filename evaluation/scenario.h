@@ -13,7 +13,17 @@
 
 namespace touchdown::evaluation {
 
-enum class PadMotionKind { kStraightTurn, kCircle, kLine, kStatic };
+enum class PadMotionKind {
+  kStraightTurn,
+  kCircle,
+  kLine,
+  kStatic,
+  kFigureEight,
+  kStopAndGo,
+  kReversing,
+  kRandom,
+  kWaypoints
+};
 enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };
@@ -59,6 +69,11 @@ struct Scenario {
     double turn_start = 5.0;                            ///< driven before the turn begins [m]
     double turn_deg = 90.0;                             ///< left positive [deg]
     double turn_rate = 0.25;                            ///< circle: left positive [rad/s]
+    double go_time = 8.0;                               ///< stop_and_go, reversing [s]
+    double stop_time = 5.0;                             ///< stop_and_go [s]
+    double acceleration = 0.5;                          ///< of changing speeds [m/s^2]
+    double jerk = 1.0;                                  ///< random, waypoints [m/s^3]
+    std::string waypoints = "none";                     ///< path of a CSV file
     double phase = 0.0;                                 ///< path travelled before t = 0 [m]
     double phase_spread = 0.0;                          ///< drawn per trial: uniform in +- this [m]
     double deck_size = 1.5;                             ///< edge of the square deck [m]
@@ -98,6 +113,7 @@ struct Scenario {
   struct Depth {
     int width = 80;           ///< [pixel]
     int height = 60;          ///< [pixel]
+    double range = 6.0;       ///< [m]
     double noise = 0.0;       ///< standard deviation of a range over the range
     double latency_ms = 0.0;  ///< [ms]
     double drop = 0.0;        ///< probability of each image
@@ -172,7 +188,15 @@ struct Scenario {
   } limits;
 
   std::string vehicle = "default";  ///< or the path of an MJCF file
-  double timeout = 60.0;            ///< [s]
+  /// What an MJCF file in the common form does not say; see sim/vehicle_import.h.
+  struct Airframe {
+    double rotor_lag = 0.03;                         ///< [s]
+    double rotor_drag = 0.0;                         ///< linear, along x and y of B [N s/m]
+    double body_drag_area = 0.0;                     ///< [m^2]
+    Eigen::Vector3d hull = Eigen::Vector3d::Zero();  ///< radius, bottom, top; 0: from the geoms [m]
+    Eigen::Vector2d feet = Eigen::Vector2d::Zero();  ///< radius, depth; 0: from the hull [m]
+  } airframe;
+  double timeout = 60.0;  ///< [s]
   std::uint64_t seed = 1;
 
   std::vector<BoxObstacle> boxes;

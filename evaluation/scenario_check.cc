@@ -212,17 +212,46 @@ void CheckPriorMap(const ScenarioSource& source) {
 }
 
 // The motion's own limits, at the key they come from.
-void CheckPadMotion(const ScenarioSource& source) {
+sim::PadMotionBounds CheckedMotion(const ScenarioSource& source) {
+  const Scenario& s = source.scenario;
   try {
-    sim::PadMotion(PadMotionOf(source.scenario, source.scenario.pad.phase));
+    return sim::PadMotion(PadMotionOf(s, s.pad.phase, s.seed)).bounds();
   } catch (const std::invalid_argument& error) {
-    const std::string_view text = error.what();
+    const std::string text = error.what();
+    if (s.pad.motion == PadMotionKind::kWaypoints && text.find("pad.") != 0) {
+      throw BadInput(fmt::format("{}: pad.waypoints {}: {}.",
+                                 source.WhereOf("pad.waypoints").ToString(), s.pad.waypoints,
+                                 text));
+    }
     std::string key = "pad.motion";
-    if (text.find("pad.speed") != text.npos) key = "pad.speed";
-    if (text.find("pad.turn_rate") != text.npos) key = "pad.turn_rate";
+    for (const char* other : {"pad.speed", "pad.turn_rate", "pad.acceleration", "pad.jerk",
+                              "pad.go_time", "pad.stop_time", "pad.phase"}) {
+      if (text.find(other) != text.npos) key = other;
+    }
     if (text.find("pad.turn_angle") != text.npos) key = "pad.turn_deg";
     throw BadInput(fmt::format("{}: {} does not suit this pad.motion: {}.",
                                source.WhereOf(key).ToString(), key, text));
+  }
+}
+
+void CheckPadMotion(const ScenarioSource& source) {
+  const Scenario& s = source.scenario;
+  const double fastest = CheckedMotion(source).speed;
+  // A pad at the vehicle's own speed cannot be caught, and leaves a plan's interior empty.
+  if (fastest > 0.9 * s.limits.speed) {
+    const char* key = s.pad.motion == PadMotionKind::kWaypoints ? "pad.waypoints" : "pad.speed";
+    throw BadInput(fmt::format("{}: pad.speed must be in [0, {}] m/s (0.9 limits.speed), not '{}'.",
+                               source.WhereOf(key).ToString(), 0.9 * s.limits.speed, fastest));
+  }
+  const bool drawn = s.pad.motion == PadMotionKind::kRandom;
+  if ((drawn || s.pad.motion == PadMotionKind::kWaypoints) && s.pad.phase_spread > 0.0) {
+    throw BadInput(fmt::format("{}: pad.phase_spread must be 0 with this pad.motion, not '{}'.",
+                               source.WhereOf("pad.phase_spread").ToString(), s.pad.phase_spread));
+  }
+  // Where it will drive is known for one seed only.
+  if (drawn && (!s.boxes.empty() || !s.cylinders.empty())) {
+    throw BadInput(fmt::format("{}: pad.motion: random is for scenarios without obstacles.",
+                               source.WhereOf("pad.motion").ToString()));
   }
 }
 
@@ -236,7 +265,7 @@ void CheckStartBesidePad(const ScenarioSource& source, const estimation::Vehicle
   const int steps = static_cast<int>(std::ceil(2.0 * s.pad.phase_spread / kPathStep));
   for (int i = 0; i <= steps; ++i) {
     const double shift = std::min(i * kPathStep, 2.0 * s.pad.phase_spread) - s.pad.phase_spread;
-    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift));
+    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift, s.seed));
     const Eigen::Vector2d offset = motion.At(0.0).p_WP.head<2>() - p.head<2>();
     const double gap = (offset.cwiseAbs() - spread.head<2>()).cwiseMax(0.0).norm();
     if (gap <= needed) {
@@ -252,7 +281,7 @@ void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles) {
   const Scenario& s = source.scenario;
   const double half_diagonal = s.pad.deck_size * std::sqrt(0.5);
   for (const double shift : {-s.pad.phase_spread, s.pad.phase_spread}) {
-    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift));
+    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift, s.seed));
     for (int i = 0; i * kPathStep <= s.timeout; ++i) {
       const double t = i * kPathStep;
       const Eigen::Vector2d p_WP = motion.At(t).p_WP.head<2>();
@@ -282,19 +311,13 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
 
 void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
-  // A pad at the vehicle's own speed cannot be caught, and leaves a plan's interior empty.
-  if (s.pad.motion != PadMotionKind::kStatic && s.pad.speed > 0.9 * s.limits.speed) {
-    throw BadInput(fmt::format("{}: pad.speed must be in [0, {}] m/s (0.9 limits.speed), not '{}'.",
-                               source.WhereOf("pad.speed").ToString(), 0.9 * s.limits.speed,
-                               s.pad.speed));
-  }
+  CheckPadMotion(source);
   CheckSensors(source);
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
   CheckPlanning(source, model);
   CheckTerms(source, registries.terms);
   CheckSolver(source, model, registries);
-  CheckPadMotion(source);
   CheckPriorMap(source);
   CheckStart(source, obstacles, model);
   CheckStartBesidePad(source, model);

@@ -39,6 +39,11 @@ void AddDepthKeys(KeyList& keys) {
   keys.push_back(Whole("depth.height", 8, 1024,
                        "rows of the depth camera; 120 is recommended for sensing rendered",
                        TOUCHDOWN_AT(depth.height)));
+  keys.push_back(
+      Number<Scenario>("depth.range", In(1, 12, "m"),
+                       "farthest that the depth camera sees; what it has to see to brake "
+                       "bounds the speed of the vehicle",
+                       TOUCHDOWN_AT(depth.range)));
   keys.push_back(Number<Scenario>("depth.noise", In(0, 0.5, ""),
                                   "standard deviation of a range over the range",
                                   TOUCHDOWN_AT(depth.noise)));

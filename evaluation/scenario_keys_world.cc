@@ -5,11 +5,15 @@
 namespace touchdown::evaluation::schema {
 
 void AddPadKeys(KeyList& keys) {
-  keys.push_back(Choice("pad.motion", {"straight_turn", "circle", "line", "static"},
-                        "path of the pad vehicle", TOUCHDOWN_AT(pad.motion)));
-  keys.push_back(Number<Scenario>("pad.speed", In(0.01, 3, "m/s"),
-                                  "speed along the path; at most 0.9 limits.speed",
-                                  TOUCHDOWN_AT(pad.speed)));
+  keys.push_back(Choice("pad.motion",
+                        {"straight_turn", "circle", "line", "static", "figure_eight", "stop_and_go",
+                         "reversing", "random", "waypoints"},
+                        "how the pad vehicle drives; docs/pad_motions.md shows each",
+                        TOUCHDOWN_AT(pad.motion)));
+  keys.push_back(Number<Scenario>(
+      "pad.speed", In(0.01, 10, "m/s"),
+      "speed along the path, of a changing one the greatest; at most 0.9 limits.speed",
+      TOUCHDOWN_AT(pad.speed)));
   keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
                                      "pad centre at the start of the path, in W",
                                      TOUCHDOWN_AT(pad.start)));
@@ -22,11 +26,31 @@ void AddPadKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("pad.turn_deg", In(-180, 180, "deg"),
                                   "straight_turn: angle of the turn, left positive",
                                   TOUCHDOWN_AT(pad.turn_deg)));
-  keys.push_back(Number<Scenario>("pad.turn_rate", In(-2, 2, "rad/s"),
-                                  "circle: turn rate, left positive; straight_turn: its magnitude",
-                                  TOUCHDOWN_AT(pad.turn_rate)));
+  keys.push_back(
+      Number<Scenario>("pad.turn_rate", In(-2, 2, "rad/s"),
+                       "circle: turn rate, left positive; figure_eight: that of the first loop, at "
+                       "its tightest; straight_turn, random: its greatest magnitude",
+                       TOUCHDOWN_AT(pad.turn_rate)));
+  keys.push_back(Number<Scenario>(
+      "pad.go_time", In(0.5, 600, "s"),
+      "stop_and_go: between stops; reversing: in each direction; half a change of speed at both "
+      "ends included, which takes 2.25 / pad.acceleration times its size",
+      TOUCHDOWN_AT(pad.go_time)));
+  keys.push_back(Number<Scenario>("pad.stop_time", In(0.5, 600, "s"),
+                                  "stop_and_go: of a stop, alike", TOUCHDOWN_AT(pad.stop_time)));
+  keys.push_back(Number<Scenario>("pad.acceleration", In(0.05, 20, "m/s^2"),
+                                  "stop_and_go, reversing, random, waypoints: of changes of speed, "
+                                  "at most; random, waypoints: across the path too",
+                                  TOUCHDOWN_AT(pad.acceleration)));
+  keys.push_back(Number<Scenario>("pad.jerk", In(0.05, 100, "m/s^3"),
+                                  "random, waypoints: greatest jerk", TOUCHDOWN_AT(pad.jerk)));
+  keys.push_back(Text("pad.waypoints", "none or the path of a CSV file",
+                      "waypoints: where the pad is when, in W; pad.start, pad.heading_deg and "
+                      "pad.speed are not used then",
+                      TOUCHDOWN_AT(pad.waypoints)));
   keys.push_back(Number<Scenario>("pad.phase", In(-100, 100, "m"),
-                                  "path already travelled at t = 0", TOUCHDOWN_AT(pad.phase)));
+                                  "path already travelled at t = 0, at pad.speed; waypoints: 0",
+                                  TOUCHDOWN_AT(pad.phase)));
   keys.push_back(Number<Scenario>("pad.phase_spread", In(0, 100, "m"),
                                   "drawn per seed: uniform in +- this, added to pad.phase",
                                   TOUCHDOWN_AT(pad.phase_spread)));
@@ -42,9 +66,38 @@ void AddPadKeys(KeyList& keys) {
              TOUCHDOWN_AT(pad.prediction)));
 }
 
+namespace {
+
+// Of vehicles whose MJCF file is not in the form of sim/vehicle_file.h.
+void AddAirframeKeys(KeyList& keys) {
+  keys.push_back(Number<Scenario>("airframe.rotor_lag", In(0.005, 1, "s"),
+                                  "imported vehicles: lag of motors that have none in the file",
+                                  TOUCHDOWN_AT(airframe.rotor_lag)));
+  keys.push_back(Number<Scenario>("airframe.rotor_drag", In(0, 10, "N s/m"),
+                                  "imported vehicles: linear drag along x and y of the body",
+                                  TOUCHDOWN_AT(airframe.rotor_drag)));
+  keys.push_back(Number<Scenario>("airframe.body_drag_area", In(0, 10, "m^2"),
+                                  "imported vehicles: Cd A of the quadratic drag",
+                                  TOUCHDOWN_AT(airframe.body_drag_area)));
+  keys.push_back(Vector<3, Scenario>(
+      "airframe.hull", In(-5, 5, "m"),
+      "imported vehicles: radius, bottom and top of the cylinder about the centre of mass that "
+      "collides; zeros: one around the file's geoms",
+      TOUCHDOWN_AT(airframe.hull)));
+  keys.push_back(
+      Vector<2, Scenario>("airframe.feet", In(0, 5, "m"),
+                          "imported vehicles: distance of the four feet from the middle, depth of "
+                          "their soles below the "
+                          "centre of mass; zeros: 0.6 of the hull's radius, the lowest geom",
+                          TOUCHDOWN_AT(airframe.feet)));
+}
+
+}  // namespace
+
 void AddVehicleKeys(KeyList& keys) {
-  keys.push_back(Text("vehicle", "default or the path of an MJCF file", "the quadrotor",
-                      TOUCHDOWN_AT(vehicle)));
+  keys.push_back(Text("vehicle", "default or the path of an MJCF file",
+                      "the quadrotor; docs/vehicles.md", TOUCHDOWN_AT(vehicle)));
+  AddAirframeKeys(keys);
   keys.push_back(Vector<3, Scenario>("start.position", In(-100, 100, "m"),
                                      "the vehicle hovers here at t = 0, in W",
                                      TOUCHDOWN_AT(start.position)));

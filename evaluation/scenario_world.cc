@@ -9,8 +9,10 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/waypoint_file.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/sim/vehicle_file.h"
+#include "touchdown/sim/vehicle_import.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -28,6 +30,16 @@ sim::PadMotionConfig::Kind KindOf(PadMotionKind kind) {
       return sim::PadMotionConfig::Kind::kLine;
     case PadMotionKind::kStatic:
       return sim::PadMotionConfig::Kind::kStatic;
+    case PadMotionKind::kFigureEight:
+      return sim::PadMotionConfig::Kind::kFigureEight;
+    case PadMotionKind::kStopAndGo:
+      return sim::PadMotionConfig::Kind::kStopAndGo;
+    case PadMotionKind::kReversing:
+      return sim::PadMotionConfig::Kind::kReversing;
+    case PadMotionKind::kRandom:
+      return sim::PadMotionConfig::Kind::kRandom;
+    case PadMotionKind::kWaypoints:
+      return sim::PadMotionConfig::Kind::kWaypoints;
   }
   return sim::PadMotionConfig::Kind::kStatic;
 }
@@ -54,18 +66,25 @@ ObstacleList ObstaclesOf(const Scenario& scenario) {
   return list;
 }
 
-sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase) {
+sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase, std::uint64_t seed) {
   const Scenario::Pad& pad = scenario.pad;
   sim::PadMotionConfig config;
   config.kind = KindOf(pad.motion);
   config.p_start << pad.start, pad.deck_height;
   config.heading = pad.heading_deg * kRadPerDeg;
   config.speed = pad.motion == PadMotionKind::kStatic ? 0.0 : pad.speed;
-  // A straight_turn has its sense from the angle.
-  config.turn_rate =
-      pad.motion == PadMotionKind::kStraightTurn ? std::abs(pad.turn_rate) : pad.turn_rate;
+  // A straight_turn has its sense from the angle, a random drive draws it.
+  const bool signed_rate =
+      pad.motion == PadMotionKind::kCircle || pad.motion == PadMotionKind::kFigureEight;
+  config.turn_rate = signed_rate ? pad.turn_rate : std::abs(pad.turn_rate);
   config.turn_start = pad.turn_start;
   config.turn_angle = pad.turn_deg * kRadPerDeg;
+  config.go_time = pad.go_time;
+  config.stop_time = pad.stop_time;
+  config.acceleration = pad.acceleration;
+  config.jerk = pad.jerk;
+  config.seed = seed;
+  if (pad.motion == PadMotionKind::kWaypoints) config.waypoints = ReadWaypointFile(pad.waypoints);
   config.phase = phase;
   return config;
 }
@@ -77,12 +96,15 @@ sim::PadGeometry PadGeometryOf(const Scenario& scenario) {
 }
 
 std::string VehicleMjcf(const Scenario& scenario) {
-  return scenario.vehicle == "default" ? sim::DefaultVehicleMjcf()
-                                       : sim::ReadVehicleFile(scenario.vehicle);
+  if (scenario.vehicle == "default") return sim::DefaultVehicleMjcf();
+  const Scenario::Airframe& frame = scenario.airframe;
+  return sim::ImportVehicle(scenario.vehicle, {frame.rotor_lag, frame.rotor_drag,
+                                               frame.body_drag_area, frame.hull, frame.feet});
 }
 
 TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
   TrialDraw draw;
+  draw.seed = seed;
   sim::RandomStream start(seed, "start");
   for (int axis = 0; axis < 3; ++axis) {
     draw.p_WB[axis] = scenario.start.position[axis] +
@@ -101,7 +123,7 @@ sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw) {
   for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
   config.obstacles = sim::ObstacleField(std::move(obstacles));
   config.pad = PadGeometryOf(scenario);
-  config.pad_motion = PadMotionOf(scenario, draw.phase);
+  config.pad_motion = PadMotionOf(scenario, draw.phase, draw.seed);
   config.vehicle_mjcf = VehicleMjcf(scenario);
   config.start.p_WB = draw.p_WB;
   config.start.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());

@@ -2,6 +2,7 @@
 // From a scenario's plain numbers to the simulator's.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,9 @@ using ObstacleList = std::vector<NamedObstacle>;
 /// Boxes first, then cylinders: the order of the obstacle field.
 ObstacleList ObstaclesOf(const Scenario& scenario);
 
-/// The pad's path with `phase` metres driven before t = 0.
-sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase);
+/// The pad's motion in the trial of `seed` with `phase` metres driven before t = 0.
+/// @throws std::invalid_argument if its waypoint file cannot be read, the line first.
+sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase, std::uint64_t seed);
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 
@@ -36,6 +38,7 @@ struct TrialDraw {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start of the vehicle [m]
   double yaw = 0.0;                                ///< [rad]
   double phase = 0.0;                              ///< of the pad [m]
+  std::uint64_t seed = 0;                          ///< of the trial
 };
 
 /// The draws of `seed`, from the streams "start" and "pad".

@@ -35,7 +35,10 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
                                  {"estimator_nees_position", "pad NEES (2 expected)", "", {}},
                                  {"own_rmse_position_m", "own position error, RMS", "m", {}},
                                  {"following_error_m", "following error, last 10 s", "m", {}},
-                                 {"following_speed_mps", "relative speed, last 10 s", "m/s", {}}};
+                                 {"following_speed_mps", "relative speed, last 10 s", "m/s", {}},
+                                 {"t_star_s", "T*, bound on time to land", "s", {}},
+                                 {"t_star_gap", "its upper over its lower - 1", "", {}},
+                                 {"time_ratio", "time to land over T*", "", {}}};
   for (const SweepRow& row : rows) {
     const TrialResult& r = row.result;
     if (r.landed()) {
@@ -52,6 +55,9 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
       columns[8].values.push_back(r.following->mean_error_m);
       columns[9].values.push_back(r.following->relative_speed_mps);
     }
+    if (r.t_star_s) columns[10].values.push_back(*r.t_star_s);
+    if (r.t_star_upper_s) columns[11].values.push_back(*r.t_star_upper_s / *r.t_star_s - 1.0);
+    if (r.time_ratio()) columns[12].values.push_back(*r.time_ratio());
   }
   return columns;
 }

@@ -94,8 +94,10 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["outcome"] = ToString(result.outcome);
   json["detail"] = result.detail;
   json["time_to_land_s"] = result.landed() ? Json(result.touchdown->t) : Json();
-  json["t_star_s"] = nullptr;
-  json["time_ratio"] = nullptr;
+  json["t_star_s"] = OrNull(result.t_star_s);
+  json["t_star_upper_s"] = OrNull(result.t_star_upper_s);
+  json["time_ratio"] = OrNull(result.time_ratio());
+  json["within_limits"] = result.within_limits;
   json["touchdown"] = TouchdownJson(result);
   json["mean_abs_error_last_5s_m"] = {
       {"x", OrNull(result.landed() ? result.mean_abs_error_x_m : std::nullopt)},

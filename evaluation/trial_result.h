@@ -78,11 +78,22 @@ struct TrialResult {
   std::optional<EstimatorQuality> estimator;
   std::optional<OwnStateQuality> own_state;  ///< where it is estimated
   std::optional<Following> following;        ///< of trials without a descent that lasted 10 s
+  /// Of trials that are to land: bounds on the earliest contact that is possible at all
+  /// (evaluation/landing_time.h), the lower one T*, the upper one empty if none was found.
+  std::optional<double> t_star_s;
+  std::optional<double> t_star_upper_s;
+  /// max_speed_mps and max_acceleration_mps2 are within the scenario's limits, as T* supposes.
+  bool within_limits = false;
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }
   /// It came to what the scenario asks for: a landing, or without a descent to follow the pad.
   bool succeeded() const { return landed() || outcome == Outcome::kFollowed; }
+  /// Time to land over T*, empty unless landed within the limits.
+  std::optional<double> time_ratio() const {
+    if (!landed() || !within_limits || !t_star_s) return std::nullopt;
+    return touchdown->t / *t_star_s;
+  }
 };
 
 }  // namespace touchdown::evaluation

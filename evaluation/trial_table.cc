@@ -22,7 +22,8 @@ CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outc
   estimator_rmse_velocity_mps REAL, estimator_nees_position REAL, following_mean_error_m REAL,
   following_max_error_m REAL, following_relative_speed_mps REAL, own_rmse_position_m REAL,
   own_max_position_m REAL, own_rmse_velocity_mps REAL, own_max_velocity_mps REAL,
-  own_rmse_attitude_rad REAL, own_max_attitude_rad REAL);
+  own_rmse_attitude_rad REAL, own_max_attitude_rad REAL, t_star_s REAL, t_star_upper_s REAL,
+  time_ratio REAL, within_limits INTEGER);
 CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT);
 CREATE TABLE timing(trial INTEGER PRIMARY KEY, wall_s REAL, cpu_s REAL, physics_cpu_s REAL,
   sensing_cpu_s REAL, mapping_cpu_s REAL, planning_cpu_s REAL, control_cpu_s REAL,
@@ -70,13 +71,13 @@ void WriteTrial(SqliteStatement& insert, const SweepRow& row) {
     own_q_max = r.own_state->max_attitude_rad;
   }
   const auto planned = r.replans_by_status.find("planned");
-  insert.Run(row.trial.index, static_cast<std::int64_t>(r.seed), r.landed(), ToString(r.outcome),
-             r.detail, time, error, vx, vy, vz, tilt, over, mean_x, mean_y, r.min_clearance_m,
-             r.simulated_s, r.effort_n2s, r.saturation_share, r.max_speed_mps,
-             r.max_acceleration_mps2, r.replans,
-             planned == r.replans_by_status.end() ? 0 : planned->second, rmse_position,
-             rmse_velocity, nees, following_mean, following_max, following_speed, own_p, own_p_max,
-             own_v, own_v_max, own_q, own_q_max);
+  insert.Run(
+      row.trial.index, static_cast<std::int64_t>(r.seed), r.landed(), ToString(r.outcome), r.detail,
+      time, error, vx, vy, vz, tilt, over, mean_x, mean_y, r.min_clearance_m, r.simulated_s,
+      r.effort_n2s, r.saturation_share, r.max_speed_mps, r.max_acceleration_mps2, r.replans,
+      planned == r.replans_by_status.end() ? 0 : planned->second, rmse_position, rmse_velocity,
+      nees, following_mean, following_max, following_speed, own_p, own_p_max, own_v, own_v_max,
+      own_q, own_q_max, r.t_star_s, r.t_star_upper_s, r.time_ratio(), r.within_limits);
 }
 
 void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
@@ -110,7 +111,7 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
   WriteResultFile(path, "touchdown trials", kSchema, Facts(options, rows), [&](SqliteDb& db) {
     SqliteStatement trial = db.Prepare(
         "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement variation = db.Prepare("INSERT INTO variation VALUES(?, ?, ?)");
     SqliteStatement timing = db.Prepare(
         "INSERT INTO timing VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");

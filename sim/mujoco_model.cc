@@ -60,18 +60,14 @@ void InstallMujocoErrorHandler() {
   });
 }
 
-MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
-  InstallMujocoErrorHandler();
-  std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
-  mj_defaultVFS(vfs.get());
-  AddText(kSceneName, mjcf, vfs.get());
-  if (!vehicle_mjcf.empty()) AddText(kVehicleIncludeName, vehicle_mjcf, vfs.get());
+namespace {
 
+MujocoModel Load(const char* name, const mjVFS* vfs) {
+  InstallMujocoErrorHandler();
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   std::array<char, 1024> message{};
-  MujocoModel model(
-      mj_loadXML(kSceneName, vfs.get(), message.data(), static_cast<int>(message.size())));
+  MujocoModel model(mj_loadXML(name, vfs, message.data(), static_cast<int>(message.size())));
   if (!model) {
     for (char& c : message) {
       if (c == '\n') c = ' ';
@@ -80,6 +76,18 @@ MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf
   }
   return model;
 }
+
+}  // namespace
+
+MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
+  std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
+  mj_defaultVFS(vfs.get());
+  AddText(kSceneName, mjcf, vfs.get());
+  if (!vehicle_mjcf.empty()) AddText(kVehicleIncludeName, vehicle_mjcf, vfs.get());
+  return Load(kSceneName, vfs.get());
+}
+
+MujocoModel CompileMjcfFile(const std::string& path) { return Load(path.c_str(), nullptr); }
 
 MujocoData MakeMujocoData(const mjModel_& model) {
   InstallMujocoErrorHandler();

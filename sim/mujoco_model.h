@@ -26,6 +26,9 @@ inline constexpr char kVehicleIncludeName[] = "vehicle.xml";
 /// @param vehicle_mjcf text that `mjcf` may include under kVehicleIncludeName; may be empty.
 MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf = "");
 
+/// Compiles the MJCF file at `path` with the files it names, meshes for one. Else the same.
+MujocoModel CompileMjcfFile(const std::string& path);
+
 /// Throws std::runtime_error if MuJoCo cannot allocate.
 MujocoData MakeMujocoData(const mjModel_& model);
 

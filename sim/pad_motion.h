@@ -1,32 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/sim/curvature_chain.h"
+#include "touchdown/sim/figure_eight.h"
+#include "touchdown/sim/pace.h"
+#include "touchdown/sim/waypoint_drive.h"
 
 namespace touchdown::sim {
 
-/// Path of the pad, driven at constant speed with the pad's x axis along the direction of travel.
+/// Path of the pad and how it is driven, with the pad's x axis along the path.
 struct PadMotionConfig {
   enum class Kind {
     kStatic,        ///< stands at p_start
     kLine,          ///< straight on for ever
     kCircle,        ///< radius speed / |turn_rate|, to the left for a positive turn_rate
     kStraightTurn,  ///< straight, one turn by turn_angle, straight
+    kFigureEight,   ///< from the end of a loop, where the turn rate is turn_rate
+    kStopAndGo,     ///< straight, for go_time at speed, then standing for stop_time, and so on
+    kReversing,     ///< straight, for go_time forwards, then as long backwards, and so on
+    kRandom,        ///< turns and speeds drawn from seed
+    kWaypoints,     ///< past `waypoints`, whatever p_start, heading and speed say
   };
   Kind kind = Kind::kStraightTurn;
   Eigen::Vector3d p_start = {0.0, 0.0, 0.3};  ///< centre of the deck's upper face at phase 0 [m]
   double heading = 0.0;                       ///< direction of travel at phase 0 [rad]
-  double speed = 0.8;                         ///< [m/s], in [0, 20]
-  double turn_rate = 0.15;  ///< circle: its rate, signed; straight_turn: magnitude [rad/s]
+  double speed = 0.8;                         ///< [m/s], in [0, 20]; of a changing one the greatest
+  double turn_rate = 0.15;  ///< circle, figure_eight: signed; straight_turn, random: the greatest
+                            ///< magnitude [rad/s]
   double turn_start = 8.0;  ///< straight_turn: driven before the turn begins [m], >= 0
   double turn_angle = 1.5707963267948966;  ///< straight_turn: signed, left positive [rad]
   double turn_ramp_s = 0.5;  ///< straight_turn: time in which the yaw rate builds up [s], > 0
-  double phase = 0.0;        ///< metres driven along the path before t = 0 [m]
+  /// stop_and_go, reversing: times, with half a change of speed at both ends [s].
+  double go_time = 8.0;
+  double stop_time = 5.0;
+  double acceleration =
+      0.5;                 ///< of changing speeds; random, waypoints: across the path too [m/s^2]
+  double jerk = 1.0;       ///< random, waypoints: the greatest [m/s^3]
+  std::uint64_t seed = 0;  ///< random: of its draws
+  std::vector<PadWaypoint> waypoints;
+  /// Metres driven along the path before t = 0, at `speed`. Not of waypoints.
+  double phase = 0.0;
+};
+
+/// Never exceeded by a motion, at any time.
+struct PadMotionBounds {
+  double speed = 0.0;             ///< [m/s]
+  double acceleration = 0.0;      ///< [m/s^2]
+  double yaw_acceleration = 0.0;  ///< [rad/s^2]
 };
 
 /// Where the pad's drive is commanded to be: a pure function of time.
@@ -36,34 +64,21 @@ class PadMotion {
   explicit PadMotion(const PadMotionConfig& config);
 
   /// State at time t [s], any finite t, also negative. v, a, j are the exact derivatives of p; all
-  /// of them are continuous. The yaw is not wrapped, so that it is continuous too. cov_p is zero.
-  /// Does not allocate.
+  /// of them are continuous. The yaw is not wrapped, so that it is continuous too; a pad that drives
+  /// backwards keeps it. cov_p is zero. Does not allocate.
   estimation::PadState At(double t) const noexcept;
+
+  PadMotionBounds bounds() const;
 
   const PadMotionConfig& config() const { return config_; }
 
  private:
-  /// Piece of the path whose curvature goes from k0 to k1.
-  struct Segment {
-    double s0 = 0.0;                               ///< arc length at its beginning [m]
-    double length = 0.0;                           ///< [m]; the last one goes on for ever
-    double k0 = 0.0;                               ///< curvature at its beginning [1/m]
-    double k1 = 0.0;                               ///< and at its end
-    Eigen::Vector2d p0 = Eigen::Vector2d::Zero();  ///< where it begins
-    double yaw0 = 0.0;                             ///< heading there
-  };
-  struct PathPoint {
-    Eigen::Vector2d p = Eigen::Vector2d::Zero();
-    double yaw = 0.0;
-    double curvature = 0.0;        ///< [1/m]
-    double curvature_slope = 0.0;  ///< by arc length [1/m^2]
-  };
-  static PathPoint PointOn(const Segment& segment, double s) noexcept;
-  void Append(double length, double k0, double k1);
+  PathPoint PathAt(double s) const noexcept;
+  PacePoint PaceAt(double t) const noexcept;
 
   PadMotionConfig config_;
-  std::array<Segment, 5> segments_;
-  std::size_t count_ = 0;
+  std::variant<CurvatureChain, FigureEight> path_;
+  std::optional<Pace> pace_;  ///< none: at constant speed
 };
 
 /// The pad's future known exactly: the oracle of tests and studies.

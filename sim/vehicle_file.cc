@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include <Eigen/LU>
+
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/mujoco_model.h"
 
@@ -64,6 +66,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
   int feet = 0;
   model->foot_depth = 0.0;
   model->foot_radius = 0.0;
+  model->foot_reach = 0.0;
   for (int geom = 0; geom < m.ngeom; ++geom) {
     if (!GeomName(m, geom).starts_with("foot")) continue;
     const mjtNum* p = m.geom_pos + 3 * geom;
@@ -75,6 +78,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
     }
     model->foot_depth = std::max(model->foot_depth, radius - p[2]);
     model->foot_radius = std::max(model->foot_radius, std::hypot(p[0], p[1]));
+    model->foot_reach = std::max(model->foot_reach, mju_norm3(p) + radius);
     ++feet;
   }
   if (feet < 3) Refuse("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");
@@ -133,6 +137,19 @@ void ReadDrag(const mjModel& m, VehicleModel* model) {
   CheckWithin("vehicle file: body_drag_area", model->body_drag_area, 0.0, 10.0);
 }
 
+// The rotors' wrench is linear in their thrusts; z_B's column is thrust, then the three moments.
+void CheckSteerable(const VehicleModel& model) {
+  Eigen::Matrix4d wrench;
+  for (int i = 0; i < 4; ++i) {
+    const estimation::Rotor& rotor = model.rotors[static_cast<std::size_t>(i)];
+    wrench.col(i) << 1.0, rotor.p_BR.y(), -rotor.p_BR.x(), rotor.spin * model.torque_per_thrust;
+  }
+  const Eigen::FullPivLU<Eigen::Matrix4d> lu(wrench);
+  if (!lu.isInvertible() || lu.inverse().col(0).minCoeff() <= 0.0) {
+    Refuse("its rotors cannot make thrust and three moments: their places and senses of rotation");
+  }
+}
+
 }  // namespace
 
 std::string ReadVehicleFile(const std::string& path) {
@@ -154,8 +171,13 @@ estimation::VehicleModel LoadVehicleModel(const std::string& mjcf) {
   if (m.nu != 4) Refuse("it has " + std::to_string(m.nu) + " actuators; allowed is 4");
   for (int i = 0; i < 4; ++i) ReadRotor(m, body, i, &model);
   ReadDrag(m, &model);
-  const double weight = model.HoverThrust();
-  if (model.MaxThrust() <= weight) Refuse("the rotors' largest thrust does not carry its weight");
+  CheckSteerable(model);
+  constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
+  if (model.MaxThrust() < kLeastThrustToWeight * model.HoverThrust()) {
+    Refuse("the rotors' largest thrust, " + NumberText(model.MaxThrust()) +
+           " N, does not carry its weight 1.2 times, " +
+           NumberText(kLeastThrustToWeight * model.HoverThrust()) + " N");
+  }
   return model;
 }
 

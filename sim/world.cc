@@ -322,6 +322,14 @@ double World::time() const { return impl_->Time(); }
 double World::timestep() const { return impl_->config_.timestep; }
 const estimation::VehicleModel& World::model() const { return impl_->model_; }
 const PadMotion& World::pad_motion() const { return impl_->motion_; }
+
+// The drive's velocity lags by mass / gain times the acceleration, and its position by this over the
+// position gain; twice that is allowed, and what a step of the physics leaves.
+World::PadLag World::MaxPadLag() const {
+  const double velocity = 2.0 * PadDrive::kMass / PadDrive::kVelocityGain *
+                          impl_->motion_.bounds().acceleration;
+  return {0.001 + velocity / PadDrive::kPositionGain, 0.002 + velocity};
+}
 const WorldConfig& World::config() const { return impl_->config_; }
 estimation::VehicleState World::vehicle() const { return impl_->Vehicle(); }
 estimation::PadState World::pad() const { return impl_->Pad(); }

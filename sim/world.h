@@ -75,6 +75,12 @@ class World {
   double timestep() const;  ///< [s]
   const estimation::VehicleModel& model() const;
   const PadMotion& pad_motion() const;
+  /// How far the pad may be off its motion: its drive needs a force, which is a lag. Nothing lands.
+  struct PadLag {
+    double position = 0.0;  ///< [m]
+    double velocity = 0.0;  ///< [m/s]
+  };
+  PadLag MaxPadLag() const;
   const WorldConfig& config() const;
 
   /// True state of the vehicle now.

@@ -34,6 +34,27 @@ TEST(ClosedLoop, LandsInThePapersFirstCase) {
   EXPECT_GT(*result.min_clearance_m, 0.0);
   EXPECT_LT(*result.mean_abs_error_x_m, 0.226);
   EXPECT_LT(*result.mean_abs_error_y_m, 0.263);
+  ASSERT_TRUE(result.t_star_s && result.t_star_upper_s);
+  EXPECT_LE(*result.t_star_s, *result.t_star_upper_s);
+  EXPECT_LE(*result.t_star_upper_s, 1.03 * *result.t_star_s);
+  EXPECT_TRUE(result.within_limits);
+  EXPECT_DOUBLE_EQ(*result.time_ratio(), result.touchdown->t / *result.t_star_s);
+  EXPECT_GT(*result.time_ratio(), 1.0);
+}
+
+TEST(ClosedLoop, NoRatioBeyondTheLimitsAndNoneWithoutALanding) {
+  TrialResult result;
+  result.outcome = Outcome::kLanded;
+  result.touchdown = Touchdown{};
+  result.touchdown->t = 6.0;
+  result.t_star_s = 4.0;
+  EXPECT_FALSE(result.time_ratio().has_value());
+  result.within_limits = true;
+  EXPECT_DOUBLE_EQ(*result.time_ratio(), 1.5);
+  result.outcome = Outcome::kTimeout;
+  EXPECT_FALSE(result.time_ratio().has_value());
+  const Scenario following = Shipped("open", {"descent=none", "timeout=1"});
+  EXPECT_FALSE(RunTrial(following, 1, StandardRegistries()).t_star_s.has_value());
 }
 
 // Whatever a replanning step commits to is certified; what it keeps or holds was when it began.

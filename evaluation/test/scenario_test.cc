@@ -158,9 +158,10 @@ TEST_F(ScenarioTest, AnUnknownKeyNamesFileLineAndWhatIsAllowed) {
 }
 
 TEST_F(ScenarioTest, AWrongTypeNamesTheRange) {
-  EXPECT_THAT(Refusal("\npad:\n  speed: fast\n"),
-              AllOf(HasSubstr(path_ + ":3"),
-                    HasSubstr("pad.speed must be a number in [0.01, 3] m/s"), HasSubstr("'fast'")));
+  EXPECT_THAT(
+      Refusal("\npad:\n  speed: fast\n"),
+      AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.speed must be a number in [0.01, 10] m/s"),
+            HasSubstr("'fast'")));
   EXPECT_THAT(Refusal("pad: {start: [1, 2, 3]}\n"), HasSubstr("a list of 2 numbers"));
   EXPECT_THAT(Refusal("pad: {start: 3}\n"), HasSubstr("a list of 2 numbers"));
   EXPECT_THAT(Refusal("start: {yaw_random: yes}\n"), HasSubstr("true or false, not 'yes'"));
@@ -185,7 +186,7 @@ TEST_F(ScenarioTest, AnOutOfRangeValueNamesTheRange) {
 TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
   EXPECT_THAT(Refusal("descent: planned\n"), HasSubstr("descent must be none or vertical"));
   EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),
-              HasSubstr("straight_turn, circle, line or static"));
+              HasSubstr("straight_turn, circle, line, static, figure_eight, "));
   EXPECT_THAT(Refusal("solver: {backend: newton}\n"),
               AllOf(HasSubstr(":1"), HasSubstr("solver.backend must be banded, lbfgs, ceres, "),
                     HasSubstr("not 'newton'")));
@@ -246,6 +247,30 @@ TEST_F(ScenarioTest, AnObstacleOnThePadsWayIsRefused) {
 TEST_F(ScenarioTest, APadThatCannotBeCaughtIsRefused) {
   EXPECT_THAT(Refusal("pad: {speed: 2.8}\n"),
               AllOf(HasSubstr(":1"), HasSubstr("0.9 limits.speed")));
+}
+
+TEST_F(ScenarioTest, APadMotionIsAskedWhatItNeeds) {
+  EXPECT_EQ(Refusal("pad: {motion: random}\n"), "accepted");
+  EXPECT_EQ(Refusal("pad: {motion: figure_eight, speed: 10}\nlimits: {speed: 12}\n"), "accepted");
+  EXPECT_THAT(
+      Refusal(
+          "pad:\n  motion: random\nobstacles: {boxes: [{centre: [40, 40], size: [1, 1, 1]}]}\n"),
+      AllOf(HasSubstr(path_ + ":2"), HasSubstr("without obstacles")));
+  EXPECT_THAT(Refusal("pad: {motion: random, phase_spread: 1}\n"),
+              HasSubstr("pad.phase_spread must be 0"));
+  EXPECT_THAT(
+      Refusal("pad:\n  motion: stop_and_go\n  stop_time: 2\n"),
+      AllOf(HasSubstr(path_ + ":3"), HasSubstr("pad.stop_time is 2; allowed is [3.6, 600]")));
+  EXPECT_THAT(Refusal("pad: {motion: waypoints}\n"),
+              AllOf(HasSubstr("pad.waypoints"), HasSubstr("none: it cannot be read")));
+  std::ofstream(::testing::TempDir() + "sharp.csv") << "t,x,y\n0,0,0\n5,4,0\n10,0,0.1\n";
+  EXPECT_THAT(Refusal("pad: {motion: waypoints}\n",
+                      {"pad.waypoints=" + ::testing::TempDir() + "sharp.csv"}),
+              HasSubstr("sharp.csv: line 3: the path turns by 179 degrees"));
+  std::ofstream(::testing::TempDir() + "fast.csv") << "t,x,y\n0,0,0\n5,30,0\n";
+  EXPECT_THAT(
+      Refusal("pad: {motion: waypoints}\n", {"pad.waypoints=" + ::testing::TempDir() + "fast.csv"}),
+      HasSubstr("0.9 limits.speed"));
 }
 
 TEST_F(ScenarioTest, AStartInTheGroundIsRefused) {
@@ -334,8 +359,8 @@ TEST_F(ScenarioTest, OverridesGoThroughTheSameTable) {
   EXPECT_EQ(Load("seed: 5\n", {"seed=6", "pad.speed=1.5"}).seed, 6U);
   EXPECT_EQ(Load("seed: 1\n", {"start.position=[1, 2, 3]"}).start.position,
             Eigen::Vector3d(1, 2, 3));
-  EXPECT_THAT(Refusal("seed: 1\n", {"pad.speed=9"}),
-              AllOf(HasSubstr("--set pad.speed=9"), HasSubstr("[0.01, 3] m/s")));
+  EXPECT_THAT(Refusal("seed: 1\n", {"pad.speed=11"}),
+              AllOf(HasSubstr("--set pad.speed=11"), HasSubstr("[0.01, 10] m/s")));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense=9"}), HasSubstr("unknown key nonsense"));
   EXPECT_THAT(Refusal("seed: 1\n", {"nonsense"}), HasSubstr("write KEY=VALUE"));
   // There is no line to name.

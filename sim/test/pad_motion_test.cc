@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/sim/pad_motion.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -40,13 +41,31 @@ std::vector<PadMotionConfig> Motions() {
   sharp.turn_start = 0.0;
   PadMotionConfig clockwise = Config(Kind::kCircle);
   clockwise.turn_rate = -0.3;
+  PadMotionConfig eight = Config(Kind::kFigureEight);
+  eight.turn_rate = -0.5;
+  PadMotionConfig stop = Config(Kind::kStopAndGo);
+  stop.phase = 1.3;
+  PadMotionConfig random = Config(Kind::kRandom);
+  random.seed = 11;
+  PadMotionConfig waypoints = Config(Kind::kWaypoints);
+  waypoints.waypoints = {{{0, 0}, 0, 2}, {{9, 1}, 9, 3}, {{9, 1}, 14, 4}, {{15, 12}, 30, 5}};
   return {Config(Kind::kStatic),
           Config(Kind::kLine),
           Config(Kind::kCircle),
           clockwise,
           Config(Kind::kStraightTurn),
           right,
-          sharp};
+          sharp,
+          eight,
+          stop,
+          Config(Kind::kReversing),
+          random,
+          waypoints};
+}
+
+bool ChangesSpeed(const PadMotionConfig& config) {
+  return config.kind == Kind::kStopAndGo || config.kind == Kind::kReversing ||
+         config.kind == Kind::kRandom || config.kind == Kind::kWaypoints;
 }
 
 TEST(PadMotion, DerivativesAreThoseOfThePosition) {
@@ -82,15 +101,18 @@ TEST(PadMotion, PositionIsTheIntegralOfTheVelocity) {
   }
 }
 
-TEST(PadMotion, SpeedIsConstantAlongTheHeadingAndJerkIsContinuous) {
+TEST(PadMotion, DrivesAlongItsHeadingAndJerkIsContinuous) {
   for (const PadMotionConfig& config : Motions()) {
     const PadMotion motion(config);
     PadState last = motion.At(-5.0);
     for (double t = -5.0; t < 40.0; t += 1e-3) {
       const PadState pad = motion.At(t);
       const double speed = config.kind == Kind::kStatic ? 0.0 : config.speed;
-      ASSERT_NEAR(pad.v_WP.norm(), speed, 1e-12);
-      ASSERT_NEAR(pad.v_WP.x(), speed * std::cos(pad.yaw), 1e-12);
+      if (!ChangesSpeed(config)) {
+        ASSERT_NEAR(pad.v_WP.norm(), speed, 1e-12);
+        ASSERT_NEAR(pad.v_WP.x(), speed * std::cos(pad.yaw), 1e-12);
+      }
+      ASSERT_NEAR(pad.v_WP.x() * std::sin(pad.yaw), pad.v_WP.y() * std::cos(pad.yaw), 1e-12);
       ASSERT_EQ(pad.p_WP.z(), config.p_start.z());
       ASSERT_LT((pad.a_WP - last.a_WP).norm(), 2e-3);
       ASSERT_LT((pad.j_WP - last.j_WP).norm(), 2e-2);
@@ -123,13 +145,82 @@ TEST(PadMotion, CircleClosesAfterOneTurn) {
 
 TEST(PadMotion, PhaseIsAHeadStart) {
   for (PadMotionConfig config : Motions()) {
-    if (config.kind == Kind::kStatic) continue;
+    if (config.kind == Kind::kStatic || config.kind == Kind::kWaypoints) continue;
     const PadMotion motion(config);
     config.phase += 2.5;
     const PadMotion ahead(config);
     for (const double t : {-3.0, 0.0, 7.3, 21.0}) {
       EXPECT_LT((ahead.At(t).p_WP - motion.At(t + 2.5 / config.speed).p_WP).norm(), 1e-9);
     }
+  }
+}
+
+TEST(PadMotion, KeepsItsBounds) {
+  for (const PadMotionConfig& config : Motions()) {
+    const PadMotion motion(config);
+    const PadMotionBounds bounds = motion.bounds();
+    double speed = 0.0, acceleration = 0.0;
+    for (double t = -5.0; t < 120.0; t += 0.01) {
+      const PadState pad = motion.At(t);
+      speed = std::max(speed, pad.v_WP.norm());
+      acceleration = std::max(acceleration, pad.a_WP.norm());
+      const double turning = (motion.At(t + 1e-4).yaw_rate - motion.At(t - 1e-4).yaw_rate) / 2e-4;
+      ASSERT_LE(std::abs(turning), bounds.yaw_acceleration + 1e-6);
+    }
+    EXPECT_LE(speed, bounds.speed + 1e-12);
+    EXPECT_LE(acceleration, bounds.acceleration + 1e-12);
+    EXPECT_GE(speed, 0.9 * bounds.speed);
+    EXPECT_GE(acceleration, 0.4 * bounds.acceleration);
+  }
+}
+
+TEST(PadMotion, FigureEightClosesAndCrossesItself) {
+  PadMotionConfig config = Config(Kind::kFigureEight);
+  config.turn_rate = 0.4;
+  const PadMotion motion(config);
+  const FigureEight path(config.p_start.head<2>(), config.heading, config.turn_rate / config.speed);
+  const double period = path.length() / config.speed;
+  EXPECT_LT((motion.At(period).p_WP - motion.At(0.0).p_WP).norm(), 1e-9);
+  EXPECT_NEAR(motion.At(0.0).yaw_rate, 0.4, 1e-12);
+  EXPECT_NEAR(motion.At(0.5 * period).yaw_rate, -0.4, 1e-12);
+  // The crossing is passed a quarter and three quarters of the way, from two directions.
+  const PadState there = motion.At(0.25 * period), again = motion.At(0.75 * period);
+  EXPECT_LT((there.p_WP - again.p_WP).norm(), 1e-9);
+  EXPECT_NEAR(there.yaw - again.yaw, 2.0 * 2.404825557695773, 1e-9);
+  EXPECT_GT((motion.At(0.5 * period).p_WP - motion.At(0.0).p_WP).norm(), 3.0);
+}
+
+TEST(PadMotion, ReversingKeepsItsHeadingAndStopsStand) {
+  const PadMotion back(Config(Kind::kReversing));
+  EXPECT_EQ(back.At(4.0).yaw, back.At(12.0).yaw);
+  EXPECT_NEAR(back.At(12.0).v_WP.dot(back.At(4.0).v_WP), -0.64, 1e-9);
+  PadMotionConfig config = Config(Kind::kStopAndGo);
+  const PadMotion stop(config);
+  EXPECT_LT(stop.At(10.5).v_WP.norm(), 1e-12);
+  EXPECT_LT((stop.At(10.5).p_WP - stop.At(10.6).p_WP).norm(), 1e-12);
+}
+
+TEST(PadMotion, RandomDrivesKeepTheirLimitsAndDiffer) {
+  PadMotionConfig config = Config(Kind::kRandom);
+  config.turn_rate = 0.8;
+  for (const double speed : {0.8, 5.0}) {
+    config.speed = speed;
+    double sharpest = 0.0;
+    std::vector<Eigen::Vector3d> ends;
+    for (config.seed = 1; config.seed <= 4; ++config.seed) {
+      const PadMotion motion(config);
+      for (double t = 0.0; t < 300.0; t += 0.01) {
+        const PadState pad = motion.At(t);
+        ASSERT_LE(pad.j_WP.norm(), config.jerk * (1.0 + 1e-9));
+        ASSERT_LE(std::abs(pad.yaw_rate), config.turn_rate * (1.0 + 1e-9));
+        sharpest = std::max(sharpest, pad.j_WP.norm());
+      }
+      ends.push_back(motion.At(60.0).p_WP);
+      for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+        EXPECT_GT((ends[i] - ends.back()).norm(), 1.0);
+      EXPECT_EQ(PadMotion(config).At(60.0).p_WP, ends.back());
+    }
+    EXPECT_GT(sharpest, 0.2 * config.jerk);
   }
 }
 
@@ -158,6 +249,21 @@ TEST(PadMotion, RefusesByNameValueAndRange) {
   EXPECT_THAT(message([](PadMotionConfig* c) { c->turn_rate = std::nan(""); }),
               HasSubstr("pad.turn_rate is nan"));
   EXPECT_THAT(message([](PadMotionConfig* c) { c->phase = INFINITY; }), HasSubstr("pad.phase"));
+  const auto changing = [&](Kind kind, auto change) {
+    return message([&](PadMotionConfig* c) {
+      c->kind = kind;
+      change(c);
+    });
+  };
+  EXPECT_THAT(changing(Kind::kStopAndGo, [](PadMotionConfig* c) { c->stop_time = 0.0; }),
+              AllOf(HasSubstr("pad.stop_time is 0"), HasSubstr("[3.6, 600]")));
+  EXPECT_THAT(changing(Kind::kReversing, [](PadMotionConfig* c) { c->acceleration = 0.0; }),
+              HasSubstr("pad.acceleration is 0"));
+  EXPECT_THAT(changing(Kind::kRandom, [](PadMotionConfig* c) { c->jerk = -1.0; }),
+              HasSubstr("pad.jerk is -1"));
+  EXPECT_THAT(changing(Kind::kFigureEight, [](PadMotionConfig* c) { c->turn_rate = 0.0; }),
+              HasSubstr("pad.turn_rate is 0"));
+  EXPECT_THAT(changing(Kind::kWaypoints, [](PadMotionConfig*) {}), HasSubstr("two places"));
 }
 
 }  // namespace

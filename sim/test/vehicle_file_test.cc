@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/sim/vehicle_file.h"
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -49,14 +50,15 @@ TEST(VehicleFile, ModelIsWhatTheFileSays) {
   EXPECT_DOUBLE_EQ(model.hull_top, 0.08);
   EXPECT_DOUBLE_EQ(model.foot_depth, 0.12);
   EXPECT_NEAR(model.foot_radius, 0.16, 1e-6);
+  EXPECT_NEAR(model.foot_reach, std::hypot(0.16, 0.105) + 0.015, 1e-6);
 }
 
 TEST(VehicleFile, ChangesInTheFileAreRead) {
   EXPECT_EQ(LoadVehicleModel(Changed("mass=\"1.18\"", "mass=\"1.5\"")).mass_kg, 1.5);
-  EXPECT_EQ(LoadVehicleModel(Changed("gear=\"0 0 1 0 0  0.016\"", "gear=\"0 0 1 0 0 -0.016\""))
+  EXPECT_EQ(LoadVehicleModel(Changed("pos=\" 0.12  0.12 0.04\"", "pos=\" 0.13  0.12 0.04\""))
                 .rotors[0]
-                .spin,
-            -1.0);
+                .p_BR.x(),
+            0.13);
 }
 
 TEST(VehicleFile, EmbeddedTextIsTheFile) {
@@ -74,7 +76,10 @@ TEST(VehicleFile, RefusesWhatIsMissingOrDifferent) {
               HasSubstr("lag of rotor0 is 0; allowed is [0.005, 1]"));
   EXPECT_THAT(Refusal("<inertial pos=\"0 0 0\"", "<inertial pos=\"0.01 0 0\""),
               HasSubstr("<inertial>"));
-  EXPECT_THAT(Refusal("mass=\"1.18\"", "mass=\"4\""), HasSubstr("does not carry its weight"));
+  EXPECT_THAT(Refusal("mass=\"1.18\"", "mass=\"4\""),
+              HasSubstr("does not carry its weight 1.2 times"));
+  EXPECT_THAT(Refusal("gear=\"0 0 1 0 0  0.016\"", "gear=\"0 0 1 0 0 -0.016\""),
+              HasSubstr("thrust and three moments"));
   EXPECT_THAT(Refusal("\"body_drag_area\"", "\"drag_area\""), HasSubstr("body_drag_area"));
   EXPECT_THAT(Refusal("name=\"foot0\"", "name=\"toe0\""), ::testing::IsEmpty());
   EXPECT_THAT(Refusal("mass=\"1.18\"", "mass=\"heavy\""), HasSubstr("MJCF"));

@@ -146,8 +146,34 @@ TEST(WorldFlight, WindPushesWithTheDragModel) {
   EXPECT_LT(world.vehicle().w_WB_B.norm(), 1e-12);  // acts at the centre of mass
 }
 
+TEST(WorldFlight, PadLagsItsMotionByNoMoreThanStated) {
+  for (const double speed : {0.8, 10.0}) {
+    for (const Kind kind : {Kind::kStatic, Kind::kCircle, Kind::kStraightTurn, Kind::kFigureEight,
+                            Kind::kStopAndGo, Kind::kReversing, Kind::kRandom}) {
+      WorldConfig config = test::OpenSky();
+      config.pad_motion.kind = kind;
+      config.pad_motion.speed = kind == Kind::kStatic ? 0.0 : speed;
+      config.pad_motion.acceleration = 0.4 * speed + 0.2;
+      config.pad_motion.go_time = config.pad_motion.stop_time = 12.0;
+      World world(config);
+      const World::PadLag most = world.MaxPadLag();
+      World::PadLag worst;
+      while (world.time() < 30.0) {
+        world.Step(All(Hover(world)));
+        const estimation::PadState truth = world.pad();
+        const estimation::PadState path = world.pad_motion().At(world.time());
+        worst.position = std::max(worst.position, (truth.p_WP - path.p_WP).norm());
+        worst.velocity = std::max(worst.velocity, (truth.v_WP - path.v_WP).norm());
+      }
+      EXPECT_LE(worst.position, most.position) << speed << " " << static_cast<int>(kind);
+      EXPECT_LE(worst.velocity, most.velocity) << speed << " " << static_cast<int>(kind);
+    }
+  }
+}
+
 TEST(WorldFlight, PadFollowsItsPath) {
-  for (const Kind kind : {Kind::kStatic, Kind::kLine, Kind::kCircle, Kind::kStraightTurn}) {
+  for (const Kind kind : {Kind::kStatic, Kind::kLine, Kind::kCircle, Kind::kStraightTurn,
+                          Kind::kFigureEight, Kind::kStopAndGo, Kind::kReversing, Kind::kRandom}) {
     WorldConfig config = test::OpenSky();
     config.pad_motion.kind = kind;
     config.pad_motion.heading = 1.0;

@@ -177,7 +177,8 @@ def test_land_json_is_one_document_with_every_field(run):
     assert done.returncode == 1
     document = json.loads(done.stdout)
     assert document["landed"] is False and document["outcome"] == "timeout"
-    assert document["time_to_land_s"] is None and document["t_star_s"] is None
+    assert document["time_to_land_s"] is None and document["time_ratio"] is None
+    assert document["t_star_s"] > 0 and "t_star_upper_s" in document
     assert document["touchdown"]["error_m"] is None
     assert document["scenario"] == "open" and document["seed"] == 5
     assert document["planner"] == "landing" and document["backend"] == "banded"

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers are read by std::from_chars, which knows no locale. What is asked of the points themselves
+// is sim/waypoint_drive's to say.
+#include "touchdown/evaluation/waypoint_file.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kFarthest = 1e4;  // [m], [s]
+constexpr double kFastest = 20.0;  // [m/s]
+
+std::string Trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == text.npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> Columns(const std::string& line) {
+  std::vector<std::string> columns;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end != line.npos; begin = end + 1) {
+    end = line.find(',', begin);
+    columns.push_back(Trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
+  }
+  return columns;
+}
+
+class Reader {
+ public:
+  explicit Reader(std::string path) : path_(std::move(path)) {}
+
+  std::vector<sim::PadWaypoint> Read() {
+    std::ifstream file(path_);
+    if (!file) throw std::invalid_argument("it cannot be read");
+    std::string text;
+    while (std::getline(file, text)) {
+      ++line_;
+      text = Trimmed(text);
+      if (text.empty() || text.front() == '#') continue;
+      const std::vector<std::string> columns = Columns(text);
+      if (names_.empty()) {
+        TakeNames(columns);
+      } else {
+        TakePoint(columns);
+      }
+    }
+    if (names_.empty()) Refuse("there must be a first line `t,x,y` or `x,y,speed`");
+    return points_;
+  }
+
+ private:
+  [[noreturn]] void Refuse(const std::string& what) const {
+    throw std::invalid_argument(fmt::format("line {}: {}", line_, what));
+  }
+
+  void TakeNames(const std::vector<std::string>& columns) {
+    const std::vector<std::string> timed = {"t", "x", "y"}, paced = {"x", "y", "speed"};
+    if (columns != timed && columns != paced) {
+      Refuse("the first line must be `t,x,y` or `x,y,speed`");
+    }
+    names_ = columns;
+    timed_ = columns == timed;
+  }
+
+  double Number(const std::string& text, const std::string& name, double lo, double hi) const {
+    double value = NAN;
+    const auto end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, value);
+    if (read.ec != std::errc{} || read.ptr != end || !(value >= lo && value <= hi)) {
+      Refuse(fmt::format("{} must be a number in [{:g}, {:g}], not '{}'", name, lo, hi, text));
+    }
+    return value;
+  }
+
+  void TakePoint(const std::vector<std::string>& columns) {
+    if (columns.size() != names_.size()) {
+      Refuse(fmt::format("there must be {} columns, not {}", names_.size(), columns.size()));
+    }
+    std::array<double, 3> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const bool speed = names_[i] == "speed";
+      values[i] =
+          Number(columns[i], names_[i], speed ? 0.01 : -kFarthest, speed ? kFastest : kFarthest);
+    }
+    sim::PadWaypoint point;
+    point.line = line_;
+    if (timed_) {
+      point.t = values[0];
+      point.p = {values[1], values[2]};
+    } else {
+      point.p = {values[0], values[1]};
+      if (!points_.empty()) {
+        point.t = points_.back().t + (point.p - points_.back().p).norm() / speed_;
+      }
+      speed_ = values[2];
+    }
+    points_.push_back(point);
+  }
+
+  std::string path_;
+  int line_ = 0;
+  std::vector<std::string> names_;
+  bool timed_ = true;
+  double speed_ = 0.0;  // from the last point on [m/s]
+  std::vector<sim::PadWaypoint> points_;
+};
+
+}  // namespace
+
+std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path) {
+  return Reader(path).Read();
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/sim/vehicle_import.h"
+
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/sim/test/scenes.h"
+#include "touchdown/sim/vehicle_file.h"
+#include "touchdown/sim/world.h"
+
+namespace touchdown::sim {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kModels = std::string(TOUCHDOWN_SOURCE_DIR) + "/sim/models/";
+
+estimation::VehicleModel Imported(const std::string& file, const AirframeExtras& extras = {}) {
+  return LoadVehicleModel(ImportVehicle(kModels + file, extras));
+}
+
+// What is said to the model mini with `from` replaced by `to`.
+std::string Refusal(const std::string& from, const std::string& to) {
+  std::string text = ReadVehicleFile(kModels + "mini.xml");
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  const std::string path = ::testing::TempDir() + "changed_mini.xml";
+  std::ofstream(path) << text;
+  return test::MessageOf<std::invalid_argument>([&] { LoadVehicleModel(ImportVehicle(path, {})); });
+}
+
+TEST(VehicleImport, OwnFormStaysAsItIs) {
+  EXPECT_EQ(ImportVehicle(kModels + "quadrotor.xml", {}), DefaultVehicleMjcf());
+}
+
+TEST(VehicleImport, MiniIsReadAboutItsCentreOfMass) {
+  const estimation::VehicleModel model = Imported("mini.xml");
+  EXPECT_NEAR(model.mass_kg, 0.030, 1e-12);
+  EXPECT_TRUE(model.inertia.isApprox(Eigen::Vector3d(1.6e-5, 1.7e-5, 2.9e-5), 1e-9));
+  const std::array<Eigen::Vector3d, 4> hubs = {{{0.031, -0.033, 0.007},
+                                                {-0.035, -0.033, 0.007},
+                                                {-0.035, 0.033, 0.007},
+                                                {0.031, 0.033, 0.007}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(model.rotors[i].p_BR.isApprox(hubs[i], 1e-9)) << i;
+    EXPECT_EQ(model.rotors[i].spin, i % 2 == 0 ? -1.0 : 1.0);
+  }
+  EXPECT_EQ(model.rotor_thrust_min, 0.0);
+  EXPECT_NEAR(model.rotor_thrust_max, 0.17, 1e-12);
+  EXPECT_NEAR(model.torque_per_thrust, 0.006, 1e-12);
+  EXPECT_EQ(model.rotor_lag_s, 0.03);
+  // The plate's corners, 2 mm off the centre of mass; the battery below.
+  EXPECT_NEAR(model.hull_radius, std::hypot(0.047, 0.045), 1e-6);
+  EXPECT_NEAR(model.hull_top, 0.010, 1e-6);  // flatter than a centimetre: the hull is not
+  EXPECT_GT(model.foot_depth, 0.008 + 0.005 - 1e-9);
+  EXPECT_EQ(model.rotor_drag, Eigen::Vector3d::Zero());
+}
+
+TEST(VehicleImport, CarrierIsPutTogether) {
+  const estimation::VehicleModel model = Imported("carrier.xml");
+  EXPECT_NEAR(model.mass_kg, 1.30, 1e-12);
+  const double height = (-0.03 * 0.32 + 0.02 * 0.28) / 1.3;  // of the centre of mass
+  const double low = 0.7 * height * height + 0.32 * std::pow(-0.03 - height, 2) +
+                     0.28 * std::pow(0.02 - height, 2);
+  EXPECT_NEAR(model.inertia.x(), 0.0030 + 0.0002 + 2 * 0.0028 + low, 1e-9);
+  EXPECT_NEAR(model.inertia.y(), 0.0034 + 0.0005 + 2 * 0.0001 + low + 0.28 * 0.14 * 0.14, 1e-9);
+  EXPECT_NEAR(model.inertia.z(), 0.0050 + 0.0006 + 2 * 0.0028 + 0.28 * 0.14 * 0.14, 1e-9);
+  // The boom at the back is turned about.
+  EXPECT_TRUE(model.rotors[0].p_BR.isApprox(Eigen::Vector3d(-0.14, 0.18, 0.04 - height), 1e-9));
+  EXPECT_TRUE(model.rotors[1].p_BR.isApprox(Eigen::Vector3d(-0.14, -0.18, 0.04 - height), 1e-9));
+  EXPECT_NEAR(model.foot_depth, 0.11 + height, 1e-6);
+  EXPECT_GT(model.hull_radius, std::hypot(0.14, 0.18));
+}
+
+TEST(VehicleImport, WhatTheFileDoesNotSayIsTheCallers) {
+  AirframeExtras extras;
+  extras.rotor_lag = 0.05;
+  extras.rotor_drag = 0.02;
+  extras.body_drag_area = 0.003;
+  extras.hull = {0.08, -0.01, 0.03};
+  extras.feet = {0.04, 0.03};
+  const estimation::VehicleModel model = Imported("mini.xml", extras);
+  EXPECT_EQ(model.rotor_lag_s, 0.05);
+  EXPECT_TRUE(model.rotor_drag.isApprox(Eigen::Vector3d(0.02, 0.02, 0.0)));
+  EXPECT_EQ(model.body_drag_area, 0.003);
+  EXPECT_NEAR(model.hull_radius, 0.08, 1e-12);
+  EXPECT_NEAR(model.hull_top, 0.03, 1e-12);
+  EXPECT_NEAR(model.foot_radius, 0.04, 1e-12);
+  EXPECT_NEAR(model.foot_depth, 0.03, 1e-12);
+}
+
+TEST(VehicleImport, HoversInTheWorld) {
+  for (const char* file : {"mini.xml", "carrier.xml"}) {
+    WorldConfig config = test::OpenSky();
+    config.vehicle_mjcf = ImportVehicle(kModels + file, {});
+    World world(config);
+    const Eigen::Vector3d start = world.vehicle().p_WB;
+    // Each rotor's share in pure thrust, from the arms: moments cancel.
+    const estimation::VehicleModel& model = world.model();
+    double ahead = 0.0, behind = 0.0;
+    for (const auto& rotor : model.rotors) {
+      (rotor.p_BR.x() > 0.0 ? ahead : behind) += 0.5 * std::abs(rotor.p_BR.x());
+    }
+    std::array<double, 4> thrusts{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double share = model.rotors[i].p_BR.x() > 0.0 ? behind : ahead;
+      thrusts[i] = model.HoverThrust() * 0.5 * share / (ahead + behind);
+    }
+    for (int i = 0; i < 60; ++i) world.Step(thrusts);
+    EXPECT_LT((world.vehicle().p_WB - start).norm(), 3e-3) << file;
+    // The rotors start with equal thrusts, and what they turn it by until they differ stays.
+    EXPECT_LT(world.vehicle().w_WB_B.norm(), 1.2) << file;
+    const Eigen::Vector3d w = world.vehicle().w_WB_B;
+    for (int i = 0; i < 20; ++i) world.Step(thrusts);
+    EXPECT_LT((world.vehicle().w_WB_B - w).norm(), 0.15) << file;
+  }
+}
+
+TEST(VehicleImport, RefusesWhatCannotBeFlown) {
+  EXPECT_THAT(Refusal("<freejoint/>", ""), HasSubstr("0 free joints"));
+  EXPECT_THAT(Refusal("<freejoint/>", "<joint name=\"lift\" type=\"slide\"/>"),
+              HasSubstr("joint \"lift\" moves"));
+  EXPECT_THAT(Refusal("<motor class=\"mini\" name=\"m4\" site=\"front_left\" gear=\"0 0 0.17 0 0 "
+                      "0.00102\"/>",
+                      ""),
+              HasSubstr("it has 3 actuators; allowed is 4"));
+  EXPECT_THAT(Refusal("gear=\"0 0 0.17 0 0 -0.00102\"", "gear=\"0.1 0 0.17 0 0 -0.00102\""),
+              HasSubstr("actuator \"m1\" must have gear"));
+  EXPECT_THAT(Refusal("0 0 0.17 0 0 -0.00102", "0 0 0.17 0 0 0"), HasSubstr("no reaction torque"));
+  EXPECT_THAT(Refusal("0 0 0.17 0 0 -0.00102", "0 0 0.25 0 0 -0.0015"), HasSubstr("differs"));
+  EXPECT_THAT(Refusal("0 0 0.17 0 0 -0.00102", "0 0 -0.17 0 0 -0.00102"),
+              HasSubstr("allowed is a range above 0"));
+  EXPECT_THAT(Refusal("0 0 0.17 0 0 -0.00102", "0 0 0.17 0 0 0.00102"),
+              HasSubstr("thrust and three moments"));
+  EXPECT_THAT(Refusal("<site name=\"back_left\"", "<site euler=\"0 10 0\" name=\"back_left\""),
+              HasSubstr("actuator \"m3\" does not push along the z axis"));
+  EXPECT_THAT(Refusal("ctrlrange=\"0 1\"", "gear=\"1\""), HasSubstr("has no ctrlrange"));
+  EXPECT_THAT(Refusal("mass=\"0.030\"", "mass=\"0.066\""), HasSubstr("carry its weight"));
+  EXPECT_THAT(Refusal("diaginertia=\"1.6e-5 1.7e-5 2.9e-5\"",
+                      "fullinertia=\"1.6e-5 1.7e-5 2.9e-5 0.3e-5 0 0\""),
+              HasSubstr("product of inertia"));
+  EXPECT_THAT(Refusal("mass=\"0.030\"", "mass=\"light\""), HasSubstr("MJCF"));
+  EXPECT_THAT(
+      test::MessageOf<std::invalid_argument>([] { ImportVehicle("/no/such/vehicle.xml", {}); }),
+      HasSubstr("/no/such/vehicle.xml"));
+}
+
+}  // namespace
+}  // namespace touchdown::sim
