@@ -26,6 +26,7 @@ struct VehicleModel {
   double rotor_thrust_max = 7.0;     ///< per rotor [N]
   double rotor_lag_s = 0.035;        ///< first-order thrust lag [s]
   double torque_per_thrust = 0.016;  ///< reaction torque per newton [m] (tau/k of eq. 1-2)
+  double rotor_radius = 0.0;         ///< of the disc [m]; 0: not known
 
   Eigen::Vector3d rotor_drag = Eigen::Vector3d::Zero();  ///< linear, along B's axes [N s/m]
   double body_drag_area = 0.0;                           ///< Cd A of the quadratic body drag [m^2]

@@ -117,6 +117,8 @@ void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
   }
   estimation::Rotor& rotor = model->rotors[static_cast<std::size_t>(index)];
   rotor.p_BR = Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site);
+  const double radius = m.site_type[site] == mjGEOM_CYLINDER ? m.site_size[3 * site] : 0.0;
+  model->rotor_radius = index == 0 ? radius : std::min(model->rotor_radius, radius);
   rotor.spin = gear[5] > 0.0 ? 1.0 : -1.0;
 }
 
