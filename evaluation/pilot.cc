@@ -22,6 +22,7 @@ constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kLookAhead = 0.8;        // the heading is where the vehicle will be then [s]
 constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says nothing [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
+constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
@@ -74,6 +75,9 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
                                             scenario.pad.deck_size, 2.0 * model.foot_radius));
   }
   parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
+  if (scenario.control.disturbance && scenario.controller == ControllerKind::kGeometric) {
+    observer_.emplace(model);
+  }
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
@@ -103,7 +107,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
   own_usable_ = inputs.own_usable;
-  inputs.foot_force = foot_force;
+  inputs.foot_force = foot_force_ = foot_force;
   inputs.has_plan = has_plan_;
   // Between replans the last one counts: no plan has failed since it succeeded.
   if (requested_t_ && !last_planned_) {
@@ -137,6 +141,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   input.t_start = vehicle.t + replan_.latency_s;
   input.vehicle = vehicle;
   input.endpoint = Endpoint(vehicle.t);
+  if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
 
   const bool wants_plan = WantsPlan(filter, vehicle.t);
   // No plan is missing while none is tried: a climb must not end as a failure to plan.
@@ -188,9 +193,17 @@ const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& ma
   return planner_->Rest(replan_.request.input, *replan_.request.rest_climb, map);
 }
 
-control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) const {
+control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   if (!mission_.motors_armed) return {};
-  return mixer_.Mix(controller_->Update(vehicle, Reference(vehicle.t)).wrench);
+  if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
+  const control::MixerOutput mix =
+      mixer_.Mix(controller_->Update(vehicle, Reference(vehicle.t), disturbance()).wrench);
+  if (observer_) observer_->Command(mix.thrusts);
+  return mix;
+}
+
+control::Disturbance Pilot::disturbance() const {
+  return observer_ ? observer_->disturbance() : control::Disturbance{};
 }
 
 planning::FlatState Pilot::Reference(double t) const {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "touchdown/control/controller.h"
+#include "touchdown/control/disturbance_observer.h"
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/mixer.h"
 #include "touchdown/control/yaw_planner.h"
@@ -46,8 +47,11 @@ class Pilot {
                                        const estimation::PadFilter& filter,
                                        const planning::OccupancyMap& map);
 
-  /// Rotor thrusts for this control step [N].
-  control::MixerOutput Control(const estimation::VehicleState& vehicle) const;
+  /// Rotor thrusts for this control step [N]. Once per step: the disturbance is estimated from it.
+  control::MixerOutput Control(const estimation::VehicleState& vehicle);
+
+  /// What the tracking law compensates; nothing where it is not estimated.
+  control::Disturbance disturbance() const;
 
   /// Committed reference with heading at time t.
   planning::FlatState Reference(double t) const;
@@ -75,11 +79,13 @@ class Pilot {
   std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
   control::Mixer mixer_;
+  std::optional<control::DisturbanceObserver> observer_;
   control::MissionParameters parameters_;
   control::MissionState mission_state_;
   control::MissionOutputs mission_;
   control::YawState yaw_;
-  double yaw_t_ = 0.0;  ///< time of yaw_
+  double yaw_t_ = 0.0;       ///< time of yaw_
+  double foot_force_ = 0.0;  ///< as it was last told [N]
   double heading_wanted_ = 0.0;
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
