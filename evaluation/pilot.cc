@@ -123,6 +123,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   mission_ = step.outputs;
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
+  settling_.Note(t, mission_.mode == control::MissionMode::kLanding && foot_force > kTouchForce);
 
   yaw_ = control::StepYaw(yaw_, heading_wanted_, dt);
   yaw_t_ = t + dt;
@@ -196,8 +197,11 @@ const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& ma
 control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   if (!mission_.motors_armed) return {};
   if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
+  planning::FlatState reference = Reference(vehicle.t);
+  control::Disturbance compensated = disturbance();
+  settling_.Apply(vehicle, &reference, &compensated);
   const control::MixerOutput mix =
-      mixer_.Mix(controller_->Update(vehicle, Reference(vehicle.t), disturbance()).wrench);
+      mixer_.Mix(controller_->Update(vehicle, reference, compensated).wrench);
   if (observer_) observer_->Command(mix.thrusts);
   return mix;
 }

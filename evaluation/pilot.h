@@ -9,6 +9,7 @@
 #include "touchdown/control/disturbance_observer.h"
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/mixer.h"
+#include "touchdown/control/settling.h"
 #include "touchdown/control/yaw_planner.h"
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/estimation/vehicle_model.h"
@@ -80,6 +81,7 @@ class Pilot {
   std::unique_ptr<control::Controller> controller_;
   control::Mixer mixer_;
   std::optional<control::DisturbanceObserver> observer_;
+  control::Settling settling_;
   control::MissionParameters parameters_;
   control::MissionState mission_state_;
   control::MissionOutputs mission_;

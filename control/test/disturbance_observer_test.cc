@@ -95,12 +95,13 @@ void Fly(DisturbanceObserver* observer, Body* body, double duration, const Pushe
 
 Disturbance Steady() { return {{3.0, -2.0, 0.8}, {0.02, -0.01, 0.005}}; }
 
-TEST(DisturbanceObserver, FindsASteadyDisturbanceExactly) {
+TEST(DisturbanceObserver, FindsASteadyDisturbanceWhileTheVehicleIsShaken) {
   DisturbanceObserver observer(Vehicle());
   Body body(Vehicle());
   Fly(&observer, &body, 4.0, [](double) { return Steady(); });
-  EXPECT_LT((observer.disturbance().force_W - Steady().force_W).norm(), 0.02);
-  EXPECT_LT((observer.disturbance().moment_B - Steady().moment_B).norm(), 2e-4);
+  // Thrust and attitude are held over a step: under 1 % is left of the shaking.
+  EXPECT_LT((observer.disturbance().force_W - Steady().force_W).norm(), 0.04);
+  EXPECT_LT((observer.disturbance().moment_B - Steady().moment_B).norm(), 4e-4);
 }
 
 TEST(DisturbanceObserver, NothingIsFoundWhereNothingActs) {
