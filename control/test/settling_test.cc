@@ -76,15 +76,18 @@ TEST(Settling, FadesWithoutAJump) {
 }
 
 TEST(Settling, ABriefLossOfContactDoesNotInterruptAndALongOneEndsIt) {
+  const SettlingParameters parameters;
   Settling settling;
-  settling.Note(1.00, true);
-  settling.Note(1.10, true);
-  settling.Note(1.13, false);
-  EXPECT_GT(settling.Share(1.13), 0.5);
-  settling.Note(1.20, false);
-  EXPECT_EQ(settling.Share(1.20), 0.0);
-  settling.Note(1.30, true);
-  EXPECT_EQ(settling.Share(1.30), 0.0);
+  settling.Note(1.0, true);
+  const double end = 1.0 + parameters.fade_time;
+  settling.Note(end, true);
+  settling.Note(end + 0.9 * parameters.contact_gap, false);
+  EXPECT_EQ(settling.Share(end + 0.9 * parameters.contact_gap), 1.0);
+  const double off = end + 1.1 * parameters.contact_gap;
+  settling.Note(off, false);
+  EXPECT_EQ(settling.Share(off), 0.0);
+  settling.Note(off + 0.1, true);
+  EXPECT_EQ(settling.Share(off + 0.1), 0.0);
 }
 
 }  // namespace
