@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -33,8 +34,10 @@ struct VehicleModel {
 
   double hull_radius = 0.30;  ///< cylinder about z_B that holds body, arms and rotor discs [m]
   double hull_top = 0.08;     ///< its upper face above B's origin [m]
+  double hull_bottom = 0.0;   ///< its lower face below B's origin [m]
   double foot_depth = 0.12;   ///< lowest point of the feet below B's origin [m], > 0
   double foot_radius = 0.16;  ///< horizontal distance of a foot from B's z axis [m]
+  std::vector<double> foot_azimuths;  ///< of the feet about z_B, from x_B to y_B [rad]
 
   double MaxThrust() const { return 4.0 * rotor_thrust_max; }  ///< [N]
   double HoverThrust() const { return mass_kg * kGravity; }    ///< [N]

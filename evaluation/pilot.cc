@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/control/lean.h"
 #include "touchdown/estimation/pad_predictor.h"
 #include "touchdown/evaluation/planner_options.h"
 
@@ -22,8 +23,11 @@ constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kLookAhead = 0.8;        // the heading is where the vehicle will be then [s]
 constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says nothing [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
-constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
-constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
+constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
+constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
+constexpr double kFlareMargin = 2.5 * kRadPerDeg;
+constexpr double kTouchForce = 0.2;      // on the feet: something holds them [N]
+constexpr double kMeasuredMargin = 1.2;  // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
   return kind == DescentKind::kNone ? control::DescentStyle::kNone
@@ -55,6 +59,22 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   return options;
 }
 
+// Leaning farther, the hull's rim would touch the deck before the feet do.
+control::ControllerOptions LowOptions(const Scenario& scenario,
+                                      const estimation::VehicleModel& model) {
+  control::ControllerOptions options = TrackingOptions(scenario);
+  const double lean = control::FeetFirstTilt(model) - kFlareMargin;
+  if (lean > 0.0) options.tilt_max = std::min(options.tilt_max, lean);
+  return options;
+}
+
+std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
+                                             const estimation::VehicleModel& model,
+                                             const control::ControllerOptions& options) {
+  const bool paper = scenario.controller == ControllerKind::kPaper;
+  return control::MakeController(paper ? "paper" : "geometric", model, options);
+}
+
 }  // namespace
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
@@ -64,9 +84,8 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
       model_(model),
       oracle_(truth),
       planner_(MakePlanner(scenario, model, registries)),
-      controller_(control::MakeController(
-          scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
-          TrackingOptions(scenario))),
+      controller_(MakeLaw(scenario, model, TrackingOptions(scenario))),
+      low_controller_(MakeLaw(scenario, model, LowOptions(scenario, model))),
       mixer_(model) {
   // The pad off by three standard deviations, and feet led to its middle are still on the deck.
   parameters_.bridge_sigma = (0.5 * scenario.pad.deck_size - model.foot_radius) / 3.0;
@@ -99,6 +118,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
   }
+  foot_height_ = inputs.height;
   inputs.tag_age = filter.TagAge(t);
   inputs.pad_sigma = filter.PositionSigma(t);
   inputs.contact_sigma =
@@ -199,9 +219,11 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
   planning::FlatState reference = Reference(vehicle.t);
   control::Disturbance compensated = disturbance();
+  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const bool low = landing && foot_height_ < kFlareHeight;
+  const control::Controller& law = low ? *low_controller_ : *controller_;
   settling_.Apply(vehicle, &reference, &compensated);
-  const control::MixerOutput mix =
-      mixer_.Mix(controller_->Update(vehicle, reference, compensated).wrench);
+  const control::MixerOutput mix = mixer_.Mix(law.Update(vehicle, reference, compensated).wrench);
   if (observer_) observer_->Command(mix.thrusts);
   return mix;
 }
@@ -233,6 +255,12 @@ double Pilot::DesiredHeading(const estimation::VehicleState& vehicle,
                              const estimation::PadFilter& filter) const {
   const Eigen::Vector3d ahead =
       planner_->Reference(vehicle.t + kLookAhead).p_WB - planner_->Reference(vehicle.t).p_WB;
+  if (mission_.mode == control::MissionMode::kLanding && observer_) {
+    const Eigen::Vector3d& force_W = observer_->steady_force_W();
+    if (force_W.head<2>().norm() > kLeaning * model_.HoverThrust()) {
+      return control::HeadingIntoWind(model_, force_W, heading_wanted_);
+    }
+  }
   if (ahead.head<2>().norm() > kLookDistance) return std::atan2(ahead.y(), ahead.x());
   if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
     return heading_wanted_;

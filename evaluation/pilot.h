@@ -79,6 +79,7 @@ class Pilot {
   sim::OraclePadPrediction oracle_;
   std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
+  std::unique_ptr<control::Controller> low_controller_;  ///< close over the deck: leans less
   control::Mixer mixer_;
   std::optional<control::DisturbanceObserver> observer_;
   control::Settling settling_;
@@ -86,8 +87,9 @@ class Pilot {
   control::MissionState mission_state_;
   control::MissionOutputs mission_;
   control::YawState yaw_;
-  double yaw_t_ = 0.0;       ///< time of yaw_
-  double foot_force_ = 0.0;  ///< as it was last told [N]
+  double yaw_t_ = 0.0;        ///< time of yaw_
+  double foot_force_ = 0.0;   ///< as it was last told [N]
+  double foot_height_ = 0.0;  ///< of the feet above the deck, as last estimated [m]
   double heading_wanted_ = 0.0;
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by

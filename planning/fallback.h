@@ -13,9 +13,6 @@ class Fallback {
  public:
   Fallback(const Limits& limits, double reaction);
 
-  /// What is left of the limits for the steps from now on.
-  void SetLimits(const Limits& limits) { limits_ = limits; }
-
   /// True if the committed curve may go on from t0 [s], where the vehicle is in the state `start` of it: at
   /// rest and free, or clear for longer than braking takes and slow enough for what was observed. Fills
   /// status, curve and certificate of `result` if so.

@@ -24,6 +24,7 @@ Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
   Limits under = limits;
   under.acceleration =
       std::clamp(left, kLeastShareInWind * limits.acceleration, limits.acceleration);
+  under.braking_factor = limits.acceleration / under.acceleration;
   return under;
 }
 

@@ -166,7 +166,6 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
 
 void Replanner::Impl::Begin(const ReplanInput& input) {
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
-  fallback_.SetLimits(limits_);
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();

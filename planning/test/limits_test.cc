@@ -32,6 +32,7 @@ TEST(LimitsUnder, TiltIsSharedWithTheWind) {
   const Limits under = LimitsUnder({3.0, 6.0}, Facts(), {0.0, -3.6, 0.0});
   EXPECT_NEAR(under.acceleration, of_tilt - 3.6, 1e-12);
   EXPECT_EQ(under.speed, 3.0);
+  EXPECT_NEAR(under.braking_factor * under.acceleration, 6.0, 1e-12);
   // A little wind leaves the limit itself; a pull down means more thrust, which tilted gives more.
   EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {0.5, 0.0, 0.0}).acceleration, 6.0);
   EXPECT_GT(LimitsUnder({3.0, 6.0}, Facts(), {3.6, 0.0, -1.0}).acceleration, under.acceleration);
@@ -45,8 +46,8 @@ TEST(LimitsUnder, ThrustIsSharedToo) {
 }
 
 TEST(LimitsUnder, SomethingIsAlwaysLeft) {
-  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {20.0, 0.0, 0.0}).acceleration, 1.5);
-  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {0.0, 0.0, 30.0}).acceleration, 1.5);
+  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {20.0, 0.0, 0.0}).acceleration, 2.0);
+  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {0.0, 0.0, 30.0}).acceleration, 2.0);
 }
 
 // Any acceleration within what is left can be flown, in any horizontal direction.
