@@ -18,6 +18,12 @@ struct Wrench {
   Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
+/// What acts on the vehicle beside gravity, the rotors and the drag in still air that its model has.
+struct Disturbance {
+  Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
 /// A wrench, and how it came about (for records and tests).
 struct ControlOutput {
   Wrench wrench;
@@ -56,8 +62,10 @@ class Controller {
   virtual ~Controller() = default;
 
   /// Does not allocate. Inputs that are not finite give an output that is not finite.
+  /// @param disturbance to compensate; the law "paper", as published, does not look at it.
   virtual ControlOutput Update(const estimation::VehicleState& state,
-                               const planning::FlatState& reference) const noexcept = 0;
+                               const planning::FlatState& reference,
+                               const Disturbance& disturbance = {}) const noexcept = 0;
 };
 
 /// "geometric" or "paper". Throws std::invalid_argument for any other name.

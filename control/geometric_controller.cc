@@ -3,7 +3,8 @@
 // body rate comes from the reference's jerk by differential flatness (planning/flatness). Its
 // derivative would need the snap, which a cubic spline does not have, and is left out. Known linear
 // rotor drag is fed forward on the reference's velocity (as M. Faessler, A. Franchi, D. Scaramuzza,
-// RA-L 2018, section III model it).
+// RA-L 2018, section III model it), and the disturbance that was estimated is
+// taken from force and moment.
 
 #include "touchdown/control/geometric_controller.h"
 
@@ -21,12 +22,14 @@ GeometricController::GeometricController(const estimation::VehicleModel& model,
 }
 
 ControlOutput GeometricController::Update(const estimation::VehicleState& state,
-                                          const planning::FlatState& reference) const noexcept {
+                                          const planning::FlatState& reference,
+                                          const Disturbance& disturbance) const noexcept {
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
   const Eigen::Vector3d drag_W =
       R_WB * model_.rotor_drag.asDiagonal() * R_WB.transpose() * reference.v_WB;
   const LimitedForce force =
-      LimitForce(PositionLoop(state, reference, model_, options_) + drag_W, model_, options_);
+      LimitForce(PositionLoop(state, reference, model_, options_) + drag_W - disturbance.force_W,
+                 model_, options_);
 
   // Flatness at the force that is really asked for, so that attitude and rate belong together.
   planning::FlatState flat = reference;
@@ -53,7 +56,8 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
       -frequency.cwiseProduct(frequency).cwiseProduct(e_R) -
       2.0 * damping.cwiseProduct(frequency).cwiseProduct(e_w) - state.w_WB_B.cross(w_desired_B);
   output.wrench.moment_B = model_.inertia.cwiseProduct(angular_acceleration) +
-                           state.w_WB_B.cross(model_.inertia.cwiseProduct(state.w_WB_B));
+                           state.w_WB_B.cross(model_.inertia.cwiseProduct(state.w_WB_B)) -
+                           disturbance.moment_B;
   return output;
 }
 

@@ -148,7 +148,7 @@ struct MissionParameters {
 
   double press_depth = 0.3;      ///< the command goes this far below the deck until contact [m]
   double contact_force = 2.0;    ///< [N]
-  double contact_time = 0.1;     ///< [s]
+  double contact_time = 0.4;     ///< [s]: so long it takes to stand upright (settling.h)
   double contact_height = 0.15;  ///< |height| must be below it for contact to count [m]
   double contact_gap = 0.05;     ///< samples farther apart do not count as lasting contact [s]
 

@@ -22,7 +22,8 @@ PaperController::PaperController(const estimation::VehicleModel& model,
 }
 
 ControlOutput PaperController::Update(const estimation::VehicleState& state,
-                                      const planning::FlatState& reference) const noexcept {
+                                      const planning::FlatState& reference,
+                                      const Disturbance& /*disturbance*/) const noexcept {
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
   const LimitedForce force =
       LimitForce(PositionLoop(state, reference, model_, options_), model_, options_);

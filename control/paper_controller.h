@@ -15,8 +15,8 @@ class PaperController final : public Controller {
   explicit PaperController(const estimation::VehicleModel& model,
                            const ControllerOptions& options = {});
 
-  ControlOutput Update(const estimation::VehicleState& state,
-                       const planning::FlatState& reference) const noexcept override;
+  ControlOutput Update(const estimation::VehicleState& state, const planning::FlatState& reference,
+                       const Disturbance& disturbance) const noexcept override;
 
  private:
   estimation::VehicleModel model_;

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/air.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/equilibrium.h"
 #include "touchdown/evaluation/landing_time.h"
@@ -54,6 +55,7 @@ class Trial {
   Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
         TrialRecord* record, TrialSamples* samples)
       : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
+        air_(scenario, DrawTrial(scenario, seed), seed),
         perception_(scenario, world_, seed),
         pilot_(scenario, world_.model(), world_.pad_motion(), registries, perception_.own().now(),
                perception_.map()),
@@ -121,7 +123,7 @@ class Trial {
   // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
   void StepPhysics(const std::array<double, 4>& command) {
     try {
-      world_.Step(command);
+      world_.Step(command, air_.Step(world_));
     } catch (const std::runtime_error& error) {
       physics_failure_ = error.what();
     }
@@ -182,7 +184,7 @@ class Trial {
 
     const bool in_flight = !judge_.touchdown();
     if (sample_clock_.Due(vehicle.t)) {
-      through_air_.Add(vehicle.t, vehicle.v_WB);  // the air stands still
+      through_air_.Add(vehicle.t, vehicle.v_WB - air_.velocity());
       if (in_flight) {
         metrics_.Sample(vehicle.t, vehicle, pad);
         if (perception_.own().estimated()) metrics_.OwnState(perception_.own().now(), vehicle);
@@ -198,7 +200,7 @@ class Trial {
       }
     }
     if (in_flight && sample.foot_on_pad) {
-      sample.equilibrium_axis = EquilibriumAxis(world_.model(), through_air_.Mean());
+      sample.equilibrium_axis = EquilibriumAxis(world_.plant(), through_air_.Mean());
     }
     judge_.Observe(sample);
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
@@ -239,6 +241,8 @@ class Trial {
     if (row.pad_known) row.pad_estimate = perception_.pad_filter().Estimate(vehicle.t);
     row.reference = pilot_.Reference(vehicle.t);
     row.rotor_thrusts = world_.rotor_thrusts();
+    row.air = air_.velocity();
+    row.disturbance = pilot_.disturbance();
     row.mode = control::ToString(pilot_.mission().mode).data();
     record_->samples.push_back(row);
   }
@@ -283,6 +287,7 @@ class Trial {
   }
 
   sim::World world_;
+  Air air_;
   Perception perception_;
   Pilot pilot_;
   sim::TrueClearance clearance_;

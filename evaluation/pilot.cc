@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/control/lean.h"
 #include "touchdown/estimation/pad_predictor.h"
 #include "touchdown/evaluation/planner_options.h"
 
@@ -22,8 +23,12 @@ constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kLookAhead = 0.8;        // the heading is where the vehicle will be then [s]
 constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says nothing [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
-constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
+constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
+constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
+constexpr double kFlareMargin = 2.5 * kRadPerDeg;
+constexpr double kTouchForce = 0.2;      // on the feet: something holds them [N]
+constexpr double kMeasuredMargin = 1.2;  // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
   return kind == DescentKind::kNone ? control::DescentStyle::kNone
@@ -55,6 +60,22 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   return options;
 }
 
+// Leaning farther, the hull's rim would touch the deck before the feet do.
+control::ControllerOptions LowOptions(const Scenario& scenario,
+                                      const estimation::VehicleModel& model) {
+  control::ControllerOptions options = TrackingOptions(scenario);
+  const double lean = control::FeetFirstTilt(model) - kFlareMargin;
+  if (lean > 0.0) options.tilt_max = std::min(options.tilt_max, lean);
+  return options;
+}
+
+std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
+                                             const estimation::VehicleModel& model,
+                                             const control::ControllerOptions& options) {
+  const bool paper = scenario.controller == ControllerKind::kPaper;
+  return control::MakeController(paper ? "paper" : "geometric", model, options);
+}
+
 }  // namespace
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
@@ -64,9 +85,8 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
       model_(model),
       oracle_(truth),
       planner_(MakePlanner(scenario, model, registries)),
-      controller_(control::MakeController(
-          scenario.controller == ControllerKind::kPaper ? "paper" : "geometric", model,
-          TrackingOptions(scenario))),
+      controller_(MakeLaw(scenario, model, TrackingOptions(scenario))),
+      low_controller_(MakeLaw(scenario, model, LowOptions(scenario, model))),
       mixer_(model) {
   // The pad off by three standard deviations, and feet led to its middle are still on the deck.
   parameters_.bridge_sigma = (0.5 * scenario.pad.deck_size - model.foot_radius) / 3.0;
@@ -78,6 +98,9 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   // A light vehicle never presses as hard as the default asks.
   parameters_.contact_force =
       std::min(parameters_.contact_force, kContactShare * model.HoverThrust());
+  if (scenario.control.disturbance && scenario.controller == ControllerKind::kGeometric) {
+    observer_.emplace(model);
+  }
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
@@ -99,6 +122,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
   }
+  foot_height_ = inputs.height;
   inputs.tag_age = filter.TagAge(t);
   inputs.pad_sigma = filter.PositionSigma(t);
   inputs.contact_sigma =
@@ -107,7 +131,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
   own_usable_ = inputs.own_usable;
-  inputs.foot_force = foot_force;
+  inputs.foot_force = foot_force_ = foot_force;
   inputs.has_plan = has_plan_;
   // Between replans the last one counts: no plan has failed since it succeeded.
   if (requested_t_ && !last_planned_) {
@@ -123,6 +147,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   mission_ = step.outputs;
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
+  settling_.Note(t, mission_.mode == control::MissionMode::kLanding && foot_force > kTouchForce);
 
   yaw_ = control::StepYaw(yaw_, heading_wanted_, dt);
   yaw_t_ = t + dt;
@@ -141,6 +166,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   input.t_start = vehicle.t + replan_.latency_s;
   input.vehicle = vehicle;
   input.endpoint = Endpoint(vehicle.t);
+  if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
 
   const bool wants_plan = WantsPlan(filter, vehicle.t);
   // No plan is missing while none is tried: a climb must not end as a failure to plan.
@@ -192,9 +218,22 @@ const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& ma
   return planner_->Rest(replan_.request.input, *replan_.request.rest_climb, map);
 }
 
-control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) const {
+control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   if (!mission_.motors_armed) return {};
-  return mixer_.Mix(controller_->Update(vehicle, Reference(vehicle.t)).wrench);
+  if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
+  planning::FlatState reference = Reference(vehicle.t);
+  control::Disturbance compensated = disturbance();
+  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const bool low = landing && foot_height_ < kFlareHeight;
+  const control::Controller& law = low ? *low_controller_ : *controller_;
+  settling_.Apply(vehicle, &reference, &compensated);
+  const control::MixerOutput mix = mixer_.Mix(law.Update(vehicle, reference, compensated).wrench);
+  if (observer_) observer_->Command(mix.thrusts);
+  return mix;
+}
+
+control::Disturbance Pilot::disturbance() const {
+  return observer_ ? observer_->disturbance() : control::Disturbance{};
 }
 
 planning::FlatState Pilot::Reference(double t) const {
@@ -220,6 +259,12 @@ double Pilot::DesiredHeading(const estimation::VehicleState& vehicle,
                              const estimation::PadFilter& filter) const {
   const Eigen::Vector3d ahead =
       planner_->Reference(vehicle.t + kLookAhead).p_WB - planner_->Reference(vehicle.t).p_WB;
+  if (mission_.mode == control::MissionMode::kLanding && observer_) {
+    const Eigen::Vector3d& force_W = observer_->steady_force_W();
+    if (force_W.head<2>().norm() > kLeaning * model_.HoverThrust()) {
+      return control::HeadingIntoWind(model_, force_W, heading_wanted_);
+    }
+  }
   if (ahead.head<2>().norm() > kLookDistance) return std::atan2(ahead.y(), ahead.x());
   if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
     return heading_wanted_;

@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "touchdown/control/controller.h"
+#include "touchdown/control/disturbance_observer.h"
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/mixer.h"
+#include "touchdown/control/settling.h"
 #include "touchdown/control/yaw_planner.h"
 #include "touchdown/estimation/pad_filter.h"
 #include "touchdown/estimation/vehicle_model.h"
@@ -46,8 +48,11 @@ class Pilot {
                                        const estimation::PadFilter& filter,
                                        const planning::OccupancyMap& map);
 
-  /// Rotor thrusts for this control step [N].
-  control::MixerOutput Control(const estimation::VehicleState& vehicle) const;
+  /// Rotor thrusts for this control step [N]. Once per step: the disturbance is estimated from it.
+  control::MixerOutput Control(const estimation::VehicleState& vehicle);
+
+  /// What the tracking law compensates; nothing where it is not estimated.
+  control::Disturbance disturbance() const;
 
   /// Committed reference with heading at time t.
   planning::FlatState Reference(double t) const;
@@ -74,12 +79,17 @@ class Pilot {
   sim::OraclePadPrediction oracle_;
   std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
+  std::unique_ptr<control::Controller> low_controller_;  ///< close over the deck: leans less
   control::Mixer mixer_;
+  std::optional<control::DisturbanceObserver> observer_;
+  control::Settling settling_;
   control::MissionParameters parameters_;
   control::MissionState mission_state_;
   control::MissionOutputs mission_;
   control::YawState yaw_;
-  double yaw_t_ = 0.0;  ///< time of yaw_
+  double yaw_t_ = 0.0;        ///< time of yaw_
+  double foot_force_ = 0.0;   ///< as it was last told [N]
+  double foot_height_ = 0.0;  ///< of the feet above the deck, as last estimated [m]
   double heading_wanted_ = 0.0;
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by

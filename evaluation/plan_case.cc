@@ -104,7 +104,9 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   solved.scenario = flight.scenario;
   solved.step = step;
   solved.recorded = replay.recorded();
-  solved.limits = replay.replanner().options().limits;
+  const planning::ReplannerOptions& options = replay.replanner().options();
+  solved.limits = planning::LimitsUnder(options.limits, options.problem.vehicle,
+                                        solved.recorded.request.input.pull_W);
   replay.Solve();  // the first time finds cold caches
   solved.times = replay.Solve().times;
   replay.replanner().set_log(&solved.log);

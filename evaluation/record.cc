@@ -23,6 +23,8 @@ CREATE TABLE pad(t REAL, source TEXT, px REAL, py REAL, pz REAL, vx REAL, vy REA
 CREATE TABLE reference(t REAL, px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
   ax REAL, ay REAL, az REAL, yaw REAL, yaw_rate REAL);
 CREATE TABLE rotor(t REAL, thrust0 REAL, thrust1 REAL, thrust2 REAL, thrust3 REAL);
+CREATE TABLE air(t REAL, vx REAL, vy REAL, vz REAL);
+CREATE TABLE disturbance(t REAL, fx REAL, fy REAL, fz REAL, mx REAL, my REAL, mz REAL);
 CREATE TABLE mode(t REAL, mode TEXT);
 CREATE TABLE event(t REAL, kind TEXT, text TEXT);
 CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT, reason TEXT,
@@ -42,7 +44,7 @@ CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL, re
   pad_px REAL, pad_py REAL, pad_pz REAL, pad_vx REAL, pad_vy REAL, pad_vz REAL,
   pad_ax REAL, pad_ay REAL, pad_az REAL, pad_yaw REAL, pad_yaw_rate REAL,
   endpoint_t_reference REAL, endpoint_height REAL, endpoint_sink_rate REAL,
-  endpoint_height_floor REAL);
+  endpoint_height_floor REAL, pull_x REAL, pull_y REAL, pull_z REAL);
 CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t REAL, height REAL,
   noise_position REAL, noise_velocity REAL, noise_acceleration REAL, noise_heading REAL,
   noise_turn REAL);
@@ -94,6 +96,8 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
   SqliteStatement reference =
       db.Prepare("INSERT INTO reference VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement rotor = db.Prepare("INSERT INTO rotor VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement air = db.Prepare("INSERT INTO air VALUES(?, ?, ?, ?)");
+  SqliteStatement disturbance = db.Prepare("INSERT INTO disturbance VALUES(?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement mode = db.Prepare("INSERT INTO mode VALUES(?, ?)");
   for (const RecordSample& s : samples) {
     WriteVehicle(vehicle, s.vehicle, s.t, "true");
@@ -104,6 +108,10 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
     reference.Run(s.t, r.p_WB.x(), r.p_WB.y(), r.p_WB.z(), r.v_WB.x(), r.v_WB.y(), r.v_WB.z(),
                   r.a_WB.x(), r.a_WB.y(), r.a_WB.z(), r.yaw, r.yaw_rate);
     rotor.Run(s.t, s.rotor_thrusts[0], s.rotor_thrusts[1], s.rotor_thrusts[2], s.rotor_thrusts[3]);
+    air.Run(s.t, s.air.x(), s.air.y(), s.air.z());
+    const Eigen::Vector3d& f = s.disturbance.force_W;
+    const Eigen::Vector3d& m = s.disturbance.moment_B;
+    disturbance.Run(s.t, f.x(), f.y(), f.z(), m.x(), m.y(), m.z());
     mode.Run(s.t, s.mode);
   }
 }
@@ -130,7 +138,7 @@ void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
              v.q_WB.z(), v.w_WB_B.x(), v.w_WB_B.y(), v.w_WB_B.z(), pad.p_WP.x(), pad.p_WP.y(),
              pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(), pad.a_WP.x(), pad.a_WP.y(),
              pad.a_WP.z(), pad.yaw, pad.yaw_rate, end.t_reference, end.height, end.sink_rate,
-             end.height_floor);
+             end.height_floor, input.pull_W.x(), input.pull_W.y(), input.pull_W.z());
 }
 
 void WritePoints(SqliteStatement& insert, int id, const char* curve,
@@ -142,7 +150,7 @@ void WritePoints(SqliteStatement& insert, int id, const char* curve,
 void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement input = db.Prepare(
       "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement prediction =
       db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/registries.h"
+#include "touchdown/sim/plant.h"
 
 namespace touchdown::evaluation {
 
@@ -149,7 +150,29 @@ struct Scenario {
   /// An OctoMap file that is known before the flight, or none.
   std::string map_prior = "none";
 
+  /// The air; without any of it, it stands still.
+  struct Wind {
+    double mean = 0.0;             ///< speed of the mean wind [m/s]
+    double max = 0.0;              ///< greatest speed with turbulence [m/s]; 0: steady wind
+    double direction_deg = 0.0;    ///< where it blows to, from x_W, left positive [deg]
+    bool direction_random = true;  ///< drawn from the whole circle instead
+    struct Gust {
+      double speed = 0.0;     ///< [m/s], 0: none
+      double start = 5.0;     ///< of the first one [s]
+      double duration = 2.0;  ///< [s]
+      double period = 0.0;    ///< [s], 0: one only
+    } gust;
+  } wind;
+  struct Air {
+    bool ground_effect = false;
+    bool pad_wake = false;
+  } air;
+  sim::PlantFactors plant;  ///< how the vehicle differs from what its pilot knows
+
   ControllerKind controller = ControllerKind::kGeometric;
+  struct Control {
+    bool disturbance = true;  ///< the controller geometric compensates what it estimates
+  } control;
   DescentKind descent = DescentKind::kVertical;
   PlannerKind planner = PlannerKind::kLanding;
   struct Planning {

@@ -19,6 +19,7 @@
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/planning/prepared_problems.h"
 #include "touchdown/sim/obstacle_field.h"
+#include "touchdown/sim/plant.h"
 #include "touchdown/sim/vehicle_file.h"
 
 namespace touchdown::evaluation {
@@ -211,6 +212,33 @@ void CheckPriorMap(const ScenarioSource& source) {
   }
 }
 
+void CheckAir(const ScenarioSource& source, const estimation::VehicleModel& model) {
+  const Scenario& s = source.scenario;
+  if (s.wind.max > 0.0 && s.wind.max < s.wind.mean) {
+    throw BadInput(
+        fmt::format("{}: wind.max must be 0 or in [{}, 40] m/s, from wind.mean on, not '{}'.",
+                    source.WhereOf("wind.max").ToString(), s.wind.mean, s.wind.max));
+  }
+  const Scenario::Wind::Gust& gust = s.wind.gust;
+  if (gust.period > 0.0 && gust.period < gust.duration) {
+    throw BadInput(fmt::format(
+        "{}: wind.gust.period must be 0 or in [{}, 600] s, from wind.gust.duration on, not '{}'.",
+        source.WhereOf("wind.gust.period").ToString(), gust.duration, gust.period));
+  }
+  if (s.air.ground_effect && !(model.rotor_radius > 0.0)) {
+    throw BadInput(
+        fmt::format("{}: air.ground_effect needs a vehicle whose rotor sites are cylinders of its "
+                    "rotors' radius.",
+                    source.WhereOf("air.ground_effect").ToString()));
+  }
+  try {
+    sim::AlteredVehicle(model, s.plant);
+  } catch (const std::invalid_argument& error) {
+    const char* key = s.plant.mass > 1.0 ? "plant.mass" : "plant.thrust";
+    throw BadInput(fmt::format("{}: {}.", source.WhereOf(key).ToString(), error.what()));
+  }
+}
+
 // The motion's own limits, at the key they come from.
 sim::PadMotionBounds CheckedMotion(const ScenarioSource& source) {
   const Scenario& s = source.scenario;
@@ -316,6 +344,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
   CheckPlanning(source, model);
+  CheckAir(source, model);
   CheckTerms(source, registries.terms);
   CheckSolver(source, model, registries);
   CheckPriorMap(source);

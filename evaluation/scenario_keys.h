@@ -16,6 +16,7 @@ using KeyList = std::vector<SchemaKey<Scenario>>;
 // One section each, in the order of documentation and of a dump.
 void AddPadKeys(KeyList& keys);
 void AddVehicleKeys(KeyList& keys);
+void AddAirKeys(KeyList& keys);
 void AddSensorKeys(KeyList& keys);
 void AddOwnStateKeys(KeyList& keys);
 void AddPlanningKeys(KeyList& keys);

@@ -9,6 +9,10 @@ namespace touchdown::evaluation::schema {
 void AddPlanningKeys(KeyList& keys) {
   keys.push_back(
       Choice("controller", {"geometric", "paper"}, "tracking law", TOUCHDOWN_AT(controller)));
+  keys.push_back(Bool("control.disturbance",
+                      "the controller geometric compensates the force and the moment that it "
+                      "estimates, and plans leave room for the force; paper has no such estimate",
+                      TOUCHDOWN_AT(control.disturbance)));
   keys.push_back(Choice("descent", {"none", "vertical"},
                         "none follows above the pad, vertical approaches and then sinks over it",
                         TOUCHDOWN_AT(descent)));

@@ -16,6 +16,7 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
     schema::KeyList list;
     schema::AddPadKeys(list);
     schema::AddVehicleKeys(list);
+    schema::AddAirKeys(list);
     schema::AddSensorKeys(list);
     schema::AddOwnStateKeys(list);
     schema::AddPlanningKeys(list);

@@ -114,6 +114,9 @@ TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
   draw.yaw = scenario.start.yaw_random ? yaw : scenario.start.yaw_deg * kRadPerDeg;
   sim::RandomStream pad(seed, "pad");
   draw.phase = scenario.pad.phase + scenario.pad.phase_spread * pad.Uniform(-1.0, 1.0);
+  const double direction = sim::RandomStream(seed, "wind direction").Uniform(-kPi, kPi);
+  draw.wind_direction =
+      scenario.wind.direction_random ? direction : scenario.wind.direction_deg * kRadPerDeg;
   return draw;
 }
 
@@ -125,6 +128,8 @@ sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw) {
   config.pad = PadGeometryOf(scenario);
   config.pad_motion = PadMotionOf(scenario, draw.phase, draw.seed);
   config.vehicle_mjcf = VehicleMjcf(scenario);
+  config.plant = scenario.plant;
+  config.ground_effect = scenario.air.ground_effect;
   config.start.p_WB = draw.p_WB;
   config.start.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
   return config;

@@ -39,9 +39,10 @@ struct TrialDraw {
   double yaw = 0.0;                                ///< [rad]
   double phase = 0.0;                              ///< of the pad [m]
   std::uint64_t seed = 0;                          ///< of the trial
+  double wind_direction = 0.0;                     ///< where the wind blows to [rad]
 };
 
-/// The draws of `seed`, from the streams "start" and "pad".
+/// The draws of `seed`, from the streams "start", "pad" and "wind direction".
 TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed);
 
 /// The simulator's world at t = 0.

@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
+
 struct Column {
   const char* key;
   const char* label;
@@ -29,6 +31,9 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
   std::vector<Column> columns = {{"time_to_land_s", "time to land", "s", {}},
                                  {"touchdown_error_m", "touchdown error", "m", {}},
                                  {"relative_speed_mps", "relative speed at contact", "m/s", {}},
+                                 {"relative_horizontal_mps", "  horizontal", "m/s", {}},
+                                 {"relative_vertical_mps", "  vertical, downwards", "m/s", {}},
+                                 {"tilt_over_equilibrium_deg", "tilt over equilibrium", "deg", {}},
                                  {"mean_abs_error_x_m", "mean |error| x, last 5 s", "m", {}},
                                  {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m", {}},
                                  {"min_clearance_m", "least true clearance", "m", {}},
@@ -44,16 +49,20 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
     if (r.landed()) {
       columns[0].values.push_back(r.touchdown->t);
       columns[1].values.push_back(r.touchdown->error_m);
-      columns[2].values.push_back(r.touchdown->relative_velocity.norm());
-      if (r.mean_abs_error_x_m) columns[3].values.push_back(*r.mean_abs_error_x_m);
-      if (r.mean_abs_error_y_m) columns[4].values.push_back(*r.mean_abs_error_y_m);
+      const Eigen::Vector3d& v = r.touchdown->relative_velocity;
+      columns[2].values.push_back(v.norm());
+      columns[3].values.push_back(v.head<2>().norm());
+      columns[4].values.push_back(-v.z());
+      columns[5].values.push_back(r.touchdown->tilt_over_equilibrium * kDegPerRad);
+      if (r.mean_abs_error_x_m) columns[6].values.push_back(*r.mean_abs_error_x_m);
+      if (r.mean_abs_error_y_m) columns[7].values.push_back(*r.mean_abs_error_y_m);
     }
-    if (r.min_clearance_m) columns[5].values.push_back(*r.min_clearance_m);
-    if (r.estimator) columns[6].values.push_back(r.estimator->nees_position_mean);
-    if (r.own_state) columns[7].values.push_back(r.own_state->rmse_position_m);
+    if (r.min_clearance_m) columns[8].values.push_back(*r.min_clearance_m);
+    if (r.estimator) columns[9].values.push_back(r.estimator->nees_position_mean);
+    if (r.own_state) columns[10].values.push_back(r.own_state->rmse_position_m);
     if (r.following && r.succeeded()) {
-      columns[8].values.push_back(r.following->mean_error_m);
-      columns[9].values.push_back(r.following->relative_speed_mps);
+      columns[11].values.push_back(r.following->mean_error_m);
+      columns[12].values.push_back(r.following->relative_speed_mps);
     }
     if (r.t_star_s) columns[10].values.push_back(*r.t_star_s);
     if (r.t_star_upper_s) columns[11].values.push_back(*r.t_star_upper_s / *r.t_star_s - 1.0);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/control/controller.h"
 #include "touchdown/estimation/pad_prediction.h"
 #include "touchdown/estimation/vehicle_state.h"
 #include "touchdown/evaluation/map_history.h"
@@ -25,8 +26,10 @@ struct RecordSample {
   bool pad_known = false;
   estimation::PadState pad_estimate;  ///< meaningful if pad_known
   planning::FlatState reference;
-  std::array<double, 4> rotor_thrusts{};  ///< [N]
-  const char* mode = "";                  ///< of the mission
+  std::array<double, 4> rotor_thrusts{};          ///< [N]
+  Eigen::Vector3d air = Eigen::Vector3d::Zero();  ///< true velocity at the vehicle, in W [m/s]
+  control::Disturbance disturbance;               ///< as the pilot estimates it
+  const char* mode = "";                          ///< of the mission
 };
 
 struct RecordEvent {

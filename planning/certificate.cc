@@ -101,7 +101,8 @@ constexpr double kObservedStep = 0.02;  // [s]
 bool StopsInObservedSpace(const UniformBspline& curve, double t, const Limits& limits,
                           const FreeSpace& space) {
   FlatState at = curve.Evaluate(t);
-  double left = at.v_WB.squaredNorm() / (2.0 * kBrakingShare * limits.acceleration);
+  double left =
+      at.v_WB.squaredNorm() / (2.0 * kBrakingShare * limits.acceleration * limits.braking_factor);
   while (left > 0.0 && t < curve.t_end()) {
     const Eigen::Vector3d from = at.p_WB;
     t += kObservedStep;

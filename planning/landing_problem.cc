@@ -48,7 +48,8 @@ LandingProblem::LandingProblem(int segments, const LandingProblemOptions& option
       between_(3, segments + 3),
       problem_(Shape(segments, options)) {
   context_.segments = segments;
-  context_.limits = options.limits;
+  context_.limits = limits_ = options.limits;
+  vehicle_ = options.vehicle;
   pairs_.reserve(static_cast<std::size_t>(max_pairs_));
   obstacles_.reserve(static_cast<std::size_t>(max_obstacles_));
   x_.reserve(static_cast<std::size_t>(3 * (segments_ + 3)));
@@ -112,6 +113,12 @@ void LandingProblem::SetBoundary(const SplineState& start, double t0,
   context_.target = target;
   problem_.set_t0(t0);
   lift_->Set(start, t0, pad, target);
+  Update();
+}
+
+void LandingProblem::SetPull(const Eigen::Vector3d& pull_W) {
+  context_.limits = LimitsUnder(limits_, vehicle_, pull_W);
+  context_.pull_W = pull_W;
   Update();
 }
 

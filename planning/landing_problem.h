@@ -64,6 +64,8 @@ class LandingProblem {
                    const EndpointTarget& target);
   /// Duration, or the first guess of a free one [s].
   void SetDuration(double T);
+  /// What is left of the options' limits under a steady pull [m/s^2] (LimitsUnder).
+  void SetPull(const Eigen::Vector3d& pull_W);
   /// Throws std::invalid_argument if there are more than max_pairs() or one is out of range.
   void SetPairs(std::span<const ObstaclePair> pairs);
   /// Multiplies the weight of every pair (of the terms that keep clear of obstacles).
@@ -105,6 +107,8 @@ class LandingProblem {
   int max_obstacles_;
   bool free_end_acceleration_;
   std::shared_ptr<BoundaryLift> lift_;
+  Limits limits_;         // of the options
+  VehicleFacts vehicle_;  // alike
   LandingContext context_;
   std::vector<ObstaclePair> pairs_;                     // what context_ points to
   std::vector<MovingObstacle> obstacles_;               // alike

@@ -48,10 +48,11 @@ struct LandingContext {
   double interval = 1.0;  ///< h, or the first guess of a free one [s]
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget target;
-  Limits limits;
-  const UniformBspline* previous = nullptr;   ///< plan to stay near to; may be null
-  std::span<const MovingObstacle> obstacles;  ///< at most TermSetup::max_obstacles
-  std::span<const ObstaclePair> pairs;        ///< at most TermSetup::max_pairs
+  Limits limits;                                     ///< at most those of the TermSetup
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
+  const UniformBspline* previous = nullptr;          ///< plan to stay near to; may be null
+  std::span<const MovingObstacle> obstacles;         ///< at most TermSetup::max_obstacles
+  std::span<const ObstaclePair> pairs;               ///< at most TermSetup::max_pairs
 
   EndState End(double h) const { return EndStateAt(*pad, target, t0 + segments * h); }
 };

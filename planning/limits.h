@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+
 namespace touchdown::planning {
 
 /// Limits on the norms of velocity and acceleration.
 struct Limits {
   double speed = 3.0;         ///< [m/s]
   double acceleration = 6.0;  ///< [m/s^2]
+  /// Over the acceleration, of what a stop in observed space is counted with: in wind the tracking
+  /// law tilts farther for it than plans do.
+  double braking_factor = 1.0;
 };
 
 /// How fast a start beyond a limit must come back to it: the speed may be
@@ -29,5 +34,16 @@ struct VehicleFacts {
   double tilt_max = 0.611;           ///< of the thrust axis from the vertical [rad]
   double camera_half_angle = 0.785;  ///< of the downward camera's cone [rad]
 };
+
+/// What is left of the limits while a steady `pull_W`, a force over the mass [m/s^2], acts beside
+/// gravity: an acceleration in any horizontal direction that thrust and tilt still allow in level
+/// flight, and at least kLeastShareInWind of the limit. Stops are counted with the whole of it.
+/// Without a pull the limits themselves.
+Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
+                   const Eigen::Vector3d& pull_W) noexcept;
+
+/// With less than this share of its acceleration a vehicle could not follow a pad: the tracking law,
+/// which may tilt farther than plans do, has to find the rest.
+inline constexpr double kLeastShareInWind = 1.0 / 3.0;
 
 }  // namespace touchdown::planning

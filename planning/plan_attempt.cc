@@ -112,6 +112,7 @@ ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
   now_ = &problems_.At(segments_, request.arrival);
   LandingProblem& problem = *now_->problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
+  problem.SetPull(request.pull_W);
   problem.SetDuration(request.duration);
   duration_ = request.duration;
   problem.SetPrevious(request.previous);
@@ -287,7 +288,7 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, Candidate* c
     const ReplanReason reason = Finish(request, candidate, result);
     const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
     if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
-    const double share = ShareOfLimits(*candidate->certificate, options_.limits);
+    const double share = ShareOfLimits(*candidate->certificate, request.limits);
     if (share > kTooFarBeyond) return reason;
     pressure_.limits *= share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
     const ReplanReason solved = SolveAndCheck(request, candidate, result);
@@ -340,7 +341,7 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
   const SplineState wanted = EndStateAt(*request.pad, request.target, curve.t_end()).state;
   Certificate& certificate =
       candidate->certificate.emplace(Certify(curve, request.t0, &request.start, &wanted,
-                                             options_.limits, options_.reaction, *request.space));
+                                             request.limits, options_.reaction, *request.space));
   if (options_.problem.endpoint == EndpointMode::kExplicit) {
     certificate.endpoint_tolerance = kRowTolerance;
   }

@@ -22,9 +22,11 @@ struct AttemptRequest {
   double t0 = 0.0;
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget target;
-  double duration = 1.0;  ///< T, or its first guess [s]
-  int segments = 0;       ///< as SegmentsFor gives them ...
-  int near_segments = 0;  ///< ... and where an obstacle is near
+  Limits limits;  ///< what the pull leaves of the options' (LimitsUnder)
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
+  double duration = 1.0;                             ///< T, or its first guess [s]
+  int segments = 0;                                  ///< as SegmentsFor gives them ...
+  int near_segments = 0;                             ///< ... and where an obstacle is near
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan

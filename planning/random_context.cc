@@ -96,6 +96,7 @@ RandomContext::RandomContext(int segments, int max_pairs, int max_obstacles,
     pairs_.push_back({control_point, p, out});
   }
   context_.pairs = pairs_;
+  context_.pull_W = Vector(random, 2.0);
 }
 
 }  // namespace touchdown::planning

@@ -28,7 +28,8 @@ void Require(bool ok, const char* name, double value, const char* range) {
 bool StateValid(const ReplanInput& input) {
   return std::isfinite(input.t_now) && std::isfinite(input.t_start) &&
          input.t_start >= input.t_now && input.vehicle.p_WB.allFinite() &&
-         input.vehicle.v_WB.allFinite() && Plausible(input.vehicle.p_WB, input.vehicle.v_WB);
+         input.vehicle.v_WB.allFinite() && input.pull_W.allFinite() &&
+         Plausible(input.vehicle.p_WB, input.vehicle.v_WB);
 }
 
 bool TargetValid(const ReplanInput& input) {

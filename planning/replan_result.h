@@ -49,6 +49,9 @@ struct ReplanInput {
   estimation::VehicleState vehicle;  ///< estimated state at t_now
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget endpoint;
+  /// Steady force on the vehicle beside gravity and drag in still air, over its mass, in W: plans keep
+  /// what it leaves of the limits (LimitsUnder) [m/s^2].
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
 };
 
 /// What is flown after a replanning step.

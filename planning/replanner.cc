@@ -86,7 +86,7 @@ class Replanner::Impl {
   double WatchedUntil(const ReplanInput& input) const;
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
-  void Begin();
+  void Begin(const ReplanInput& input);
   const ReplanResult& RefuseState();
   SplineState Start(const ReplanInput& input);
   bool InTime(const ReplanInput& input) const;
@@ -97,6 +97,7 @@ class Replanner::Impl {
 
   PlanAttempt attempt_;
   Fallback fallback_;
+  Limits limits_;  // what the pull of this step leaves
   ReplanResult result_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
   FreeSpace strip_;              // over the last known pad ...
@@ -160,7 +161,8 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   strip_.pad_floor = state.strip_floor;
 }
 
-void Replanner::Impl::Begin() {
+void Replanner::Impl::Begin(const ReplanInput& input) {
+  limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();
@@ -198,7 +200,7 @@ bool Replanner::Impl::InTime(const ReplanInput& input) const {
 }
 
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
-  Begin();
+  Begin(input);
   StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
@@ -225,7 +227,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
 
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& map) {
-  Begin();
+  Begin(input);
   StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
@@ -258,7 +260,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   double fresh;
   {
     StageTimer timer(&result_.times.predict);
-    fresh = GuessDuration(start, input.t_start, *input.pad, input.endpoint, options_.limits, 1.0);
+    fresh = GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, 1.0);
   }
   if (!(fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   // An arrival once promised is kept: guessing anew at every step would put it off for ever.
@@ -272,6 +274,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.t0 = input.t_start;
   request.pad = input.pad;
   request.target = input.endpoint;
+  request.limits = limits_;
+  request.pull_W = input.pull_W;
   request.arrival = options_.arrival;
   request.at_rest = Fallback::Stays(next_, start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
@@ -284,8 +288,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
     const double longest = std::min(T, kFinest * first);
-    request.segments = SegmentsFor(longest, options_.limits, i > 0);
-    request.near_segments = SegmentsFor(longest, options_.limits, true);
+    request.segments = SegmentsFor(longest, limits_, i > 0);
+    request.near_segments = SegmentsFor(longest, limits_, true);
     request.space = &space;
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.

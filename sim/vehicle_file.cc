@@ -61,7 +61,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
   }
   model->hull_radius = m.geom_size[3 * hull];
   model->hull_top = pos[2] + m.geom_size[3 * hull + 1];
-  const double hull_bottom = pos[2] - m.geom_size[3 * hull + 1];
+  model->hull_bottom = m.geom_size[3 * hull + 1] - pos[2];
 
   int feet = 0;
   model->foot_depth = 0.0;
@@ -79,10 +79,11 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
     model->foot_depth = std::max(model->foot_depth, radius - p[2]);
     model->foot_radius = std::max(model->foot_radius, std::hypot(p[0], p[1]));
     model->foot_reach = std::max(model->foot_reach, mju_norm3(p) + radius);
+    model->foot_azimuths.push_back(std::atan2(p[1], p[0]));
     ++feet;
   }
   if (feet < 3) Refuse("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");
-  if (model->foot_depth <= -hull_bottom) Refuse("the feet must reach below geom \"hull\"");
+  if (model->foot_depth <= model->hull_bottom) Refuse("the feet must reach below geom \"hull\"");
 }
 
 void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
@@ -121,6 +122,8 @@ void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
   }
   estimation::Rotor& rotor = model->rotors[static_cast<std::size_t>(index)];
   rotor.p_BR = Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site);
+  const double radius = m.site_type[site] == mjGEOM_CYLINDER ? m.site_size[3 * site] : 0.0;
+  model->rotor_radius = index == 0 ? radius : std::min(model->rotor_radius, radius);
   rotor.spin = gear[5] > 0.0 ? 1.0 : -1.0;
 }
 

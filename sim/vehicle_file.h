@@ -13,7 +13,8 @@ namespace touchdown::sim {
 // - a cylinder geom `hull` about z_B that holds body, arms and rotor discs, and feet: sphere geoms
 //   whose names begin with `foot`; other geoms with contype = conaffinity = 0 are for the eye only;
 // - sites and actuators `rotor0` to `rotor3`: gear "0 0 1 0 0 k", k the reaction torque per newton
-//   with the rotor's sign, a control range, and dyntype="filter" with the thrust lag in dynprm;
+//   with the rotor's sign, a control range, and dyntype="filter" with the thrust lag in dynprm; a
+//   site that is a cylinder gives the radius of the rotor's disc;
 // - <custom> numerics `rotor_drag` (three) and `body_drag_area` (one).
 
 /// MJCF text of the vehicle that comes with the library (sim/models/quadrotor.xml).

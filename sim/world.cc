@@ -19,6 +19,7 @@
 
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/drag.h"
+#include "touchdown/sim/ground_effect.h"
 #include "touchdown/sim/mujoco_model.h"
 #include "touchdown/sim/start_check.h"
 #include "touchdown/sim/vehicle_file.h"
@@ -102,16 +103,20 @@ class World::Impl {
   double Time() const { return static_cast<double>(steps_) * config_.timestep; }
 
   WorldConfig config_;
-  estimation::VehicleModel model_;
+  estimation::VehicleModel model_;  // as the file says
+  estimation::VehicleModel plant_;  // as it is simulated
   PadMotion motion_;
   Eigen::Vector3d drag_ = Eigen::Vector3d::Zero();
   std::vector<Contact> contacts_;
   double foot_force_ = 0.0;
+  double ground_effect_ = 0.0;
 
  private:
   void FindIndices();
+  void AlterPlant();
   void SetInitialState();
   void DrivePad();
+  void PushByAir(const Eigen::Vector3d& wind_W);
   void ReadContacts();
   void ThrowOnWarning();
   Eigen::Vector3d PointVelocity(int body, const Eigen::Vector3d& p_W) const;
@@ -135,11 +140,16 @@ World::Impl::Impl(const WorldConfig& config) : config_(config), motion_(config.p
   CheckWithin("timestep [s]", config.timestep, 1.0e-4, 0.005);
   if (config_.vehicle_mjcf.empty()) config_.vehicle_mjcf = DefaultVehicleMjcf();
   model_ = LoadVehicleModel(config_.vehicle_mjcf);
+  plant_ = AlteredVehicle(model_, config_.plant);
+  if (config_.ground_effect) {
+    CheckAbove("rotor radius for ground effect [m]", model_.rotor_radius, 0.0, 10.0);
+  }
   CheckStart(config_, model_);
   mujoco_ = CompileMjcf(WorldMjcf(config_), config_.vehicle_mjcf);
   data_ = MakeMujocoData(*mujoco_);
   contacts_.reserve(static_cast<std::size_t>(mujoco_->nconmax));
   FindIndices();
+  AlterPlant();
   SetInitialState();
 }
 
@@ -181,6 +191,18 @@ void World::Impl::FindIndices() {
   }
 }
 
+void World::Impl::AlterPlant() {
+  if (config_.plant == PlantFactors{}) return;
+  mjModel* m = mujoco_.get();
+  m->body_mass[vehicle_body_] = plant_.mass_kg;
+  Put(plant_.inertia, m->body_inertia + 3 * vehicle_body_);
+  for (const int rotor : rotor_actuator_) {
+    m->actuator_dynprm[mjNDYN * rotor] = plant_.rotor_lag_s;
+    m->actuator_gainprm[mjNGAIN * rotor] = config_.plant.thrust;
+  }
+  mj_setConst(m, data_.get());  // what the compiler derived from mass and inertia
+}
+
 void World::Impl::SetInitialState() {
   mjData* d = data_.get();
   const estimation::PadState pad = motion_.At(0.0);
@@ -198,7 +220,9 @@ void World::Impl::SetInitialState() {
   Put(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()), qpos + 3);
   Put(start.v_WB, qvel);
   Put(start.w_WB_B, qvel + 3);
-  for (const int activation : rotor_activation_) d->act[activation] = model_.HoverThrust() / 4.0;
+  // Activations are what the rotors were told, with its lag.
+  const double hover = plant_.HoverThrust() / 4.0 / config_.plant.thrust;
+  for (const int activation : rotor_activation_) d->act[activation] = hover;
 }
 
 void World::Impl::DrivePad() {
@@ -225,9 +249,7 @@ void World::Impl::Step(const std::array<double, 4>& commands, const Eigen::Vecto
   mjData* d = data_.get();
   DrivePad();
   for (std::size_t i = 0; i < 4; ++i) d->ctrl[rotor_actuator_[i]] = commands[i];
-  const estimation::VehicleState now = Vehicle();
-  drag_ = DragForce(model_, now.q_WB.toRotationMatrix(), now.v_WB - wind_W);
-  Put(drag_, d->xfrc_applied + 6 * vehicle_body_);  // acts at the centre of mass
+  PushByAir(wind_W);
 
   failed_ = true;  // until the step came back whole
   mj_step(mujoco_.get(), d);
@@ -235,6 +257,23 @@ void World::Impl::Step(const std::array<double, 4>& commands, const Eigen::Vecto
   failed_ = false;
   ++steps_;
   ReadContacts();
+}
+
+// Drag acts at the centre of mass; what the ground adds to a rotor's thrust acts at its hub.
+void World::Impl::PushByAir(const Eigen::Vector3d& wind_W) {
+  const estimation::VehicleState now = Vehicle();
+  const Eigen::Matrix3d R_WB = now.q_WB.toRotationMatrix();
+  const Eigen::Vector3d u_W = now.v_WB - wind_W;
+  drag_ = DragForce(plant_, R_WB, u_W);
+  mjtNum* push = data_->xfrc_applied + 6 * vehicle_body_;
+  Put(drag_, push);
+  if (!config_.ground_effect) return;
+
+  const GroundEffect ground = GroundEffectOf(plant_, now, RotorThrusts(),
+                                             DeckBox(config_.pad, Pad()), u_W.head<2>().norm());
+  ground_effect_ = ground.thrust;
+  Put(Eigen::Vector3d(drag_ + ground.thrust * R_WB.col(2)), push);
+  Put(Eigen::Vector3d(R_WB * ground.moment_B), push + 3);
 }
 
 void World::Impl::ThrowOnWarning() {
@@ -304,7 +343,9 @@ estimation::PadState World::Impl::Pad() const {
 
 std::array<double, 4> World::Impl::RotorThrusts() const {
   std::array<double, 4> thrusts{};
-  for (std::size_t i = 0; i < 4; ++i) thrusts[i] = data_->act[rotor_activation_[i]];
+  for (std::size_t i = 0; i < 4; ++i) {
+    thrusts[i] = config_.plant.thrust * data_->act[rotor_activation_[i]];
+  }
   return thrusts;
 }
 
@@ -321,6 +362,7 @@ void World::Step(const std::array<double, 4>& rotor_thrust_commands,
 double World::time() const { return impl_->Time(); }
 double World::timestep() const { return impl_->config_.timestep; }
 const estimation::VehicleModel& World::model() const { return impl_->model_; }
+const estimation::VehicleModel& World::plant() const { return impl_->plant_; }
 const PadMotion& World::pad_motion() const { return impl_->motion_; }
 
 // The drive's velocity lags by mass / gain times the acceleration, and its position by this over the
@@ -335,6 +377,7 @@ estimation::VehicleState World::vehicle() const { return impl_->Vehicle(); }
 estimation::PadState World::pad() const { return impl_->Pad(); }
 std::array<double, 4> World::rotor_thrusts() const { return impl_->RotorThrusts(); }
 Eigen::Vector3d World::drag_force() const { return impl_->drag_; }
+double World::ground_effect_thrust() const { return impl_->ground_effect_; }
 const std::vector<Contact>& World::contacts() const { return impl_->contacts_; }
 estimation::FootForce World::foot_force() const { return {time(), impl_->foot_force_}; }
 

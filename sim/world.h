@@ -15,6 +15,7 @@
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/pad_geometry.h"
 #include "touchdown/sim/pad_motion.h"
+#include "touchdown/sim/plant.h"
 
 namespace touchdown::sim {
 
@@ -26,6 +27,8 @@ struct WorldConfig {
   std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
   estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
   double timestep = 0.002;         ///< [s], in [1e-4, 0.005]
+  PlantFactors plant;              ///< how the simulated vehicle differs from its file
+  bool ground_effect = false;      ///< of the rotors over the deck and the ground
 };
 
 /// What touches what.
@@ -56,7 +59,7 @@ class World {
  public:
   /// Rotors start at hover thrust, the pad on its path at its speed. Throws std::invalid_argument
   /// naming the thing, its value and the allowed range; also when the vehicle starts in contact
-  /// with an obstacle or the ground.
+  /// with an obstacle or the ground, or ground effect is wanted of rotors without a radius.
   explicit World(const WorldConfig& config);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -71,9 +74,10 @@ class World {
   void Step(const std::array<double, 4>& rotor_thrust_commands,
             const Eigen::Vector3d& wind_W = Eigen::Vector3d::Zero());
 
-  double time() const;      ///< steps taken times the time step [s]
-  double timestep() const;  ///< [s]
-  const estimation::VehicleModel& model() const;
+  double time() const;                            ///< steps taken times the time step [s]
+  double timestep() const;                        ///< [s]
+  const estimation::VehicleModel& model() const;  ///< as its file says: what may be known of it
+  const estimation::VehicleModel& plant() const;  ///< as it is simulated
   const PadMotion& pad_motion() const;
   /// How far the pad may be off its motion: its drive needs a force, which is a lag. Nothing lands.
   struct PadLag {
@@ -93,8 +97,11 @@ class World {
   /// Thrust of each rotor now, after its lag [N].
   std::array<double, 4> rotor_thrusts() const;
 
-  /// Aerodynamic force applied in the step just taken, in W [N].
+  /// Drag applied in the step just taken, in W [N].
   Eigen::Vector3d drag_force() const;
+
+  /// What the ground effect added to the rotors' thrust in the step just taken, in all [N].
+  double ground_effect_thrust() const;
 
   /// Contacts of the step just taken; positions, velocities and forces are those at its beginning,
   /// so that the step in which a contact first appears holds the velocity before the impact.

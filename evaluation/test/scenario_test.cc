@@ -153,8 +153,8 @@ TEST_F(ScenarioTest, AnUnknownKeyNamesFileLineAndWhatIsAllowed) {
       Refusal("seed: 1\npad:\n  sped: 1\n"),
       AllOf(HasSubstr(path_ + ":3"), HasSubstr("unknown key pad.sped"), HasSubstr("pad.speed")));
   EXPECT_THAT(
-      Refusal("wind: {mean: 4}\n"),
-      AllOf(HasSubstr(path_ + ":1"), HasSubstr("unknown key wind"), HasSubstr("obstacles")));
+      Refusal("weather: {mean: 4}\n"),
+      AllOf(HasSubstr(path_ + ":1"), HasSubstr("unknown key weather"), HasSubstr("obstacles")));
 }
 
 TEST_F(ScenarioTest, AWrongTypeNamesTheRange) {

@@ -21,8 +21,11 @@ class DerivativeNorm {
   static constexpr bool kUsesInterval = true;
   static constexpr bool kLinearInBlocks = false;
 
-  DerivativeNorm(int windows, double limit, bool may_recover)
-      : windows_(windows), limit_(limit), inverse_(1.0 / limit), may_recover_(may_recover) {}
+  /// `share` of the context's limit is where it acts from.
+  DerivativeNorm(int windows, double limit, double share, bool may_recover)
+      : windows_(windows), share_(share), may_recover_(may_recover) {
+    SetLimit(limit);
+  }
 
   int windows() const { return windows_; }
   // What the start state fixes is no row: V_0 (no Bezier point either), V_1 and A_0.
@@ -31,6 +34,7 @@ class DerivativeNorm {
   void Update(const LandingContext& context) {
     t0_ = context.t0;
     start_ = kOrder == 1 ? context.start.v.norm() : context.start.a.norm();
+    SetLimit(kOrder == 1 ? context.limits.speed : context.limits.acceleration);
     decay_ = kOrder == 1 ? RecoveryProfile::kSpeedShare * context.limits.acceleration
                          : RecoveryProfile::kAccelerationDecay * start_;
     recovers_ = may_recover_ && start_ > limit_;
@@ -107,6 +111,11 @@ class DerivativeNorm {
     double slope = 0.0;
   };
 
+  void SetLimit(double limit) {
+    limit_ = share_ * limit;
+    inverse_ = 1.0 / limit_;
+  }
+
   template <class T>
   static T Difference(const T* q) {
     T d(0.0);
@@ -138,8 +147,9 @@ class DerivativeNorm {
 
   static constexpr double kLag = RecoveryProfile::kLag;
   int windows_;
-  double limit_;
-  double inverse_;
+  double share_;
+  double limit_ = 1.0;
+  double inverse_ = 1.0;
   bool may_recover_;
   bool recovers_ = false;
   double t0_ = 0.0;
@@ -156,10 +166,10 @@ std::shared_ptr<solvers::Term> MakeNormLimit(const solvers::TermInfo& info, cons
     throw std::invalid_argument(info.name + ": limit is " + std::to_string(limit) +
                                 ", it must be > 0");
   }
-  const double acts_from = setup.hard ? limit : setup.Get("margin") * limit;
+  const double share = setup.hard ? 1.0 : setup.Get("margin");
   const int windows =
       setup.control_points - (kOrder == 1 ? 4 : 3) - (setup.free_end_acceleration ? 0 : 1);
-  return MakeLandingTerm(info, DerivativeNorm<kOrder>(windows, acts_from, setup.hard),
+  return MakeLandingTerm(info, DerivativeNorm<kOrder>(windows, limit, share, setup.hard),
                          setup.Hinge(), windows);
 }
 

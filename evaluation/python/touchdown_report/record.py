@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "2"
+SUPPORTED_VERSION = "3"
 
 
 class RecordError(Exception):

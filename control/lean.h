@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A vehicle that holds still in wind leans against it. What that asks of a landing: the feet are to
+// touch first, not the hull's rim.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/vehicle_model.h"
+
+namespace touchdown::control {
+
+/// The greatest lean towards a foot at which the foot touches a level deck before the hull's rim
+/// does [rad].
+double FeetFirstTilt(const estimation::VehicleModel& model);
+
+/// Heading [rad] that brings a foot to the side a vehicle leans to under the horizontal part of
+/// `force_W` [N], of all such headings the one nearest to `wanted` [rad]. `wanted` itself without a
+/// force or without feet.
+double HeadingIntoWind(const estimation::VehicleModel& model, const Eigen::Vector3d& force_W,
+                       double wanted);
+
+}  // namespace touchdown::control

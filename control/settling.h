@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "touchdown/control/controller.h"
+
+namespace touchdown::control {
+
+/// How a vehicle comes to stand on the deck that its feet have touched.
+struct SettlingParameters {
+  double fade_time = 0.35;    ///< from flying to standing [s], > 0
+  double thrust_share = 0.3;  ///< of the weight that the rotors carry then, in (0, 1) [-]
+  double contact_gap = 0.2;  ///< a shorter loss of contact does not interrupt it [s]
+};
+
+/// Fades a tracking law's inputs from flight to standing while the feet touch: the vehicle stays
+/// where it is, upright, on its weight. In wind it comes in leaning; stopped like that it would drop
+/// from one pair of feet onto the other and roll over. Not to be shared between threads.
+class Settling {
+ public:
+  explicit Settling(const SettlingParameters& parameters = {}) : parameters_(parameters) {}
+
+  /// Notes at time t [s], rising, whether the feet touch what they are to stand on.
+  void Note(double t, bool touching) noexcept;
+
+  /// Share of standing at time t, in [0, 1].
+  double Share(double t) const noexcept;
+
+  /// Blends what the law is asked with standing at state.t; without contact nothing is changed.
+  void Apply(const estimation::VehicleState& state, planning::FlatState* reference,
+             Disturbance* disturbance) const noexcept;
+
+ private:
+  SettlingParameters parameters_;
+  bool touching_ = false;
+  double since_ = 0.0;  ///< [s]
+  double last_ = 0.0;   ///< contact [s]
+};
+
+}  // namespace touchdown::control

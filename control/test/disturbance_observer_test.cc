@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The observer beside a rigid body that is pushed by known thrusts and known disturbances. No tracking
+// law is in the loop here: what it makes of the estimate is tested where the whole vehicle flies.
+#include "touchdown/control/disturbance_observer.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/control/test/flight_model.h"
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kStep = 0.002;  // [s]
+
+/// A body on which thrusts behind a lag and a disturbance act; Euler steps a tenth as long as the
+/// control step.
+class Body {
+ public:
+  explicit Body(const estimation::VehicleModel& model) : model_(model), mixer_(model) {
+    thrusts_.setConstant(0.25 * model.HoverThrust());
+  }
+
+  estimation::VehicleState state;
+
+  void Step(const Eigen::Vector4d& command, const Disturbance& disturbance) {
+    constexpr int kParts = 10;
+    const double dt = kStep / kParts;
+    for (int i = 0; i < kParts; ++i) {
+      const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
+      const Wrench wrench = mixer_.Apply(thrusts_);
+      const Eigen::Vector3d drag_B = model_.rotor_drag.cwiseProduct(R_WB.transpose() * state.v_WB);
+      const Eigen::Vector3d force_W =
+          R_WB * (wrench.thrust * Eigen::Vector3d::UnitZ() - drag_B) + disturbance.force_W;
+      const Eigen::Vector3d& w = state.w_WB_B;
+      const Eigen::Vector3d moment_B =
+          wrench.moment_B - w.cross(model_.inertia.cwiseProduct(w)) + disturbance.moment_B;
+      state.v_WB +=
+          dt * (force_W / model_.mass_kg - estimation::kGravity * Eigen::Vector3d::UnitZ());
+      const Eigen::Vector3d turn = dt * w;
+      state.w_WB_B += dt * moment_B.cwiseQuotient(model_.inertia);
+      state.q_WB = (state.q_WB * Eigen::Quaterniond(Eigen::AngleAxisd(
+                                     turn.norm(), turn.norm() > 0.0 ? turn.normalized()
+                                                                    : Eigen::Vector3d::UnitX())))
+                       .normalized();
+      thrusts_ += dt / model_.rotor_lag_s * (command - thrusts_);
+    }
+    state.t += kStep;
+  }
+
+ private:
+  estimation::VehicleModel model_;
+  Mixer mixer_;
+  Eigen::Vector4d thrusts_;
+};
+
+estimation::VehicleModel Vehicle() {
+  estimation::VehicleModel model = TestVehicle();
+  model.rotor_drag << 0.2, 0.2, 0.0;
+  return model;
+}
+
+/// Thrusts that shake the vehicle without turning it over.
+Eigen::Vector4d Shaking(const estimation::VehicleModel& model, double t) {
+  const double hover = 0.25 * model.HoverThrust();
+  const double a = 0.15 * std::sin(9.0 * t);
+  const double b = 0.10 * std::cos(13.0 * t);
+  return Eigen::Vector4d(hover + a, hover - a, hover + b, hover - b).array() +
+         0.8 * std::sin(3.0 * t);
+}
+
+using Pushes = std::function<Disturbance(double)>;
+
+/// Flies for `duration`; `watch` sees every estimate.
+void Fly(DisturbanceObserver* observer, Body* body, double duration, const Pushes& pushes,
+         const std::function<void(double, const Disturbance&)>& watch = {}) {
+  const estimation::VehicleModel model = Vehicle();
+  const double end = body->state.t + duration;
+  while (body->state.t < end - 0.5 * kStep) {
+    const double t = body->state.t;
+    const Disturbance& estimate = observer->Update(body->state, false);
+    if (watch) watch(t, estimate);
+    const Eigen::Vector4d command = Shaking(model, t);
+    observer->Command(command);
+    body->Step(command, pushes(t));
+  }
+}
+
+Disturbance Steady() { return {{3.0, -2.0, 0.8}, {0.02, -0.01, 0.005}}; }
+
+TEST(DisturbanceObserver, FindsASteadyDisturbanceWhileTheVehicleIsShaken) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  Fly(&observer, &body, 4.0, [](double) { return Steady(); });
+  // Thrust and attitude are held over a step: under 1 % is left of the shaking.
+  EXPECT_LT((observer.disturbance().force_W - Steady().force_W).norm(), 0.04);
+  EXPECT_LT((observer.disturbance().moment_B - Steady().moment_B).norm(), 4e-4);
+}
+
+TEST(DisturbanceObserver, NothingIsFoundWhereNothingActs) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  double worst = 0.0;
+  Fly(
+      &observer, &body, 4.0, [](double) { return Disturbance{}; },
+      [&](double, const Disturbance& d) { worst = std::max(worst, d.force_W.norm()); });
+  EXPECT_LT(worst, 0.03);  // thrust turns while a step lasts: the model holds it
+}
+
+TEST(DisturbanceObserver, StepResponseIsThatOfTwoEqualPoles) {
+  const DisturbanceObserverOptions options;
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  Fly(&observer, &body, 1.0, [](double) { return Disturbance{}; });
+  const double t0 = body.state.t;
+  Fly(
+      &observer, &body, 2.0,
+      [](double) {
+        return Disturbance{{2.0, 0.0, 0.0}, {0.0, 0.02, 0.0}};
+      },
+      [&](double t, const Disturbance& d) {
+        const auto response = [&](double w) {
+          return 1.0 - (1.0 + w * (t - t0)) * std::exp(-w * (t - t0));
+        };
+        EXPECT_NEAR(d.force_W.x(), 2.0 * response(options.force_bandwidth), 0.05) << t;
+        EXPECT_NEAR(d.moment_B.y(), 0.02 * response(options.moment_bandwidth), 1e-3) << t;
+      });
+}
+
+TEST(DisturbanceObserver, SteadyForceIsTheSlowPart) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  // A gust to and fro about a steady push, once a second.
+  Fly(&observer, &body, 12.0, [](double t) {
+    return Disturbance{{2.0 + 1.5 * std::sin(2.0 * std::numbers::pi * t), 0.0, 0.0}, {0, 0, 0}};
+  });
+  EXPECT_NEAR(observer.steady_force_W().x(), 2.0, 0.15);
+}
+
+TEST(DisturbanceObserver, FeetInContactTeachNothing) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  Fly(&observer, &body, 3.0, [](double) { return Steady(); });
+  const Eigen::Vector3d before = observer.disturbance().force_W;
+  // It stands: the deck carries what the rotors do not.
+  for (int i = 0; i < 2000; ++i) {
+    body.state.t += kStep;
+    body.state.v_WB.setZero();
+    body.state.w_WB_B.setZero();
+    observer.Update(body.state, true);
+    observer.Command(Eigen::Vector4d::Zero());
+  }
+  EXPECT_EQ(observer.disturbance().force_W, before);
+  // Off again: no kick.
+  double worst = 0.0;
+  Body again(Vehicle());
+  again.state = body.state;
+  observer.Command(Eigen::Vector4d::Constant(0.25 * Vehicle().HoverThrust()));
+  for (int i = 0; i < 300; ++i) {  // the rotors spin up on the deck
+    again.state.t += kStep;
+    observer.Update(again.state, true);
+  }
+  Fly(
+      &observer, &again, 1.0, [](double) { return Steady(); },
+      [&](double, const Disturbance& d) { worst = std::max(worst, (d.force_W - before).norm()); });
+  EXPECT_LT(worst, 0.1);
+}
+
+TEST(DisturbanceObserver, SaturationDoesNotWindItUp) {
+  // Asked for more than the rotors have, they give what they have: no push is behind that.
+  const estimation::VehicleModel model = Vehicle();
+  const Mixer mixer(model);
+  DisturbanceObserver observer(model);
+  Body body(model);
+  for (int i = 0; i < 1500; ++i) {
+    observer.Update(body.state, false);
+    const MixerOutput mix = mixer.Mix({2.0 * model.MaxThrust(), Eigen::Vector3d::Zero()});
+    ASSERT_TRUE(mix.saturated);
+    observer.Command(mix.thrusts);
+    body.Step(mix.thrusts, {});
+  }
+  EXPECT_LT(observer.disturbance().force_W.norm(), 0.02);
+}
+
+TEST(DisturbanceObserver, NoisyVelocityHardlyShakesTheEstimate) {
+  // What the filter of the own state has left: 3 cm/s that change ten times a second.
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0.0, 0.03);
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  int count = 0;
+  for (int i = 0; i < 10000; ++i) {
+    if (i % 50 == 0) error = Eigen::Vector3d(normal(random), normal(random), normal(random));
+    estimation::VehicleState noisy = body.state;
+    noisy.v_WB += error;
+    const Disturbance& d = observer.Update(noisy, false);
+    if (i > 1000) {
+      squares += (d.force_W - Steady().force_W).squaredNorm();
+      ++count;
+    }
+    const Eigen::Vector4d command = Shaking(Vehicle(), body.state.t);
+    observer.Command(command);
+    body.Step(command, Steady());
+  }
+  // Per axis, over the weight: half a degree of tilt.
+  EXPECT_LT(std::sqrt(squares / count / 3.0) / Vehicle().HoverThrust(), 0.0087);
+}
+
+TEST(DisturbanceObserver, AJumpOfTheStateIsNoForce) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  Fly(&observer, &body, 3.0, [](double) { return Steady(); });
+  const Eigen::Vector3d before = observer.disturbance().force_W;
+  body.state.v_WB.x() += 1.0;
+  observer.Update(body.state, false);
+  EXPECT_EQ(observer.disturbance().force_W, before);
+  estimation::VehicleState broken = body.state;
+  broken.t += kStep;
+  broken.v_WB.x() = std::numeric_limits<double>::quiet_NaN();
+  observer.Update(broken, false);
+  EXPECT_EQ(observer.disturbance().force_W, before);
+}
+
+TEST(DisturbanceObserver, EstimateIsBounded) {
+  DisturbanceObserverOptions options;
+  options.force_max = 0.2;
+  DisturbanceObserver observer(Vehicle(), options);
+  Body body(Vehicle());
+  Fly(
+      &observer, &body, 3.0,
+      [](double) {
+        return Disturbance{{20.0, 0.0, 0.0}, {0, 0, 0}};
+      },
+      [&](double, const Disturbance& d) {
+        EXPECT_LE(d.force_W.norm(), 0.2 * Vehicle().HoverThrust() + 1e-9);
+      });
+  // And comes back at once when the push is over.
+  Fly(&observer, &body, 1.5, [](double) { return Disturbance{}; });
+  EXPECT_LT(observer.disturbance().force_W.norm(), 0.1);
+}
+
+TEST(DisturbanceObserver, OptionsOutOfRangeAreNamed) {
+  DisturbanceObserverOptions options;
+  options.force_bandwidth = 0.0;
+  try {
+    DisturbanceObserver(Vehicle(), options);
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("force_bandwidth = 0"));
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::control

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/control/lean.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include "touchdown/control/test/flight_model.h"
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kQuarter = 0.5 * std::numbers::pi;
+
+estimation::VehicleModel Vehicle() {
+  estimation::VehicleModel model = TestVehicle();
+  model.hull_bottom = 0.03;
+  for (int i = 0; i < 4; ++i) model.foot_azimuths.push_back((i + 0.5) * kQuarter);
+  return model;
+}
+
+TEST(Lean, FootAndRimTouchTogetherAtTheFeetFirstTilt) {
+  const estimation::VehicleModel model = Vehicle();
+  const double tilt = FeetFirstTilt(model);
+  const Eigen::AngleAxisd lean(tilt, Eigen::Vector3d::UnitY());  // forward
+  const Eigen::Vector3d foot = lean * Eigen::Vector3d(model.foot_radius, 0.0, -model.foot_depth);
+  const Eigen::Vector3d rim = lean * Eigen::Vector3d(model.hull_radius, 0.0, -model.hull_bottom);
+  EXPECT_NEAR(foot.z(), rim.z(), 1e-12);
+}
+
+TEST(Lean, AFootLeadsIntoTheWindByTheShortestTurn) {
+  const estimation::VehicleModel model = Vehicle();
+  for (double wind = -3.0; wind < 3.1; wind += 0.37) {
+    for (double wanted = -3.1; wanted < 3.1; wanted += 0.41) {
+      const Eigen::Vector3d force(4.0 * std::cos(wind), 4.0 * std::sin(wind), 1.0);
+      const double heading = HeadingIntoWind(model, force, wanted);
+      EXPECT_LE(std::abs(estimation::WrapAngle(heading - wanted)), 0.5 * kQuarter + 1e-9);
+      double best = 4.0;  // of the angles between the lean and a foot
+      for (const double azimuth : model.foot_azimuths) {
+        const double off = estimation::WrapAngle(heading + azimuth - (wind + std::numbers::pi));
+        best = std::min(best, std::abs(off));
+      }
+      EXPECT_LT(best, 1e-9) << wind << " " << wanted;
+    }
+  }
+  EXPECT_EQ(HeadingIntoWind(model, {0.0, 0.0, 3.0}, 0.3), 0.3);
+  EXPECT_EQ(HeadingIntoWind(TestVehicle(), {1.0, 0.0, 0.0}, 0.3), 0.3);
+}
+
+}  // namespace
+}  // namespace touchdown::control

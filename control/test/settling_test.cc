@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/control/settling.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/control/test/flight_model.h"
+
+namespace touchdown::control {
+namespace {
+
+planning::FlatState Sinking() {
+  planning::FlatState flat;
+  flat.p_WB << 1.0, 2.0, 0.4;
+  flat.v_WB << 0.8, 0.0, -0.3;
+  flat.j_WB << 0.1, 0.0, 0.0;
+  return flat;
+}
+
+Disturbance Wind() { return {{3.0, -2.0, 0.5}, {0.01, 0.0, 0.0}}; }
+
+estimation::VehicleState Leaning(double t) {
+  estimation::VehicleState state;
+  state.t = t;
+  state.p_WB << 1.05, 2.0, 0.45;
+  state.q_WB = Eigen::AngleAxisd(-0.4, Eigen::Vector3d::UnitY());
+  return state;
+}
+
+TEST(Settling, WithoutContactNothingChanges) {
+  Settling settling;
+  settling.Note(1.0, false);
+  planning::FlatState reference = Sinking();
+  Disturbance disturbance = Wind();
+  settling.Apply(Leaning(1.0), &reference, &disturbance);
+  EXPECT_EQ(reference.p_WB, Sinking().p_WB);
+  EXPECT_EQ(disturbance.force_W, Wind().force_W);
+}
+
+TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
+  const SettlingParameters parameters;
+  const estimation::VehicleModel model = TestVehicle();
+  for (const char* law : {"geometric", "paper"}) {
+    Settling settling;
+    settling.Note(1.0, true);
+    settling.Note(1.0 + parameters.fade_time, true);
+    const estimation::VehicleState state = Leaning(1.0 + parameters.fade_time);
+    planning::FlatState reference = Sinking();
+    Disturbance disturbance = Wind();
+    settling.Apply(state, &reference, &disturbance);
+    const ControlOutput output = MakeController(law, model)->Update(state, reference, disturbance);
+    EXPECT_GT(output.R_WB_desired(2, 2), 1.0 - 1e-9) << law;
+    EXPECT_GT(output.wrench.moment_B.y(), 0.5) << law;  // levels it
+    EXPECT_NEAR(output.wrench.thrust, parameters.thrust_share * model.HoverThrust() * std::cos(0.4),
+                1e-9)
+        << law;
+  }
+}
+
+TEST(Settling, FadesWithoutAJump) {
+  const estimation::VehicleModel model = TestVehicle();
+  const auto law = MakeController("geometric", model);
+  Settling settling;
+  double last = -1.0;
+  for (double t = 0.9; t < 1.4; t += 0.002) {
+    settling.Note(t, t >= 1.0);
+    planning::FlatState reference = Sinking();
+    Disturbance disturbance = Wind();
+    const estimation::VehicleState state = Leaning(t);
+    settling.Apply(state, &reference, &disturbance);
+    const double thrust = law->Update(state, reference, disturbance).wrench.thrust;
+    if (last >= 0.0) {
+      EXPECT_LT(std::abs(thrust - last), 0.02 * model.HoverThrust()) << t;
+    }
+    last = thrust;
+  }
+}
+
+TEST(Settling, ABriefLossOfContactDoesNotInterruptAndALongOneEndsIt) {
+  const SettlingParameters parameters;
+  Settling settling;
+  settling.Note(1.0, true);
+  const double end = 1.0 + parameters.fade_time;
+  settling.Note(end, true);
+  settling.Note(end + 0.9 * parameters.contact_gap, false);
+  EXPECT_EQ(settling.Share(end + 0.9 * parameters.contact_gap), 1.0);
+  const double off = end + 1.1 * parameters.contact_gap;
+  settling.Note(off, false);
+  EXPECT_EQ(settling.Share(off), 0.0);
+  settling.Note(off + 0.1, true);
+  EXPECT_EQ(settling.Share(off + 0.1), 0.0);
+}
+
+}  // namespace
+}  // namespace touchdown::control

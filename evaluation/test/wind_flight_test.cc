@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whole flights in wind, and with vehicles that are not what their pilot thinks.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/air.h"
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/equilibrium.h"
+#include "touchdown/evaluation/trial_json.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+// Steady wind to the north over a pad that stands below the start, or drives a circle there.
+const Overrides kNorthWind = {"wind.direction_random=false", "wind.direction_deg=90"};
+const Overrides kAbovePad = {"descent=none", "pad.motion=static", "pad.start=[0.3, 0.2]",
+                             "pad.prediction=oracle"};
+
+Overrides Join(Overrides a, const Overrides& b, const Overrides& c = {}) {
+  a.insert(a.end(), b.begin(), b.end());
+  a.insert(a.end(), c.begin(), c.end());
+  return a;
+}
+
+Scenario Open(const Overrides& overrides) {
+  return LoadScenario(FindScenario("open"), overrides, StandardRegistries());
+}
+
+TrialResult Fly(const Overrides& overrides, TrialRecord* record = nullptr, std::uint64_t seed = 1) {
+  return RunTrial(Open(overrides), seed, StandardRegistries(), record);
+}
+
+std::string Deterministic(const Scenario& scenario, const TrialResult& result) {
+  nlohmann::ordered_json json = LandJson(scenario, result);
+  json.erase("wall_clock");
+  return json.dump();
+}
+
+std::string Refusal(const Overrides& overrides) {
+  try {
+    Open(overrides);
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(WindFlight, SteadyWindLeavesNoSteadyError) {
+  const Overrides wind = {"wind.mean=11", "timeout=18"};
+  const TrialResult with = Fly(Join(kAbovePad, kNorthWind, wind));
+  ASSERT_TRUE(with.following);
+  EXPECT_LE(with.following->mean_error_m, 0.02);
+  // Against 4 N the position loop alone leaves 4 N / (m kp), and so does the paper's law.
+  const TrialResult without =
+      Fly(Join(kAbovePad, kNorthWind, Join(wind, {"control.disturbance=false"})));
+  ASSERT_TRUE(without.following);
+  EXPECT_GT(without.following->mean_error_m, 0.3);
+}
+
+TEST(WindFlight, OnACircleTooWithTheEstimatedMomentAndForce) {
+  const TrialResult result =
+      Fly(Join({"descent=none", "pad.motion=circle", "pad.speed=1", "pad.turn_rate=0.5",
+                "pad.start=[0.3, 0.2]", "pad.prediction=oracle"},
+               kNorthWind, {"wind.mean=11", "timeout=22"}));
+  ASSERT_TRUE(result.following);
+  EXPECT_LE(result.following->mean_error_m, 0.02);
+}
+
+TEST(WindFlight, RecordHoldsTheAirAndTheEstimateInTheWorldsAxes) {
+  TrialRecord record;
+  Fly(Join(kAbovePad, kNorthWind, {"wind.mean=7", "timeout=6"}), &record);
+  const RecordSample& last = record.samples.back();
+  EXPECT_LT((last.air - Eigen::Vector3d(0.0, 7.0, 0.0)).norm(), 1e-12);
+  // Pushed to the north by rotor and body drag; the vehicle leans against it, to the south.
+  const double drag = 0.19 * 7.0 + 0.5 * 1.225 * 0.03 * 49.0;
+  EXPECT_NEAR(last.disturbance.force_W.y(), drag, 0.1 * drag);
+  EXPECT_NEAR(last.disturbance.force_W.x(), 0.0, 0.1);
+  EXPECT_LT((last.vehicle.q_WB * Eigen::Vector3d::UnitZ()).y(), -0.1);
+  // Plans were told of it, over the mass.
+  const Eigen::Vector3d& pull = record.plans.back().request.input.pull_W;
+  EXPECT_GT(pull.y(), 0.5 * drag / 1.18);
+  EXPECT_LE(pull.y(), 1.1 * drag / 1.18);
+}
+
+TEST(WindFlight, StillAirIsTheSameWhateverTheOtherKeysSay) {
+  const Overrides brief = {"timeout=3"};
+  const Overrides keys = {"wind.direction_random=false", "wind.direction_deg=40",
+                          "wind.gust.start=1", "wind.gust.period=4"};
+  EXPECT_EQ(Deterministic(Open(brief), Fly(brief)),
+            Deterministic(Open(brief), Fly(Join(brief, keys))));
+}
+
+TEST(WindFlight, WindShiftsNoOtherDraw) {
+  Scenario calm = Open({"start.position_spread=[1, 1, 0]", "pad.phase_spread=2"});
+  Scenario windy = calm;
+  windy.wind.mean = 7.0;
+  windy.wind.max = 11.0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    EXPECT_EQ(DrawTrial(calm, seed).p_WB, DrawTrial(windy, seed).p_WB);
+    EXPECT_EQ(DrawTrial(calm, seed).phase, DrawTrial(windy, seed).phase);
+  }
+  // The direction is drawn from the whole circle, or as it is set.
+  EXPECT_NE(DrawTrial(windy, 1).wind_direction, DrawTrial(windy, 2).wind_direction);
+  windy.wind.direction_random = false;
+  windy.wind.direction_deg = -90.0;
+  EXPECT_NEAR(DrawTrial(windy, 1).wind_direction, -0.5 * std::acos(-1.0), 1e-12);
+}
+
+TEST(WindFlight, TurbulentWindRepeatsBitByBit) {
+  const Overrides wind = {"wind.mean=7", "wind.max=11", "timeout=4"};
+  EXPECT_EQ(Deterministic(Open(wind), Fly(wind, nullptr, 5)),
+            Deterministic(Open(wind), Fly(wind, nullptr, 5)));
+  EXPECT_NE(Deterministic(Open(wind), Fly(wind, nullptr, 5)),
+            Deterministic(Open(wind), Fly(wind, nullptr, 6)));
+}
+
+TEST(WindFlight, LandsInAGaleLeaningAgainstIt) {
+  const TrialResult result = Fly({"wind.mean=11", "wind.max=15"});
+  ASSERT_EQ(result.outcome, Outcome::kLanded) << result.detail;
+  EXPECT_LE(result.touchdown->error_m, 0.3);
+  EXPECT_GT(result.touchdown->tilt, 10.0 / 57.3);
+  EXPECT_LT(result.touchdown->tilt_over_equilibrium, 10.0 / 57.3);
+}
+
+TEST(WindFlight, LandsThoughTheVehicleIsNotWhatItsPilotThinks) {
+  for (const char* alteration : {"plant.mass=1.2", "plant.thrust=0.9", "plant.rotor_lag=1.5"}) {
+    const TrialResult result = Fly({alteration});
+    EXPECT_EQ(result.outcome, Outcome::kLanded) << alteration << ": " << result.detail;
+  }
+}
+
+TEST(WindFlight, AnEstimatedOwnStateDoesNotShakeTheVehicle) {
+  // Root mean square of the angular rate while it keeps above a pad that stands.
+  const auto shake = [](const char* disturbance) {
+    TrialRecord record;
+    Fly(Join(kAbovePad, {"own_state=estimated", "timeout=12"}, {disturbance}), &record);
+    double sum = 0.0;
+    int count = 0;
+    for (const RecordSample& sample : record.samples) {
+      if (sample.t < 5.0) continue;
+      sum += sample.vehicle.w_WB_B.squaredNorm();
+      ++count;
+    }
+    return std::sqrt(sum / count);
+  };
+  const double with = shake("control.disturbance=true");
+  const double without = shake("control.disturbance=false");
+  RecordProperty("with_rad_s", std::to_string(with));
+  RecordProperty("without_rad_s", std::to_string(without));
+  EXPECT_LT(with, 1.3 * without + 0.005);
+}
+
+TEST(WindFlight, GroundEffectAndWakeChangeTheFlightAndItLandsAllTheSame) {
+  const TrialResult plain = Fly({"wind.mean=4"});
+  const TrialResult both = Fly({"wind.mean=4", "air.ground_effect=true", "air.pad_wake=true"});
+  EXPECT_EQ(both.outcome, Outcome::kLanded) << both.detail;
+  EXPECT_NE(plain.effort_n2s, both.effort_n2s);
+}
+
+TEST(WindFlight, RefusesWhatCannotBe) {
+  using testing::HasSubstr;
+  EXPECT_THAT(Refusal({"wind.mean=7", "wind.max=4"}),
+              HasSubstr("wind.max must be 0 or in [7, 40]"));
+  EXPECT_THAT(Refusal({"wind.gust.period=1"}),
+              HasSubstr("wind.gust.period must be 0 or in [2, 600]"));
+  EXPECT_THAT(Refusal({"plant.mass=1.9", "plant.thrust=0.6"}), HasSubstr("more thrust"));
+  EXPECT_THAT(Refusal({"plant.thrust=0.3"}),
+              HasSubstr("plant.thrust must be a number in [0.5, 2]"));
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
