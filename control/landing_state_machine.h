@@ -25,19 +25,21 @@
 //   (flying)       hold            invalid_input      not a number for over invalid_timeout
 //   (armed)        emergency_stop  emergency          emergency flag
 //   emergency_stop hold            emergency_cleared  flag down for over emergency_time
+// clang-format on
 //
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance, the end of the bridge before the feet touch, no_contact, own_state_lost, invalid_input
-// or emergency. A pad counts as converged only while the vehicle's own state is usable. Dead reckoning
-// closes the gate for own_patience: a short outage of position and velocity is waited out.
-// clang-format on
+// error beyond commit_abort_distance, the end of the bridge before the feet touch, no_contact,
+// own_state_lost, invalid_input or emergency. A pad counts as converged only while the vehicle's
+// own state is usable. Dead reckoning closes the gate for own_patience: a short outage of position
+// and velocity is waited out.
 //
-// The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is known
-// well, and it stays open without tags where the rest of the way can be bridged: contact is foretold
-// within bridge_time of the last sighting, with a pad that is by then still known to bridge_sigma.
-// Without sightings neither improves, so a descent that pauses, or that lost the tags too high up,
-// closes the gate; and a committed descent is given up where the bridge has ended without contact.
+// The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is
+// known well, and it stays open without tags where the rest of the way can be bridged: contact is
+// foretold within bridge_time of the last sighting, with a pad that is by then still known to
+// bridge_sigma. Without sightings neither improves, so a descent that pauses, or that lost the tags
+// too high up, closes the gate; and a committed descent is given up where the bridge has ended
+// without contact.
 #pragma once
 
 #include <limits>

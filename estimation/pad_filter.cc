@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "touchdown/estimation/chi_squared.h"
+#include "touchdown/estimation/covariance.h"
 #include "touchdown/estimation/pad_predictor.h"
 
 namespace touchdown::estimation {
@@ -212,10 +213,7 @@ PadState PadFilter::Estimate(double t) const {
 
 double PadFilter::PositionSigma(double t) const {
   if (!current_.initialized) return std::numeric_limits<double>::infinity();
-  const Eigen::Matrix2d cov = BeliefAt(t).cov.topLeftCorner<2, 2>();
-  // Larger eigenvalue of a symmetric 2x2 matrix.
-  const double half_trace = 0.5 * cov.trace();
-  return std::sqrt(half_trace + std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1)));
+  return std::sqrt(LargestVariance(BeliefAt(t).cov.topLeftCorner<2, 2>()));
 }
 
 double PadFilter::TagAge(double t) const { return t - current_.diagnostics.last_tag_t; }

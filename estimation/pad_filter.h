@@ -131,7 +131,7 @@ class PadFilter {
   PadBelief BeliefAt(double t) const;
   PadState Estimate(double t) const;
 
-  /// Larger horizontal 1 sigma of the position at time t [m]; infinite before the first fix.
+  /// Largest horizontal 1 sigma of the position at time t [m]; infinite before the first fix.
   double PositionSigma(double t) const;
 
   /// Age of the last accepted sighting at time t [s]; infinite if there was none.

@@ -12,6 +12,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "touchdown/estimation/covariance.h"
 #include "touchdown/estimation/pad_filter.h"
 
 namespace touchdown::estimation {
@@ -176,9 +177,7 @@ void PadFilter::ChangeMotion(PadBelief& belief) const {
   if (belief.motion == PadMotion::kVelocity) {
     const Eigen::Vector2d v_WP = belief.mean.segment<2>(2);
     const double speed = v_WP.norm();
-    const Eigen::Matrix2d cov_v = belief.cov.block<2, 2>(2, 2);
-    const double variance =
-        0.5 * cov_v.trace() + std::hypot(0.5 * (cov_v(0, 0) - cov_v(1, 1)), cov_v(0, 1));
+    const double variance = LargestVariance(belief.cov.block<2, 2>(2, 2));
     if (speed < options_.min_speed || speed < options_.heading_significance * std::sqrt(variance)) {
       return;
     }

@@ -61,7 +61,8 @@ std::string Text(const std::string& name, const std::vector<TermCheckRow>& rows)
                       "residuals", "rows");
   for (const TermCheckRow& row : rows) {
     const auto figure = [&](double error) {
-      return row.points == 0 ? std::string("-") : fmt::format("{:.1e}", error);
+      if (row.points == 0) return std::string("-");
+      return row.errors.evaluated ? fmt::format("{:.1e}", error) : "undefined";
     };
     const solvers::DerivativeErrors& e = row.errors;
     text += fmt::format(kLine, ViewName(row.view), ArrivalName(row), RoleName(row),

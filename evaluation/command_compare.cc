@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown compare: solver backends on the same random landing problems.
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/compare.h"
 #include "touchdown/evaluation/compare_report.h"
 #include "touchdown/evaluation/compare_table.h"
+#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/sim/forest.h"
 
@@ -49,36 +48,6 @@ std::vector<std::string> ComparedForests() {
   return kinds;
 }
 
-// The parser's own delimiter drops empty names.
-std::vector<std::string> SplitNames(const std::vector<std::string>& lists) {
-  std::vector<std::string> names;
-  for (const std::string& list : lists) {
-    for (std::size_t from = 0; from <= list.size();) {
-      const std::size_t to = std::min(list.find(',', from), list.size());
-      names.push_back(list.substr(from, to - from));
-      from = to + 1;
-    }
-  }
-  return names;
-}
-
-// Reports about every two seconds.
-class Progress {
- public:
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{} of {} problems, {:.0f} s left", done, all, elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-};
-
 /// "terms.reach.weight=3" becomes a setting of the problem.
 planning::TermSettings ParseTermSetting(const std::string& text,
                                         const planning::TermRegistry& terms) {
@@ -104,22 +73,10 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   return settings;
 }
 
-// The picture is drawn from a table; without --db that one is not kept.
-void Draw(const CompareArguments& arguments, const CompareResult& result,
-          const MachineState& machine) {
-  if (!arguments.db.empty()) return DrawComparison(arguments.db, arguments.picture);
-  const AtomicFile unkept(arguments.picture + ".db");
-  WriteCompareTable(unkept.working_path(), arguments.options, result, machine);
-  DrawComparison(unkept.working_path(), arguments.picture);
-}
-
 int Compare(CompareArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CompareOptions& options = arguments.options;
   std::sort(options.points.begin(), options.points.end());
-  options.points.erase(std::unique(options.points.begin(), options.points.end()),
-                       options.points.end());
-  options.backends = SplitNames(options.backends);
   options.cases.warm = arguments.start == "warm";
   planning::LandingProblemOptions& problem = options.cases.problem;
   problem.terms = registries.terms;
@@ -137,15 +94,21 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   machine.pinned = arguments.pin;
   if (arguments.pin) PinToCpu(*arguments.pin);
   machine.load_before = LoadAverage();
-  const CompareResult result = RunCompare(options, registries.backends, Progress());
+  const CompareResult result =
+      RunCompare(options, registries.backends, Progress({.things = "problems"}));
   machine.load_after = LoadAverage();
   if (arguments.json) {
     std::cout << CompareJson(options, result, machine).dump(2) << std::endl;
   } else {
     std::cout << CompareText(options, result) << std::flush;
   }
-  if (!arguments.db.empty()) WriteCompareTable(arguments.db, options, result, machine);
-  if (!arguments.picture.empty()) Draw(arguments, result, machine);
+  const auto write = [&](const std::string& path) {
+    WriteCompareTable(path, options, result, machine);
+  };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) {
+    DrawFrom(arguments.db, arguments.picture, write, DrawComparison);
+  }
   return kDone;
 }
 
@@ -163,11 +126,8 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
   command->add_option("--problems", options.problems, "Number of problems of each size")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--points", options.points, "Control points: one size or several")
-      ->delimiter(',')
-      ->type_name("N,N,...")
-      ->check(CLI::Range(9, 1000))
-      ->capture_default_str();
+  AddListOption(*command, "--points", &options.points, "Control points: one size or several",
+                "N,N,...", CLI::Range(9, 1000));
   command
       ->add_option("--start", arguments->start, "From a Hermite guess, or shifted from 0.1 s ago")
       ->check(one_of({"cold", "warm"}))
@@ -181,8 +141,9 @@ void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* 
   command->add_option("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
       ->check(one_of({"eliminated", "explicit"}))
       ->capture_default_str();
-  command->add_option("--backends", options.backends, "Which ones; default: all that can solve it")
-      ->type_name("NAME,NAME,...");
+  AddListOption(*command, "--backends", &options.backends,
+                "Which ones; default: all that can solve it", "NAME,NAME,...",
+                CLI::IsMember(BackendNames(registries)));
   command
       ->add_option(
           "--set", arguments->set,

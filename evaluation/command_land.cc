@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
@@ -93,15 +92,6 @@ void CheckOutputs(const LandArguments& arguments) {
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
-// The picture is drawn from a record; without --record that one is not kept.
-void Draw(const LandArguments& arguments, const Scenario& scenario, const TrialResult& result,
-          const TrialRecord& record) {
-  if (!arguments.record.empty()) return DrawLanding(arguments.record, arguments.plot);
-  const AtomicFile unkept(arguments.plot + ".record");
-  WriteRecord(unkept.working_path(), scenario, result, record);
-  DrawLanding(unkept.working_path(), arguments.plot);
-}
-
 // The result is printed first: a file or picture that fails does not take it along.
 int Land(const LandArguments& arguments, const Registries& registries) {
   const Scenario scenario = arguments.scenario.Load(registries);
@@ -117,9 +107,10 @@ int Land(const LandArguments& arguments, const Registries& registries) {
   } else {
     std::cout << Summary(scenario, result) << std::flush;
   }
-  if (!arguments.record.empty()) WriteRecord(arguments.record, scenario, result, record);
+  const auto write = [&](const std::string& path) { WriteRecord(path, scenario, result, record); };
+  if (!arguments.record.empty()) write(arguments.record);
   if (map) WriteMapFile(arguments.save_map, &*map);
-  if (!arguments.plot.empty()) Draw(arguments, scenario, result, record);
+  if (!arguments.plot.empty()) DrawFrom(arguments.record, arguments.plot, write, DrawLanding);
   return result.succeeded() ? kDone : kFellShort;
 }
 
@@ -130,11 +121,15 @@ void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run
   const auto arguments = std::make_shared<LandArguments>();
   arguments->scenario.AddTo(*command, false);
   command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=")->type_name("S");
-  AddFileOption(*command, "--record", &arguments->record, "Write the record, an SQLite file",
-                "F.db");
-  AddFileOption(*command, "--plot", &arguments->plot, "Draw plan and side view", "F.png");
-  AddFileOption(*command, "--save-map", &arguments->save_map,
-                "Write what was seen of the world, an OctoMap file; see map.prior", "F.bt|F.ot");
+  AddFileOption(*command, "--record", &arguments->record,
+                "Write the record, an SQLite file; an older one is overwritten", "F.db");
+  AddFileOption(*command, "--plot", &arguments->plot,
+                "Draw plan and side view; an older file is overwritten", "F.png");
+  AddFileOption(
+      *command, "--save-map", &arguments->save_map,
+      "Write what was seen of the world, an OctoMap file; an older file is overwritten; see "
+      "map.prior",
+      "F.bt|F.ot");
   command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
   command->callback([arguments, &registries, run] {
     *run = [arguments, &registries] { return Land(*arguments, registries); };

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/output_path.h"
@@ -68,14 +67,16 @@ SolvedStep SolveStart(const PlanArguments& arguments, const Registries& registri
   return solved;
 }
 
-// The picture is drawn from the step's own document, which is not kept.
+// The picture is drawn from the step's own document, which is never kept.
 void Draw(const std::string& picture, const SolvedStep& solved) {
-  const AtomicFile unkept(picture + ".json");
-  std::ofstream out(unkept.working_path());
-  out << PlanJson(solved, true).dump() << std::endl;
-  if (!out) throw std::runtime_error(fmt::format("--picture {}: it could not be drawn.", picture));
-  out.close();
-  DrawPlan(unkept.working_path(), picture);
+  const auto write = [&](const std::string& path) {
+    std::ofstream out(path);
+    out << PlanJson(solved, true).dump() << std::endl;
+    if (!out) {
+      throw std::runtime_error(fmt::format("--picture {}: it could not be drawn.", picture));
+    }
+  };
+  DrawFrom("", picture, write, DrawPlan);
 }
 
 int RunPlan(const PlanArguments& arguments, const Registries& registries) {

@@ -3,21 +3,20 @@
 // random forests, and how faithful its baseline is. `tags` and `pad`: see command_study_tags.cc and
 // command_study_pad.cc.
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/command_study_pad.h"
 #include "touchdown/evaluation/command_study_tags.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/forest_flight_report.h"
+#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/replan_report.h"
 #include "touchdown/evaluation/replan_study.h"
@@ -41,27 +40,6 @@ struct StudyArguments {
   bool allow_debug = false;
 };
 
-class Progress {
- public:
-  explicit Progress(std::string what, const char* of = "scenes")
-      : what_(std::move(what)), of_(of) {}
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{}: {} of {} {}, {:.0f} s left", what_, done, all, of_,
-                 elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string what_;
-  const char* of_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-};
-
 void RunSafety(const StudyArguments& arguments, const Registries& registries,
                std::vector<ReplanStudyPart>* parts) {
   for (const std::string& kind : arguments.kinds) {
@@ -69,7 +47,8 @@ void RunSafety(const StudyArguments& arguments, const Registries& registries,
     part.part = "safety";
     part.options = arguments.options;
     part.options.scenes.kind = SceneKindNamed(kind);
-    part.rows = RunReplanStudy(part.options, registries.backends, Progress("kind " + kind));
+    part.rows = RunReplanStudy(part.options, registries.backends,
+                               Progress({.things = "scenes", .of = "kind " + kind}));
     parts->push_back(std::move(part));
   }
 }
@@ -84,8 +63,9 @@ void RunGrowth(const StudyArguments& arguments, const Registries& registries,
     part.varied = point.varied;
     part.options = point.options;
     const double value = VariedValue(point.varied, point.options.scenes);
-    part.rows = RunReplanStudy(part.options, registries.backends,
-                               Progress(fmt::format("{} = {:.4g}", point.varied, value)));
+    part.rows = RunReplanStudy(
+        part.options, registries.backends,
+        Progress({.things = "scenes", .of = fmt::format("{} = {:.4g}", point.varied, value)}));
     parts->push_back(std::move(part));
   }
 }
@@ -97,7 +77,7 @@ int RunFidelity(const StudyArguments& arguments) {
   for (const std::string& name : arguments.kinds) {
     const SceneKind& kind = SceneKindNamed(name);
     const auto results = RunEgoScenes(kind, arguments.options.count, arguments.options.scenes.seed,
-                                      Progress("kind " + name));
+                                      Progress({.things = "scenes", .of = "kind " + name}));
     const auto compared = CompareWithUpstream(kind, results, path);
     rows.insert(rows.end(), compared.begin(), compared.end());
   }
@@ -123,7 +103,7 @@ int RunFlights(const StudyArguments& arguments, const Registries& registries) {
       part.options.replanner = arguments.options.replanner;
       part.options.replanner.problem.terms = registries.terms;
       part.options.seed = arguments.options.scenes.seed;
-      Progress progress(fmt::format("kind {}, {}", kind, planner), "flights");
+      Progress progress({.things = "flights", .of = fmt::format("kind {}, {}", kind, planner)});
       for (int index = 0; index < arguments.flights; ++index) {
         part.flights.push_back(FlyThroughForest(part.options, registries.backends, index));
         const bool reached = part.flights.back().outcome == FlightOutcome::kReached;
@@ -169,18 +149,28 @@ void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const 
   }
 }
 
-bool Asked(const StudyArguments& arguments, const char* part) {
-  const std::vector<std::string>& parts = arguments.parts;
-  return std::find(parts.begin(), parts.end(), part) != parts.end();
+bool Named(const std::vector<std::string>& list, const char* name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-// The picture is drawn from a table; without --db that one is not kept.
-void Draw(const StudyArguments& arguments, const std::vector<ReplanStudyPart>& parts,
-          const MachineState& machine) {
-  if (!arguments.db.empty()) return DrawGrowth(arguments.db, arguments.picture);
-  const AtomicFile unkept(arguments.picture + ".db");
-  WriteReplanStudy(unkept.working_path(), parts, machine);
-  DrawGrowth(unkept.working_path(), arguments.picture);
+/// Options that change nothing beside the others are refused. @throws BadInput
+void CheckEffects(const StudyArguments& arguments, const CLI::App& command) {
+  const bool flights = Named(arguments.parts, "flights");
+  for (const char* option : {"--flights", "--planners"}) {
+    if (command.count(option) == 0 || flights) continue;
+    throw BadInput(fmt::format("{} goes with --parts flights.", option));
+  }
+  for (const char* option : {"--backend", "--guides"}) {
+    if (command.count(option) == 0 || !flights || Named(arguments.planners, "landing")) continue;
+    throw BadInput(fmt::format("{} is of the planner landing: name it in --planners.", option));
+  }
+  const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
+  if (only_growth && command.count("--kinds") > 0 && arguments.kinds.size() != 1) {
+    throw BadInput("--kinds: the part growth is of one kind.");
+  }
+  for (const LonePart& part : LoneParts()) {
+    if (Named(arguments.parts, part.name)) CheckLonePart(part, arguments, command);
+  }
 }
 
 /// No accepted plan that was looked at collides or is beyond a limit.
@@ -194,7 +184,7 @@ bool AllSafe(const std::vector<ReplanStudyPart>& parts) {
 int Study(StudyArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CheckOutputs(arguments.db, arguments.picture);
-  if (!arguments.picture.empty() && !Asked(arguments, "growth")) {
+  if (!arguments.picture.empty() && !Named(arguments.parts, "growth")) {
     throw BadInput("--picture shows the part growth: name it in --parts.");
   }
   planning::ReplannerOptions& replanner = arguments.options.replanner;
@@ -208,16 +198,17 @@ int Study(StudyArguments arguments, const Registries& registries) {
   if (arguments.pin) PinToCpu(*arguments.pin);
   machine.load_before = LoadAverage();
   std::vector<ReplanStudyPart> parts;
-  if (Asked(arguments, "safety")) RunSafety(arguments, registries, &parts);
-  if (Asked(arguments, "growth")) RunGrowth(arguments, registries, &parts);
+  if (Named(arguments.parts, "safety")) RunSafety(arguments, registries, &parts);
+  if (Named(arguments.parts, "growth")) RunGrowth(arguments, registries, &parts);
   machine.load_after = LoadAverage();
   if (arguments.json) {
     std::cout << ReplanStudyJson(parts, machine).dump(2) << std::endl;
   } else {
     std::cout << ReplanStudyText(parts) << std::flush;
   }
-  if (!arguments.db.empty()) WriteReplanStudy(arguments.db, parts, machine);
-  if (!arguments.picture.empty()) Draw(arguments, parts, machine);
+  const auto write = [&](const std::string& path) { WriteReplanStudy(path, parts, machine); };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawGrowth);
   return AllSafe(parts) ? kDone : kFellShort;
 }
 
@@ -232,32 +223,21 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
       "replan", "Latency, success and safety of replanning steps in random forests");
   const auto arguments = std::make_shared<StudyArguments>();
   ReplanStudyOptions& options = arguments->options;
-  command
-      ->add_option(
-          "--parts", arguments->parts,
-          "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
-          "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
-          "stand alone")
-      ->delimiter(',')
-      ->type_name("safety,growth,...")
-      ->check(CLI::IsMember({"safety", "growth", "flights", "fidelity"}))
-      ->capture_default_str();
+  AddListOption(*command, "--parts", &arguments->parts,
+                "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
+                "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
+                "stand alone",
+                "safety,growth,...", CLI::IsMember({"safety", "growth", "flights", "fidelity"}));
   command->add_option("--scenes", options.count, "Scenes of each kind")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--kinds", arguments->kinds, "Kinds of scenes")
-      ->delimiter(',')
-      ->type_name("A,B,...")
-      ->check(CLI::IsMember({"A", "B", "C", "D"}))
-      ->capture_default_str();
+  AddListOption(*command, "--kinds", &arguments->kinds, "Kinds of scenes", "A,B,...",
+                CLI::IsMember({"A", "B", "C", "D"}));
   command->add_option("--flights", arguments->flights, "Flights of each kind and planner")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--planners", arguments->planners, "Whose flights")
-      ->delimiter(',')
-      ->type_name("landing,ego")
-      ->check(CLI::IsMember({"landing", "ego"}))
-      ->capture_default_str();
+  AddListOption(*command, "--planners", &arguments->planners, "Whose flights", "landing,ego",
+                CLI::IsMember({"landing", "ego"}));
   command->add_option("--backend", options.replanner.backend, "Solver backend")
       ->check(CLI::IsMember(BackendNames(registries)))
       ->capture_default_str();
@@ -289,19 +269,9 @@ void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* ru
   command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
   command->callback([arguments, &registries, run, command] {
     *run = [arguments, &registries, command] {
-      for (const char* option : {"--flights", "--planners"}) {
-        if (command->count(option) == 0 || Asked(*arguments, "flights")) continue;
-        throw BadInput(fmt::format("{} goes with --parts flights.", option));
-      }
-      const bool only_growth = Asked(*arguments, "growth") && !Asked(*arguments, "safety");
-      if (only_growth && command->count("--kinds") > 0 && arguments->kinds.size() != 1) {
-        throw BadInput("--kinds: the part growth is of one kind.");
-      }
-      for (const LonePart& part : LoneParts()) {
-        if (Asked(*arguments, part.name)) CheckLonePart(part, *arguments, *command);
-      }
-      if (Asked(*arguments, "fidelity")) return RunFidelity(*arguments);
-      if (Asked(*arguments, "flights")) return RunFlights(*arguments, registries);
+      CheckEffects(*arguments, *command);
+      if (Named(arguments->parts, "fidelity")) return RunFidelity(*arguments);
+      if (Named(arguments->parts, "flights")) return RunFlights(*arguments, registries);
       return Study(*arguments, registries);
     };
   });

@@ -3,18 +3,17 @@
 #include "touchdown/evaluation/command_study_pad.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
-#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/pad_report.h"
 #include "touchdown/evaluation/pad_summary.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/report_program.h"
 
 namespace touchdown::evaluation {
@@ -27,42 +26,20 @@ struct PadStudyArguments {
   bool json = false;
 };
 
-class Progress {
- public:
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{} of {} flights, {:.0f} s left", done, all, elapsed / done * (all - done));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-};
-
-// The picture is drawn from a table; without --db that one is not kept.
-void Write(const PadStudyArguments& arguments, const PadStudy& study) {
-  if (!arguments.db.empty()) WritePadStudy(arguments.db, arguments.options, study);
-  if (arguments.picture.empty()) return;
-  if (!arguments.db.empty()) return DrawPadStudy(arguments.db, arguments.picture);
-  const AtomicFile unkept(arguments.picture + ".table");
-  WritePadStudy(unkept.working_path(), arguments.options, study);
-  DrawPadStudy(unkept.working_path(), arguments.picture);
-}
-
 int Run(const PadStudyArguments& arguments, const Registries& registries) {
   CheckOutputs(arguments.db, arguments.picture);
-  Progress progress;
-  const PadStudy study = RunPadStudy(arguments.options, registries, std::ref(progress));
+  const PadStudy study =
+      RunPadStudy(arguments.options, registries, Progress({.things = "flights"}));
   if (arguments.json) {
     std::cout << PadStudyJson(arguments.options, study).dump(2) << std::endl;
   } else {
     std::cout << PadStudyText(arguments.options, study) << std::flush;
   }
-  Write(arguments, study);
+  const auto write = [&](const std::string& path) {
+    WritePadStudy(path, arguments.options, study);
+  };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawPadStudy);
   const std::vector<PadDemand> demands = PadDemands(arguments.options, study);
   const bool met = std::all_of(demands.begin(), demands.end(),
                                [](const PadDemand& demand) { return demand.met(); });
@@ -77,15 +54,9 @@ void AddPadStudyCommand(CLI::App& study, const Registries& registries, CommandRu
   const auto arguments = std::make_shared<PadStudyArguments>();
   PadStudyOptions& options = arguments->options;
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command->add_option("--scenarios", options.scenarios, "Names or files")
-      ->delimiter(',')
-      ->type_name("NAME,...")
-      ->capture_default_str();
-  command->add_option("--sigmas", options.sigmas, "Of the pad's GPS [m]")
-      ->delimiter(',')
-      ->type_name("0.01,0.5,...")
-      ->check(FiniteRange(0.0, 100.0))
-      ->capture_default_str();
+  AddListOption(*command, "--scenarios", &options.scenarios, "Names or files", "NAME,...", {});
+  AddListOption(*command, "--sigmas", &options.sigmas, "Of the pad's GPS [m]", "0.01,0.5,...",
+                FiniteRange(0.0, 100.0));
   command->add_option("--trials", options.trials, "Flights of each scenario and sigma")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

@@ -2,15 +2,15 @@
 // touchdown study tags: how well the pad is found in rendered images.
 #include "touchdown/evaluation/command_study_tags.h"
 
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/list_option.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/tag_fit.h"
 #include "touchdown/evaluation/tag_picture.h"
@@ -32,39 +32,33 @@ struct TagStudyArguments {
   bool json = false;
 };
 
-class Progress {
- public:
-  explicit Progress(std::string what) : what_(std::move(what)) {}
-  void operator()(int done, int all) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < all) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    spdlog::info("{}: {} of {} views, {:.0f} s left", what_, done, all,
-                 elapsed / done * (all - done));
+void MakeDirectory(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (!error && std::filesystem::is_directory(directory)) return;
+  throw BadInput(
+      fmt::format("--frames {}: the directory cannot be made ({}).", directory, error.message()));
+}
+
+/// An exposure blurs what moves; the one changes nothing without the other. @throws BadInput
+void CheckBlur(const TagStudyOptions& options) {
+  if (options.camera.exposure_ms > 0.0 && options.speed == 0.0) {
+    throw BadInput("--exposure blurs the images of a vehicle that moves: give --speed as well.");
   }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string what_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
-};
-
-void CheckFrames(const std::string& directory) {
-  std::error_code ignored;
-  if (directory.empty() || std::filesystem::is_directory(directory, ignored)) return;
-  throw BadInput(fmt::format("--frames {}: there is no such directory.", directory));
+  if (options.speed > 0.0 && options.camera.exposure_ms == 0.0) {
+    throw BadInput("--speed blurs the images of an exposure: give --exposure as well.");
+  }
 }
 
 int Run(const TagStudyArguments& arguments) {
-  CheckFrames(arguments.frames);
-  RequireRendering("study tags");
+  CheckBlur(arguments.options);
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
   if (arguments.fit && arguments.fovs.size() * arguments.noises.size() != 1) {
     throw BadInput(
         "--fit goes with one field of view and one noise: name them by --fov and --noise.");
   }
+  RequireRendering("study tags");
+  if (!arguments.frames.empty()) MakeDirectory(arguments.frames);
   std::vector<TagStudyPart> parts;
   bool fulfilled = true;
   for (const double fov : arguments.fovs) {
@@ -86,7 +80,7 @@ int Run(const TagStudyArguments& arguments) {
                           camera);
         };
       }
-      part.rows = RunTagStudy(part.options, Progress(name), save);
+      part.rows = RunTagStudy(part.options, Progress({.things = "views", .of = name}), save);
       fulfilled = fulfilled && FulfilsDemand(part.rows);
       parts.push_back(std::move(part));
     }
@@ -122,16 +116,10 @@ void AddTagStudyCommand(CLI::App& study, CommandRun* run) {
   command->add_option("--poses", options.poses, "Views for each camera")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->add_option("--fov", arguments->fovs, "Vertical fields of view [deg]")
-      ->delimiter(',')
-      ->type_name("90,60,...")
-      ->check(FiniteRange(10.0, 100.0))
-      ->capture_default_str();
-  command->add_option("--noise", arguments->noises, "Noise of the images [grey levels]")
-      ->delimiter(',')
-      ->type_name("0,5,...")
-      ->check(FiniteRange(0.0, 100.0))
-      ->capture_default_str();
+  AddListOption(*command, "--fov", &arguments->fovs, "Vertical fields of view [deg]", "90,60,...",
+                FiniteRange(10.0, 100.0));
+  AddListOption(*command, "--noise", &arguments->noises, "Noise of the images [grey levels]",
+                "0,5,...", FiniteRange(0.0, 100.0));
   command->add_option("--width", options.camera.width, "Of the images, 4:3 [pixel]")
       ->check(CLI::Range(32, 4096))
       ->capture_default_str();

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown sweep: many landings of one scenario on threads, their table and its study file.
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
 #include "touchdown/evaluation/trial_table.h"
@@ -26,28 +25,6 @@ struct SweepArguments {
   std::uint64_t seed = 1;
   std::string db;
   bool json = false;
-};
-
-// Reports about every two seconds: the rate so far and the time left at that rate.
-class Progress {
- public:
-  explicit Progress(int trials) : trials_(trials) {}
-
-  void operator()(int done) {
-    const auto now = Clock::now();
-    if (now - last_ < std::chrono::seconds(2) && done < trials_) return;
-    last_ = now;
-    const double elapsed = std::chrono::duration<double>(now - begin_).count();
-    const double rate = done / elapsed;
-    spdlog::info("{} of {} trials, {:.2f} trials/s, {:.0f} s left", done, trials_, rate,
-                 (trials_ - done) / rate);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  int trials_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
 };
 
 int Sweep(const SweepArguments& arguments, const Registries& registries) {
@@ -66,8 +43,8 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
     }
   }
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
-  const std::vector<SweepRow> rows =
-      RunSweep(trials, arguments.jobs, registries, Progress(options.trials));
+  const std::vector<SweepRow> rows = RunSweep(trials, arguments.jobs, registries,
+                                              Progress({.things = "trials", .with_rate = true}));
   if (arguments.json) {
     std::cout << SweepJson(options, rows).dump(2) << std::endl;
   } else {

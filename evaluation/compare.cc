@@ -319,10 +319,6 @@ void CheckNames(const std::vector<std::string>& names, const solvers::BackendReg
   std::vector<std::string> known;
   for (const solvers::BackendEntry& entry : registry) known.push_back(entry.name);
   for (auto name = names.begin(); name != names.end(); ++name) {
-    if (name->empty()) {
-      throw BadInput(
-          fmt::format("--backends: a name is empty; the backends are {}.", Enumerate(known)));
-    }
     if (std::find(names.begin(), name, *name) != name) {
       throw BadInput(fmt::format("--backends {}: named twice.", *name));
     }

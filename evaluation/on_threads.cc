@@ -13,7 +13,7 @@
 namespace touchdown::evaluation {
 
 void RunOnThreads(int count, int jobs, const std::function<void(int)>& run,
-                  const std::function<void(int done)>& progress) {
+                  const std::function<void(int done, int all)>& progress) {
   std::atomic<int> next{0};
   std::mutex mutex;  // of failure
   std::mutex telling;
@@ -29,7 +29,7 @@ void RunOnThreads(int count, int jobs, const std::function<void(int)>& run,
       for (int i = next++; i < count; i = next++) {
         run(i);
         const std::lock_guard lock(telling);
-        progress(++done);
+        progress(++done, count);
       }
     } catch (...) {
       stop();

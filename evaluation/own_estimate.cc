@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "touchdown/estimation/covariance.h"
+
 namespace touchdown::evaluation {
 
 sim::OwnStateSourceConfig OwnSourceConfig(const Scenario& scenario) {
@@ -55,11 +57,10 @@ estimation::OwnStatus OwnEstimate::status() const {
   return source_ ? source_->status() : estimation::OwnStatus::kGood;
 }
 
-double OwnEstimate::PositionSigma() const {
+double OwnEstimate::HorizontalSigma() const {
   if (!source_) return 0.0;
-  const Eigen::Matrix2d cov = source_->filter().belief().cov.topLeftCorner<2, 2>();
-  // Larger eigenvalue of a symmetric 2x2 matrix.
-  return std::sqrt(0.5 * cov.trace() + std::hypot(0.5 * (cov(0, 0) - cov(1, 1)), cov(0, 1)));
+  return std::sqrt(
+      estimation::LargestVariance(source_->filter().belief().cov.topLeftCorner<2, 2>()));
 }
 
 }  // namespace touchdown::evaluation

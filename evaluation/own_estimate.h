@@ -38,8 +38,8 @@ class OwnEstimate {
   /// How far the estimate is to be trusted; the truth is always good.
   estimation::OwnStatus status() const;
 
-  /// Larger horizontal 1 sigma of the position in W [m]; 0 for the truth.
-  double PositionSigma() const;
+  /// Largest horizontal 1 sigma of the position in W [m]; 0 for the truth.
+  double HorizontalSigma() const;
 
  private:
   std::optional<sim::OwnStateSource> source_;

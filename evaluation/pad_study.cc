@@ -198,7 +198,7 @@ PadStudy RunPadStudy(const PadStudyOptions& options, const Registries& registrie
     rows_of[at] = ReplayPadLog(samples.pad, PadFilterOptionsOf(scenario_of[at]));
     for (PadStudyRow& row : rows_of[at]) row.flight = i;
   };
-  RunOnThreads(all, options.jobs, fly, [&](int done) { progress(done, all); });
+  RunOnThreads(all, options.jobs, fly, progress);
   for (const auto& some : rows_of) study.rows.insert(study.rows.end(), some.begin(), some.end());
   return study;
 }

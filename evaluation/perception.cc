@@ -138,7 +138,7 @@ void Perception::SensePad(const estimation::VehicleState& vehicle,
     pad_measured_ = true;
   };
   if (auto fix = gps_.Poll(t, pad); fix && !TagsGuide(t)) {
-    fix->sigma = std::hypot(fix->sigma, own_.PositionSigma());
+    fix->sigma = std::hypot(fix->sigma, own_.HorizontalSigma());
     timed(*fix, [&] { pad_filter_.AddGps(*fix); });
   }
   pad_eye_->Look(vehicle, own_.now(), pad, pad_filter_, &sensing_times_);

@@ -120,7 +120,8 @@ std::string GrowthText(const std::vector<const ReplanStudyPart*>& parts) {
   }
   text += TimesHead("  pairs");
   for (const PairClass& one : TimesByPairs(rows)) {
-    text += LatencyText(fmt::format("  {} to {}", one.from, one.to), one.time);
+    const std::string range = one.to == 0 ? "none" : fmt::format("{} to {}", one.from, one.to);
+    text += LatencyText("  " + range, one.time);
   }
   return text;
 }

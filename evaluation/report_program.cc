@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
@@ -76,6 +77,15 @@ void Draw(const char* module, const std::string& option, const std::string& inpu
 }
 
 }  // namespace
+
+void DrawFrom(const std::string& kept, const std::string& picture,
+              const std::function<void(const std::string& table)>& write,
+              const std::function<void(const std::string&, const std::string&)>& draw) {
+  if (!kept.empty()) return draw(kept, picture);
+  const AtomicFile unkept(picture + ".table");
+  write(unkept.working_path());
+  draw(unkept.working_path(), picture);
+}
 
 void DrawLanding(const std::string& record_path, const std::string& picture_path) {
   Draw("touchdown_report.landing", "--plot", record_path, picture_path);

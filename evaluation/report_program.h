@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace touchdown::evaluation {
+
+/// Draws a picture with `draw(table, picture)`, one of those below. The table, or document, is the
+/// one at `kept`; where that is empty, `write` is told where to write one, beside the picture, that
+/// is removed again. @throws what `write` and `draw` throw.
+void DrawFrom(const std::string& kept, const std::string& picture,
+              const std::function<void(const std::string& table)>& write,
+              const std::function<void(const std::string&, const std::string&)>& draw);
 
 /// Draws the landing picture of a record through the Python package touchdown_report.
 /// @throws std::runtime_error with one sentence: Python or the package missing, or why it failed.

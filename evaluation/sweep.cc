@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <exception>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -39,6 +40,22 @@ void CheckValues(const Variation& variation) {
   for (const std::string& value : values) {
     Scenario probe;
     key->set(probe, YAML::Node(value), {.file = "--vary " + variation.text});
+  }
+}
+
+// A key that is varied is decided by the variation alone. @throws BadInput
+void CheckKeys(const SweepOptions& options) {
+  std::set<std::string> varied;
+  for (const Variation& variation : options.variations) {
+    if (!varied.insert(variation.key).second) {
+      throw BadInput(fmt::format("--vary {}: {} is varied twice.", variation.text, variation.key));
+    }
+  }
+  for (const std::string& text : options.overrides) {
+    const std::string key = text.substr(0, text.find('='));
+    if (varied.count(key) > 0) {
+      throw BadInput(fmt::format("--set {}: it has no effect beside --vary of {}.", text, key));
+    }
   }
 }
 
@@ -85,7 +102,12 @@ Variation Variation::Parse(const std::string& text) {
   }
   for (std::size_t begin = 0; begin <= rest.size();) {
     const std::size_t comma = std::min(rest.find(',', begin), rest.size());
-    variation.values.push_back(rest.substr(begin, comma - begin));
+    const std::string value = rest.substr(begin, comma - begin);
+    std::vector<std::string>& values = variation.values;
+    if (std::find(values.begin(), values.end(), value) != values.end()) {
+      throw BadInput(fmt::format("--vary {}: {} stands there twice.", text, value));
+    }
+    values.push_back(value);
     begin = comma + 1;
   }
   CheckValues(variation);
@@ -103,6 +125,7 @@ std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index) {
 }
 
 std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries& registries) {
+  CheckKeys(options);
   std::vector<SweepTrial> trials;
   for (int i = 0; i < options.trials; ++i) {
     SweepTrial trial;
@@ -136,7 +159,7 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
 
 std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
                                const Registries& registries,
-                               const std::function<void(int done)>& progress) {
+                               const std::function<void(int done, int all)>& progress) {
   std::vector<SweepRow> rows(trials.size());
   RunOnThreads(
       static_cast<int>(trials.size()), jobs,

@@ -56,9 +56,9 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
 
 /// Runs the trials on `jobs` threads. Rows come back in the order of the trials and do not depend
 /// on `jobs`. A trial that throws becomes a row with outcome `error`. `progress` is called after
-/// each trial with the number done, never from two threads at a time.
+/// each trial with the numbers done and in all, never from two threads at a time.
 std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
                                const Registries& registries,
-                               const std::function<void(int done)>& progress);
+                               const std::function<void(int done, int all)>& progress);
 
 }  // namespace touchdown::evaluation

@@ -34,12 +34,12 @@ std::string Number(const std::optional<double>& value, int digits) {
 std::string Line(const TagStudyBin& bin) {
   return fmt::format(
       "{:>4.2f}-{:<4.2f}{:>7}{:>9}{:>9}{:>10}{:>10}{:>9}{:>8}{:>8}{:>8}{:>7}{:>7}"
-      "{:>8.2f}\n",
+      "{:>8}\n",
       bin.from, bin.to, bin.views, bin.not_in_view, Rate(bin.found, bin.views - bin.not_in_view),
       Rate(bin.center_found, bin.center_in_view), Rate(bin.outer_found, bin.outer_in_view),
       Rate(bin.aligned, bin.found), Number(bin.position_mm.median, 1),
       Number(bin.position_mm.p95, 1), Number(bin.position_mm.max, 1),
-      Number(bin.rotation_deg.median, 2), Number(bin.rotation_deg.p95, 2), bin.nees);
+      Number(bin.rotation_deg.median, 2), Number(bin.rotation_deg.p95, 2), Number(bin.nees, 2));
 }
 
 double MeanOf(const std::vector<TagStudyRow>& rows, double TagStudyRow::*value) {
@@ -72,7 +72,7 @@ Json BinJson(const TagStudyBin& bin) {
           {"aligned", bin.aligned},
           {"position_error_mm", QuantilesJson(bin.position_mm)},
           {"rotation_error_deg", QuantilesJson(bin.rotation_deg)},
-          {"nees_per_dof", bin.nees}};
+          {"nees_per_dof", bin.nees ? Json(*bin.nees) : Json()}};
 }
 
 const char* StatusName(estimation::PadPoseStatus status) {

@@ -171,6 +171,7 @@ TagStudyBin Summarise(const std::vector<TagStudyRow>& rows, double from, double 
   bin.to = to;
   std::vector<double> position_mm;
   std::vector<double> rotation_deg;
+  double nees = 0.0;
   for (const TagStudyRow& row : rows) {
     if (row.height < from || row.height >= to) continue;
     ++bin.views;
@@ -186,9 +187,9 @@ TagStudyBin Summarise(const std::vector<TagStudyRow>& rows, double from, double 
     if (row.aligned) ++bin.aligned;
     position_mm.push_back(1e3 * row.position_error);
     rotation_deg.push_back(row.rotation_error_deg);
-    bin.nees += row.nees;
+    nees += row.nees;
   }
-  if (bin.found > 0) bin.nees /= bin.found;
+  if (bin.found > 0) bin.nees = nees / bin.found;
   bin.position_mm = QuantilesOf(position_mm);
   bin.rotation_deg = QuantilesOf(rotation_deg);
   return bin;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "touchdown/estimation/pad_finder.h"
@@ -80,7 +81,7 @@ struct TagStudyBin {
   int center_in_view = 0, center_found = 0;  ///< tags
   int outer_in_view = 0, outer_found = 0;
   Quantiles position_mm, rotation_deg;
-  double nees = 0.0;  ///< mean over degrees of freedom
+  std::optional<double> nees;  ///< mean over degrees of freedom; none without a pose
 };
 TagStudyBin Summarise(const std::vector<TagStudyRow>& rows, double from, double to);
 

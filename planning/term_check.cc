@@ -245,6 +245,13 @@ std::string Complaint(const std::vector<TermCheckRow>& rows) {
     windows += row.windows;
     has_edge = has_edge || row.has_edge;
     if (row.point == CheckedPoint::kZero) edges += row.points;
+    if (row.points > 0 && !row.errors.evaluated) {
+      return "the term could not be evaluated in a random landing: a value is not finite, a window "
+             "lies outside of the spline, or it threw";
+    }
+    if (row.points > 0 && std::isinf(row.errors.worst())) {
+      return "a value or a derivative is not finite in a random landing";
+    }
     if (row.points > 0 && !(row.errors.worst() <= kTermCheckTolerance)) {
       return "derivatives disagree with central differences";
     }

@@ -10,87 +10,12 @@
 
 #include <gtest/gtest.h>
 
+#include "touchdown/control/test/mission_fixture.h"
+
 namespace touchdown::control {
 namespace {
 
-constexpr double kStep = 0.01;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Everything as it should be, well away from the pad.
-MissionInputs Fine() {
-  MissionInputs in;
-  in.pad_available = true;
-  in.pad_converged = true;
-  in.horizontal_distance = 5.0;
-  in.height = 1.5;
-  in.pad_sigma = 0.02;
-  in.tag_age = 0.05;
-  in.has_plan = true;
-  return in;
-}
-
-/// Runs the mission step by step; the vehicle's feet follow the command unless told otherwise.
-class Mission {
- public:
-  using Change = std::function<void(MissionInputs&)>;
-
-  MissionState state;
-  MissionOutputs outputs;
-  MissionParameters parameters;
-  MissionInputs in = Fine();
-  bool height_follows = true;
-
-  void Run(double duration, const Change& change = {}) {
-    const int steps = static_cast<int>(std::lround(duration / kStep));
-    for (int k = 0; k < steps; ++k) Tick(change);
-  }
-
-  /// Runs until the mode is reached; returns the reason, kNone after 20 s without.
-  TransitionReason RunUntil(MissionMode mode) {
-    for (int k = 0; k < 2000; ++k) {
-      Tick({});
-      if (outputs.mode == mode) return outputs.reason;
-    }
-    return TransitionReason::kNone;
-  }
-
-  void Tick(const Change& change) {
-    in.t += kStep;
-    if (height_follows && state.started) in.height = state.foot_height;
-    if (change) change(in);
-    const MissionStep step = Step(state, in, parameters);
-    if (state.started) {  // the commanded height is continuous and its rate is its derivative
-      const double dt = step.state.t - state.t;
-      const double a = parameters.height_acceleration;
-      const double advance = step.state.foot_height - state.foot_height;
-      EXPECT_LE(
-          std::abs(advance),
-          std::max(std::abs(state.foot_height_rate), std::abs(step.state.foot_height_rate)) * dt +
-              1e-12);
-      if (step.state.mode != MissionMode::kDisarmed) {
-        EXPECT_LE(std::abs(step.state.foot_height_rate - state.foot_height_rate), a * dt + 1e-12);
-        EXPECT_NEAR(advance, 0.5 * (state.foot_height_rate + step.state.foot_height_rate) * dt,
-                    1e-12);
-      }
-    }
-    state = step.state;
-    outputs = step.outputs;
-  }
-
-  void GoTo(MissionMode mode) {
-    ASSERT_EQ(RunUntil(MissionMode::kTracking), TransitionReason::kPadConverged);
-    if (mode == MissionMode::kTracking) return;
-    in.horizontal_distance = 0.1;
-    ASSERT_EQ(RunUntil(MissionMode::kLanding), TransitionReason::kAbovePad);
-  }
-
-  /// Landing, commanded down to just below `height`.
-  void DescendTo(double height) {
-    GoTo(MissionMode::kLanding);
-    for (int k = 0; k < 2000 && state.foot_height > height; ++k) Tick({});
-    ASSERT_LE(state.foot_height, height);
-  }
-};
 
 TEST(LandingStateMachine, LandsInOrder) {
   Mission mission;
@@ -164,165 +89,6 @@ TEST(LandingStateMachine, TrackingHoldsAndRecovers) {
   EXPECT_EQ(mission.outputs.mode, MissionMode::kHold);
   mission.in.plan_failed_for = 0.0;
   EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kRecovered);
-}
-
-TEST(LandingStateMachine, GateHoldsAboveOneMetre) {
-  for (int cause = 0; cause < 2; ++cause) {
-    Mission mission;
-    mission.GoTo(MissionMode::kLanding);
-    (cause == 0 ? mission.in.pad_sigma : mission.in.tag_age) = 0.5;
-    mission.Run(2.5);
-    EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
-    EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate);
-    EXPECT_NEAR(mission.outputs.foot_height, mission.parameters.gate_height, 1e-3);
-    EXPECT_GE(mission.outputs.foot_height, mission.parameters.gate_height - 1e-9);
-    mission.in.pad_sigma = 0.05;
-    mission.in.tag_age = 0.1;
-    mission.Run(1.0);
-    EXPECT_LT(mission.outputs.foot_height, 0.9);
-  }
-}
-
-TEST(LandingStateMachine, GateClosingBelowHoldsTheHeightThenGoesAround) {
-  Mission mission;
-  mission.DescendTo(0.7);
-  mission.in.tag_age = std::numeric_limits<double>::infinity();
-  mission.Run(1.0);
-  const double held = mission.outputs.foot_height;
-  EXPECT_GT(held, 0.6);
-  mission.Run(1.0);
-  EXPECT_NEAR(mission.outputs.foot_height, held, 1e-6);
-  EXPECT_NEAR(mission.outputs.foot_height_rate, 0.0, 1e-6);
-  EXPECT_EQ(mission.RunUntil(MissionMode::kGoAround), TransitionReason::kTagsLost);
-  EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kClimbComplete);
-  EXPECT_NEAR(mission.outputs.foot_height, mission.parameters.follow_height, 0.3);
-}
-
-TEST(LandingStateMachine, CommittedDescentNeedsNoTags) {
-  Mission mission;
-  mission.DescendTo(0.3);
-  EXPECT_TRUE(mission.outputs.committed);
-  mission.in.tag_age = 1.0;
-  mission.in.pad_sigma = 0.15;
-  mission.in.pad_converged = false;
-  mission.Run(1.5);
-  EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
-  EXPECT_LT(mission.outputs.foot_height, 0.0);
-  // No deck there: the command stops at the press depth, then the mission gives up.
-  EXPECT_EQ(mission.RunUntil(MissionMode::kGoAround), TransitionReason::kNoContact);
-  EXPECT_GE(mission.outputs.foot_height, -mission.parameters.press_depth - 1e-9);
-  EXPECT_EQ(mission.outputs.guidance, Guidance::kClimb);  // no pad to follow
-  EXPECT_EQ(mission.RunUntil(MissionMode::kHold), TransitionReason::kPadLost);
-}
-
-/// The tags are out of view from `height` down: their age grows, and the pad's 1 sigma with it.
-Mission::Change Blind(const Mission& mission, double growth = 0.05) {
-  return [&mission, growth, since = mission.in.t](MissionInputs& in) {
-    in.tag_age = in.t - since;
-    in.pad_sigma = 0.02 + growth * in.tag_age;
-    in.contact_sigma =
-        in.pad_sigma + growth * TimeToContact(mission.state, in.height, mission.parameters);
-  };
-}
-
-TEST(LandingStateMachine, TagsLostNearTheDeckAreBridged) {
-  Mission mission;
-  mission.DescendTo(0.55);
-  const Mission::Change blind = Blind(mission);
-  double last = mission.outputs.foot_height;
-  for (int k = 0; k < 300 && mission.outputs.foot_height > 0.0; ++k) {
-    mission.Tick(blind);
-    EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone);
-    EXPECT_LT(mission.outputs.foot_height, last);  // no pause on the way
-    last = mission.outputs.foot_height;
-  }
-  EXPECT_LE(mission.outputs.foot_height, 0.0);
-  EXPECT_TRUE(mission.outputs.committed);
-  EXPECT_LE(mission.in.tag_age, mission.parameters.bridge_time);
-}
-
-TEST(LandingStateMachine, WhatCannotBeBridgedIsNotDescended) {
-  // Too long a way, and too vague a pad by its end.
-  for (const bool vague : {false, true}) {
-    Mission mission;
-    mission.DescendTo(vague ? 0.55 : 0.8);
-    const Mission::Change blind = Blind(mission, vague ? 0.2 : 0.01);
-    const double lost = mission.outputs.foot_height;
-    double lowest = lost;
-    for (int k = 0; k < 600 && mission.outputs.mode == MissionMode::kLanding; ++k) {
-      mission.Tick(blind);
-      lowest = std::min(lowest, mission.outputs.foot_height);
-    }
-    EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost) << vague;
-    // Of what can still be seen for gate_tag_age, and braking; no farther.
-    EXPECT_GT(lowest, lost - 0.2) << vague;
-    EXPECT_FALSE(mission.outputs.committed);
-  }
-}
-
-TEST(LandingStateMachine, ABridgeThatPausesIsGivenUp) {
-  Mission mission;
-  mission.DescendTo(0.55);
-  const Mission::Change blind = Blind(mission);
-  mission.Run(0.5, blind);
-  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone);
-  mission.in.horizontal_distance = 0.6;  // out of the corridor for a while
-  mission.Run(1.2, blind);
-  mission.in.horizontal_distance = 0.1;
-  mission.Run(0.5, blind);
-  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate);  // the time has run out
-  EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
-  for (int k = 0; k < 400 && mission.outputs.mode == MissionMode::kLanding; ++k) {
-    mission.Tick(blind);
-  }
-  EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost);
-  mission.in.tag_age = 0.05;  // seen again on the way up
-  mission.in.pad_sigma = mission.in.contact_sigma = 0.02;
-  EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kClimbComplete);
-}
-
-TEST(LandingStateMachine, CommittedBlindDescentEndsWithTheBridge) {
-  for (const bool vague : {false, true}) {
-    Mission mission;
-    mission.DescendTo(0.2);
-    ASSERT_TRUE(mission.outputs.committed);
-    const double begin = mission.in.t;
-    const Mission::Change blind = Blind(mission, vague ? 0.1 : 0.001);
-    for (int k = 0; k < 600 && mission.outputs.mode == MissionMode::kLanding; ++k) {
-      mission.Tick(blind);  // no deck comes
-    }
-    EXPECT_EQ(mission.outputs.mode, MissionMode::kGoAround) << vague;
-    EXPECT_EQ(mission.outputs.reason, TransitionReason::kTagsLost) << vague;
-    const MissionParameters& p = mission.parameters;
-    const double expected = vague ? (p.bridge_sigma - 0.02) / 0.1 : p.bridge_time;
-    EXPECT_NEAR(mission.in.t - begin, expected, 0.05) << vague;
-  }
-}
-
-TEST(LandingStateMachine, TimeToContactIsThatOfTheDescent) {
-  Mission mission;
-  mission.DescendTo(0.7);
-  mission.in.horizontal_distance = 0.6;  // paused: it has to gain speed again
-  mission.Run(1.0);
-  mission.in.horizontal_distance = 0.1;
-  const double foretold = TimeToContact(mission.state, mission.in.height, mission.parameters);
-  const double begin = mission.in.t;
-  for (int k = 0; k < 600 && mission.outputs.foot_height > 0.0; ++k) mission.Tick({});
-  EXPECT_NEAR(mission.in.t - begin, foretold - mission.parameters.contact_reserve, 0.02);
-  EXPECT_EQ(TimeToContact(mission.state, kNan, mission.parameters),
-            std::numeric_limits<double>::infinity());
-}
-
-TEST(LandingStateMachine, VehicleThatLagsBehindIsNotCommitted) {
-  Mission mission;
-  mission.GoTo(MissionMode::kLanding);
-  mission.height_follows = false;
-  mission.in.height = 0.8;
-  mission.Run(6.0);
-  EXPECT_FALSE(mission.outputs.committed);
-  mission.in.tag_age = 1.0;
-  mission.Run(0.5);
-  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate);
 }
 
 TEST(LandingStateMachine, CorridorHoldsTheHeight) {
@@ -409,9 +175,9 @@ TEST(LandingStateMachine, TouchesDoNotDisarm) {
   Mission gap;
   gap.DescendTo(0.1);
   gap.in.foot_force = 10.0;
-  gap.Tick({});
+  gap.Tick();
   gap.in.t += 0.3;
-  gap.Tick({});
+  gap.Tick();
   EXPECT_TRUE(gap.outputs.motors_armed);
 }
 

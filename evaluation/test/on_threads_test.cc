@@ -18,13 +18,16 @@ TEST(RunOnThreads, EveryIndexOnceAndProgressInOrder) {
     std::vector<int> told;
     RunOnThreads(
         50, jobs, [&](int i) { ++runs[static_cast<std::size_t>(i)]; },
-        [&](int done) { told.push_back(done); });
+        [&](int done, int all) {
+          told.push_back(done);
+          EXPECT_EQ(all, 50);
+        });
     EXPECT_EQ(runs, std::vector<int>(50, 1)) << jobs;
     ASSERT_EQ(told.size(), 50U);
     for (int k = 0; k < 50; ++k) EXPECT_EQ(told[static_cast<std::size_t>(k)], k + 1);
   }
   RunOnThreads(
-      0, 2, [](int) { FAIL(); }, [](int) { FAIL(); });
+      0, 2, [](int) { FAIL(); }, [](int, int) { FAIL(); });
 }
 
 TEST(RunOnThreads, WhatIsThrownComesOutAndEndsTheRun) {
@@ -33,7 +36,7 @@ TEST(RunOnThreads, WhatIsThrownComesOutAndEndsTheRun) {
     ++runs;
     if (i == 3) throw std::invalid_argument("three");
   };
-  EXPECT_THROW(RunOnThreads(1000, 2, run, [](int) {}), std::invalid_argument);
+  EXPECT_THROW(RunOnThreads(1000, 2, run, [](int, int) {}), std::invalid_argument);
   EXPECT_LT(runs, 1000);
 }
 
@@ -43,7 +46,7 @@ TEST(RunOnThreads, WhatProgressThrowsOnAnotherThreadComesOutToo) {
   const auto run = [&](int) {
     if (std::this_thread::get_id() == caller) told.wait();
   };
-  const auto progress = [&](int) {
+  const auto progress = [&](int, int) {
     if (std::this_thread::get_id() == caller) return;
     told.count_down();
     throw std::invalid_argument("progress");

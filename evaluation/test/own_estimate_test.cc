@@ -41,7 +41,7 @@ TEST(OwnEstimate, TheTruthIsKnownExactly) {
   EXPECT_EQ(own.now().p_WB, truth.p_WB);
   EXPECT_EQ(own.At(Start()).p_WB, Start().p_WB);
   EXPECT_EQ(own.status(), estimation::OwnStatus::kGood);
-  EXPECT_EQ(own.PositionSigma(), 0.0);
+  EXPECT_EQ(own.HorizontalSigma(), 0.0);
 }
 
 TEST(OwnEstimate, TheDefaultsAreThoseOfTheSensors) {
@@ -72,10 +72,10 @@ TEST(OwnEstimate, AnOutageIsToldAndItsDoubtGrows) {
     truth.t = 0.002 * k;
     own.Sense(truth);
     ASSERT_EQ(own.now().t, truth.t);
-    if (k == 500) sigma_before = own.PositionSigma();
+    if (k == 500) sigma_before = own.HorizontalSigma();
     if (k == 1900) {
       EXPECT_EQ(own.status(), estimation::OwnStatus::kOutage);
-      EXPECT_GT(own.PositionSigma(), 3.0 * sigma_before);
+      EXPECT_GT(own.HorizontalSigma(), 3.0 * sigma_before);
     }
   }
   EXPECT_EQ(own.status(), estimation::OwnStatus::kGood);

@@ -38,6 +38,7 @@ TEST(Variation, RefusesNonsense) {
   EXPECT_THROW(Variation::Parse("seed=1,2"), BadInput);
   EXPECT_THROW(Variation::Parse("pad.speed=2..1"), BadInput);
   EXPECT_THROW(Variation::Parse("pad.speed=a..1"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=0.2,0.4,0.2"), BadInput);
 }
 
 TEST(PlanSweep, SeedsAreDistinctAndRepeat) {
@@ -57,6 +58,17 @@ TEST(PlanSweep, ListsAreTakenInAllCombinations) {
     seen.insert(trial.varied[0].second + trial.varied[1].second);
   }
   EXPECT_EQ(seen.size(), 6U);
+}
+
+TEST(PlanSweep, AKeyIsVariedOnceAndNotSetBeside) {
+  SweepOptions options = OpenSweep(2);
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  options.overrides.push_back("pad.speed=1");
+  EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
+  options.overrides.pop_back();
+  EXPECT_NO_THROW(PlanSweep(options, kRegistries));
+  options.variations.push_back(Variation::Parse("pad.speed=0.2,0.4"));
+  EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
 }
 
 TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
@@ -79,7 +91,7 @@ TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
   SweepOptions options = OpenSweep(3);
   std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
   trials[1].scenario.solver.backend = "none";
-  const std::vector<SweepRow> rows = RunSweep(trials, 2, StandardRegistries(), [](int) {});
+  const std::vector<SweepRow> rows = RunSweep(trials, 2, StandardRegistries(), [](int, int) {});
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[1].result.outcome, Outcome::kError);
   EXPECT_FALSE(rows[1].result.detail.empty());
@@ -96,7 +108,7 @@ TEST(RunSweep, OneAndTwoThreadsGiveTheSameRows) {
   const std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
   const auto rows = [&](int jobs) {
     nlohmann::ordered_json json =
-        SweepJson(options, RunSweep(trials, jobs, StandardRegistries(), [](int) {}));
+        SweepJson(options, RunSweep(trials, jobs, StandardRegistries(), [](int, int) {}));
     json.erase("wall_clock");
     return json.dump();
   };

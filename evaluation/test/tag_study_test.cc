@@ -42,10 +42,21 @@ TEST(TagStudy, SameSeedSameRowsAndTheDemandIsMet) {
   const TagStudyBin all = Summarise(rows, kLowestView, kHighestView);
   EXPECT_EQ(all.views, 60);
   EXPECT_LE(all.found, all.views - all.not_in_view);
-  EXPECT_LT(all.nees, 1.5);
+  ASSERT_TRUE(all.nees.has_value());
+  EXPECT_LT(*all.nees, 1.5);
   const std::string text = TagStudyText({{Views(60, 3), rows}});
   EXPECT_NE(text.find("320x240, fov 90 deg"), std::string::npos);
   EXPECT_EQ(TagStudyJson({{Views(60, 3), rows}})["parts"][0]["heights"].size(), 7U);
+}
+
+TEST(TagStudy, NothingIsSaidOfHeightsWithoutAView) {
+  const TagStudyPart none{Views(1, 3), {}};
+  EXPECT_FALSE(Summarise(none.rows, kLowestView, kHighestView).nees.has_value());
+  EXPECT_EQ(TagStudyText({none}).find("nan"), std::string::npos);
+  EXPECT_NE(TagStudyText({none}).find("      -      -       -\n"), std::string::npos);
+  for (const auto& bin : TagStudyJson({none})["parts"][0]["heights"]) {
+    EXPECT_TRUE(bin["nees_per_dof"].is_null());
+  }
 }
 
 // Not the views of the fit. Ranges of heights one by one take thousands of views: docs/tag_pose.md.

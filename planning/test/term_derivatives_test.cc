@@ -65,8 +65,10 @@ TEST(TermDerivatives, AWrongOneIsFound) {
   EXPECT_FALSE(Passed(CheckTerm(entry, {})));
   std::vector<TermCheckRow> rows(1);
   rows[0].points = rows[0].windows = 1;
+  rows[0].errors = {.evaluated = true, .gradient = 0.1};
+  EXPECT_NE(Complaint(rows).find("disagree"), std::string::npos);
   rows[0].errors = {.evaluated = true, .residual_jacobian = std::nan("")};
-  EXPECT_FALSE(Passed(rows));
+  EXPECT_NE(Complaint(rows).find("derivative is not finite"), std::string::npos);
 }
 
 /// q_x^2 - q_y^2 + c on `count` control points.
@@ -108,6 +110,26 @@ TEST(TermDerivatives, WhatWasNotComparedIsNotPassed) {
   EXPECT_NE(ComplaintOf(Saddle{0, 0.0}, false).find("no window"), std::string::npos);
   EXPECT_EQ(ComplaintOf(Above{{4, -1.0}}, true), "");
   EXPECT_NE(ComplaintOf(Above{{4, 1.0}}, true).find("edge"), std::string::npos);
+}
+
+/// No number wherever a random landing flies.
+struct Log : Saddle {
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    using std::log;
+    u[0] = log(q[0] - 100.0);
+  }
+};
+
+TEST(TermDerivatives, WhatIsNoNumberIsSaidToBeNone) {
+  TermEntry entry;
+  entry.info.name = "log";
+  entry.make = [&](const TermSetup&) {
+    return MakeLandingTerm(entry.info, Log{{4, 0.0}}, solvers::SquareLoss(1.0), 4);
+  };
+  EXPECT_NE(Complaint(CheckTerm(entry, {})).find("could not be evaluated"), std::string::npos);
+  const std::string hinged = ComplaintOf(Log{{4, 0.0}}, false);
+  EXPECT_NE(hinged.find("not finite"), std::string::npos) << hinged;
 }
 
 /// Draws of a check with windows that only a fixed end acceleration has.

@@ -94,8 +94,7 @@ struct IntervalMap {
   }
 };
 
-TEST_P(EveryBackend, AFreeIntervalStaysInItsBounds) {
-  if (!Make()->capabilities().free_interval) GTEST_SKIP() << "no free interval";
+TEST_P(EveryBackend, AFreeIntervalStaysInItsBoundsOrIsRefused) {
   // Inside, beyond either bound, started at a bound, and with no choice.
   for (const auto& [target, start, h, longest] : {std::array{0.3, 0.5, 0.3, 2.0},
                                                   {0.01, 0.5, 0.1, 2.0},
@@ -111,6 +110,14 @@ TEST_P(EveryBackend, AFreeIntervalStaysInItsBounds) {
         std::make_shared<WindowTerm<IntervalMap, SquareLoss>>(
             TermInfo{"interval", "", "", "", false}, IntervalMap{target}, SquareLoss(2.0), 1),
         Role::kCost);
+    const auto backend = Make();
+    if (!backend->capabilities().free_interval) {
+      const View view(problem, AffineLift::Identity(1));
+      EXPECT_EQ(backend->Refusal(view),
+                "backend " + GetParam() + " cannot optimise the arrival time");
+      EXPECT_THROW(backend->Prepare(view), std::invalid_argument);
+      continue;
+    }
     Stop stop;
     stop.callback = [](const StopQuery& query) {
       EXPECT_GE(query.y[1], 0.1 * (1.0 - 1e-12));

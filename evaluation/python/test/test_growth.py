@@ -28,6 +28,7 @@ def test_a_study_of_growth_is_written_and_drawn(study):
     folder, text = study
     for axis in ("horizon_m", "density_per_m2", "resolution_m", "pairs"):
         assert axis in text
+    assert "  none " in text and "0 to 0" not in text  # steps with nothing in the way
     read = Growth(str(folder / "s.db"))
     assert list(read.times["resolution_m"]) == [0.05, 0.1, 0.2]
     assert all(len(times) == 3 for times in read.times["horizon_m"].values())

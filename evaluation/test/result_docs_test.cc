@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// docs/record.md against the files that the program writes: every table and column, and every key of a
+// manifest that is not of the build, must be named in the section of that file's format.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/compare_table.h"
+#include "touchdown/evaluation/forest_flight_report.h"
+#include "touchdown/evaluation/pad_report.h"
+#include "touchdown/evaluation/profile_report.h"
+#include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/replan_report.h"
+#include "touchdown/evaluation/sqlite_db.h"
+#include "touchdown/evaluation/tag_report.h"
+#include "touchdown/evaluation/trial_table.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+/// What is to be found in one file: `writer` writes it with as little in it as can be.
+struct ResultFile {
+  const char* name;
+  std::function<void(const std::string& path)> writer;
+};
+
+std::vector<ResultFile> ResultFiles() {
+  PadStudyOptions pad;
+  pad.scenarios.clear();
+  pad.overrides = {"gps.rate=5", "seed=2"};
+  return {{"record", [](auto& path) { WriteRecord(path, {}, {}, {}); }},
+          {"trials", [](auto& path) { WriteTrialTable(path, {}, {SweepRow()}); }},
+          {"comparison", [](auto& path) { WriteCompareTable(path, {}, {}, {}); }},
+          {"profile", [](auto& path) { WriteProfileTable(path, {}, {}); }},
+          {"replan study", [](auto& path) { WriteReplanStudy(path, {}, {}); }},
+          {"forest flights", [](auto& path) { WriteForestFlights(path, {}); }},
+          {"pad study", [pad](auto& path) { WritePadStudy(path, pad, {}); }},
+          {"tag study", [](auto& path) { WriteTagStudy(path, {}); }}};
+}
+
+/// The words in backquotes of the table row that begins with `table`, in the section with `format`;
+/// none where there is no such row.
+std::set<std::string> Documented(const std::string& format, const std::string& table) {
+  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/record.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  const std::string all = text.str();
+  const std::size_t named = all.find("`format` (`" + format + "`)");
+  if (named == std::string::npos) return {};
+  const std::size_t section = all.rfind("\n## ", named);
+  const std::size_t end = std::min(all.find("\n## ", named), all.size());
+  const std::string head = "\n| `" + table + "` |";
+  const std::size_t begin = all.find(head, section);
+  if (begin == std::string::npos || begin >= end) return {};
+  const std::size_t columns = begin + head.size();
+  std::istringstream row(all.substr(columns, all.find('\n', columns) - columns));
+  std::set<std::string> words;
+  std::string part;
+  for (bool quoted = false; std::getline(row, part, '`'); quoted = !quoted) {
+    std::istringstream spaced(part);
+    for (std::string word; quoted && spaced >> word;) words.insert(word);
+  }
+  return words;
+}
+
+std::vector<std::string> Texts(SqliteDb& db, const std::string& query) {
+  std::vector<std::string> texts;
+  SqliteStatement statement = db.Prepare(query);
+  while (statement.Step()) texts.push_back(statement.Text(0));
+  return texts;
+}
+
+TEST(ResultDocs, EveryTableAndColumnIsNamed) {
+  const std::string path = ::testing::TempDir() + "touchdown_result_docs.db";
+  std::set<std::string> build;
+  for (const auto& [key, value] : BuildManifest()) build.insert(key);
+  for (const ResultFile& result : ResultFiles()) {
+    SCOPED_TRACE(result.name);
+    std::filesystem::remove(path);
+    result.writer(path);
+    SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+    const std::string format = std::string("touchdown ") + result.name;
+    const std::vector<std::string> tables =
+        Texts(db, "SELECT name FROM sqlite_master WHERE type = 'table'");
+    EXPECT_GE(tables.size(), 2U);
+    for (const std::string& table : tables) {
+      const std::set<std::string> words = Documented(format, table);
+      EXPECT_FALSE(words.empty()) << "no row of the table " << table;
+      const bool facts = table == "manifest" || table == "meta";
+      const std::vector<std::string> names =
+          Texts(db, facts ? "SELECT key FROM " + table
+                          : "SELECT name FROM pragma_table_info('" + table + "')");
+      for (const std::string& name : names) {
+        if (facts && build.count(name) > 0) continue;
+        EXPECT_EQ(words.count(name), 1U) << table << "." << name;
+      }
+    }
+  }
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
