@@ -210,8 +210,10 @@ void CompareWithDuals(Inner inner, const Loss& loss) {
 TEST(TermDerivatives, ByHandAsByDuals) {
   CompareWithDuals(SegmentDerivatives(9, 0.1), solvers::SquareLoss(2.0));
   for (const bool may_recover : {false, true}) {
-    CompareWithDuals(DerivativeNorm<1>(8, 0.7, 1.0, may_recover), solvers::HingeLoss(10.0, 0.3));
-    CompareWithDuals(DerivativeNorm<2>(9, 2.0, 1.0, may_recover), solvers::HingeLoss(10.0, 0.3));
+    CompareWithDuals(DerivativeNorm<1>(8, 3.0, 0.7 / 3.0, may_recover),
+                     solvers::HingeLoss(10.0, 0.3));
+    CompareWithDuals(DerivativeNorm<2>(9, 6.0, 2.0 / 6.0, may_recover),
+                     solvers::HingeLoss(10.0, 0.3));
   }
 }
 
