@@ -19,6 +19,80 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 
+// A figure of a trial, where it has one, that is summed up over trials.
+struct Figure {
+  const char* key;
+  const char* label;
+  const char* unit;
+  std::optional<double> (*of)(const TrialResult&);
+};
+
+template <class Value>
+std::optional<double> AtTouchdown(const TrialResult& r, Value value) {
+  if (!r.landed()) return std::nullopt;
+  return value(*r.touchdown);
+}
+
+std::optional<double> Gap(const TrialResult& r) {
+  if (!r.t_star_s || !r.t_star_upper_s) return std::nullopt;
+  return *r.t_star_upper_s / *r.t_star_s - 1.0;
+}
+
+// Figures at touchdown are of the landed trials, those of following of the ones that followed.
+const Figure kFigures[] = {
+    {"time_to_land_s", "time to land", "s",
+     [](const TrialResult& r) { return AtTouchdown(r, [](const Touchdown& d) { return d.t; }); }},
+    {"touchdown_error_m", "touchdown error", "m",
+     [](const TrialResult& r) {
+       return AtTouchdown(r, [](const Touchdown& d) { return d.error_m; });
+     }},
+    {"relative_speed_mps", "relative speed at contact", "m/s",
+     [](const TrialResult& r) {
+       return AtTouchdown(r, [](const Touchdown& d) { return d.relative_velocity.norm(); });
+     }},
+    {"relative_horizontal_mps", "  horizontal", "m/s",
+     [](const TrialResult& r) {
+       return AtTouchdown(r,
+                          [](const Touchdown& d) { return d.relative_velocity.head<2>().norm(); });
+     }},
+    {"relative_vertical_mps", "  vertical, downwards", "m/s",
+     [](const TrialResult& r) {
+       return AtTouchdown(r, [](const Touchdown& d) { return -d.relative_velocity.z(); });
+     }},
+    {"tilt_over_equilibrium_deg", "tilt over equilibrium", "deg",
+     [](const TrialResult& r) {
+       return AtTouchdown(r,
+                          [](const Touchdown& d) { return d.tilt_over_equilibrium * kDegPerRad; });
+     }},
+    {"mean_abs_error_x_m", "mean |error| x, last 5 s", "m",
+     [](const TrialResult& r) { return r.landed() ? r.mean_abs_error_x_m : std::nullopt; }},
+    {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m",
+     [](const TrialResult& r) { return r.landed() ? r.mean_abs_error_y_m : std::nullopt; }},
+    {"min_clearance_m", "least true clearance", "m",
+     [](const TrialResult& r) { return r.min_clearance_m; }},
+    {"estimator_nees_position", "pad NEES (2 expected)", "",
+     [](const TrialResult& r) {
+       return r.estimator ? std::optional(r.estimator->nees_position_mean) : std::nullopt;
+     }},
+    {"own_rmse_position_m", "own position error, RMS", "m",
+     [](const TrialResult& r) {
+       return r.own_state ? std::optional(r.own_state->rmse_position_m) : std::nullopt;
+     }},
+    {"following_error_m", "following error, last 10 s", "m",
+     [](const TrialResult& r) {
+       return r.following && r.succeeded() ? std::optional(r.following->mean_error_m)
+                                           : std::nullopt;
+     }},
+    {"following_speed_mps", "relative speed, last 10 s", "m/s",
+     [](const TrialResult& r) {
+       return r.following && r.succeeded() ? std::optional(r.following->relative_speed_mps)
+                                           : std::nullopt;
+     }},
+    {"t_star_s", "T*, bound on time to land", "s", [](const TrialResult& r) { return r.t_star_s; }},
+    {"t_star_gap", "its upper over its lower - 1", "", Gap},
+    {"time_ratio", "time to land over T*", "", [](const TrialResult& r) { return r.time_ratio(); }},
+};
+
 struct Column {
   const char* key;
   const char* label;
@@ -26,47 +100,14 @@ struct Column {
   std::vector<double> values;
 };
 
-// The figures that are summed up over trials.
 std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
-  std::vector<Column> columns = {{"time_to_land_s", "time to land", "s", {}},
-                                 {"touchdown_error_m", "touchdown error", "m", {}},
-                                 {"relative_speed_mps", "relative speed at contact", "m/s", {}},
-                                 {"relative_horizontal_mps", "  horizontal", "m/s", {}},
-                                 {"relative_vertical_mps", "  vertical, downwards", "m/s", {}},
-                                 {"tilt_over_equilibrium_deg", "tilt over equilibrium", "deg", {}},
-                                 {"mean_abs_error_x_m", "mean |error| x, last 5 s", "m", {}},
-                                 {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m", {}},
-                                 {"min_clearance_m", "least true clearance", "m", {}},
-                                 {"estimator_nees_position", "pad NEES (2 expected)", "", {}},
-                                 {"own_rmse_position_m", "own position error, RMS", "m", {}},
-                                 {"following_error_m", "following error, last 10 s", "m", {}},
-                                 {"following_speed_mps", "relative speed, last 10 s", "m/s", {}},
-                                 {"t_star_s", "T*, bound on time to land", "s", {}},
-                                 {"t_star_gap", "its upper over its lower - 1", "", {}},
-                                 {"time_ratio", "time to land over T*", "", {}}};
-  for (const SweepRow& row : rows) {
-    const TrialResult& r = row.result;
-    if (r.landed()) {
-      columns[0].values.push_back(r.touchdown->t);
-      columns[1].values.push_back(r.touchdown->error_m);
-      const Eigen::Vector3d& v = r.touchdown->relative_velocity;
-      columns[2].values.push_back(v.norm());
-      columns[3].values.push_back(v.head<2>().norm());
-      columns[4].values.push_back(-v.z());
-      columns[5].values.push_back(r.touchdown->tilt_over_equilibrium * kDegPerRad);
-      if (r.mean_abs_error_x_m) columns[6].values.push_back(*r.mean_abs_error_x_m);
-      if (r.mean_abs_error_y_m) columns[7].values.push_back(*r.mean_abs_error_y_m);
+  std::vector<Column> columns;
+  for (const Figure& figure : kFigures) {
+    Column& column = columns.emplace_back(Column{figure.key, figure.label, figure.unit, {}});
+    for (const SweepRow& row : rows) {
+      if (const std::optional<double> value = figure.of(row.result))
+        column.values.push_back(*value);
     }
-    if (r.min_clearance_m) columns[8].values.push_back(*r.min_clearance_m);
-    if (r.estimator) columns[9].values.push_back(r.estimator->nees_position_mean);
-    if (r.own_state) columns[10].values.push_back(r.own_state->rmse_position_m);
-    if (r.following && r.succeeded()) {
-      columns[11].values.push_back(r.following->mean_error_m);
-      columns[12].values.push_back(r.following->relative_speed_mps);
-    }
-    if (r.t_star_s) columns[10].values.push_back(*r.t_star_s);
-    if (r.t_star_upper_s) columns[11].values.push_back(*r.t_star_upper_s / *r.t_star_s - 1.0);
-    if (r.time_ratio()) columns[12].values.push_back(*r.time_ratio());
   }
   return columns;
 }

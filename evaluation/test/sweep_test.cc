@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/sweep.h"
 
+#include <map>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -98,6 +100,45 @@ TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
   EXPECT_NE(rows[0].result.outcome, Outcome::kError);
   const std::string text = SweepText(options, rows);
   EXPECT_NE(text.find("1 x error"), std::string::npos);
+}
+
+TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
+  const SweepOptions options = OpenSweep(1);
+  SweepRow row;
+  row.trial = PlanSweep(options, kRegistries).front();
+  TrialResult& r = row.result;
+  r.outcome = Outcome::kLanded;
+  r.touchdown.emplace();
+  r.touchdown->t = 6.0;
+  r.touchdown->error_m = 0.2;
+  r.touchdown->relative_velocity << 0.3, 0.4, -1.2;
+  r.touchdown->tilt_over_equilibrium = 0.1;
+  r.mean_abs_error_x_m = 0.5;
+  r.mean_abs_error_y_m = 0.6;
+  r.min_clearance_m = 0.7;
+  r.estimator.emplace().nees_position_mean = 0.8;
+  r.own_state.emplace().rmse_position_m = 0.9;
+  r.t_star_s = 4.0;
+  r.t_star_upper_s = 5.0;
+  r.within_limits = true;
+  const auto summary = SweepJson(options, {row})["summary"];
+  const std::map<std::string, double> expected = {
+      {"time_to_land_s", 6.0},        {"touchdown_error_m", 0.2},
+      {"relative_speed_mps", 1.3},    {"relative_horizontal_mps", 0.5},
+      {"relative_vertical_mps", 1.2}, {"tilt_over_equilibrium_deg", 5.729577951308232},
+      {"mean_abs_error_x_m", 0.5},    {"mean_abs_error_y_m", 0.6},
+      {"min_clearance_m", 0.7},       {"estimator_nees_position", 0.8},
+      {"own_rmse_position_m", 0.9},   {"t_star_s", 4.0},
+      {"t_star_gap", 0.25},           {"time_ratio", 1.5}};
+  for (const auto& [key, value] : summary.items()) {
+    if (expected.count(key) == 0) {
+      EXPECT_EQ(value["n"], 0) << key;
+      continue;
+    }
+    EXPECT_EQ(value["n"], 1) << key;
+    EXPECT_NEAR(value["median"].get<double>(), expected.at(key), 1e-12) << key;
+  }
+  for (const auto& [key, value] : expected) EXPECT_TRUE(summary.contains(key)) << key << value;
 }
 
 // Between the buildings: search, pairs and the map take part.
