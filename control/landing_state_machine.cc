@@ -23,16 +23,19 @@ struct Conditions {
   bool pad_good;   // the pad can be planned to
   bool gate_open;  // the pad is known well enough to descend below the gate height
   bool in_corridor;
+  bool in_cone;  // of a planned landing: wider, and it opens upwards
   bool touching;
 };
 
 // False for a condition that does not hold.
 bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
 
+bool Planned(const MissionInputs& in) { return in.descent == DescentStyle::kPlanned; }
+
 // Whether what is known now lasts until contact, were nothing measured on the way.
 bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
-  return s.foot_height <= p.gate_height &&
-         in.tag_age + TimeToContact(s, in.height, p) <= p.bridge_time &&
+  const bool on_the_way = Planned(in) || s.foot_height <= p.gate_height;
+  return on_the_way && in.tag_age + ContactIn(s, in, p) <= p.bridge_time &&
          in.contact_sigma <= p.bridge_sigma;
 }
 
@@ -42,7 +45,8 @@ Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionP
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
                       std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
                       !std::isnan(in.pad_sigma) && !std::isnan(in.contact_sigma) &&
-                      !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for);
+                      !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for) &&
+                      !std::isnan(in.arrival_in);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
   // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
   const bool own_good =
@@ -54,6 +58,9 @@ Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionP
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);
+  now.in_cone =
+      now.numbers_valid &&
+      in.horizontal_distance <= p.landing_distance + p.cone_slope * std::max(0.0, in.height);
   now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
                  std::abs(in.height) <= p.contact_height;
   return now;
@@ -92,12 +99,30 @@ struct Transition {
   TransitionReason reason;
 };
 
-Transition FromLanding(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
-  const double abort = s.committed ? p.commit_abort_distance : p.abort_distance;
+// A planned landing that is decided does not pause: what a pause would have to wait for ends it.
+Transition FromArriving(const MissionState& s, const MissionInputs& in, const Conditions& now,
+                        const MissionParameters& p) {
+  if (!now.gate_open) return {MissionMode::kGoAround, TransitionReason::kTagsLost};
+  if (in.plan_failed_for > p.arrival_plan_timeout) {
+    return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
+  }
+  return {s.mode, TransitionReason::kNone};
+}
+
+// May the horizontal error become contact? A vertical descent is above the pad, a planned one in the cone
+// over it.
+bool TooFarOff(const MissionState& s, const MissionInputs& in, const Conditions& now,
+               const MissionParameters& p) {
+  if (Planned(in)) return !now.in_cone;
+  return in.horizontal_distance > (s.committed ? p.commit_abort_distance : p.abort_distance);
+}
+
+Transition FromLanding(const MissionState& s, const MissionInputs& in, const Conditions& now,
+                       const MissionParameters& p) {
   if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kOwnStateLost};
   }
-  if (in.horizontal_distance > abort) {
+  if (TooFarOff(s, in, now, p)) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
   if (s.committed) {  // blind last part: no tags needed, but it must end
@@ -106,7 +131,8 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
     if (!touches && (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma)) {
       return {MissionMode::kGoAround, TransitionReason::kTagsLost};
     }
-    if (LastedLonger(s.committed_since, s.t, p.commit_timeout)) {
+    const bool overdue = Planned(in) && !touches && in.arrival_in < -p.arrival_timeout;
+    if (overdue || LastedLonger(s.committed_since, s.t, p.commit_timeout)) {
       return {MissionMode::kGoAround, TransitionReason::kNoContact};
     }
     return {s.mode, TransitionReason::kNone};
@@ -114,6 +140,7 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kPadLost};
   }
+  if (Planned(in)) return FromArriving(s, in, now, p);
   if (LastedLonger(s.gate_closed_since, s.t, p.gate_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kTagsLost};
   }
@@ -121,6 +148,11 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Mis
     return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
   }
   return {s.mode, TransitionReason::kNone};
+}
+
+// Whether plans lead to the deck while tracking.
+bool TouchesDown(const MissionState& s, const MissionInputs& in) {
+  return Planned(in) && !s.waits_above;
 }
 
 Transition FromTracking(const MissionState& s, const MissionInputs& in, const Conditions& now,
@@ -137,6 +169,10 @@ Transition FromTracking(const MissionState& s, const MissionInputs& in, const Co
   if (now.pad_good && in.descent == DescentStyle::kVertical &&
       in.horizontal_distance < p.landing_distance && in.horizontal_speed < p.landing_speed) {
     return {MissionMode::kLanding, TransitionReason::kAbovePad};
+  }
+  if (now.pad_good && TouchesDown(s, in) && in.arrival_in <= p.decide_time && now.gate_open &&
+      now.in_cone) {
+    return {MissionMode::kLanding, TransitionReason::kArriving};
   }
   return {s.mode, TransitionReason::kNone};
 }
@@ -193,7 +229,7 @@ Transition Decide(const MissionState& s, const MissionInputs& in, const Conditio
     case MissionMode::kTracking:
       return FromTracking(s, in, now, p);
     case MissionMode::kLanding:
-      return FromLanding(s, in, p);
+      return FromLanding(s, in, now, p);
     case MissionMode::kGoAround:
       return FromGoAround(s, in, now, p);
     default:
@@ -208,6 +244,12 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
   double rate_max = p.climb_rate;
   DescentHold hold = DescentHold::kNone;
   if (s.mode == MissionMode::kDisarmed) {
+    s.foot_height_rate = 0.0;
+    return hold;
+  }
+  if (s.mode == MissionMode::kLanding && Planned(in)) {
+    // The plan leads; a climb would begin where the vehicle is.
+    s.foot_height = std::clamp(in.height, 0.0, p.follow_height);
     s.foot_height_rate = 0.0;
     return hold;
   }
@@ -234,13 +276,32 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
       StepTowards(target - s.foot_height, s.foot_height_rate, rate_max, p.height_acceleration, dt);
   s.foot_height += step.advance;
   s.foot_height_rate = step.rate;
-  // Both the command and the vehicle must be low: a vehicle that lags behind is not committed.
-  if (s.mode == MissionMode::kLanding && !s.committed && now.gate_open && now.in_corridor &&
-      s.foot_height < p.commit_height && in.height < p.commit_height) {
-    s.committed = true;
-    s.committed_since = s.t;
-  }
   return hold;
+}
+
+// From here on the landing goes on by prediction.
+void Commit(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
+            MissionState& s) {
+  if (s.mode != MissionMode::kLanding || s.committed || !now.gate_open) return;
+  // Both the command and the vehicle must be low: a vehicle that lags behind is not committed.
+  const bool low =
+      now.in_corridor && s.foot_height < p.commit_height && in.height < p.commit_height;
+  const bool arriving = now.in_cone && in.arrival_in < p.arrival_commit_time;
+  if (!(Planned(in) ? arriving : low)) return;
+  s.committed = true;
+  s.committed_since = s.t;
+}
+
+// A planned arrival that cannot be decided on when it is time ends above the pad instead.
+void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
+                  MissionState& s) {
+  if (s.mode != MissionMode::kTracking) {
+    s.waits_above = s.mode == MissionMode::kGoAround || s.mode == MissionMode::kHold;
+    return;
+  }
+  const bool due = in.arrival_in <= p.decide_time;
+  const bool low = in.height < p.gate_height && in.horizontal_distance < p.abort_distance;
+  s.waits_above = s.waits_above ? !now.gate_open : (due || low) && !now.gate_open;
 }
 
 Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Conditions& now) {
@@ -248,8 +309,9 @@ Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Condit
     case MissionMode::kDisarmed:
       return Guidance::kIdle;
     case MissionMode::kTracking:
+      return TouchesDown(s, in) ? Guidance::kTouchDown : Guidance::kFollowPad;
     case MissionMode::kLanding:
-      return Guidance::kFollowPad;
+      return Planned(in) ? Guidance::kTouchDown : Guidance::kFollowPad;
     case MissionMode::kGoAround:
       return now.pad_good && in.plan_failed_for <= 0.0 ? Guidance::kFollowPad : Guidance::kClimb;
     default:
@@ -275,10 +337,13 @@ MissionOutputs OutputsOf(const MissionState& s, TransitionReason reason, Descent
 
 }  // namespace
 
-double TimeToContact(const MissionState& state, double height,
-                     const MissionParameters& p) noexcept {
-  if (!std::isfinite(height)) return kNever;
-  const double way = std::max({0.0, height, state.foot_height});
+double ContactIn(const MissionState& state, const MissionInputs& in,
+                 const MissionParameters& p) noexcept {
+  if (Planned(in)) {
+    return std::isfinite(in.arrival_in) ? std::max(0.0, in.arrival_in) + p.contact_reserve : kNever;
+  }
+  if (!std::isfinite(in.height)) return kNever;
+  const double way = std::max({0.0, in.height, state.foot_height});
   const double faster = std::max(0.0, p.slow_rate + state.foot_height_rate);  // yet to be gained
   const double speeding_up = 0.5 * faster * faster / (p.height_acceleration * p.slow_rate);
   return way / p.slow_rate + speeding_up + p.contact_reserve;
@@ -313,6 +378,8 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
     s.recovered_since = kNever;
   }
   const DescentHold hold = MoveHeight(inputs, parameters, now, dt, s);
+  Commit(inputs, parameters, now, s);
+  DecideToWait(inputs, parameters, now, s);
   return {s, OutputsOf(s, transition.reason, hold, GuidanceOf(s, inputs, now))};
 }
 

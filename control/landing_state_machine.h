@@ -6,16 +6,21 @@
 //   hovering       tracking        pad_converged      pad converged and heading aligned
 //   hovering       tracking        align_timeout      pad converged, aligning took too long
 //   tracking       landing         above_pad          descent vertical, near the pad, slow over it
+//   tracking       landing         arriving           descent planned, the plan's contact is near,
+//                                                     gate open, in the cone over the pad
 //   tracking       hold            pad_lost           no converged pad for over pad_timeout
 //   tracking       hold            plan_failed        no plan for over plan_timeout
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
 //   landing        disarmed        contact            foot force for contact_time, feet at the deck
 //   landing        go_around       pad_lost           no converged pad for over pad_timeout
-//   landing        go_around       tags_lost          gate closed for over gate_timeout, or
-//                                                     committed and the bridge is over
+//   landing        go_around       tags_lost          gate closed for over gate_timeout (descent
+//                                                     planned: at all), or committed and the bridge
+//                                                     is over
 //   landing        go_around       error_too_large    horizontal error beyond abort_distance
-//   landing        go_around       plan_failed        no plan for over plan_timeout
-//   landing        go_around       no_contact         committed for over commit_timeout
+//   landing        go_around       plan_failed        no plan for over plan_timeout (descent
+//                                                     planned: arrival_plan_timeout)
+//   landing        go_around       no_contact         committed for over commit_timeout, or the
+//                                                     plan's contact overdue by arrival_timeout
 //   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged
@@ -40,6 +45,10 @@
 // bridge_sigma. Without sightings neither improves, so a descent that pauses, or that lost the tags
 // too high up, closes the gate; and a committed descent is given up where the bridge has ended
 // without contact.
+//
+// With descent planned, tracking flies a plan that ends in contact already. decide_time before that
+// the same gate decides: if it is open the landing begins, else the vehicle arrives above the pad
+// instead, to make a new plan to contact from there once the gate is open.
 #pragma once
 
 #include <limits>
@@ -64,6 +73,7 @@ enum class TransitionReason {
   kPadConverged,
   kAlignTimeout,
   kAbovePad,
+  kArriving,
   kContact,
   kPadLost,
   kTagsLost,
@@ -88,6 +98,7 @@ std::string_view ToString(DescentHold hold);
 enum class Guidance {
   kHoldPosition,  ///< brake and stay
   kFollowPad,     ///< arrive and stay above the pad at foot_height, moving with foot_height_rate
+  kTouchDown,     ///< arrive at the deck, sinking with touchdown_rate
   kClimb,         ///< brake, then rise with foot_height_rate where it is, without a plan
   kIdle,          ///< rotors off
 };
@@ -96,6 +107,7 @@ std::string_view ToString(Guidance guidance);
 enum class DescentStyle {
   kNone,      ///< follow above the pad, never land
   kVertical,  ///< the paper's: approach above the pad, then descend over it
+  kPlanned,   ///< one plan from wherever the vehicle is to contact
 };
 
 struct MissionInputs {
@@ -106,7 +118,7 @@ struct MissionInputs {
   double height = 0.0;               ///< feet above the deck, estimated [m]
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
-  /// The same foretold for TimeToContact from now, without further measurements; may be inf.
+  /// The same foretold for ContactIn from now, without further measurements; may be inf.
   double contact_sigma = std::numeric_limits<double>::infinity();
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
   bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning
@@ -114,8 +126,11 @@ struct MissionInputs {
   double foot_force = 0.0;  ///< sum over the feet [N]
   bool has_plan = false;    ///< a certified plan exists
   double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
-  bool yaw_aligned = true;       ///< body heading along the direction of travel
-  bool emergency = false;        ///< obstacle too close, operator's stop, …
+  /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
+  /// does not lead there.
+  double arrival_in = std::numeric_limits<double>::infinity();
+  bool yaw_aligned = true;  ///< body heading along the direction of travel
+  bool emergency = false;   ///< obstacle too close, operator's stop, …
   DescentStyle descent = DescentStyle::kVertical;
 };
 
@@ -146,6 +161,13 @@ struct MissionParameters {
   double abort_distance = 1.0;         ///< horizontal error that ends a landing [m]
   double commit_abort_distance = 0.5;  ///< the same below commit_height [m]
 
+  double touchdown_rate = 0.3;        ///< with which a planned landing meets the deck [m/s]
+  double decide_time = 1.0;           ///< so long before contact it is decided on [s]
+  double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
+  double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
+  double arrival_timeout = 0.8;       ///< contact overdue for longer: go around [s]
+  double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
+
   double press_depth = 0.3;      ///< the command goes this far below the deck until contact [m]
   double contact_force = 2.0;    ///< [N]
   double contact_time = 0.4;     ///< [s]: so long it takes to stand upright (settling.h)
@@ -174,7 +196,8 @@ struct MissionState {
   double mode_since = 0.0;        ///< [s]
   double foot_height = 0.0;       ///< commanded, feet above the deck [m]
   double foot_height_rate = 0.0;  ///< its time derivative [m/s]
-  bool committed = false;         ///< below commit_height with the gate passed
+  bool committed = false;         ///< near the deck with the gate passed
+  bool waits_above = false;       ///< descent planned: follows above the pad until the gate opens
   double committed_since = 0.0;   ///< [s]
   /// Times since when a condition has held without a break [s]; infinite while it does not.
   double converged_since = std::numeric_limits<double>::infinity();
@@ -207,11 +230,12 @@ struct MissionStep {
   MissionOutputs outputs;
 };
 
-/// Time until the feet are on the deck, at the latest, if the descent goes on without a pause [s]:
-/// from the higher of the command and the vehicle's `height` [m]. For heights up to gate_height.
-/// Infinite where `height` is not finite.
-double TimeToContact(const MissionState& state, double height,
-                     const MissionParameters& parameters) noexcept;
+/// Time until the feet are on the deck, at the latest, if nothing pauses the descent [s]. Vertical:
+/// from the higher of the command and the vehicle's height, for heights up to gate_height; planned:
+/// what the plan says. Of the inputs, descent, height and arrival_in are used; infinite where these
+/// are not finite.
+double ContactIn(const MissionState& state, const MissionInputs& inputs,
+                 const MissionParameters& parameters) noexcept;
 
 /// One step. Pure: no hidden state, no exception, no allocation. Inputs that are not finite count
 /// as missing and, if they last, lead to hold; they never disarm.

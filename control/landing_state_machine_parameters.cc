@@ -17,12 +17,11 @@ std::string_view ToString(MissionMode mode) {
 }
 
 std::string_view ToString(TransitionReason reason) {
-  static constexpr std::array<std::string_view, 17> kNames = {
-      "none",          "pad_converged", "align_timeout",  "above_pad",
-      "contact",       "pad_lost",      "tags_lost",      "error_too_large",
-      "plan_failed",   "no_contact",    "climb_complete", "climb_timeout",
-      "recovered",     "invalid_input", "emergency",      "emergency_cleared",
-      "own_state_lost"};
+  static constexpr std::array<std::string_view, 18> kNames = {
+      "none",       "pad_converged",     "align_timeout", "above_pad",       "arriving",
+      "contact",    "pad_lost",          "tags_lost",     "error_too_large", "plan_failed",
+      "no_contact", "climb_complete",    "climb_timeout", "recovered",       "invalid_input",
+      "emergency",  "emergency_cleared", "own_state_lost"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
@@ -32,8 +31,8 @@ std::string_view ToString(DescentHold hold) {
 }
 
 std::string_view ToString(Guidance guidance) {
-  static constexpr std::array<std::string_view, 4> kNames = {"hold_position", "follow_pad", "climb",
-                                                             "idle"};
+  static constexpr std::array<std::string_view, 5> kNames = {"hold_position", "follow_pad",
+                                                             "touch_down", "climb", "idle"};
   return kNames.at(static_cast<std::size_t>(guidance));
 }
 
@@ -48,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 28> positive = {{
+  const std::array<Named, 34> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -67,6 +66,12 @@ void Validate(const MissionParameters& p) {
       {"corridor_radius", p.corridor_radius},
       {"abort_distance", p.abort_distance},
       {"commit_abort_distance", p.commit_abort_distance},
+      {"touchdown_rate", p.touchdown_rate},
+      {"decide_time", p.decide_time},
+      {"arrival_commit_time", p.arrival_commit_time},
+      {"arrival_plan_timeout", p.arrival_plan_timeout},
+      {"arrival_timeout", p.arrival_timeout},
+      {"cone_slope", p.cone_slope},
       {"press_depth", p.press_depth},
       {"contact_force", p.contact_force},
       {"contact_time", p.contact_time},
@@ -98,6 +103,8 @@ void Validate(const MissionParameters& p) {
   require(p.gate_sigma <= p.bridge_sigma, "gate_sigma", p.gate_sigma, "at most bridge_sigma");
   require(p.gate_tag_age <= p.bridge_time, "gate_tag_age", p.gate_tag_age, "at most bridge_time");
   require(p.own_patience < p.gate_timeout, "own_patience", p.own_patience, "below gate_timeout");
+  require(p.arrival_commit_time < p.decide_time, "arrival_commit_time", p.arrival_commit_time,
+          "below decide_time");
   require(p.landing_distance < p.abort_distance, "landing_distance", p.landing_distance,
           "below abort_distance");
 }

@@ -66,6 +66,7 @@ class Trial {
         judge_(LandingRule{}, scenario.timeout, follow_),
         mission_clock_(kMissionRate),
         replan_clock_(PlannerRate(scenario)),
+        close_clock_(ClosePlannerRate(scenario)),
         sample_clock_(kSampleRate),
         record_(record),
         samples_(samples) {
@@ -111,13 +112,18 @@ class Trial {
     Timed(&result_.timing.control_cpu_s, [&] {
       if (mission_clock_.Due(vehicle.t)) StepMission(believed);
     });
-    if (replan_clock_.Due(vehicle.t)) Replan(believed);
+    if (ReplanDue(vehicle.t)) Replan(believed);
     control::MixerOutput mix;
     Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(believed); });
     std::array<double, 4> command;
     for (int i = 0; i < 4; ++i) command[i] = mix.thrusts[i];
     Timed(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
     Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, mix.saturated); });
+  }
+
+  bool ReplanDue(double t) {
+    const bool usual = replan_clock_.Due(t), close = close_clock_.Due(t);
+    return pilot_.arriving() ? close : usual;
   }
 
   // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
@@ -300,6 +306,7 @@ class Trial {
   SlidingMean through_air_;
   sim::SampleClock mission_clock_;
   sim::SampleClock replan_clock_;
+  sim::SampleClock close_clock_;
   sim::SampleClock sample_clock_;
   TrialRecord* record_;
   MapRecorder map_recorder_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -28,11 +29,13 @@ constexpr double kLeaning = 0.1;          // of steady force over weight: a foot
 constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 2.5 * kRadPerDeg;
 constexpr double kTouchForce = 0.2;      // on the feet: something holds them [N]
+constexpr double kLastPlan = 0.4;        // before contact: later ones could hardly change it [s]
 constexpr double kMeasuredMargin = 1.2;  // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
-  return kind == DescentKind::kNone ? control::DescentStyle::kNone
-                                    : control::DescentStyle::kVertical;
+  if (kind == DescentKind::kNone) return control::DescentStyle::kNone;
+  return kind == DescentKind::kPlanned ? control::DescentStyle::kPlanned
+                                       : control::DescentStyle::kVertical;
 }
 
 // The paper extrapolates along the heading: a turn that the filter knows of is left out.
@@ -125,8 +128,10 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   foot_height_ = inputs.height;
   inputs.tag_age = filter.TagAge(t);
   inputs.pad_sigma = filter.PositionSigma(t);
+  inputs.descent = StyleOf(scenario_.descent);
+  inputs.arrival_in = contact_t_ - t;
   inputs.contact_sigma =
-      filter.PositionSigma(t + control::TimeToContact(mission_state_, inputs.height, parameters_));
+      filter.PositionSigma(t + control::ContactIn(mission_state_, inputs, parameters_));
   const estimation::OwnStatus status = own.status();
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
@@ -140,7 +145,6 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   }
   heading_wanted_ = DesiredHeading(vehicle, filter);
   inputs.yaw_aligned = control::YawAligned(yaw_.yaw, heading_wanted_, kAlignTolerance);
-  inputs.descent = StyleOf(scenario_.descent);
 
   const control::MissionStep step = control::Step(mission_state_, inputs, parameters_);
   mission_state_ = step.state;
@@ -160,6 +164,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     has_plan_ = false;
     return nullptr;
   }
+  if (arriving() && contact_t_ - vehicle.t < kLastPlan) return nullptr;
   replan_.latency_s = Latency();
   planning::ReplanInput& input = replan_.request.input;
   input.t_now = vehicle.t;
@@ -182,12 +187,19 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
                   result.reason == planning::ReplanReason::kAtGoal;
   has_plan_ = last_planned_ || result.status == planning::ReplanStatus::kKept;
   if (last_planned_) planned_t_ = vehicle.t;
+  if (result.status != planning::ReplanStatus::kKept) {
+    const bool touches = last_planned_ && wants_plan && input.endpoint.touches();
+    contact_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
+  }
   return &result;
 }
 
 bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
   if (!filter.initialized()) return false;
-  if (mission_.guidance == control::Guidance::kFollowPad) return true;
+  if (mission_.guidance == control::Guidance::kFollowPad ||
+      mission_.guidance == control::Guidance::kTouchDown) {
+    return true;
+  }
   // Holding ends with a plan to a known pad, so one is tried; without the pad, or without knowing
   // where it is itself, the vehicle rests.
   return mission_.mode == control::MissionMode::kHold && own_usable_ && filter.Converged(t);
@@ -244,6 +256,11 @@ planning::FlatState Pilot::Reference(double t) const {
   return reference;
 }
 
+bool Pilot::arriving() const {
+  return mission_.mode == control::MissionMode::kLanding &&
+         mission_.guidance == control::Guidance::kTouchDown;
+}
+
 planning::ReplannerState Pilot::replanner_state() const {
   const auto* replanner = dynamic_cast<const planning::Replanner*>(planner_.get());
   return replanner != nullptr ? replanner->state() : planning::ReplannerState{};
@@ -276,6 +293,11 @@ double Pilot::DesiredHeading(const estimation::VehicleState& vehicle,
 planning::EndpointTarget Pilot::Endpoint(double t) const {
   planning::EndpointTarget target;
   target.t_reference = t;
+  if (mission_.guidance == control::Guidance::kTouchDown) {
+    target.height = target.height_floor = model_.foot_depth;
+    target.arrival_sink = parameters_.touchdown_rate;
+    return target;
+  }
   target.height = mission_.foot_height + model_.foot_depth;
   target.sink_rate = std::max(0.0, -mission_.foot_height_rate);
   const bool landing = mission_.mode == control::MissionMode::kLanding;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -42,7 +43,8 @@ class Pilot {
                    double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
-  /// hovering or disarmed, and where the planner had nothing to do. Call at PlannerRate. The result
+  /// hovering, disarmed or about to touch, and where the planner had nothing to do. Call at
+  /// PlannerRate, or at ClosePlannerRate where `arriving`. The result
   /// is the planner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
@@ -62,6 +64,8 @@ class Pilot {
   /// What the landing planner remembers before its next step; empty with the baseline. Allocates.
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;
+  /// A planned landing that is decided: from now on Replan is to be called at ClosePlannerRate.
+  bool arriving() const;
 
  private:
   double DesiredHeading(const estimation::VehicleState& vehicle,
@@ -97,7 +101,9 @@ class Pilot {
   bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
   std::optional<double> planned_t_;    ///< when the last new plan was made
   std::optional<double> requested_t_;  ///< since when plans are asked for without a break
-  double measured_latency_ = 0.0;      ///< of the last replanning step [s]
+  /// When the committed plan touches the deck [s]; infinite if it does not.
+  double contact_t_ = std::numeric_limits<double>::infinity();
+  double measured_latency_ = 0.0;  ///< of the last replanning step [s]
 };
 
 }  // namespace touchdown::evaluation

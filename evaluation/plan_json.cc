@@ -113,7 +113,8 @@ Json InputJson(const SolvedStep& solved) {
                {"prediction", ToString(request.prediction.source)}};
   json["endpoint"] = {{"height_m", input.endpoint.height},
                       {"sink_rate_mps", input.endpoint.sink_rate},
-                      {"height_floor_m", input.endpoint.height_floor}};
+                      {"height_floor_m", input.endpoint.height_floor},
+                      {"arrival_sink_mps", input.endpoint.arrival_sink}};
   Json& pad = json["pad"] = Json::array();
   double t = solved.t_pad;
   for (const estimation::PadState& state : solved.pad) {

@@ -25,9 +25,14 @@ std::string QuestionText(const SolvedStep& solved) {
         "  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP), Vector(pad.v_WP),
         asked.request.prediction.source == PredictionSource::kOracle ? "its true motion"
                                                                      : "the filter's belief");
+    const planning::EndpointTarget& end = input.endpoint;
     text +=
-        fmt::format("  wanted     {:.2f} m above the deck, sinking at {:.2f} m/s to {:.2f} m\n",
-                    input.endpoint.height, input.endpoint.sink_rate, input.endpoint.height_floor);
+        end.touches()
+            ? fmt::format("  wanted     contact, {:.2f} m above the deck, sinking at {:.2f} m/s\n",
+                          end.height, end.arrival_sink)
+            : fmt::format(
+                  "  wanted     {:.2f} m above the deck, sinking at {:.2f} m/s to {:.2f} m\n",
+                  end.height, end.sink_rate, end.height_floor);
   }
   text += fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s\n",
                       asked.before.planned ? "a plan to the pad" : "a curve to rest",

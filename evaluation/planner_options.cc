@@ -10,8 +10,11 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr const char* kCorridor = "approach_corridor";
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-constexpr double kFeetAboveGround = 0.3;  // away from the pad [m]
+constexpr double kFeetAboveGround = 0.3;   // away from the pad [m]
+constexpr double kCorridorWeight = 300.0;  // of a planned descent, unless the scenario says so
+constexpr double kCloseRate = 20.0;        // [Hz]
 
 planning::Limits LimitsOf(const Scenario& scenario) {
   const double of_tilt = estimation::kGravity * std::tan(scenario.limits.tilt_deg * kRadPerDeg);
@@ -50,6 +53,13 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   problem.terms = terms;
   for (const auto& [name, keys] : scenario.terms) {
     problem.settings.push_back(TermSettingsOf(name, keys));
+  }
+  if (scenario.descent == DescentKind::kPlanned) {
+    // The last metres come from above, and the vehicle stands over the deck as the pad's motion asks.
+    problem.free_end_acceleration = false;
+    if (scenario.terms.count(kCorridor) == 0 || scenario.terms.at(kCorridor).count("weight") == 0) {
+      problem.settings.push_back(TermSettingsOf(kCorridor, {{"weight", kCorridorWeight}}));
+    }
   }
   problem.endpoint = scenario.solver.endpoint == EndpointKind::kExplicit
                          ? planning::EndpointMode::kExplicit
@@ -104,6 +114,14 @@ std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
 double PlannerRate(const Scenario& scenario) {
   return scenario.planner == PlannerKind::kLanding ? scenario.planning.rate
                                                    : planning::EgoPlanner::kRate;
+}
+
+double ClosePlannerRate(const Scenario& scenario) {
+  const double usual = PlannerRate(scenario);
+  if (scenario.planning.latency.measured) return usual;
+  // A plan takes over before the next is asked for.
+  const double fastest = 1e3 / std::max(1.0, scenario.planning.latency.ms);
+  return std::max(usual, std::min(kCloseRate, fastest));
 }
 
 double LongestLatency(const Scenario& scenario) {

@@ -29,6 +29,9 @@ std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
 /// of its state machine.
 double PlannerRate(const Scenario& scenario);
 
+/// The same shortly before a planned landing's contact [Hz]: at least 20 Hz, if the latency leaves room.
+double ClosePlannerRate(const Scenario& scenario);
+
 /// The scenario's terms.<name>.* as the planner takes them.
 planning::TermSettings TermSettingsOf(const std::string& name,
                                       const std::map<std::string, double>& keys);

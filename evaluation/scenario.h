@@ -28,7 +28,7 @@ enum class PadMotionKind {
 enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };
-enum class DescentKind { kNone, kVertical };
+enum class DescentKind { kNone, kVertical, kPlanned };
 enum class PlannerKind { kLanding, kEgo, kEgoVelocity };
 enum class SensingKind { kFast, kRendered };
 enum class OwnStateKind { kTrue, kEstimated };

@@ -200,6 +200,15 @@ void CheckSensors(const ScenarioSource& source) {
   }
 }
 
+void CheckDescent(const ScenarioSource& source) {
+  const Scenario& s = source.scenario;
+  if (s.descent != DescentKind::kPlanned || s.planner == PlannerKind::kLanding) return;
+  throw BadInput(
+      fmt::format("{}: descent must be none or vertical with planner ego or ego-velocity, whose "
+                  "plans do not lead to contact, not 'planned'.",
+                  source.WhereOf("descent").ToString()));
+}
+
 void CheckPriorMap(const ScenarioSource& source) {
   const std::string& path = source.scenario.map_prior;
   if (path == "none") return;
@@ -344,6 +353,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
   CheckPlanning(source, model);
+  CheckDescent(source);
   CheckAir(source, model);
   CheckTerms(source, registries.terms);
   CheckSolver(source, model, registries);

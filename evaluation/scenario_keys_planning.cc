@@ -13,8 +13,9 @@ void AddPlanningKeys(KeyList& keys) {
                       "the controller geometric compensates the force and the moment that it "
                       "estimates, and plans leave room for the force; paper has no such estimate",
                       TOUCHDOWN_AT(control.disturbance)));
-  keys.push_back(Choice("descent", {"none", "vertical"},
-                        "none follows above the pad, vertical approaches and then sinks over it",
+  keys.push_back(Choice("descent", {"none", "vertical", "planned"},
+                        "none follows above the pad, vertical approaches and then sinks over it, "
+                        "planned flies one plan to contact, which planner landing makes",
                         TOUCHDOWN_AT(descent)));
   keys.push_back(
       Choice("planner", {"landing", "ego", "ego-velocity"},

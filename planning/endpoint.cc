@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The moving endpoint (eq. 17-18): the predicted pad plus a height above it that may sink. While
 // the height sinks, the approach velocity is the sinking itself, so that consecutive plans join;
-// once it rests on its floor the approach velocity is zero.
+// once it rests on its floor the approach velocity is that of the contact, zero if there is none.
+// Only the height's own rate moves the end as the arrival time does.
 
 #include "touchdown/planning/endpoint.h"
 
@@ -13,11 +14,12 @@ EndState EndStateAt(const estimation::PadPrediction& pad, const EndpointTarget& 
   const double sunk = target.height - target.sink_rate * (t_arrival - target.t_reference);
   const bool sinking = sunk > target.height_floor;
   const Eigen::Vector3d offset(0.0, 0.0, sinking ? sunk : target.height_floor);
-  const Eigen::Vector3d approach(0.0, 0.0, sinking ? -target.sink_rate : 0.0);
+  const Eigen::Vector3d offset_rate(0.0, 0.0, sinking ? -target.sink_rate : 0.0);
+  const Eigen::Vector3d contact(0.0, 0.0, -target.arrival_sink);
 
   EndState end;
-  end.state = {at.p_WP + offset, at.v_WP + approach, at.a_WP};
-  end.derivative = {at.v_WP + approach, at.a_WP, at.j_WP};
+  end.state = {at.p_WP + offset, at.v_WP + offset_rate + contact, at.a_WP};
+  end.derivative = {at.v_WP + offset_rate, at.a_WP, at.j_WP};
   end.second_derivative = {at.a_WP, at.j_WP, Eigen::Vector3d::Zero()};
   return end;
 }

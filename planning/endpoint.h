@@ -9,16 +9,21 @@
 namespace touchdown::planning {
 
 /// Where a plan ends, relative to the moving pad (eq. 17-18): a height of the body's origin above
-/// the deck that may sink with time, and with it the approach velocity w at arrival.
+/// the deck that may sink with time, and the approach velocity w at arrival.
 struct EndpointTarget {
   double t_reference = 0.0;   ///< when `height` holds [s]
   double height = 1.5;        ///< body origin above the deck at t_reference [m]
   double sink_rate = 0.0;     ///< rate at which the height shrinks, >= 0 [m/s]
   double height_floor = 0.0;  ///< the height never goes below this [m]
+  /// A plan that ends in contact sinks at arrival, whatever the height does until then: >= 0 [m/s].
+  double arrival_sink = 0.0;
+
+  /// Whether the plan is to end in contact.
+  bool touches() const { return arrival_sink > 0.0; }
 };
 
 /// The end condition at an arrival time, with the derivatives with respect to it that free arrival
-/// needs: dp/dT = pad velocity + dw_z/dT, dv/dT = pad acceleration, da/dT = pad jerk.
+/// needs: dp/dT = pad velocity + rate of the height, dv/dT = pad acceleration, da/dT = pad jerk.
 struct EndState {
   SplineState state;              ///< wanted p, v, a at arrival, in W
   SplineState derivative;         ///< d(state)/dT

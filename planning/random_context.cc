@@ -66,7 +66,8 @@ RandomContext::RandomContext(int segments, int max_pairs, int max_obstacles,
   context_.pad = &pad_;
   const double height = Uniform(random, 1.0, 3.0);
   const double sink_rate = Uniform(random, 0.0, 0.2);
-  context_.target = {context_.t0, height, sink_rate, 0.1};
+  const double arrival_sink = Uniform(random, 0.0, 0.5);
+  context_.target = {context_.t0, height, sink_rate, 0.1, arrival_sink};
 
   // The previous plan began a little earlier and ends before this one.
   const double T = segments * context_.interval;

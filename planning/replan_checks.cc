@@ -35,7 +35,8 @@ bool StateValid(const ReplanInput& input) {
 bool TargetValid(const ReplanInput& input) {
   const EndpointTarget& end = input.endpoint;
   if (input.pad == nullptr || !std::isfinite(end.height) || !std::isfinite(end.sink_rate) ||
-      !std::isfinite(end.height_floor) || !std::isfinite(end.t_reference)) {
+      !std::isfinite(end.height_floor) || !std::isfinite(end.t_reference) ||
+      !std::isfinite(end.arrival_sink) || end.arrival_sink < 0.0) {
     return false;
   }
   const estimation::PadState pad = input.pad->At(input.t_start);
@@ -49,6 +50,7 @@ void Validate(const ReplannerOptions& o) {
           "above floor_height");
   Require(o.min_duration > 0.0, "min_duration", o.min_duration, "> 0 s");
   Require(o.max_duration > o.min_duration, "max_duration", o.max_duration, "above min_duration");
+  Require(o.min_contact_duration > 0.0, "min_contact_duration", o.min_contact_duration, "> 0 s");
   Require(o.odometry_threshold > 0.0, "odometry_threshold", o.odometry_threshold, "> 0 m");
   Require(o.reaction >= 0.0, "reaction", o.reaction, ">= 0 s");
   Require(o.max_guides >= 1, "max_guides", o.max_guides, ">= 1");

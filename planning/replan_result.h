@@ -25,13 +25,14 @@ struct ReplannerOptions {
   std::vector<std::pair<std::string, double>> solver_options;  ///< of the backend, by name
   ArrivalMode arrival = ArrivalMode::kFixed;
   Limits limits;
-  LandingProblemOptions problem;    ///< terms, their settings and the formulation; its limits,
-                                    ///< arrival and durations follow from here
-  double floor_height = 0.45;       ///< body origin stays above this away from the pad [m]
-  double ceiling_height = 10.0;     ///< and below this everywhere [m]
-  double pad_radius = 1.2;          ///< half width of the strip over the pad without a floor [m]
-  double max_duration = 30.0;       ///< a pad farther away in time is unreachable [s]
-  double min_duration = 0.8;        ///< shortest plan: a vehicle above the pad keeps following [s]
+  LandingProblemOptions problem;  ///< terms, their settings and the formulation; its limits,
+                                  ///< arrival and durations follow from here
+  double floor_height = 0.45;     ///< body origin stays above this away from the pad [m]
+  double ceiling_height = 10.0;   ///< and below this everywhere [m]
+  double pad_radius = 1.2;        ///< half width of the strip over the pad without a floor [m]
+  double max_duration = 30.0;     ///< a pad farther away in time is unreachable [s]
+  double min_duration = 0.8;      ///< shortest plan: a vehicle above the pad keeps following [s]
+  double min_contact_duration = 0.3;  ///< ... and one that is to end in contact [s]
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
   double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]
   double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead

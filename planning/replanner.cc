@@ -266,7 +266,10 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   // An arrival once promised is kept: guessing anew at every step would put it off for ever.
   const double left = next_.t_end() - input.t_start;
   const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
-  double T = std::clamp(promised ? left : fresh, options_.min_duration, options_.max_duration);
+  // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
+  const double shortest =
+      input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
+  double T = std::clamp(promised ? left : fresh, shortest, options_.max_duration);
 
   const double first = T;
   AttemptRequest request;
@@ -276,7 +279,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.target = input.endpoint;
   request.limits = limits_;
   request.pull_W = input.pull_W;
-  request.arrival = options_.arrival;
+  // The prepared problems' free arrival has the usual bound below.
+  request.arrival = T < options_.min_duration ? ArrivalMode::kFixed : options_.arrival;
   request.at_rest = Fallback::Stays(next_, start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {

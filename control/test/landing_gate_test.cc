@@ -77,8 +77,7 @@ Mission::Change Blind(const Mission& mission, double growth = 0.05) {
   return [&mission, growth, since = mission.in.t](MissionInputs& in) {
     in.tag_age = in.t - since;
     in.pad_sigma = 0.02 + growth * in.tag_age;
-    in.contact_sigma =
-        in.pad_sigma + growth * TimeToContact(mission.state, in.height, mission.parameters);
+    in.contact_sigma = in.pad_sigma + growth * ContactIn(mission.state, in, mission.parameters);
   };
 }
 
@@ -156,17 +155,18 @@ TEST(LandingGate, CommittedBlindDescentEndsWithTheBridge) {
   }
 }
 
-TEST(LandingGate, TimeToContactIsThatOfTheDescent) {
+TEST(LandingGate, ContactInIsThatOfTheDescent) {
   Mission mission;
   mission.DescendTo(0.7);
   mission.in.horizontal_distance = 0.6;  // paused: it has to gain speed again
   mission.Run(1.0);
   mission.in.horizontal_distance = 0.1;
-  const double foretold = TimeToContact(mission.state, mission.in.height, mission.parameters);
+  const double foretold = ContactIn(mission.state, mission.in, mission.parameters);
   const double begin = mission.in.t;
   for (int k = 0; k < 600 && mission.outputs.foot_height > 0.0; ++k) mission.Tick();
   EXPECT_NEAR(mission.in.t - begin, foretold - mission.parameters.contact_reserve, 0.02);
-  EXPECT_EQ(TimeToContact(mission.state, std::nan(""), mission.parameters),
+  mission.in.height = std::nan("");
+  EXPECT_EQ(ContactIn(mission.state, mission.in, mission.parameters),
             std::numeric_limits<double>::infinity());
 }
 
