@@ -54,8 +54,26 @@ class Trial {
  public:
   Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
         TrialRecord* record, TrialSamples* samples)
-      : world_(WorldOf(scenario, DrawTrial(scenario, seed))),
-        air_(scenario, DrawTrial(scenario, seed), seed),
+      : Trial(scenario, seed, DrawTrial(scenario, seed), registries, record, samples) {}
+
+  TrialResult Run() {
+    try {
+      while (!judge_.outcome()) Step();
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
+                                           world_.time(), result_.seed, error.what()));
+    }
+    Finish();
+    return result_;
+  }
+
+  planning::PersistentMap TakePersistentMap() { return perception_.TakePersistentMap(); }
+
+ private:
+  Trial(const Scenario& scenario, std::uint64_t seed, const TrialDraw& draw,
+        const Registries& registries, TrialRecord* record, TrialSamples* samples)
+      : world_(WorldOf(scenario, draw)),
+        air_(scenario, draw, seed),
         perception_(scenario, world_, seed),
         pilot_(scenario, world_.model(), world_.pad_motion(), registries, perception_.own().now(),
                perception_.map()),
@@ -78,20 +96,6 @@ class Trial {
     }
   }
 
-  TrialResult Run() {
-    try {
-      while (!judge_.outcome()) Step();
-    } catch (const std::exception& error) {
-      throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
-                                           world_.time(), result_.seed, error.what()));
-    }
-    Finish();
-    return result_;
-  }
-
-  planning::PersistentMap TakePersistentMap() { return perception_.TakePersistentMap(); }
-
- private:
   // Runs a stage and adds its thread CPU time to `stage`.
   template <typename Stage>
   static void Timed(double* stage, Stage&& run) {

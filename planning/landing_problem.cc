@@ -106,19 +106,15 @@ void LandingProblem::Update() {
 
 void LandingProblem::SetBoundary(const SplineState& start, double t0,
                                  const estimation::PadPrediction& pad,
-                                 const EndpointTarget& target) {
+                                 const EndpointTarget& target, const Eigen::Vector3d& pull_W) {
+  context_.limits = LimitsUnder(limits_, vehicle_, pull_W);
+  context_.pull_W = pull_W;
   context_.start = start;
   context_.t0 = t0;
   context_.pad = &pad;
   context_.target = target;
   problem_.set_t0(t0);
   lift_->Set(start, t0, pad, target);
-  Update();
-}
-
-void LandingProblem::SetPull(const Eigen::Vector3d& pull_W) {
-  context_.limits = LimitsUnder(limits_, vehicle_, pull_W);
-  context_.pull_W = pull_W;
   Update();
 }
 

@@ -60,12 +60,12 @@ class LandingProblem {
   LandingProblem& operator=(const LandingProblem&) = delete;
 
   /// Start state at the absolute time t0 and the moving end. The prediction must outlive the solve.
+  /// The limits are what a steady pull leaves of the options' [m/s^2] (LimitsUnder).
   void SetBoundary(const SplineState& start, double t0, const estimation::PadPrediction& pad,
-                   const EndpointTarget& target);
+                   const EndpointTarget& target,
+                   const Eigen::Vector3d& pull_W = Eigen::Vector3d::Zero());
   /// Duration, or the first guess of a free one [s].
   void SetDuration(double T);
-  /// What is left of the options' limits under a steady pull [m/s^2] (LimitsUnder).
-  void SetPull(const Eigen::Vector3d& pull_W);
   /// Throws std::invalid_argument if there are more than max_pairs() or one is out of range.
   void SetPairs(std::span<const ObstaclePair> pairs);
   /// Multiplies the weight of every pair (of the terms that keep clear of obstacles).

@@ -111,8 +111,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
   now_ = &problems_.At(segments_, request.arrival);
   LandingProblem& problem = *now_->problem;
-  problem.SetBoundary(request.start, request.t0, *request.pad, request.target);
-  problem.SetPull(request.pull_W);
+  problem.SetBoundary(request.start, request.t0, *request.pad, request.target, request.pull_W);
   problem.SetDuration(request.duration);
   duration_ = request.duration;
   problem.SetPrevious(request.previous);
@@ -212,7 +211,7 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
   if (request->arrival == ArrivalMode::kFree) return;
   const double longer = PathLength(guide_) - LengthOf(first_curve_, span.t_in, span.t_out);
   AttemptRequest later = *request;
-  later.duration = std::min(request->duration + std::max(0.0, longer) / options_.limits.speed,
+  later.duration = std::min(request->duration + std::max(0.0, longer) / request->limits.speed,
                             options_.max_duration);
   if (later.duration <= request->duration) return;
   later_space_ = *request->space;

@@ -57,7 +57,10 @@ class Mission {
     if (height_follows && state.started) in.height = state.foot_height;
     if (change) change(in);
     const MissionStep step = Step(state, in, parameters);
-    if (state.started) {  // the commanded height is continuous and its rate is its derivative
+    // A plan to contact leads; its height is no command.
+    const bool led = outputs.guidance == Guidance::kTouchDown;
+    if (state.started &&
+        !led) {  // the commanded height is continuous and its rate is its derivative
       const double dt = step.state.t - state.t;
       const double a = parameters.height_acceleration;
       const double advance = step.state.foot_height - state.foot_height;

@@ -26,12 +26,27 @@ TEST(Endpoint, SinksAtItsRateDownToItsFloor) {
   EXPECT_NEAR(EndStateAt(pad, target, 9.0).state.v.z(), 0.0, 1e-14);
 }
 
+TEST(Endpoint, ContactIsMetSinkingAtTheDeck) {
+  Draw draw(43);
+  const ArcPad pad = draw.Pad();
+  const EndpointTarget target{0.0, 0.2, 0.0, 0.2, 0.3};
+  for (const double t : {1.0, 4.0}) {
+    const EndState end = EndStateAt(pad, target, t);
+    const estimation::PadState at = pad.At(t);
+    EXPECT_EQ(end.state.p, at.p_WP + Eigen::Vector3d(0.0, 0.0, 0.2));
+    EXPECT_EQ(end.state.v, at.v_WP - Eigen::Vector3d(0.0, 0.0, 0.3));
+    EXPECT_EQ(end.derivative.p, at.v_WP);  // a later arrival is no lower
+  }
+  EXPECT_TRUE(target.touches());
+  EXPECT_FALSE((EndpointTarget{0.0, 1.5, 0.3, 0.2}.touches()));
+}
+
 TEST(Endpoint, DerivativesMatchDifferences) {
   Draw draw(41);
   const double d = 1e-5;
   for (int trial = 0; trial < 50; ++trial) {
     const ArcPad pad = draw.Pad();
-    const EndpointTarget target{0.0, 2.0, 0.1, 0.2};
+    const EndpointTarget target{0.0, 2.0, 0.1, 0.2, trial % 2 == 0 ? 0.0 : 0.3};
     const double t = draw.Uniform(0.5, 8.0);
     const EndState at = EndStateAt(pad, target, t), plus = EndStateAt(pad, target, t + d),
                    minus = EndStateAt(pad, target, t - d);

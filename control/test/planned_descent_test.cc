@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A landing by one plan to contact: when it is decided, when it is given up, and what leads it.
+#include "touchdown/control/test/mission_fixture.h"
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// A mission that tracks with a plan which touches the deck in `arrival` seconds; distance and height
+// shrink with the time that is left, as they do on a plan.
+class Approach : public Mission {
+ public:
+  explicit Approach(double arrival = 4.0) {
+    in.descent = DescentStyle::kPlanned;
+    in.arrival_in = kNever;
+    height_follows = false;
+    Run(0.5);
+    contact_t = in.t + arrival;
+  }
+
+  /// Until `arrival` before contact.
+  void FlyTo(double arrival, const Change& change = {}) {
+    const auto along = [&](MissionInputs& inputs) {
+      inputs.arrival_in = contact_t - inputs.t;
+      inputs.height = std::max(0.0, 0.8 * inputs.arrival_in);
+      inputs.horizontal_distance = std::max(0.0, 0.9 * inputs.arrival_in);
+      if (change) change(inputs);
+    };
+    while (in.t + kStep <= contact_t - arrival) Tick(along);
+  }
+
+  double contact_t = 0.0;
+};
+
+MissionMode ModeOf(const Mission& mission) { return mission.outputs.mode; }
+
+TEST(PlannedDescent, TrackingLeadsToContactFromTheStart) {
+  Approach mission;
+  mission.FlyTo(2.0);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kTouchDown);
+  EXPECT_TRUE(mission.outputs.plan_requested);
+  EXPECT_TRUE(mission.outputs.motors_armed);
+}
+
+TEST(PlannedDescent, IsDecidedWithAnOpenGateAndEndsByContact) {
+  Approach mission;
+  mission.FlyTo(mission.parameters.decide_time + 0.05);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  mission.FlyTo(mission.parameters.decide_time - 0.05);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kTouchDown);
+  EXPECT_FALSE(mission.outputs.committed);
+  mission.FlyTo(mission.parameters.arrival_commit_time - 0.05);
+  EXPECT_TRUE(mission.outputs.committed);
+  mission.FlyTo(0.0);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kLanding) << "a plan that is over is no contact";
+  mission.Run(mission.parameters.contact_time + 0.1,
+              [](MissionInputs& in) { in.foot_force = 10.0; });
+  EXPECT_EQ(ModeOf(mission), MissionMode::kDisarmed);
+}
+
+TEST(PlannedDescent, WithAClosedGateItArrivesAboveThePadAndComesDownFromThere) {
+  Approach mission;
+  const auto unseen = [](MissionInputs& in) { in.tag_age = 5.0; };
+  mission.FlyTo(mission.parameters.decide_time - 0.05, unseen);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
+  const auto above = [](MissionInputs& in) {
+    in.arrival_in = kNever;
+    in.height = 1.5;
+    in.horizontal_distance = 0.1;
+  };
+  mission.Run(1.0, above);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
+  EXPECT_NEAR(mission.outputs.foot_height, mission.parameters.follow_height, 1e-9);
+  mission.in.tag_age = 0.05;
+  mission.Run(0.05, above);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kTouchDown);
+}
+
+TEST(PlannedDescent, IsNotDecidedOutsideTheCone) {
+  Approach mission;
+  mission.FlyTo(0.5, [](MissionInputs& in) { in.horizontal_distance = 4.0; });
+  EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+}
+
+TEST(PlannedDescent, BelowTheGateHeightIsNoPlaceToWait) {
+  Approach mission;
+  mission.FlyTo(3.0, [](MissionInputs& in) {
+    in.tag_age = 5.0;
+    in.height = 0.9;
+    in.horizontal_distance = 0.5;
+  });
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
+}
+
+TEST(PlannedDescent, AShortLossOfTheTagsIsBridged) {
+  Approach mission;
+  mission.FlyTo(0.9);
+  ASSERT_EQ(ModeOf(mission), MissionMode::kLanding);
+  mission.FlyTo(0.0, [](MissionInputs& in) {
+    in.contact_sigma = 0.05;
+    in.tag_age = 1.0 - in.arrival_in;
+  });
+  EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
+  EXPECT_TRUE(mission.outputs.committed);
+}
+
+// Each way to lose a landing that has been decided on, at once or after its patience.
+struct Loss {
+  const char* name;
+  double when;  ///< before contact [s]
+  Mission::Change change;
+  TransitionReason reason;
+};
+
+class LostLanding : public testing::TestWithParam<Loss> {};
+
+TEST_P(LostLanding, EndsInAClimb) {
+  const Loss& loss = GetParam();
+  Approach mission;
+  mission.FlyTo(loss.when);
+  ASSERT_EQ(ModeOf(mission), MissionMode::kLanding);
+  const double height = mission.in.height;
+  TransitionReason reason = TransitionReason::kNone;
+  const auto along = [&](MissionInputs& in) {
+    in.arrival_in = mission.contact_t - in.t;
+    loss.change(in);
+  };
+  for (int k = 0; k < 200 && reason == TransitionReason::kNone; ++k) {
+    mission.Tick(along);
+    reason = mission.outputs.reason;
+  }
+  EXPECT_EQ(reason, loss.reason);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kGoAround);
+  EXPECT_TRUE(mission.outputs.motors_armed);
+  EXPECT_NEAR(mission.outputs.foot_height, height, 0.05) << "a climb begins where the vehicle is";
+  mission.Run(0.5, along);
+  EXPECT_GT(mission.outputs.foot_height, height);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    PlannedDescent, LostLanding,
+    testing::Values(
+        Loss{"tags", 0.9, [](MissionInputs& in) { in.tag_age = 5.0; }, TransitionReason::kTagsLost},
+        Loss{"vague_pad", 0.9,
+             [](MissionInputs& in) {
+               in.pad_sigma = 0.5;
+               in.contact_sigma = 0.5;
+             },
+             TransitionReason::kTagsLost},
+        Loss{"beside", 0.9, [](MissionInputs& in) { in.horizontal_distance = 5.0; },
+             TransitionReason::kErrorTooLarge},
+        Loss{"beside_committed", 0.2, [](MissionInputs& in) { in.horizontal_distance = 1.0; },
+             TransitionReason::kErrorTooLarge},
+        Loss{"no_plan", 0.95, [](MissionInputs& in) { in.plan_failed_for = 0.5; },
+             TransitionReason::kPlanFailed},
+        Loss{"overdue", 0.05, [](MissionInputs&) {}, TransitionReason::kNoContact},
+        Loss{"own_state", 0.9, [](MissionInputs& in) { in.own_usable = false; },
+             TransitionReason::kOwnStateLost}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(PlannedDescent, FeetThatTouchAreNotPulledOffAgain) {
+  Approach mission;
+  mission.FlyTo(0.05);
+  ASSERT_TRUE(mission.outputs.committed);
+  mission.parameters.contact_time = 2.0;
+  mission.Run(1.5, [&](MissionInputs& in) {
+    in.arrival_in = mission.contact_t - in.t;
+    in.foot_force = 10.0;
+    in.tag_age = 9.0;
+  });
+  EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
+}
+
+TEST(PlannedDescent, OtherStylesDoNotLeadToContactWhileTracking) {
+  for (const DescentStyle style : {DescentStyle::kNone, DescentStyle::kVertical}) {
+    Mission mission;
+    mission.in.descent = style;
+    mission.Run(1.0, [](MissionInputs& in) { in.arrival_in = 0.5; });
+    EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
+    EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::control
