@@ -79,8 +79,8 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
                   double dt, MissionState& state) {
   const double t = state.t;
   Track(now.pad_good, t, state.converged_since);
-  // Without numbers the invalid-input timer decides, not the pad's. Without an own state the pad's stands
-  // still, so that a state that comes and goes does not start it anew each time.
+  // Without numbers the invalid-input timer decides, not the pad's. Without an own state the pad's is
+  // neither begun nor ended, so that a state that comes and goes does not start it anew each time.
   if (in.own_usable) Track(now.numbers_valid && !now.pad_good, t, state.pad_missing_since);
   Track(!in.own_usable, t, state.own_lost_since);
   Track(now.pad_good && in.has_plan && in.plan_failed_for <= 0.0, t, state.recovered_since);

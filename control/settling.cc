@@ -7,23 +7,36 @@
 #include "touchdown/control/settling.h"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "touchdown/estimation/vehicle_model.h"
 
 namespace touchdown::control {
 
-void Settling::Note(double t, bool touching) noexcept {
-  if (touching) {
-    if (!touching_) since_ = t;
-    touching_ = true;
-    last_ = t;
-  } else if (t - last_ > parameters_.contact_gap) {
-    touching_ = false;
-  }
+Settling::Settling(const SettlingParameters& parameters) : parameters_(parameters) {
+  const auto require = [](bool good, const char* name, double value, const char* range) {
+    if (good) return;
+    throw std::invalid_argument(std::string("SettlingParameters.") + name + " = " +
+                                std::to_string(value) + ", allowed: " + range);
+  };
+  const SettlingParameters& p = parameters;
+  require(p.fade_time > 0.0, "fade_time", p.fade_time, "> 0 s");
+  require(p.return_time > 0.0, "return_time", p.return_time, "> 0 s");
+  require(p.thrust_share > 0.0 && p.thrust_share < 1.0, "thrust_share", p.thrust_share, "(0, 1)");
+  require(p.contact_gap >= 0.0, "contact_gap", p.contact_gap, ">= 0 s");
+}
+
+void Settling::Note(double t, bool touching, bool landing) noexcept {
+  share_ = Share(t);
+  t_ = t;
+  if (touching) last_contact_ = t;
+  stands_ = landing && (touching || (stands_ && t - last_contact_ <= parameters_.contact_gap));
+  rate_ = stands_ ? 1.0 / parameters_.fade_time : -1.0 / parameters_.return_time;
 }
 
 double Settling::Share(double t) const noexcept {
-  return touching_ ? std::clamp((t - since_) / parameters_.fade_time, 0.0, 1.0) : 0.0;
+  return std::clamp(share_ + rate_ * (t - t_), 0.0, 1.0);
 }
 
 void Settling::Apply(const estimation::VehicleState& state, planning::FlatState* reference,

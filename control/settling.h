@@ -8,8 +8,9 @@ namespace touchdown::control {
 /// How a vehicle comes to stand on the deck that its feet have touched.
 struct SettlingParameters {
   double fade_time = 0.35;    ///< from flying to standing [s], > 0
+  double return_time = 0.1;   ///< from standing to flying [s], > 0
   double thrust_share = 0.3;  ///< of the weight that the rotors carry then, in (0, 1) [-]
-  double contact_gap = 0.2;  ///< a shorter loss of contact does not interrupt it [s]
+  double contact_gap = 0.2;   ///< a shorter loss of contact does not interrupt it [s], >= 0
 };
 
 /// Fades a tracking law's inputs from flight to standing while the feet touch: the vehicle stays
@@ -17,12 +18,14 @@ struct SettlingParameters {
 /// from one pair of feet onto the other and roll over. Not to be shared between threads.
 class Settling {
  public:
-  explicit Settling(const SettlingParameters& parameters = {}) : parameters_(parameters) {}
+  /// Throws std::invalid_argument naming the first parameter out of its range.
+  explicit Settling(const SettlingParameters& parameters = {});
 
-  /// Notes at time t [s], rising, whether the feet touch what they are to stand on.
-  void Note(double t, bool touching) noexcept;
+  /// Notes at time t [s], rising, whether the feet touch what they are to stand on. A vehicle that does
+  /// not land any more flies again, whatever touches.
+  void Note(double t, bool touching, bool landing) noexcept;
 
-  /// Share of standing at time t, in [0, 1].
+  /// Share of standing at time t, not before that of the last note, in [0, 1]. Continuous.
   double Share(double t) const noexcept;
 
   /// Blends what the law is asked with standing at state.t; without contact nothing is changed.
@@ -31,9 +34,11 @@ class Settling {
 
  private:
   SettlingParameters parameters_;
-  bool touching_ = false;
-  double since_ = 0.0;  ///< [s]
-  double last_ = 0.0;   ///< contact [s]
+  double t_ = 0.0;             ///< of the last note [s]
+  double share_ = 0.0;         ///< then
+  double rate_ = 0.0;          ///< of the share since then [1/s]
+  double last_contact_ = 0.0;  ///< [s]
+  bool stands_ = false;        ///< touches, or did until a moment ago
 };
 
 }  // namespace touchdown::control

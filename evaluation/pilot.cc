@@ -26,6 +26,7 @@ constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
+constexpr double kUpright = 0.07;         // ... until it is less than that
 constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 2.5 * kRadPerDeg;
 constexpr double kTouchForce = 0.2;      // on the feet: something holds them [N]
@@ -58,8 +59,7 @@ PredictionData PredictionOf(const Scenario& scenario, const estimation::PadFilte
 
 control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   control::ControllerOptions options;
-  // The tracking law may tilt a little more than plans do, or it could not correct on their edge.
-  options.tilt_max = std::min(1.3, (scenario.limits.tilt_deg + 10.0) * kRadPerDeg);
+  options.tilt_max = TrackingTilt(scenario);
   return options;
 }
 
@@ -108,7 +108,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
   yaw_t_ = start.t;
-  heading_wanted_ = yaw_.yaw;
+  heading_ahead_ = yaw_.yaw;
 }
 
 void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& filter,
@@ -143,17 +143,20 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     inputs.plan_failed_for =
         t - (planned_t_ ? std::max(*planned_t_, *requested_t_) : *requested_t_);
   }
-  heading_wanted_ = DesiredHeading(vehicle, filter);
-  inputs.yaw_aligned = control::YawAligned(yaw_.yaw, heading_wanted_, kAlignTolerance);
+  heading_ahead_ = HeadingAhead(vehicle, filter);
+  const double heading = DesiredHeading();
+  inputs.yaw_aligned = control::YawAligned(yaw_.yaw, heading, kAlignTolerance);
 
   const control::MissionStep step = control::Step(mission_state_, inputs, parameters_);
   mission_state_ = step.state;
   mission_ = step.outputs;
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
-  settling_.Note(t, mission_.mode == control::MissionMode::kLanding && foot_force > kTouchForce);
+  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const bool at_deck = std::abs(foot_height_) <= parameters_.contact_height;
+  settling_.Note(t, landing && at_deck && foot_force > kTouchForce, landing);
 
-  yaw_ = control::StepYaw(yaw_, heading_wanted_, dt);
+  yaw_ = control::StepYaw(yaw_, heading, dt);
   yaw_t_ = t + dt;
 }
 
@@ -272,22 +275,26 @@ bool Pilot::plan_valid(double t) const {
   return planned_t_ && (last_planned_ || t - *planned_t_ <= parameters_.plan_timeout);
 }
 
-double Pilot::DesiredHeading(const estimation::VehicleState& vehicle,
-                             const estimation::PadFilter& filter) const {
+double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
+                           const estimation::PadFilter& filter) const {
   const Eigen::Vector3d ahead =
       planner_->Reference(vehicle.t + kLookAhead).p_WB - planner_->Reference(vehicle.t).p_WB;
-  if (mission_.mode == control::MissionMode::kLanding && observer_) {
-    const Eigen::Vector3d& force_W = observer_->steady_force_W();
-    if (force_W.head<2>().norm() > kLeaning * model_.HoverThrust()) {
-      return control::HeadingIntoWind(model_, force_W, heading_wanted_);
-    }
-  }
   if (ahead.head<2>().norm() > kLookDistance) return std::atan2(ahead.y(), ahead.x());
   if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
-    return heading_wanted_;
+    return heading_ahead_;
   }
   const Eigen::Vector3d p_BP = filter.Estimate(vehicle.t).p_WP - vehicle.p_WB;
-  return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_wanted_;
+  return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_ahead_;
+}
+
+// Where the camera sees the way ahead, but over the deck in wind a foot to the side that comes first.
+double Pilot::DesiredHeading() {
+  if (!observer_) return heading_ahead_;
+  const Eigen::Vector3d& force_W = observer_->steady_force_W();
+  const double share = force_W.head<2>().norm() / model_.HoverThrust();
+  leans_ =
+      mission_.mode == control::MissionMode::kLanding && share > (leans_ ? kUpright : kLeaning);
+  return leans_ ? control::HeadingIntoWind(model_, force_W, heading_ahead_) : heading_ahead_;
 }
 
 planning::EndpointTarget Pilot::Endpoint(double t) const {

@@ -68,8 +68,9 @@ class Pilot {
   bool arriving() const;
 
  private:
-  double DesiredHeading(const estimation::VehicleState& vehicle,
-                        const estimation::PadFilter& filter) const;
+  double HeadingAhead(const estimation::VehicleState& vehicle,
+                      const estimation::PadFilter& filter) const;
+  double DesiredHeading();
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
@@ -91,10 +92,11 @@ class Pilot {
   control::MissionState mission_state_;
   control::MissionOutputs mission_;
   control::YawState yaw_;
-  double yaw_t_ = 0.0;        ///< time of yaw_
-  double foot_force_ = 0.0;   ///< as it was last told [N]
-  double foot_height_ = 0.0;  ///< of the feet above the deck, as last estimated [m]
-  double heading_wanted_ = 0.0;
+  double yaw_t_ = 0.0;          ///< time of yaw_
+  double foot_force_ = 0.0;     ///< as it was last told [N]
+  double foot_height_ = 0.0;    ///< of the feet above the deck, as last estimated [m]
+  double heading_ahead_ = 0.0;  ///< of the way that is flown [rad]
+  bool leans_ = false;          ///< the heading is chosen by the wind
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;

@@ -12,6 +12,8 @@ namespace {
 
 constexpr const char* kCorridor = "approach_corridor";
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
+constexpr double kTiltReserve_deg = 10.0;  // of the tracking law, to correct on the edge of plans
+constexpr double kSteepest = 1.3;          // [rad]
 constexpr double kFeetAboveGround = 0.3;   // away from the pad [m]
 constexpr double kCorridorWeight = 300.0;  // of a planned descent, unless the scenario says so
 constexpr double kCloseRate = 20.0;        // [Hz]
@@ -37,6 +39,10 @@ planning::TermSettings TermSettingsOf(const std::string& name,
     }
   }
   return settings;
+}
+
+double TrackingTilt(const Scenario& scenario) {
+  return std::min(kSteepest, (scenario.limits.tilt_deg + kTiltReserve_deg) * kRadPerDeg);
 }
 
 double LowestPlan(const estimation::VehicleModel& model) {
@@ -69,6 +75,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   problem.vehicle.thrust_max = model.MaxThrust() / model.mass_kg;
   problem.vehicle.thrust_min = 4.0 * model.rotor_thrust_min / model.mass_kg;
   problem.vehicle.tilt_max = scenario.limits.tilt_deg * kRadPerDeg;
+  problem.vehicle.tracking_tilt_max = TrackingTilt(scenario);
   options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
                                                                   : planning::ArrivalMode::kFixed;
   options.limits = LimitsOf(scenario);

@@ -36,6 +36,9 @@ double ClosePlannerRate(const Scenario& scenario);
 planning::TermSettings TermSettingsOf(const std::string& name,
                                       const std::map<std::string, double>& keys);
 
+/// The tracking law may tilt a little more than plans do [rad].
+double TrackingTilt(const Scenario& scenario);
+
 /// Plans stay above this away from the pad [m].
 double LowestPlan(const estimation::VehicleModel& model);
 

@@ -17,14 +17,18 @@ Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
                    const Eigen::Vector3d& pull_W) noexcept {
   if (pull_W.isZero(0.0)) return limits;
   const double up = std::max(0.0, estimation::kGravity - pull_W.z());
-  const double of_tilt = std::tan(vehicle.tilt_max) * up;
   const double of_thrust =
       std::sqrt(std::max(0.0, vehicle.thrust_max * vehicle.thrust_max - up * up));
-  const double left = std::min(of_tilt, of_thrust) - pull_W.head<2>().norm();
+  const auto left_by = [&](double tilt) {
+    return std::min(std::tan(tilt) * up, of_thrust) - pull_W.head<2>().norm();
+  };
+  const double left = left_by(vehicle.tilt_max);
   Limits under = limits;
   under.acceleration =
       std::clamp(left, kLeastShareInWind * limits.acceleration, limits.acceleration);
-  under.braking_factor = limits.acceleration / under.acceleration;
+  const double stopping = std::clamp(left_by(std::max(vehicle.tilt_max, vehicle.tracking_tilt_max)),
+                                     under.acceleration, limits.acceleration);
+  under.braking_factor = stopping / under.acceleration;
   return under;
 }
 

@@ -29,15 +29,18 @@ inline constexpr double kFastestEndShare = 0.9;
 
 /// What thrust, tilt and visibility terms know of the vehicle.
 struct VehicleFacts {
-  double thrust_min = 2.0;           ///< least thrust over mass [m/s^2]
-  double thrust_max = 23.0;          ///< greatest thrust over mass [m/s^2]
-  double tilt_max = 0.611;           ///< of the thrust axis from the vertical [rad]
+  double thrust_min = 2.0;   ///< least thrust over mass [m/s^2]
+  double thrust_max = 23.0;  ///< greatest thrust over mass [m/s^2]
+  double tilt_max = 0.611;   ///< of the thrust axis from the vertical [rad]
+  double tracking_tilt_max =
+      0.785;  ///< the tracking law's, which may tilt farther than plans [rad]
   double camera_half_angle = 0.785;  ///< of the downward camera's cone [rad]
 };
 
 /// What is left of the limits while a steady `pull_W`, a force over the mass [m/s^2], acts beside
 /// gravity: an acceleration in any horizontal direction that thrust and tilt still allow in level
-/// flight, and at least kLeastShareInWind of the limit. Stops are counted with the whole of it.
+/// flight, and at least kLeastShareInWind of the limit. Stops are counted with what the tracking law's
+/// own tilt leaves, at most the whole limit.
 /// Without a pull the limits themselves.
 Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
                    const Eigen::Vector3d& pull_W) noexcept;

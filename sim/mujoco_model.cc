@@ -47,21 +47,6 @@ void AddText(const char* name, const std::string& text, mjVFS* vfs) {
   std::memcpy(vfs->filedata[mj_findFileVFS(vfs, name)], text.data(), text.size());
 }
 
-}  // namespace
-
-void MujocoModelDeleter::operator()(mjModel_* model) const noexcept { mj_deleteModel(model); }
-void MujocoDataDeleter::operator()(mjData_* data) const noexcept { mj_deleteData(data); }
-
-void InstallMujocoErrorHandler() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    mju_user_error = ThrowMujocoError;
-    mju_user_warning = IgnoreMujocoWarning;
-  });
-}
-
-namespace {
-
 MujocoModel Load(const char* name, const mjVFS* vfs) {
   InstallMujocoErrorHandler();
   static std::mutex one_at_a_time;
@@ -78,6 +63,17 @@ MujocoModel Load(const char* name, const mjVFS* vfs) {
 }
 
 }  // namespace
+
+void MujocoModelDeleter::operator()(mjModel_* model) const noexcept { mj_deleteModel(model); }
+void MujocoDataDeleter::operator()(mjData_* data) const noexcept { mj_deleteData(data); }
+
+void InstallMujocoErrorHandler() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    mju_user_error = ThrowMujocoError;
+    mju_user_warning = IgnoreMujocoWarning;
+  });
+}
 
 MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
   std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/test/flight_model.h"
 
 namespace touchdown::control {
@@ -28,7 +29,7 @@ estimation::VehicleState Leaning(double t) {
 
 TEST(Settling, WithoutContactNothingChanges) {
   Settling settling;
-  settling.Note(1.0, false);
+  settling.Note(1.0, false, true);
   planning::FlatState reference = Sinking();
   Disturbance disturbance = Wind();
   settling.Apply(Leaning(1.0), &reference, &disturbance);
@@ -41,8 +42,8 @@ TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
   const estimation::VehicleModel model = TestVehicle();
   for (const char* law : {"geometric", "paper"}) {
     Settling settling;
-    settling.Note(1.0, true);
-    settling.Note(1.0 + parameters.fade_time, true);
+    settling.Note(1.0, true, true);
+    settling.Note(1.0 + parameters.fade_time, true, true);
     const estimation::VehicleState state = Leaning(1.0 + parameters.fade_time);
     planning::FlatState reference = Sinking();
     Disturbance disturbance = Wind();
@@ -62,7 +63,7 @@ TEST(Settling, FadesWithoutAJump) {
   Settling settling;
   double last = -1.0;
   for (double t = 0.9; t < 1.4; t += 0.002) {
-    settling.Note(t, t >= 1.0);
+    settling.Note(t, t >= 1.0, true);
     planning::FlatState reference = Sinking();
     Disturbance disturbance = Wind();
     const estimation::VehicleState state = Leaning(t);
@@ -78,16 +79,50 @@ TEST(Settling, FadesWithoutAJump) {
 TEST(Settling, ABriefLossOfContactDoesNotInterruptAndALongOneEndsIt) {
   const SettlingParameters parameters;
   Settling settling;
-  settling.Note(1.0, true);
+  settling.Note(1.0, true, true);
   const double end = 1.0 + parameters.fade_time;
-  settling.Note(end, true);
-  settling.Note(end + 0.9 * parameters.contact_gap, false);
+  settling.Note(end, true, true);
+  settling.Note(end + 0.9 * parameters.contact_gap, false, true);
   EXPECT_EQ(settling.Share(end + 0.9 * parameters.contact_gap), 1.0);
   const double off = end + 1.1 * parameters.contact_gap;
-  settling.Note(off, false);
-  EXPECT_EQ(settling.Share(off), 0.0);
-  settling.Note(off + 0.1, true);
-  EXPECT_EQ(settling.Share(off + 0.1), 0.0);
+  settling.Note(off, false, true);
+  EXPECT_EQ(settling.Share(off), 1.0) << "a return is no jump";
+  EXPECT_NEAR(settling.Share(off + 0.5 * parameters.return_time), 0.5, 1e-9);
+  EXPECT_EQ(settling.Share(off + 1.1 * parameters.return_time), 0.0);
+}
+
+TEST(Settling, WhoDoesNotLandAnyMoreFliesAgainAtOnce) {
+  const SettlingParameters parameters;
+  Settling settling;
+  settling.Note(1.0, true, true);
+  const double abort = 1.0 + 0.6 * parameters.fade_time;
+  settling.Note(abort, true, false);  // the feet still touch
+  EXPECT_NEAR(settling.Share(abort), 0.6, 1e-9);
+  EXPECT_LT(settling.Share(abort + 0.5 * parameters.return_time), 0.2);
+  settling.Note(abort + parameters.return_time, true, false);
+  EXPECT_EQ(settling.Share(abort + parameters.return_time), 0.0);
+}
+
+TEST(Settling, IsOverBeforeContactIsConfirmed) {
+  EXPECT_LT(SettlingParameters{}.fade_time, MissionParameters{}.contact_time);
+}
+
+TEST(Settling, RefusesParametersOutOfRange) {
+  for (const auto& [spoil, name] :
+       {std::pair<void (*)(SettlingParameters&), const char*>{
+            [](SettlingParameters& p) { p.fade_time = 0.0; }, "fade_time"},
+        {[](SettlingParameters& p) { p.return_time = -1.0; }, "return_time"},
+        {[](SettlingParameters& p) { p.thrust_share = 1.0; }, "thrust_share"},
+        {[](SettlingParameters& p) { p.contact_gap = -0.1; }, "contact_gap"}}) {
+    SettlingParameters parameters;
+    spoil(parameters);
+    try {
+      const Settling settling(parameters);
+      FAIL() << name;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos);
+    }
+  }
 }
 
 }  // namespace

@@ -38,6 +38,19 @@ TEST(LimitsUnder, TiltIsSharedWithTheWind) {
   EXPECT_GT(LimitsUnder({3.0, 6.0}, Facts(), {3.6, 0.0, -1.0}).acceleration, under.acceleration);
 }
 
+// Stops count on what the tracking law's own tilt leaves, and on no more than plans may use in still air.
+TEST(LimitsUnder, StopsAreCountedWithWhatTheTrackingLawHasLeft) {
+  VehicleFacts facts = Facts();
+  facts.tracking_tilt_max = facts.tilt_max + 10.0 * std::acos(-1.0) / 180.0;
+  const auto stopping = [&](double pull) {
+    const Limits under = LimitsUnder({3.0, 6.0}, facts, {pull, 0.0, 0.0});
+    return under.braking_factor * under.acceleration;
+  };
+  EXPECT_NEAR(stopping(3.0), 6.0, 1e-12);
+  EXPECT_NEAR(stopping(5.0), 9.81 - 5.0, 0.01);
+  EXPECT_NEAR(stopping(8.0), 2.0, 1e-12);
+}
+
 TEST(LimitsUnder, ThrustIsSharedToo) {
   VehicleFacts weak = Facts();
   weak.thrust_max = 11.0;
