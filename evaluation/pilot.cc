@@ -30,7 +30,7 @@ constexpr double kUpright = 0.07;         // ... until it is less than that
 constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 2.5 * kRadPerDeg;
 constexpr double kTouchForce = 0.2;      // on the feet: something holds them [N]
-constexpr double kLastPlan = 0.4;        // before contact: later ones could hardly change it [s]
+constexpr double kLevelTime = 0.15;      // between a plan's end and contact: the tilt dies away [s]
 constexpr double kMeasuredMargin = 1.2;  // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
@@ -130,8 +130,8 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   inputs.pad_sigma = filter.PositionSigma(t);
   inputs.descent = StyleOf(scenario_.descent);
   inputs.arrival_in = contact_t_ - t;
-  inputs.contact_sigma =
-      filter.PositionSigma(t + control::ContactIn(mission_state_, inputs, parameters_));
+  const double contact_in = control::ContactIn(mission_state_, inputs, parameters_);
+  if (std::isfinite(contact_in)) inputs.contact_sigma = filter.PositionSigma(t + contact_in);
   const estimation::OwnStatus status = own.status();
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
@@ -167,7 +167,9 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     has_plan_ = false;
     return nullptr;
   }
-  if (arriving() && contact_t_ - vehicle.t < kLastPlan) return nullptr;
+  // Nearer to its end a new plan would put it off.
+  const double left = contact_t_ - kLevelTime - (vehicle.t + Latency());
+  if (arriving() && left < planning::ReplannerOptions{}.min_contact_duration) return nullptr;
   replan_.latency_s = Latency();
   planning::ReplanInput& input = replan_.request.input;
   input.t_now = vehicle.t;
@@ -192,7 +194,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (last_planned_) planned_t_ = vehicle.t;
   if (result.status != planning::ReplanStatus::kKept) {
     const bool touches = last_planned_ && wants_plan && input.endpoint.touches();
-    contact_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
+    contact_t_ =
+        touches ? result.curve.t_end() + kLevelTime : std::numeric_limits<double>::infinity();
   }
   return &result;
 }
@@ -301,7 +304,8 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
   planning::EndpointTarget target;
   target.t_reference = t;
   if (mission_.guidance == control::Guidance::kTouchDown) {
-    target.height = target.height_floor = model_.foot_depth;
+    target.height = target.height_floor =
+        model_.foot_depth + parameters_.touchdown_rate * kLevelTime;
     target.arrival_sink = parameters_.touchdown_rate;
     return target;
   }

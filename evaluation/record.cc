@@ -151,6 +151,7 @@ void WritePoints(SqliteStatement& insert, int id, const char* curve,
 void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement input = db.Prepare(
       "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, "
       "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement prediction =
       db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
