@@ -165,7 +165,7 @@ struct MissionParameters {
   double decide_time = 1.0;           ///< so long before contact it is decided on [s]
   double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
-  double arrival_timeout = 0.8;       ///< contact overdue for longer: go around [s]
+  double arrival_timeout = 1.5;       ///< contact overdue for longer: go around [s]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
 
   double press_depth = 0.3;      ///< the command goes this far below the deck until contact [m]

@@ -26,12 +26,14 @@ constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
+constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
 constexpr double kUpright = 0.07;         // ... until it is less than that
 constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 2.5 * kRadPerDeg;
-constexpr double kTouchForce = 0.2;      // on the feet: something holds them [N]
-constexpr double kLevelTime = 0.15;      // between a plan's end and contact: the tilt dies away [s]
-constexpr double kMeasuredMargin = 1.2;  // a measured latency is flown with this factor
+constexpr double kTouchForce = 0.2;  // on the feet: something holds them [N]
+constexpr double kLevelTime = 0.15;  // between a plan's end and contact: the tilt dies away [s]
+constexpr double kLevelTimeInPull = 0.12;  // ... and errors in wind [s per m/s^2 of its force]
+constexpr double kMeasuredMargin = 1.2;    // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
   if (kind == DescentKind::kNone) return control::DescentStyle::kNone;
@@ -129,7 +131,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   inputs.tag_age = filter.TagAge(t);
   inputs.pad_sigma = filter.PositionSigma(t);
   inputs.descent = StyleOf(scenario_.descent);
-  inputs.arrival_in = contact_t_ - t;
+  inputs.arrival_in = plan_end_t_ + level_time_ - t;
   const double contact_in = control::ContactIn(mission_state_, inputs, parameters_);
   if (std::isfinite(contact_in)) inputs.contact_sigma = filter.PositionSigma(t + contact_in);
   const estimation::OwnStatus status = own.status();
@@ -168,15 +170,16 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     return nullptr;
   }
   // Nearer to its end a new plan would put it off.
-  const double left = contact_t_ - kLevelTime - (vehicle.t + Latency());
+  const double left = plan_end_t_ - (vehicle.t + Latency());
   if (arriving() && left < planning::ReplannerOptions{}.min_contact_duration) return nullptr;
   replan_.latency_s = Latency();
   planning::ReplanInput& input = replan_.request.input;
   input.t_now = vehicle.t;
   input.t_start = vehicle.t + replan_.latency_s;
   input.vehicle = vehicle;
-  input.endpoint = Endpoint(vehicle.t);
   if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
+  if (!arriving()) level_time_ = kLevelTime + kLevelTimeInPull * input.pull_W.head<2>().norm();
+  input.endpoint = Endpoint(vehicle.t);
 
   const bool wants_plan = WantsPlan(filter, vehicle.t);
   // No plan is missing while none is tried: a climb must not end as a failure to plan.
@@ -194,8 +197,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (last_planned_) planned_t_ = vehicle.t;
   if (result.status != planning::ReplanStatus::kKept) {
     const bool touches = last_planned_ && wants_plan && input.endpoint.touches();
-    contact_t_ =
-        touches ? result.curve.t_end() + kLevelTime : std::numeric_limits<double>::infinity();
+    plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
   return &result;
 }
@@ -295,8 +297,9 @@ double Pilot::DesiredHeading() {
   if (!observer_) return heading_ahead_;
   const Eigen::Vector3d& force_W = observer_->steady_force_W();
   const double share = force_W.head<2>().norm() / model_.HoverThrust();
-  leans_ =
-      mission_.mode == control::MissionMode::kLanding && share > (leans_ ? kUpright : kLeaning);
+  const bool lands =
+      mission_.mode == control::MissionMode::kLanding || plan_end_t_ - yaw_t_ < kTurnTime;
+  leans_ = lands && share > (leans_ ? kUpright : kLeaning);
   return leans_ ? control::HeadingIntoWind(model_, force_W, heading_ahead_) : heading_ahead_;
 }
 
@@ -305,7 +308,7 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
   target.t_reference = t;
   if (mission_.guidance == control::Guidance::kTouchDown) {
     target.height = target.height_floor =
-        model_.foot_depth + parameters_.touchdown_rate * kLevelTime;
+        model_.foot_depth + parameters_.touchdown_rate * level_time_;
     target.arrival_sink = parameters_.touchdown_rate;
     return target;
   }

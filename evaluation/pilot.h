@@ -103,8 +103,9 @@ class Pilot {
   bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
   std::optional<double> planned_t_;    ///< when the last new plan was made
   std::optional<double> requested_t_;  ///< since when plans are asked for without a break
-  /// When the committed plan touches the deck [s]; infinite if it does not.
-  double contact_t_ = std::numeric_limits<double>::infinity();
+  /// When the committed plan that leads to contact ends [s]; infinite if there is none.
+  double plan_end_t_ = std::numeric_limits<double>::infinity();
+  double level_time_ = 0.0;        ///< from there to contact [s]
   double measured_latency_ = 0.0;  ///< of the last replanning step [s]
 };
 
