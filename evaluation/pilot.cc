@@ -29,11 +29,11 @@ constexpr double kLeaning = 0.1;          // of steady force over weight: a foot
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
 constexpr double kUpright = 0.07;         // ... until it is less than that
 constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
-constexpr double kFlareMargin = 2.5 * kRadPerDeg;
+constexpr double kFlareMargin = 5.0 * kRadPerDeg;
 constexpr double kTouchForce = 0.2;  // on the feet: something holds them [N]
 constexpr double kLevelTime = 0.15;  // between a plan's end and contact: the tilt dies away [s]
-constexpr double kLevelTimeInPull = 0.12;  // ... and errors in wind [s per m/s^2 of its force]
-constexpr double kMeasuredMargin = 1.2;    // a measured latency is flown with this factor
+constexpr double kLevelTimeInPull = 0.2;  // ... and errors in wind [s per m/s^2 of its force]
+constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 
 control::DescentStyle StyleOf(DescentKind kind) {
   if (kind == DescentKind::kNone) return control::DescentStyle::kNone;
@@ -178,7 +178,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   input.t_start = vehicle.t + replan_.latency_s;
   input.vehicle = vehicle;
   if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
-  if (!arriving()) level_time_ = kLevelTime + kLevelTimeInPull * input.pull_W.head<2>().norm();
+  if (!arriving()) level_time_ = LevelTime(input.pull_W);
   input.endpoint = Endpoint(vehicle.t);
 
   const bool wants_plan = WantsPlan(filter, vehicle.t);
@@ -200,6 +200,13 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
   return &result;
+}
+
+// Longer, and the shortest plan would end too early to be decided on.
+double Pilot::LevelTime(const Eigen::Vector3d& pull_W) const {
+  const double shortest = planning::ReplannerOptions{}.min_contact_duration;
+  return std::min(kLevelTime + kLevelTimeInPull * pull_W.head<2>().norm(),
+                  parameters_.decide_time - 1.3 * shortest);
 }
 
 bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {

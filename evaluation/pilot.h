@@ -73,6 +73,7 @@ class Pilot {
   double DesiredHeading();
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
+  double LevelTime(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
   const planning::ReplanResult& PlanToPad(const estimation::PadFilter& filter,
