@@ -27,8 +27,9 @@ constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within th
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
-constexpr double kUpright = 0.07;         // ... until it is less than that
-constexpr double kFlareHeight = 0.15;     // feet above the deck: they are to touch first [m]
+constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's sector and more
+constexpr double kUpright = 0.07;                // ... until it is less than that
+constexpr double kFlareHeight = 0.15;            // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
 constexpr double kTouchForce = 0.2;  // on the feet: something holds them [N]
 constexpr double kLevelTime = 0.15;  // between a plan's end and contact: the tilt dies away [s]
@@ -110,7 +111,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   planner_->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
   yaw_t_ = start.t;
-  heading_ahead_ = yaw_.yaw;
+  heading_ = heading_ahead_ = yaw_.yaw;
 }
 
 void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& filter,
@@ -299,15 +300,19 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
   return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_ahead_;
 }
 
-// Where the camera sees the way ahead, but over the deck in wind a foot to the side that comes first.
+// Where the camera sees the way ahead, but over the deck in wind a foot to the side that comes first: the
+// one next to the heading so far, unless another one leads much nearer to the way.
 double Pilot::DesiredHeading() {
-  if (!observer_) return heading_ahead_;
-  const Eigen::Vector3d& force_W = observer_->steady_force_W();
+  const Eigen::Vector3d force_W =
+      observer_ ? observer_->steady_force_W() : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const double share = force_W.head<2>().norm() / model_.HoverThrust();
   const bool lands =
       mission_.mode == control::MissionMode::kLanding || plan_end_t_ - yaw_t_ < kTurnTime;
   leans_ = lands && share > (leans_ ? kUpright : kLeaning);
-  return leans_ ? control::HeadingIntoWind(model_, force_W, heading_ahead_) : heading_ahead_;
+  if (!leans_) return heading_ = heading_ahead_;
+  heading_ = control::HeadingIntoWind(model_, force_W, heading_);
+  const bool aside = std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kFarAside;
+  return heading_ = aside ? control::HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 
 planning::EndpointTarget Pilot::Endpoint(double t) const {

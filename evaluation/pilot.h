@@ -97,6 +97,7 @@ class Pilot {
   double foot_force_ = 0.0;     ///< as it was last told [N]
   double foot_height_ = 0.0;    ///< of the feet above the deck, as last estimated [m]
   double heading_ahead_ = 0.0;  ///< of the way that is flown [rad]
+  double heading_ = 0.0;        ///< that is steered for [rad]
   bool leans_ = false;          ///< the heading is chosen by the wind
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
