@@ -21,7 +21,7 @@
 namespace touchdown::control {
 namespace {
 
-constexpr double kLongestStep = 0.1;            // a longer gap restarts the observers [s]
+constexpr double kLongestStep = 0.1;             // a longer gap restarts the observers [s]
 constexpr double kGreatestAcceleration = 100.0;  // quicker changes are jumps of an estimate [m/s^2]
 constexpr double kGreatestSpinUp = 5000.0;       // alike [rad/s^2]
 

@@ -91,7 +91,11 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
   Track(gate_matters && !now.gate_open, t, state.gate_closed_since);
   // Contact must be seen without a gap: two touches far apart are not one that lasts.
   if (dt > p.contact_gap) state.contact_since = kNever;
-  Track(state.mode == MissionMode::kLanding && now.touching, t, state.contact_since);
+  Track(now.touching, t, state.touching_since);
+  Track(!now.touching, t, state.lifted_since);
+  const bool bounces =
+      state.contact_since != kNever && !LastedLonger(state.lifted_since, t, p.contact_break);
+  Track(state.mode == MissionMode::kLanding && (now.touching || bounces), t, state.contact_since);
 }
 
 struct Transition {
@@ -122,12 +126,12 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Con
   if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kOwnStateLost};
   }
-  if (TooFarOff(s, in, now, p)) {
+  // Feet that touch are not pulled off again: the contact is about to be confirmed.
+  const bool touches = s.contact_since != kNever;
+  if (!touches && TooFarOff(s, in, now, p)) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
   if (s.committed) {  // blind last part: no tags needed, but it must end
-    // Feet that touch are not pulled off again: the contact is about to be confirmed.
-    const bool touches = s.contact_since != kNever;
     if (!touches && (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma)) {
       return {MissionMode::kGoAround, TransitionReason::kTagsLost};
     }
@@ -194,7 +198,8 @@ Transition Decide(const MissionState& s, const MissionInputs& in, const Conditio
                   const MissionParameters& p) {
   const Transition stay = {s.mode, TransitionReason::kNone};
   if (s.mode == MissionMode::kDisarmed) return stay;
-  if (now.touching && s.t - s.contact_since >= p.contact_time) {
+  const bool rests = now.touching && s.t - s.touching_since >= p.contact_rest;
+  if (rests && s.t - s.contact_since >= p.contact_time) {
     return {MissionMode::kDisarmed, TransitionReason::kContact};
   }
   if (s.mode == MissionMode::kEmergencyStop) {

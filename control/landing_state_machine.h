@@ -11,7 +11,9 @@
 //   tracking       hold            pad_lost           no converged pad for over pad_timeout
 //   tracking       hold            plan_failed        no plan for over plan_timeout
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
-//   landing        disarmed        contact            foot force for contact_time, feet at the deck
+//   landing        disarmed        contact            feet at the deck with a force for contact_time,
+//                                                     but for breaks of contact_break, and at last
+//                                                     for contact_rest without
 //   landing        go_around       pad_lost           no converged pad for over pad_timeout
 //   landing        go_around       tags_lost          gate closed for over gate_timeout (descent
 //                                                     planned: at all), or committed and the bridge
@@ -173,6 +175,8 @@ struct MissionParameters {
   double contact_time = 0.4;     ///< [s]: so long it takes to stand upright (settling.h)
   double contact_height = 0.15;  ///< |height| must be below it for contact to count [m]
   double contact_gap = 0.05;     ///< samples farther apart do not count as lasting contact [s]
+  double contact_rest = 0.15;    ///< at the end of contact_time without a break [s]
+  double contact_break = 0.1;    ///< feet that bounce lose it for so long without an end [s]
 
   double pad_timeout = 1.0;       ///< [s]
   double plan_timeout = 1.0;      ///< [s]
@@ -204,6 +208,8 @@ struct MissionState {
   double pad_missing_since = std::numeric_limits<double>::infinity();
   double gate_closed_since = std::numeric_limits<double>::infinity();
   double contact_since = std::numeric_limits<double>::infinity();
+  double touching_since = std::numeric_limits<double>::infinity();  ///< without a break
+  double lifted_since = std::numeric_limits<double>::infinity();    ///< after a contact
   double recovered_since = std::numeric_limits<double>::infinity();
   double invalid_since = std::numeric_limits<double>::infinity();
   double own_lost_since = std::numeric_limits<double>::infinity();

@@ -86,7 +86,7 @@ void Validate(const MissionParameters& p) {
   for (const Named& item : positive) {
     require(item.value > 0.0 && std::isfinite(item.value), item.name, item.value, "> 0");
   }
-  const std::array<Named, 7> not_negative = {{
+  const std::array<Named, 9> not_negative = {{
       {"align_timeout", p.align_timeout},
       {"corridor_slope", p.corridor_slope},
       {"contact_reserve", p.contact_reserve},
@@ -94,6 +94,8 @@ void Validate(const MissionParameters& p) {
       {"invalid_timeout", p.invalid_timeout},
       {"own_timeout", p.own_timeout},
       {"own_patience", p.own_patience},
+      {"contact_break", p.contact_break},
+      {"contact_rest", p.contact_rest},
   }};
   for (const Named& item : not_negative) {
     require(item.value >= 0.0 && std::isfinite(item.value), item.name, item.value, ">= 0");

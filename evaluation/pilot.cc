@@ -301,7 +301,7 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
 }
 
 // Where the camera sees the way ahead, but over the deck in wind a foot to the side that comes first: the
-// one next to the heading so far, unless another one leads much nearer to the way.
+// one next to the heading so far, unless another one leads much nearer to the way and there is time.
 double Pilot::DesiredHeading() {
   const Eigen::Vector3d force_W =
       observer_ ? observer_->steady_force_W() : Eigen::Vector3d(Eigen::Vector3d::Zero());
@@ -311,7 +311,8 @@ double Pilot::DesiredHeading() {
   leans_ = lands && share > (leans_ ? kUpright : kLeaning);
   if (!leans_) return heading_ = heading_ahead_;
   heading_ = control::HeadingIntoWind(model_, force_W, heading_);
-  const bool aside = std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kFarAside;
+  const bool aside = foot_height_ > parameters_.gate_height &&
+                     std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kFarAside;
   return heading_ = aside ? control::HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 
