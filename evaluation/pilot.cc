@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -170,9 +171,6 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     has_plan_ = false;
     return nullptr;
   }
-  // Nearer to its end a new plan would put it off.
-  const double left = plan_end_t_ - (vehicle.t + Latency());
-  if (arriving() && left < planning::ReplannerOptions{}.min_contact_duration) return nullptr;
   replan_.latency_s = Latency();
   planning::ReplanInput& input = replan_.request.input;
   input.t_now = vehicle.t;
@@ -196,7 +194,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
                   result.reason == planning::ReplanReason::kAtGoal;
   has_plan_ = last_planned_ || result.status == planning::ReplanStatus::kKept;
   if (last_planned_) planned_t_ = vehicle.t;
-  if (result.status != planning::ReplanStatus::kKept) {
+  if (result.status != planning::ReplanStatus::kKept && !Levelled(vehicle.t)) {
     const bool touches = last_planned_ && wants_plan && input.endpoint.touches();
     plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
@@ -272,6 +270,13 @@ planning::FlatState Pilot::Reference(double t) const {
   return reference;
 }
 
+// Nearer to its end a new plan to it would put it off: from here on it is the level stretch that is
+// planned, along the pad's way as it is known by now.
+bool Pilot::Levelled(double t) const {
+  const double left = plan_end_t_ - (t + replan_.latency_s);
+  return arriving() && left < planning::ReplannerOptions{}.min_contact_duration;
+}
+
 bool Pilot::arriving() const {
   return mission_.mode == control::MissionMode::kLanding &&
          mission_.guidance == control::Guidance::kTouchDown;
@@ -323,6 +328,10 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
     target.height = target.height_floor =
         model_.foot_depth + parameters_.touchdown_rate * level_time_;
     target.arrival_sink = parameters_.touchdown_rate;
+    if (!Levelled(t)) return target;
+    target.t_reference = plan_end_t_;
+    target.sink_rate = std::exchange(target.arrival_sink, 0.0);
+    target.height_floor = model_.foot_depth - parameters_.press_depth;
     return target;
   }
   target.height = mission_.foot_height + model_.foot_depth;

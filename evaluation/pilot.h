@@ -43,7 +43,7 @@ class Pilot {
                    double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
-  /// hovering, disarmed or about to touch, and where the planner had nothing to do. Call at
+  /// hovering or disarmed, and where the planner had nothing to do. Call at
   /// PlannerRate, or at ClosePlannerRate where `arriving`. The result
   /// is the planner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
@@ -73,6 +73,7 @@ class Pilot {
   double DesiredHeading();
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
+  bool Levelled(double t) const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
