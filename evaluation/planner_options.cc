@@ -10,13 +10,21 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr const char* kCorridor = "approach_corridor";
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kTiltReserve_deg = 10.0;  // of the tracking law, to correct on the edge of plans
 constexpr double kSteepest = 1.3;          // [rad]
 constexpr double kFeetAboveGround = 0.3;   // away from the pad [m]
-constexpr double kCorridorWeight = 300.0;  // of a planned descent, unless the scenario says so
+constexpr double kCorridorWeight = 300.0;  // of a planned descent, unless the scenario says so ...
+constexpr double kHurry = 100.0;           // ... and of the arrival time in it
 constexpr double kCloseRate = 20.0;        // [Hz]
+
+// Where the scenario gives the term no weight of its own.
+void SetWeight(const Scenario& scenario, const char* term, double weight,
+               std::vector<planning::TermSettings>* settings) {
+  const auto keys = scenario.terms.find(term);
+  if (keys != scenario.terms.end() && keys->second.count("weight") != 0) return;
+  settings->push_back(TermSettingsOf(term, {{"weight", weight}}));
+}
 
 planning::Limits LimitsOf(const Scenario& scenario) {
   const double of_tilt = estimation::kGravity * std::tan(scenario.limits.tilt_deg * kRadPerDeg);
@@ -63,8 +71,9 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   if (scenario.descent == DescentKind::kPlanned) {
     // The last metres come from above, and the vehicle stands over the deck as the pad's motion asks.
     problem.free_end_acceleration = false;
-    if (scenario.terms.count(kCorridor) == 0 || scenario.terms.at(kCorridor).count("weight") == 0) {
-      problem.settings.push_back(TermSettingsOf(kCorridor, {{"weight", kCorridorWeight}}));
+    SetWeight(scenario, "approach_corridor", kCorridorWeight, &problem.settings);
+    if (scenario.solver.arrival == ArrivalKind::kFree) {
+      SetWeight(scenario, "arrival_time", kHurry, &problem.settings);
     }
   }
   problem.endpoint = scenario.solver.endpoint == EndpointKind::kExplicit

@@ -112,7 +112,7 @@ class Reader {
         seen.insert(key);
       }
       for (const auto& key : keys) {
-        if (seen.count(key.name) == 0) {
+        if (!key.optional && seen.count(key.name) == 0) {
           throw BadInput(fmt::format("{}: {} lacks the key {}.", here.ToString(), label, key.name));
         }
       }
@@ -177,6 +177,16 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
   Reader(source, file, false).ReadEntry(name, value, where);
 }
 
+// What the keys that were given ask of those that were not: the baselines' plans do not lead to contact,
+// and one that does ends when it is best.
+void SuitDefaults(ScenarioSource* source) {
+  Scenario& s = source->scenario;
+  const auto given = [source](const char* key) { return source->where.count(key) != 0; };
+  if (!given("descent") && s.planner != PlannerKind::kLanding) s.descent = DescentKind::kVertical;
+  if (given("solver.arrival")) return;
+  s.solver.arrival = s.descent == DescentKind::kPlanned ? ArrivalKind::kFree : ArrivalKind::kFixed;
+}
+
 Scenario Complete(const YAML::Node& root, const std::string& name, const std::string& file,
                   const std::vector<std::string>& overrides, const Registries& registries) {
   ScenarioSource source;
@@ -184,6 +194,7 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
   source.file = file;
   Reader(&source, file, true).Read(root);
   for (const std::string& text : overrides) ApplyOverride(text, &source);
+  SuitDefaults(&source);
   CheckScenario(source, registries);
   return source.scenario;
 }

@@ -40,6 +40,7 @@ enum class LimitsKind { kSoft, kHard };
 struct BoxObstacle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its base in W [m]
   Eigen::Vector3d size = Eigen::Vector3d::Ones();    ///< edges along x, y, z [m]
+  double base = 0.0;                                 ///< of its lower face above the ground [m]
 };
 
 /// An upright cylinder on the ground.
@@ -173,7 +174,7 @@ struct Scenario {
   struct Control {
     bool disturbance = true;  ///< the controller geometric compensates what it estimates
   } control;
-  DescentKind descent = DescentKind::kVertical;
+  DescentKind descent = DescentKind::kPlanned;
   PlannerKind planner = PlannerKind::kLanding;
   struct Planning {
     double rate = 10.0;  ///< [Hz]
@@ -196,7 +197,7 @@ struct Scenario {
 
   struct Solver {
     std::string backend = "banded";
-    ArrivalKind arrival = ArrivalKind::kFixed;
+    ArrivalKind arrival = ArrivalKind::kFree;
     EndpointKind endpoint = EndpointKind::kEliminated;
     LimitsKind limits = LimitsKind::kSoft;
     std::map<std::string, double> options;  ///< of the backend, by its own names

@@ -27,6 +27,7 @@ namespace {
 
 constexpr int kProbeSegments = 64;  // the longest problem of the planner: a backend may mind
 constexpr double kPathStep = 0.1;   // [s], and [m] along the drawn phase
+constexpr double kHeadroom = 0.4;   // of the pad under a roof [m]
 
 estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
   try {
@@ -324,7 +325,7 @@ void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles) {
       const Eigen::Vector2d p_WP = motion.At(t).p_WP.head<2>();
       for (const NamedObstacle& named : obstacles) {
         const double gap = HorizontalGap(named.obstacle, p_WP, Eigen::Vector2d::Zero(), 0.0,
-                                         s.pad.deck_height + 1.0);
+                                         s.pad.deck_height + kHeadroom);
         if (gap < half_diagonal) {
           throw BadInput(fmt::format(
               "{}: {} stands on the pad's way: at {:.1f} s its centre passes at {:.2f} m, and the "

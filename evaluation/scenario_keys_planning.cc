@@ -15,7 +15,8 @@ void AddPlanningKeys(KeyList& keys) {
                       TOUCHDOWN_AT(control.disturbance)));
   keys.push_back(Choice("descent", {"none", "vertical", "planned"},
                         "none follows above the pad, vertical approaches and then sinks over it, "
-                        "planned flies one plan to contact, which planner landing makes",
+                        "planned flies one plan to contact; the baselines, which make none, "
+                        "have vertical unless it is given",
                         TOUCHDOWN_AT(descent)));
   keys.push_back(
       Choice("planner", {"landing", "ego", "ego-velocity"},
@@ -58,7 +59,8 @@ void AddPlanningKeys(KeyList& keys) {
                       "optimiser of planner landing; the baseline has lbfgs",
                       TOUCHDOWN_AT(solver.backend)));
   keys.push_back(Choice("solver.arrival", {"fixed", "free"},
-                        "arrival time chosen before the solve or optimised in it",
+                        "arrival time chosen before the solve or optimised in it; unless it is "
+                        "given, free with descent planned and fixed with the others",
                         TOUCHDOWN_AT(solver.arrival)));
   keys.push_back(Choice("solver.endpoint", {"eliminated", "explicit"},
                         "both ends of a plan eliminated exactly, or equality constraints",

@@ -27,12 +27,21 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
   return keys;
 }
 
+template <typename Element>
+static SchemaKey<Element> Optional(SchemaKey<Element> key) {
+  key.optional = true;
+  return key;
+}
+
 const std::vector<SchemaKey<BoxObstacle>>& BoxKeys() {
   static const std::vector<SchemaKey<BoxObstacle>> keys = {
       schema::Vector<2, BoxObstacle>("centre", schema::In(-200, 200, "m"),
                                      "centre of the base in W", TOUCHDOWN_AT(centre)),
       schema::Vector<3, BoxObstacle>("size", schema::Above(0, 100, "m"), "edges along x, y and z",
                                      TOUCHDOWN_AT(size)),
+      Optional(schema::Number<BoxObstacle>(
+          "base", schema::In(0, 100, "m"),
+          "height of the lower face above the ground: a roof, a bridge", TOUCHDOWN_AT(base))),
   };
   return keys;
 }
@@ -130,14 +139,15 @@ std::string ScenarioKeysMarkdown() {
       "constraints instead of a cost |\n"
       "| `terms.<term>.<parameter>` | number |  | as `touchdown list terms --json` says | the "
       "term's | a parameter of the term |\n";
-  const auto rows = [&text](const std::string& list, const auto& keys) {
+  const auto rows = [&text](const std::string& list, const auto& keys, const auto& element) {
     for (const auto& key : keys) {
-      text += fmt::format("| `{}[].{}` | {} | {} | {} | required | {} |\n", list, key.name,
-                          key.type, key.unit, key.range, key.doc);
+      const std::string value = key.optional ? fmt::format("`{}`", key.get(element)) : "required";
+      text += fmt::format("| `{}[].{}` | {} | {} | {} | {} | {} |\n", list, key.name, key.type,
+                          key.unit, key.range, value, key.doc);
     }
   };
-  rows("obstacles.boxes", BoxKeys());
-  rows("obstacles.cylinders", CylinderKeys());
+  rows("obstacles.boxes", BoxKeys(), BoxObstacle{});
+  rows("obstacles.cylinders", CylinderKeys(), CylinderObstacle{});
   return text;
 }
 

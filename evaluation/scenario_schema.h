@@ -23,11 +23,12 @@ struct SchemaKey {
   std::function<void(Owner&, const YAML::Node&, const Where&)> set;
   /// The member as YAML flow text that `set` reads back.
   std::function<std::string(const Owner&)> get;
+  bool optional = false;  ///< in an element of a list
 };
 
 /// Every scalar and vector key, in the order of documentation and of a dump.
 const std::vector<SchemaKey<Scenario>>& ScenarioKeys();
-/// Keys of one element of obstacles.boxes and obstacles.cylinders; all of them are required.
+/// Keys of one element of obstacles.boxes and obstacles.cylinders.
 const std::vector<SchemaKey<BoxObstacle>>& BoxKeys();
 const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys();
 

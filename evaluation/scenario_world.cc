@@ -51,7 +51,7 @@ ObstacleList ObstaclesOf(const Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.boxes.size(); ++i) {
     const BoxObstacle& spec = scenario.boxes[i];
     sim::Box box;
-    box.center << spec.centre, 0.5 * spec.size.z();
+    box.center << spec.centre, spec.base + 0.5 * spec.size.z();
     box.half_extents = 0.5 * spec.size;
     list.push_back({fmt::format("obstacles.boxes[{}]", i), box});
   }

@@ -184,7 +184,7 @@ TEST_F(ScenarioTest, AnOutOfRangeValueNamesTheRange) {
 }
 
 TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
-  EXPECT_THAT(Refusal("descent: planned\n"), HasSubstr("descent must be none or vertical"));
+  EXPECT_THAT(Refusal("descent: steep\n"), HasSubstr("descent must be none, vertical or planned"));
   EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),
               HasSubstr("straight_turn, circle, line, static, figure_eight, "));
   EXPECT_THAT(Refusal("solver: {backend: newton}\n"),
