@@ -177,6 +177,14 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
   Reader(source, file, false).ReadEntry(name, value, where);
 }
 
+// A direction that is given is meant, and not one that is drawn.
+void ChooseWindDirection(ScenarioSource* source) {
+  if (source->where.count("wind.direction_deg") != 0 &&
+      source->where.count("wind.direction_random") == 0) {
+    source->scenario.wind.direction_random = false;
+  }
+}
+
 Scenario Complete(const YAML::Node& root, const std::string& name, const std::string& file,
                   const std::vector<std::string>& overrides, const Registries& registries) {
   ScenarioSource source;
@@ -184,6 +192,7 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
   source.file = file;
   Reader(&source, file, true).Read(root);
   for (const std::string& text : overrides) ApplyOverride(text, &source);
+  ChooseWindDirection(&source);
   CheckScenario(source, registries);
   return source.scenario;
 }
