@@ -12,7 +12,7 @@ void AddPadKeys(KeyList& keys) {
                         TOUCHDOWN_AT(pad.motion)));
   keys.push_back(Number<Scenario>(
       "pad.speed", In(0.01, 10, "m/s"),
-      "speed along the path, of a changing one the greatest; a pad that is faster than about 0.9 "
+      "speed along the path, of a changing one the greatest; a pad that is faster than about 0.85 "
       "limits.speed is not caught",
       TOUCHDOWN_AT(pad.speed)));
   keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
