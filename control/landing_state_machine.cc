@@ -121,6 +121,12 @@ bool TooFarOff(const MissionState& s, const MissionInputs& in, const Conditions&
   return in.horizontal_distance > (s.committed ? p.commit_abort_distance : p.abort_distance);
 }
 
+// Will the feet be still enough over the deck when they touch it?
+bool TooFast(const MissionInputs& in, const MissionParameters& p) {
+  const double left = Planned(in) ? std::max(0.0, in.arrival_in) : 0.0;
+  return in.horizontal_speed > p.contact_speed + p.closing_rate * left;
+}
+
 Transition FromLanding(const MissionState& s, const MissionInputs& in, const Conditions& now,
                        const MissionParameters& p) {
   if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
@@ -130,6 +136,9 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Con
   const bool touches = s.contact_since != kNever;
   if (!touches && TooFarOff(s, in, now, p)) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
+  }
+  if (s.committed && !touches && TooFast(in, p)) {
+    return {MissionMode::kGoAround, TransitionReason::kTooFast};
   }
   if (s.committed) {  // blind last part: no tags needed, but it must end
     if (!touches && (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma)) {

@@ -19,6 +19,7 @@
 //                                                     planned: at all), or committed and the bridge
 //                                                     is over
 //   landing        go_around       error_too_large    horizontal error beyond abort_distance
+//   landing        go_around       too_fast           committed, but the pad moves otherwise
 //   landing        go_around       plan_failed        no plan for over plan_timeout (descent
 //                                                     planned: arrival_plan_timeout)
 //   landing        go_around       no_contact         committed for over commit_timeout, or the
@@ -36,7 +37,7 @@
 //
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance, the end of the bridge before the feet touch, no_contact,
+// error beyond commit_abort_distance, too_fast, the end of the bridge before the feet touch, no_contact,
 // own_state_lost, invalid_input or emergency. A pad counts as converged only while the vehicle's
 // own state is usable. Dead reckoning closes the gate for own_patience: a short outage of position
 // and velocity is waited out.
@@ -80,6 +81,7 @@ enum class TransitionReason {
   kPadLost,
   kTagsLost,
   kErrorTooLarge,
+  kTooFast,
   kPlanFailed,
   kNoContact,
   kClimbComplete,
@@ -168,6 +170,8 @@ struct MissionParameters {
   double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
   double arrival_timeout = 1.5;       ///< contact overdue for longer: go around [s]
+  double contact_speed = 0.8;  ///< horizontal, relative: committed to contact no faster [m/s], ...
+  double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
 
   double press_depth = 0.3;      ///< the command goes this far below the deck until contact [m]

@@ -17,11 +17,11 @@ std::string_view ToString(MissionMode mode) {
 }
 
 std::string_view ToString(TransitionReason reason) {
-  static constexpr std::array<std::string_view, 18> kNames = {
-      "none",       "pad_converged",     "align_timeout", "above_pad",       "arriving",
-      "contact",    "pad_lost",          "tags_lost",     "error_too_large", "plan_failed",
-      "no_contact", "climb_complete",    "climb_timeout", "recovered",       "invalid_input",
-      "emergency",  "emergency_cleared", "own_state_lost"};
+  static constexpr std::array<std::string_view, 19> kNames = {
+      "none",          "pad_converged", "align_timeout",     "above_pad",       "arriving",
+      "contact",       "pad_lost",      "tags_lost",         "error_too_large", "too_fast",
+      "plan_failed",   "no_contact",    "climb_complete",    "climb_timeout",   "recovered",
+      "invalid_input", "emergency",     "emergency_cleared", "own_state_lost"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 34> positive = {{
+  const std::array<Named, 36> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -71,6 +71,8 @@ void Validate(const MissionParameters& p) {
       {"arrival_commit_time", p.arrival_commit_time},
       {"arrival_plan_timeout", p.arrival_plan_timeout},
       {"arrival_timeout", p.arrival_timeout},
+      {"contact_speed", p.contact_speed},
+      {"closing_rate", p.closing_rate},
       {"cone_slope", p.cone_slope},
       {"press_depth", p.press_depth},
       {"contact_force", p.contact_force},

@@ -177,14 +177,19 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
   Reader(source, file, false).ReadEntry(name, value, where);
 }
 
-// What the keys that were given ask of those that were not: the baselines' plans do not lead to contact,
-// and one that does ends when it is best.
+// What the keys that were given ask of those that were not: the baselines' plans do not lead to contact, one
+// that does ends when it is best, and a wind's direction that is given is meant, not one that is drawn.
 void SuitDefaults(ScenarioSource* source) {
   Scenario& s = source->scenario;
   const auto given = [source](const char* key) { return source->where.count(key) != 0; };
   if (!given("descent") && s.planner != PlannerKind::kLanding) s.descent = DescentKind::kVertical;
-  if (given("solver.arrival")) return;
-  s.solver.arrival = s.descent == DescentKind::kPlanned ? ArrivalKind::kFree : ArrivalKind::kFixed;
+  if (!given("solver.arrival")) {
+    s.solver.arrival =
+        s.descent == DescentKind::kPlanned ? ArrivalKind::kFree : ArrivalKind::kFixed;
+  }
+  if (given("wind.direction_deg") && !given("wind.direction_random")) {
+    s.wind.direction_random = false;
+  }
 }
 
 Scenario Complete(const YAML::Node& root, const std::string& name, const std::string& file,

@@ -16,11 +16,13 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/planning/prepared_problems.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/plant.h"
 #include "touchdown/sim/vehicle_file.h"
+#include "touchdown/sim/vehicle_import.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -222,8 +224,30 @@ void CheckPriorMap(const ScenarioSource& source) {
   }
 }
 
+// What differs from its default without any effect; a dump holds every default.
+void RefuseWithout(const ScenarioSource& source, const std::string& prefix,
+                   const std::string& why) {
+  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
+    if (key.name.rfind(prefix, 0) != 0 || key.get(source.scenario) == key.get(Scenario{})) continue;
+    throw BadInput(fmt::format("{}: {} has no effect {}.", source.WhereOf(key.name).ToString(),
+                               key.name, why));
+  }
+}
+
+void CheckAirframe(const ScenarioSource& source) {
+  const std::string& vehicle = source.scenario.vehicle;
+  if (vehicle == "default") {
+    RefuseWithout(source, "airframe.", "with vehicle: default");
+  } else if (sim::IsInOwnForm(vehicle)) {
+    RefuseWithout(source, "airframe.", fmt::format("on {}, which says everything itself", vehicle));
+  }
+}
+
 void CheckAir(const ScenarioSource& source, const estimation::VehicleModel& model) {
   const Scenario& s = source.scenario;
+  if (s.wind.direction_random) {
+    RefuseWithout(source, "wind.direction_deg", "with wind.direction_random: true");
+  }
   if (s.wind.max > 0.0 && s.wind.max < s.wind.mean) {
     throw BadInput(
         fmt::format("{}: wind.max must be 0 or in [{}, 40] m/s, from wind.mean on, not '{}'.",
@@ -250,10 +274,10 @@ void CheckAir(const ScenarioSource& source, const estimation::VehicleModel& mode
 }
 
 // The motion's own limits, at the key they come from.
-sim::PadMotionBounds CheckedMotion(const ScenarioSource& source) {
+void CheckMotionItself(const ScenarioSource& source) {
   const Scenario& s = source.scenario;
   try {
-    return sim::PadMotion(PadMotionOf(s, s.pad.phase, s.seed)).bounds();
+    sim::PadMotion(PadMotionOf(s, s.pad.phase, s.seed));
   } catch (const std::invalid_argument& error) {
     const std::string text = error.what();
     if (s.pad.motion == PadMotionKind::kWaypoints && text.find("pad.") != 0) {
@@ -274,13 +298,7 @@ sim::PadMotionBounds CheckedMotion(const ScenarioSource& source) {
 
 void CheckPadMotion(const ScenarioSource& source) {
   const Scenario& s = source.scenario;
-  const double fastest = CheckedMotion(source).speed;
-  // A pad at the vehicle's own speed cannot be caught, and leaves a plan's interior empty.
-  if (fastest > 0.9 * s.limits.speed) {
-    const char* key = s.pad.motion == PadMotionKind::kWaypoints ? "pad.waypoints" : "pad.speed";
-    throw BadInput(fmt::format("{}: pad.speed must be in [0, {}] m/s (0.9 limits.speed), not '{}'.",
-                               source.WhereOf(key).ToString(), 0.9 * s.limits.speed, fastest));
-  }
+  CheckMotionItself(source);
   const bool drawn = s.pad.motion == PadMotionKind::kRandom;
   if ((drawn || s.pad.motion == PadMotionKind::kWaypoints) && s.pad.phase_spread > 0.0) {
     throw BadInput(fmt::format("{}: pad.phase_spread must be 0 with this pad.motion, not '{}'.",
@@ -353,6 +371,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   CheckSensors(source);
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
+  CheckAirframe(source);
   CheckPlanning(source, model);
   CheckDescent(source);
   CheckAir(source, model);

@@ -13,9 +13,11 @@ void AddAirKeys(KeyList& keys) {
                        "standard deviations of its "
                        "turbulence; at least wind.mean, or 0 for wind without turbulence",
                        TOUCHDOWN_AT(wind.max)));
-  keys.push_back(Number<Scenario>("wind.direction_deg", In(-360, 360, "deg"),
-                                  "where the wind blows to, from x in W, left positive",
-                                  TOUCHDOWN_AT(wind.direction_deg)));
+  keys.push_back(
+      Number<Scenario>("wind.direction_deg", In(-360, 360, "deg"),
+                       "where the wind blows to, from x in W, left positive; given alone it "
+                       "switches wind.direction_random off",
+                       TOUCHDOWN_AT(wind.direction_deg)));
   keys.push_back(Bool("wind.direction_random",
                       "draw the direction per seed from the whole circle instead",
                       TOUCHDOWN_AT(wind.direction_random)));

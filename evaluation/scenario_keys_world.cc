@@ -12,7 +12,8 @@ void AddPadKeys(KeyList& keys) {
                         TOUCHDOWN_AT(pad.motion)));
   keys.push_back(Number<Scenario>(
       "pad.speed", In(0.01, 10, "m/s"),
-      "speed along the path, of a changing one the greatest; at most 0.9 limits.speed",
+      "speed along the path, of a changing one the greatest; a pad that is faster than about 0.85 "
+      "limits.speed is not caught",
       TOUCHDOWN_AT(pad.speed)));
   keys.push_back(Vector<2, Scenario>("pad.start", In(-100, 100, "m"),
                                      "pad centre at the start of the path, in W",
@@ -84,12 +85,12 @@ void AddAirframeKeys(KeyList& keys) {
       "imported vehicles: radius, bottom and top of the cylinder about the centre of mass that "
       "collides; zeros: one around the file's geoms",
       TOUCHDOWN_AT(airframe.hull)));
-  keys.push_back(
-      Vector<2, Scenario>("airframe.feet", In(0, 5, "m"),
-                          "imported vehicles: distance of the four feet from the middle, depth of "
-                          "their soles below the "
-                          "centre of mass; zeros: 0.6 of the hull's radius, the lowest geom",
-                          TOUCHDOWN_AT(airframe.feet)));
+  keys.push_back(Vector<2, Scenario>(
+      "airframe.feet", In(0, 5, "m"),
+      "imported vehicles: distance of the four feet from the middle, depth of "
+      "their soles below the "
+      "centre of mass; zeros: 0.6 of the hull's radius, below the hull by 0.35 of that",
+      TOUCHDOWN_AT(airframe.feet)));
 }
 
 }  // namespace

@@ -3,11 +3,10 @@
 // all go through it; the defaults are those of a default-constructed Scenario and stand nowhere else.
 #include "touchdown/evaluation/scenario_schema.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/scenario_keys.h"
+#include "touchdown/evaluation/split.h"
 
 namespace touchdown::evaluation {
 
@@ -62,14 +61,8 @@ namespace {
 
 /// `name` behind `prefix`, split at its dots.
 std::vector<std::string> Behind(const std::string& prefix, const std::string& name) {
-  std::vector<std::string> words;
-  if (name.rfind(prefix, 0) != 0) return words;
-  for (std::size_t begin = prefix.size(); begin <= name.size();) {
-    const std::size_t dot = std::min(name.find('.', begin), name.size());
-    words.push_back(name.substr(begin, dot - begin));
-    begin = dot + 1;
-  }
-  return words;
+  if (name.rfind(prefix, 0) != 0) return {};
+  return Split(name.substr(prefix.size()), '.');
 }
 
 // Their ranges are the registries': scenario_check asks them.

@@ -17,6 +17,7 @@
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/evaluation/split.h"
 #include "touchdown/sim/random_stream.h"
 
 namespace touchdown::evaluation {
@@ -100,15 +101,12 @@ Variation Variation::Parse(const std::string& text) {
     CheckValues(variation);
     return variation;
   }
-  for (std::size_t begin = 0; begin <= rest.size();) {
-    const std::size_t comma = std::min(rest.find(',', begin), rest.size());
-    const std::string value = rest.substr(begin, comma - begin);
+  for (const std::string& value : Split(rest, ',')) {
     std::vector<std::string>& values = variation.values;
     if (std::find(values.begin(), values.end(), value) != values.end()) {
       throw BadInput(fmt::format("--vary {}: {} stands there twice.", text, value));
     }
     values.push_back(value);
-    begin = comma + 1;
   }
   CheckValues(variation);
   return variation;

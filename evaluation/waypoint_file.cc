@@ -6,10 +6,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
+
+#include "touchdown/evaluation/split.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -24,22 +28,14 @@ std::string Trimmed(const std::string& text) {
 }
 
 std::vector<std::string> Columns(const std::string& line) {
-  std::vector<std::string> columns;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != line.npos; begin = end + 1) {
-    end = line.find(',', begin);
-    columns.push_back(Trimmed(line.substr(begin, end == line.npos ? end : end - begin)));
-  }
+  std::vector<std::string> columns = Split(line, ',');
+  for (std::string& column : columns) column = Trimmed(column);
   return columns;
 }
 
 class Reader {
  public:
-  explicit Reader(std::string path) : path_(std::move(path)) {}
-
-  std::vector<sim::PadWaypoint> Read() {
-    std::ifstream file(path_);
-    if (!file) throw std::invalid_argument("it cannot be read");
+  std::vector<sim::PadWaypoint> Read(std::istream& file) {
     std::string text;
     while (std::getline(file, text)) {
       ++line_;
@@ -52,6 +48,9 @@ class Reader {
         TakePoint(columns);
       }
     }
+    // Half a file would be a shorter drive.
+    if (file.bad())
+      throw std::invalid_argument(fmt::format("reading it ends in line {}", line_ + 1));
     if (names_.empty()) Refuse("there must be a first line `t,x,y` or `x,y,speed`");
     return points_;
   }
@@ -80,6 +79,14 @@ class Reader {
     return value;
   }
 
+  double WayFromLast(const Eigen::Vector2d& p) const {
+    const double way = (p - points_.back().p).norm();
+    if (way < sim::kSamePlace) {
+      Refuse("the point is the one before; a stop needs the columns `t,x,y`");
+    }
+    return way;
+  }
+
   void TakePoint(const std::vector<std::string>& columns) {
     if (columns.size() != names_.size()) {
       Refuse(fmt::format("there must be {} columns, not {}", names_.size(), columns.size()));
@@ -97,15 +104,12 @@ class Reader {
       point.p = {values[1], values[2]};
     } else {
       point.p = {values[0], values[1]};
-      if (!points_.empty()) {
-        point.t = points_.back().t + (point.p - points_.back().p).norm() / speed_;
-      }
+      if (!points_.empty()) point.t = points_.back().t + WayFromLast(point.p) / speed_;
       speed_ = values[2];
     }
     points_.push_back(point);
   }
 
-  std::string path_;
   int line_ = 0;
   std::vector<std::string> names_;
   bool timed_ = true;
@@ -115,8 +119,16 @@ class Reader {
 
 }  // namespace
 
+std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text) { return Reader().Read(text); }
+
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path) {
-  return Reader(path).Read();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown)) {
+    throw std::invalid_argument("it is a directory; it must be a CSV file");
+  }
+  std::ifstream file(path);
+  if (!file) throw std::invalid_argument("it cannot be read");
+  return ReadWaypoints(file);
 }
 
 }  // namespace touchdown::evaluation

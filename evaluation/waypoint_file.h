@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -8,10 +9,13 @@
 
 namespace touchdown::evaluation {
 
-/// Reads a CSV file of pad waypoints in W. Its first line names the columns, `t,x,y` or `x,y,speed`: the
+/// Reads CSV text of pad waypoints in W. Its first line names the columns, `t,x,y` or `x,y,speed`: the
 /// time of each point [s], or the speed from it to the next one [m/s], the first of which is left at
 /// t = 0. Empty lines and those that begin with # are skipped. docs/pad_motions.md has an example.
 /// Throws std::invalid_argument, the line first; the caller names the file.
+std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text);
+
+/// The same of the file at `path`.
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path);
 
 }  // namespace touchdown::evaluation

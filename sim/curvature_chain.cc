@@ -14,7 +14,6 @@ namespace {
 double SmoothStep(double u) { return u * u * (3.0 - 2.0 * u); }
 double SmoothStepSlope(double u) { return 6.0 * u * (1.0 - u); }
 double SmoothStepIntegral(double u) { return u * u * u * (1.0 - 0.5 * u); }
-constexpr double kSteepestStep = 1.5;
 
 // Integral over [0, s] of the unit vector with heading yaw(x).
 template <typename Heading>

@@ -7,6 +7,9 @@
 
 namespace touchdown::sim {
 
+/// The steepest slope of the smooth step 3u^2 - 2u^3, over its mean.
+inline constexpr double kSteepestStep = 1.5;
+
 /// A point of a plane path, by arc length.
 struct PathPoint {
   Eigen::Vector2d p = Eigen::Vector2d::Zero();  ///< [m]

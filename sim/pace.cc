@@ -56,6 +56,24 @@ Pace::Pace(std::vector<Knot> knots, double smoothing)
   }
 }
 
+// A change reaches into the neighbouring periods only, so that three of them serve for the middle one.
+Pace Pace::Periodic(const std::vector<Knot>& knots, double smoothing) {
+  if (knots.size() < 2) throw std::invalid_argument("a pace needs two knots");
+  const Knot& first = knots.front();
+  const Knot period = {knots.back().t - first.t, knots.back().s - first.s};
+  std::vector<Knot> three;
+  for (const double shift : {-1.0, 0.0, 1.0}) {
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+      three.push_back({knots[i].t + shift * period.t, knots[i].s + shift * period.s});
+    }
+  }
+  three.push_back({first.t + 2.0 * period.t, first.s + 2.0 * period.s});
+  Pace pace(std::move(three), smoothing);
+  CheckWithin("smoothing of the pace [s]", smoothing, 0.0, period.t / 1.5);
+  pace.period_ = period;
+  return pace;
+}
+
 double Pace::SlopeAfter(std::size_t knot) const {
   const Knot& a = knots_[knot];
   const Knot& b = knots_[knot + 1];
@@ -67,6 +85,15 @@ double Pace::SmoothingFor(double range, double acceleration, double jerk) {
 }
 
 PacePoint Pace::At(double t) const noexcept {
+  if (period_.t == 0.0) return AmongKnots(t);
+  const double middle = knots_.front().t + period_.t;
+  const double past = std::floor((t - middle) / period_.t);
+  PacePoint point = AmongKnots(t - past * period_.t);
+  point.s += past * period_.s;
+  return point;
+}
+
+PacePoint Pace::AmongKnots(double t) const noexcept {
   const auto later = [](double at, const Knot& knot) { return at < knot.t; };
   // Inner knots alone: the outer two end no stretch.
   const auto first = knots_.begin() + 1, last = knots_.end() - 1;

@@ -15,7 +15,7 @@ struct PacePoint {
 
 /// How a path is driven: way over time, made of stretches of constant speed whose changes are smoothed
 /// over three times `smoothing` [s], so that speed, acceleration and jerk are continuous. Before the
-/// first and after the last knot the speed stays what it is there.
+/// first and after the last knot the speed stays what it is there, unless the pace is periodic.
 class Pace {
  public:
   struct Knot {
@@ -26,6 +26,10 @@ class Pace {
   /// Throws std::invalid_argument unless there are two knots or more, at rising times, and
   /// smoothing > 0.
   Pace(std::vector<Knot> knots, double smoothing);
+
+  /// From the first knot to the last and so on for ever, before the first one too; the way goes on by
+  /// what it is between them. Throws likewise, and unless a period is 1.5 times `smoothing` or longer.
+  static Pace Periodic(const std::vector<Knot>& knots, double smoothing);
 
   /// Any finite t [s]. Does not allocate.
   PacePoint At(double t) const noexcept;
@@ -44,9 +48,11 @@ class Pace {
 
  private:
   double SlopeAfter(std::size_t knot) const;
+  PacePoint AmongKnots(double t) const noexcept;
 
-  std::vector<Knot> knots_;
+  std::vector<Knot> knots_;  ///< of three periods, if it is periodic
   double smoothing_;
+  Knot period_;  ///< time and way of one; time 0: not periodic
   double slowest_ = 0.0;
   double fastest_ = 0.0;
 };

@@ -20,6 +20,11 @@ namespace {
 using Kind = PadMotionConfig::Kind;
 
 constexpr double kFar = 1.0e5;  // [m]
+// A random drive is drawn for so long after its phase [s]: more than a trial and what it looks ahead.
+constexpr double kRandomHorizon = 700.0;
+constexpr double kLongestStretch = 600.0;   // of driving or standing [s]
+constexpr double kMostAcceleration = 20.0;  // [m/s^2]
+constexpr double kLongestPhase = 1.0e4;     // of one [s]: its drive is held in memory
 
 bool Turns(Kind kind) {
   return kind == Kind::kCircle || kind == Kind::kStraightTurn || kind == Kind::kFigureEight ||
@@ -32,19 +37,23 @@ bool ChangesSpeed(Kind kind) {
 }
 
 void ValidatePace(const PadMotionConfig& config) {
-  CheckWithin("pad.acceleration", config.acceleration, 0.05, 20.0);
+  CheckWithin("pad.acceleration", config.acceleration, 0.05, kMostAcceleration);
   CheckWithin("pad.jerk", config.jerk, 0.05, 100.0);
-  // A change of speed takes three times the smoothing, and must be over before the next one.
-  const bool reverses = config.kind == Kind::kReversing;
-  const double change = 3.0 * Pace::SmoothingFor((reverses ? 2.0 : 1.0) * config.speed,
-                                                 config.acceleration, INFINITY);
-  if (reverses || config.kind == Kind::kStopAndGo) {
-    CheckWithin("pad.go_time", config.go_time, change, 600.0);
+  const bool reverses = config.kind == Kind::kReversing, stops = config.kind == Kind::kStopAndGo;
+  if (reverses || stops) {
+    // A change of speed takes three times the smoothing, and must be over before the next one.
+    const double range = (reverses ? 2.0 : 1.0) * config.speed;
+    const double change = 3.0 * Pace::SmoothingFor(range, config.acceleration, INFINITY);
+    if (change > kLongestStretch) {
+      const double least = config.acceleration * change / kLongestStretch;
+      CheckWithin("pad.acceleration", config.acceleration, least, kMostAcceleration);
+    }
+    CheckWithin("pad.go_time", config.go_time, change, kLongestStretch);
+    if (stops) CheckWithin("pad.stop_time", config.stop_time, change, kLongestStretch);
   }
-  if (config.kind == Kind::kStopAndGo) {
-    CheckWithin("pad.stop_time", config.stop_time, change, 600.0);
+  if (config.kind == Kind::kRandom) {
+    CheckWithin("pad.phase", config.phase, -kFar, std::min(kFar, kLongestPhase * config.speed));
   }
-  CheckWithin("pad.phase", config.phase, -kFar, kFar);
   if (config.kind == Kind::kWaypoints) CheckWithin("pad.phase", config.phase, 0.0, 0.0);
 }
 
@@ -103,7 +112,7 @@ PadMotion::PadMotion(const PadMotionConfig& config)
   } else if (config.kind == Kind::kRandom) {
     PathDrive drive = RandomDrive(
         start, config.heading, {config.speed, config.turn_rate, config.acceleration, config.jerk},
-        config.seed);
+        config.seed, std::max(0.0, config.phase / config.speed) + kRandomHorizon);
     path_ = std::move(drive.path);
     pace_ = std::move(drive.pace);
   } else if (config.kind == Kind::kWaypoints) {

@@ -15,22 +15,21 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr double kBefore = 10.0;  // a pace begins so long before t = 0 [s]
-
 struct Stretch {
   double speed = 0.0;  // [m/s]
   double time = 0.0;   // [s]
 };
 
-// Stretches in turn, the first from t = 0 on; before that its speed.
+// Stretches in turn for ever, the first one beginning with the change to its speed over, and the way 0, at
+// t = 0.
 Pace Alternating(const std::vector<Stretch>& stretches, double smoothing) {
-  std::vector<Pace::Knot> knots = {{-kBefore, -kBefore * stretches.front().speed}, {0.0, 0.0}};
-  for (std::size_t i = 0; knots.back().t < kPaceHorizon; i = (i + 1) % stretches.size()) {
-    const Stretch& stretch = stretches[i];
+  const double early = 1.5 * smoothing;
+  std::vector<Pace::Knot> knots = {{-early, -early * stretches.front().speed}};
+  for (const Stretch& stretch : stretches) {
     const Pace::Knot last = knots.back();
     knots.push_back({last.t + stretch.time, last.s + stretch.time * stretch.speed});
   }
-  return Pace(std::move(knots), smoothing);
+  return Pace::Periodic(knots, smoothing);
 }
 
 }  // namespace
@@ -46,9 +45,8 @@ Pace ReversingPace(double speed, double go_time, double acceleration) {
 }
 
 PathDrive RandomDrive(const Eigen::Vector2d& start, double heading, const RandomDriveLimits& limits,
-                     std::uint64_t seed) {
+                      std::uint64_t seed, double until) {
   constexpr double kShare = 1.0 / 3.0;
-  constexpr double kSteepestStep = 1.5;  // of the chain's smooth step, over its mean
   const double v = limits.speed;
   const double v3 = v * v * v;
   const double share = kShare * limits.jerk;
@@ -58,24 +56,28 @@ PathDrive RandomDrive(const Eigen::Vector2d& start, double heading, const Random
   // From one curvature to the opposite one at the most.
   const double ramp = std::max(kSteepestStep * 2.0 * sharpest * v3 / share, 0.5 * v);
 
-  RandomStream random(seed, "pad_motion");
-  PathDrive drive{CurvatureChain(start, heading), Pace({{0.0, 0.0}, {1.0, v}}, 1.0)};
+  const double smoothing = Pace::SmoothingFor(v, limits.acceleration, share);
+  const double end = until + 1.5 * smoothing;
+  // Streams of their own, so that a longer drive begins like a shorter one.
+  RandomStream turns(seed, "pad_motion"), speeds(seed, "pad_motion speed");
+  CurvatureChain path(start, heading);
   double curvature = 0.0;
-  drive.path.Append(0.5 * v, 0.0, 0.0);
-  while (drive.path.length() < v * (kPaceHorizon + kBefore)) {
-    const double next = sharpest * random.Uniform(-1.0, 1.0);
-    drive.path.Append(ramp, curvature, next);
-    drive.path.Append(v * random.Uniform(2.0, 8.0), next, next);
+  path.Append(0.5 * v, 0.0, 0.0);
+  while (path.length() < v * end) {
+    const double next = sharpest * turns.Uniform(-1.0, 1.0);
+    path.Append(ramp, curvature, next);
+    path.Append(v * turns.Uniform(2.0, 8.0), next, next);
     curvature = next;
   }
-  std::vector<Stretch> stretches;
-  for (double t = 0.0; t < kPaceHorizon; t += stretches.back().time) {
-    const bool stops = random.Uniform(0.0, 1.0) < 0.2;
-    const double share_of_speed = random.Uniform(0.3, 1.0);
-    stretches.push_back({stops ? 0.0 : share_of_speed * v, random.Uniform(3.0, 8.0)});
+  std::vector<Pace::Knot> knots = {{0.0, 0.0}};
+  while (knots.back().t < end) {
+    const bool stops = speeds.Uniform(0.0, 1.0) < 0.2;
+    const double share_of_speed = speeds.Uniform(0.3, 1.0);
+    const double time = speeds.Uniform(3.0, 8.0);
+    const Pace::Knot last = knots.back();
+    knots.push_back({last.t + time, last.s + (stops ? 0.0 : share_of_speed * v) * time});
   }
-  drive.pace = Alternating(stretches, Pace::SmoothingFor(v, limits.acceleration, share));
-  return drive;
+  return {std::move(path), Pace(std::move(knots), smoothing)};
 }
 
 }  // namespace touchdown::sim

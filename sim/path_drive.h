@@ -14,14 +14,12 @@ struct PathDrive {
   Pace pace;
 };
 
-/// Paces cover times from -10 s to this after the start [s]; after that the speed stays.
-inline constexpr double kPaceHorizon = 700.0;
-
-/// Speed is 0 for `stop_time`, `speed` for `go_time`, and so on; begins driving at t = 0, where the way
-/// is 0. Acceleration is at most `acceleration`. Times include half of each change of speed [s].
+/// Periodic, at every t: `speed` for `go_time`, standing for `stop_time`. The way is 0 at t = 0, where a
+/// change to `speed` is just over; at `go_time` the one to standing is. Acceleration is at most
+/// `acceleration`. Times include half of each change of speed [s].
 Pace StopAndGoPace(double speed, double go_time, double stop_time, double acceleration);
 
-/// Forwards at `speed` for `go_time`, backwards as long, and so on.
+/// Alike, forwards at `speed` for `go_time` and backwards as long.
 Pace ReversingPace(double speed, double go_time, double acceleration);
 
 /// What a random drive keeps to.
@@ -34,7 +32,9 @@ struct RandomDriveLimits {
 
 /// Turns and speeds drawn from `seed`: arcs of random curvature, each for 2 to 8 s at full speed, and
 /// speeds between 0.3 of the full one and all of it, or in one case of five a stop, for 3 to 8 s each.
+/// Drawn from t = 0 to `until` [s], and the same drive whatever `until` is; before 0 it comes straight at
+/// its first speed.
 PathDrive RandomDrive(const Eigen::Vector2d& start, double heading, const RandomDriveLimits& limits,
-                      std::uint64_t seed);
+                      std::uint64_t seed, double until);
 
 }  // namespace touchdown::sim

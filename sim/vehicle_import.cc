@@ -85,6 +85,8 @@ class Import {
         Refuse(Quoted(m_, m_.name_jntadr[j], "joint", j) +
                " moves; allowed is one free joint alone");
       }
+      const int dof = m_.jnt_dofadr[j];
+      CheckNothingHolds(Quoted(m_, m_.name_jntadr[j], "joint", j), m_.jnt_stiffness[j], dof);
       base_ = m_.jnt_bodyid[j];
       ++free_joints;
     }
@@ -92,6 +94,20 @@ class Import {
       Refuse("it has " + std::to_string(free_joints) + " free joints; allowed is 1");
     }
     R_WB_ = Eigen::Map<const Matrix>(d_.xmat + 9 * base_);
+  }
+
+  // What the free joint adds to inertia and drag would be lost.
+  void CheckNothingHolds(const std::string& joint, double stiffness, int dof) const {
+    for (int i = dof; i < dof + 6; ++i) {
+      const char* has = m_.dof_damping[i] != 0.0        ? "damping"
+                        : m_.dof_armature[i] != 0.0     ? "armature"
+                        : m_.dof_frictionloss[i] != 0.0 ? "frictionloss"
+                        : stiffness != 0.0              ? "stiffness"
+                                                        : nullptr;
+      if (has != nullptr) {
+        Refuse(joint + " has " + has + "; allowed is 0: drag is a matter of airframe.rotor_drag");
+      }
+    }
   }
 
   bool OfVehicle(int body) const {
@@ -128,6 +144,18 @@ class Import {
     }
   }
 
+  // Of the actuator before its gear, as MuJoCo clamps it: control, activation, gain, force.
+  std::array<double, 2> ForceRange(int i) const {
+    std::array<double, 2> range = {m_.actuator_ctrlrange[2 * i], m_.actuator_ctrlrange[2 * i + 1]};
+    const auto clamp = [&](const mjtNum* limits) {
+      for (double& end : range) end = std::clamp(end, limits[0], limits[1]);
+    };
+    if (m_.actuator_actlimited[i] != 0) clamp(m_.actuator_actrange + 2 * i);
+    for (double& end : range) end *= m_.actuator_gainprm[mjNGAIN * i];
+    if (m_.actuator_forcelimited[i] != 0) clamp(m_.actuator_forcerange + 2 * i);
+    return range;
+  }
+
   Motor ReadMotor(int i) const {
     const std::string name = Quoted(m_, m_.name_actuatoradr[i], "actuator", i);
     const int site = m_.actuator_trnid[2 * i];
@@ -143,17 +171,21 @@ class Import {
     if (m_.actuator_gaintype[i] != mjGAIN_FIXED || m_.actuator_biastype[i] != mjBIAS_NONE) {
       Refuse(name + " must have a fixed gain and no bias, as a motor has");
     }
+    if (m_.actuator_trnid[2 * i + 1] >= 0) {
+      Refuse(name + " has a refsite; allowed are motors that act on one site");
+    }
     if (m_.actuator_ctrllimited[i] == 0) Refuse(name + " has no ctrlrange");
     const Matrix R_WS = Eigen::Map<const Matrix>(d_.site_xmat + 9 * site);
     const double upright = R_WS.col(2).dot(R_WB_.col(2));
-    const double scale = m_.actuator_gainprm[mjNGAIN * i] * gear[2] * upright;
+    const double scale = gear[2] * upright;
     if (std::abs(upright) < kUpright) {
       Refuse(name + " does not push along the z axis of the body with the free joint");
     }
     Motor motor;
     motor.p_BR = ToB(Vec3(d_.site_xpos + 3 * site));
-    motor.low = scale * m_.actuator_ctrlrange[2 * i];
-    motor.high = scale * m_.actuator_ctrlrange[2 * i + 1];
+    const std::array<double, 2> force = ForceRange(i);
+    motor.low = std::min(scale * force[0], scale * force[1]);
+    motor.high = std::max(scale * force[0], scale * force[1]);
     if (!(motor.low >= 0.0 && motor.high > motor.low)) {
       Refuse(name + " pushes with " + NumberText(motor.low) + " to " + NumberText(motor.high) +
              " N along z; allowed is a range above 0");
@@ -241,8 +273,8 @@ std::string Import::Text() const {
   const bool own_hull = !extras_.hull.isZero(), own_feet = !extras_.feet.isZero();
   const double radius = own_hull ? extras_.hull[0] : outline_.radius;
   const double at = own_feet ? extras_.feet[0] : kFeetShare * radius;
-  const double depth = own_feet ? extras_.feet[1] : std::max(-outline_.bottom, kFeetClearance * at);
-  const double bottom = own_hull ? extras_.hull[1] : -depth + kFeetClearance * at;
+  const double bottom = own_hull ? extras_.hull[1] : outline_.bottom;
+  const double depth = own_feet ? extras_.feet[1] : -bottom + kFeetClearance * at;
   const double top = own_hull ? extras_.hull[2] : std::max(outline_.top, bottom + kLeastHullHeight);
   CheckAbove("radius of the hull [m]", radius, 0.0, 5.0);
   CheckAbove("top of the hull above its bottom [m]", top - bottom, 0.0, 5.0);
@@ -280,16 +312,21 @@ std::string Import::Text() const {
   return xml.str();
 }
 
-bool InOwnForm(const mjModel& m) {
+bool OwnForm(const mjModel& m) {
   return mj_name2id(&m, mjOBJ_BODY, "vehicle") >= 0 && mj_name2id(&m, mjOBJ_GEOM, "hull") >= 0;
 }
 
 }  // namespace
 
+bool IsInOwnForm(const std::string& path) {
+  ReadVehicleFile(path);  // names a file that is not there
+  return OwnForm(*CompileMjcfFile(path));
+}
+
 std::string ImportVehicle(const std::string& path, const AirframeExtras& extras) {
   const std::string text = ReadVehicleFile(path);  // names a file that is not there
   const MujocoModel model = CompileMjcfFile(path);
-  if (InOwnForm(*model)) return text;
+  if (OwnForm(*model)) return text;
   CheckWithin("lag of the rotors [s]", extras.rotor_lag, 0.005, 1.0);
   return Import(*model, extras).Text();
 }

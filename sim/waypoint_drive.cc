@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A corner becomes two ramps of the curvature, up to k and down again, each of length l = angle / k. At
-// speed v the acceleration across is v^2 k at the most and its rate 1.5 v^3 k / l. All such turns by one
-// angle are similar, so that the way from the corner to where one begins is l times a factor, which is
-// half the chord of the turn with l = 1 over the cosine of half the angle.
+// speed v the acceleration across is v^2 k at the most and its rate v^3 k / l times the steepest slope of
+// a ramp. All such turns by one angle are similar, so that the way from the corner to where one begins is
+// l times a factor, which is half the chord of the turn with l = 1 over the cosine of half the angle.
 
 #include "touchdown/sim/waypoint_drive.h"
 
@@ -19,7 +19,7 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr double kSame = 1e-3;  // points so near are one place [m]
+constexpr double kFastest = 20.0;  // [m/s]
 constexpr double kSharpest = 150.0 / 180.0 * std::numbers::pi;
 constexpr double kLeastTurn = 1e-6;  // [rad]
 constexpr double kStand = 10.0;      // knots so long before and after the drive [s]
@@ -44,7 +44,7 @@ std::vector<Place> PlacesOf(const std::vector<PadWaypoint>& waypoints) {
       Refuse(point, "its time is %g s and must be later than the one before, %g s", point.t,
              places.back().t_leave);
     }
-    if (!places.empty() && (point.p - places.back().arrival.p).norm() < kSame) {
+    if (!places.empty() && (point.p - places.back().arrival.p).norm() < kSamePlace) {
       places.back().t_leave = point.t;
     } else {
       places.push_back({point, point.t, 0.0});
@@ -64,8 +64,12 @@ std::vector<Leg> LegsOf(const std::vector<Place>& places) {
   std::vector<Leg> legs;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
     const Eigen::Vector2d way = places[i + 1].arrival.p - places[i].arrival.p;
-    legs.push_back({way.norm(), std::atan2(way.y(), way.x()),
-                    way.norm() / (places[i + 1].arrival.t - places[i].t_leave)});
+    const double speed = way.norm() / (places[i + 1].arrival.t - places[i].t_leave);
+    if (speed > kFastest) {
+      Refuse(places[i + 1].arrival, "the way there is driven at %.2f m/s; allowed is at most %g",
+             speed, kFastest);
+    }
+    legs.push_back({way.norm(), std::atan2(way.y(), way.x()), speed});
   }
   return legs;
 }
@@ -94,7 +98,8 @@ Turn TurnAt(const PadWaypoint& corner, const Leg& in, const Leg& out, double acc
            sharp / std::numbers::pi * 180.0);
   }
   const double v = std::max(in.speed, out.speed);
-  const double k = std::min(acceleration / (v * v), std::sqrt(jerk * sharp / (1.5 * v * v * v)));
+  const double k =
+      std::min(acceleration / (v * v), std::sqrt(jerk * sharp / (kSteepestStep * v * v * v)));
   Turn turn;
   turn.ramp = sharp / k;
   turn.curvature = std::copysign(k, angle);
@@ -109,10 +114,33 @@ Turn TurnAt(const PadWaypoint& corner, const Leg& in, const Leg& out, double acc
   return turn;
 }
 
+Pace PaceOf(const std::vector<Place>& places, double acceleration, double jerk) {
+  std::vector<Pace::Knot> knots = {{places.front().arrival.t - kStand, 0.0}};
+  double fastest = 0.0;
+  for (const Place& place : places) {
+    const Pace::Knot before = knots.back();
+    knots.push_back({place.arrival.t, place.s});
+    fastest = std::max(fastest, (place.s - before.s) / (place.arrival.t - before.t));
+    if (place.t_leave > place.arrival.t) knots.push_back({place.t_leave, place.s});
+  }
+  knots.push_back({knots.back().t + kStand, knots.back().s});
+  const double smoothing = Pace::SmoothingFor(fastest, acceleration, jerk);
+  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+    const double stop = places[i].t_leave - places[i].arrival.t;
+    if (stop > 0.0 && stop < 3.0 * smoothing) {
+      Refuse(places[i].arrival,
+             "the stop of %g s there is shorter than a change of speed, which takes %.2f s at "
+             "%.2f m/s, the speed of the fastest leg",
+             stop, 3.0 * smoothing, fastest);
+    }
+  }
+  return Pace(std::move(knots), smoothing);
+}
+
 }  // namespace
 
 PathDrive WaypointDrive(const std::vector<PadWaypoint>& waypoints, double acceleration,
-                       double jerk) {
+                        double jerk) {
   std::vector<Place> places = PlacesOf(waypoints);
   const std::vector<Leg> legs = LegsOf(places);
   CurvatureChain path(places.front().arrival.p, legs.front().heading);
@@ -132,16 +160,7 @@ PathDrive WaypointDrive(const std::vector<PadWaypoint>& waypoints, double accele
   }
   path.Append(1.0, 0.0, 0.0);  // goes on straight, should the smoothed pace ask for it
 
-  std::vector<Pace::Knot> knots = {{places.front().arrival.t - kStand, 0.0}};
-  double fastest = 0.0;
-  for (const Place& place : places) {
-    const Pace::Knot before = knots.back();
-    knots.push_back({place.arrival.t, place.s});
-    fastest = std::max(fastest, (place.s - before.s) / (place.arrival.t - before.t));
-    if (place.t_leave > place.arrival.t) knots.push_back({place.t_leave, place.s});
-  }
-  knots.push_back({knots.back().t + kStand, knots.back().s});
-  return {std::move(path), Pace(std::move(knots), Pace::SmoothingFor(fastest, acceleration, jerk))};
+  return {std::move(path), PaceOf(places, acceleration, jerk)};
 }
 
 }  // namespace touchdown::sim

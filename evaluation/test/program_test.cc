@@ -75,6 +75,19 @@ TEST(Program, ASweepOfFlightsThatFailIsDone) {
   EXPECT_THAT(ran.out, HasSubstr("0 of 2 landed"));
 }
 
+// A pad faster than the vehicle drives away from it.
+TEST(Program, APadThatCannotBeCaughtIsAFlightWithAnOutcome) {
+  const Ran flight = Call({"land", "open", "--set", "pad.motion=line", "--set", "pad.speed=4",
+                           "--set", "timeout=20", "--json"});
+  EXPECT_EQ(flight.status, 1);
+  EXPECT_TRUE(flight.err.empty()) << flight.err;
+  const nlohmann::json json = nlohmann::json::parse(flight.out);
+  EXPECT_EQ(json["outcome"], "infeasible");
+  EXPECT_FALSE(json["landed"]);
+  const Ran plan = Call({"plan", "open", "--set", "pad.speed=4"});
+  EXPECT_THAT(plan.out, HasSubstr("pad_unreachable"));
+}
+
 TEST(Program, AScenarioThatIsRefusedIsBadInput) {
   const Ran ran = Call({"land", "open", "--backend", "unheard_of"});
   EXPECT_EQ(ran.status, 2);

@@ -244,9 +244,26 @@ TEST_F(ScenarioTest, AnObstacleOnThePadsWayIsRefused) {
               AllOf(HasSubstr(":3"), HasSubstr("stands on the pad's way")));
 }
 
-TEST_F(ScenarioTest, APadThatCannotBeCaughtIsRefused) {
-  EXPECT_THAT(Refusal("pad: {speed: 2.8}\n"),
-              AllOf(HasSubstr(":1"), HasSubstr("0.9 limits.speed")));
+TEST_F(ScenarioTest, APadThatCannotBeCaughtIsFlownAfter) {
+  EXPECT_EQ(Refusal("pad: {speed: 10}\n"), "accepted");
+}
+
+TEST_F(ScenarioTest, AWindDirectionSwitchesTheDrawOff) {
+  EXPECT_TRUE(Load("wind: {mean: 3}\n").wind.direction_random);
+  EXPECT_FALSE(Load("wind: {mean: 3, direction_deg: 90}\n").wind.direction_random);
+  EXPECT_FALSE(Load("wind: {mean: 3}\n", {"wind.direction_deg=0"}).wind.direction_random);
+  EXPECT_THAT(Refusal("wind:\n  direction_deg: 90\n  direction_random: true\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("wind.direction_deg has no effect with")));
+}
+
+TEST_F(ScenarioTest, AnAirframeWithoutEffectIsRefused) {
+  EXPECT_THAT(Refusal("seed: 1\nairframe:\n  rotor_drag: 0.1\n"),
+              AllOf(HasSubstr(path_ + ":3"),
+                    HasSubstr("airframe.rotor_drag has no effect with vehicle: default")));
+  const std::string models = TOUCHDOWN_SOURCE_DIR "/sim/models/";
+  EXPECT_THAT(Refusal("vehicle: " + models + "quadrotor.xml\n", {"airframe.feet=[0.1, 0.1]"}),
+              AllOf(HasSubstr("--set airframe.feet"), HasSubstr("no effect on " + models)));
+  EXPECT_EQ(Refusal("vehicle: " + models + "mini.xml\nairframe: {rotor_drag: 0.1}\n"), "accepted");
 }
 
 TEST_F(ScenarioTest, APadMotionIsAskedWhatItNeeds) {
@@ -267,10 +284,10 @@ TEST_F(ScenarioTest, APadMotionIsAskedWhatItNeeds) {
   EXPECT_THAT(Refusal("pad: {motion: waypoints}\n",
                       {"pad.waypoints=" + ::testing::TempDir() + "sharp.csv"}),
               HasSubstr("sharp.csv: line 3: the path turns by 179 degrees"));
-  std::ofstream(::testing::TempDir() + "fast.csv") << "t,x,y\n0,0,0\n5,30,0\n";
+  std::ofstream(::testing::TempDir() + "fast.csv") << "t,x,y\n0,0,0\n1,30,0\n";
   EXPECT_THAT(
       Refusal("pad: {motion: waypoints}\n", {"pad.waypoints=" + ::testing::TempDir() + "fast.csv"}),
-      HasSubstr("0.9 limits.speed"));
+      HasSubstr("fast.csv: line 3: the way there is driven at 30.00 m/s; allowed is at most 20"));
 }
 
 TEST_F(ScenarioTest, AStartInTheGroundIsRefused) {

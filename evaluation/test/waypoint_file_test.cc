@@ -2,8 +2,11 @@
 #include "touchdown/evaluation/waypoint_file.h"
 
 #include <fstream>
+#include <istream>
 #include <stdexcept>
+#include <streambuf>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,7 +57,46 @@ TEST(WaypointFile, EveryFaultHasItsLine) {
   EXPECT_THAT(Refusal("t,x,y\n0,0,nan\n"), HasSubstr("not 'nan'"));
   EXPECT_THAT(Refusal("x,y,speed\n0,0,0\n"), HasSubstr("speed must be a number in [0.01, 20]"));
   EXPECT_THAT(Refusal("# nothing\n"), HasSubstr("must be a first line"));
+  EXPECT_THAT(Refusal("x,y,speed\n0,0,1\n2,0,1\n2,0.0004,1\n4,0,1\n"),
+              HasSubstr("line 4: the point is the one before; a stop needs the columns `t,x,y`"));
   EXPECT_THROW(ReadWaypointFile("/no/such/waypoints.csv"), std::invalid_argument);
+}
+
+TEST(WaypointFile, ADirectoryIsNone) {
+  try {
+    ReadWaypointFile(::testing::TempDir());
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("it is a directory"));
+  }
+}
+
+// Lines, and then a disk that fails.
+class BrokenFile : public std::streambuf {
+ public:
+  explicit BrokenFile(std::string text) : text_(std::move(text)) {
+    setg(text_.data(), text_.data(), text_.data() + text_.size());
+  }
+
+ protected:
+  int_type underflow() override { throw std::ios_base::failure("input/output error"); }
+
+ private:
+  std::string text_;
+};
+
+TEST(WaypointFile, AReadThatFailsHalfwayIsNoShorterDrive) {
+  const std::string whole = "t,x,y\n0,0,0\n9,9,0\n18,18,0\n";
+  for (const std::size_t read : {std::size_t{0}, std::size_t{3}, std::size_t{19}, whole.size()}) {
+    BrokenFile buffer(whole.substr(0, read));
+    std::istream stream(&buffer);
+    try {
+      ReadWaypoints(stream);
+      FAIL() << read;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), HasSubstr("reading it ends in line")) << read;
+    }
+  }
 }
 
 }  // namespace

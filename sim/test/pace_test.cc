@@ -62,30 +62,51 @@ TEST(Pace, KeepsItsBoundsAndTheyAreNear) {
 }
 
 TEST(Pace, StopAndGoStandsAndDrivesInTurn) {
-  const Pace pace = StopAndGoPace(0.8, 6.0, 3.0, 0.5);
+  const Pace pace = StopAndGoPace(0.8, 6.0, 4.0, 0.5);  // changes take 3.6 s
   EXPECT_NEAR(pace.MaxAcceleration(), 0.5, 1e-12);
-  EXPECT_DOUBLE_EQ(pace.At(3.0).speed, 0.8);
-  EXPECT_DOUBLE_EQ(pace.At(3.0).s, 2.4);
-  for (const double t : {7.5, 16.5, 25.5}) {
-    EXPECT_NEAR(pace.At(t).speed, 0.0, 0.3) << t;  // a stop of 3 s with 1.8 s each way to change
-    EXPECT_NEAR(pace.At(t + 4.5).speed, 0.8, 1e-12) << t;
+  for (const double start : {-70000.0, -10.0, 0.0, 20.0, 700.0, 70000.0}) {
+    for (const double t : {0.0, 1.2, 2.4}) {
+      EXPECT_NEAR(pace.At(start + t).speed, 0.8, 1e-12) << start;
+      EXPECT_NEAR(pace.At(start + t).s, 0.48 * start + 0.8 * t, 1e-9) << start;
+    }
+    for (const double t : {6.0, 6.2, 6.4}) {
+      EXPECT_NEAR(pace.At(start + t).speed, 0.0, 1e-12) << start;
+      EXPECT_NEAR(pace.At(start + t).s, pace.At(start + 6.0).s, 1e-9) << start;
+    }
   }
-  const Pace longer = StopAndGoPace(0.8, 6.0, 8.0, 0.5);
-  EXPECT_NEAR(longer.At(10.0).speed, 0.0, 1e-12);
-  EXPECT_NEAR(longer.At(11.0).s, longer.At(10.0).s, 1e-12);
 }
 
 TEST(Pace, ReversingComesBack) {
-  const Pace pace = ReversingPace(1.0, 10.0, 0.5);
-  EXPECT_DOUBLE_EQ(pace.At(5.0).speed, 1.0);
-  EXPECT_DOUBLE_EQ(pace.At(15.0).speed, -1.0);
-  EXPECT_NEAR(pace.At(5.0 + 20.0).s, pace.At(5.0).s, 1e-12);
+  const Pace pace = ReversingPace(1.0, 10.0, 0.5);  // changes take 9 s
+  for (const double start : {-20.0, 0.0, 1000.0}) {
+    EXPECT_NEAR(pace.At(start + 0.5).speed, 1.0, 1e-12);
+    EXPECT_NEAR(pace.At(start + 10.5).speed, -1.0, 1e-12);
+    EXPECT_NEAR(pace.At(start + 0.5).s, 0.5, 1e-12);
+  }
+}
+
+TEST(Pace, NeverEndsToChange) {
+  const Pace slow = StopAndGoPace(0.1, 8.0, 5.0, 0.5), back = ReversingPace(3.0, 30.0, 2.0);
+  for (const Pace* pace : {&slow, &back}) {
+    for (const double from : {-20000.0, -60.0, 705.0, 20000.0}) {
+      double least = 1e9, greatest = -1e9;
+      for (double t = from; t < from + 60.0; t += 0.01) {
+        const double speed = pace->At(t).speed;
+        least = std::min(least, speed);
+        greatest = std::max(greatest, speed);
+      }
+      EXPECT_NEAR(least, pace->LeastSpeed(), 1e-12) << from;
+      EXPECT_NEAR(greatest, pace->GreatestSpeed(), 1e-12) << from;
+    }
+  }
 }
 
 TEST(Pace, RefusesWhatIsNone) {
   EXPECT_THROW(Pace({{0.0, 0.0}}, 1.0), std::invalid_argument);
   EXPECT_THROW(Pace({{0.0, 0.0}, {0.0, 1.0}}, 1.0), std::invalid_argument);
   EXPECT_THROW(Pace({{0.0, 0.0}, {1.0, 1.0}}, 0.0), std::invalid_argument);
+  EXPECT_THROW(Pace::Periodic({{0.0, 0.0}}, 1.0), std::invalid_argument);
+  EXPECT_THROW(Pace::Periodic({{0.0, 0.0}, {1.4, 1.0}}, 1.0), std::invalid_argument);
 }
 
 }  // namespace

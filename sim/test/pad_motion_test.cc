@@ -192,12 +192,12 @@ TEST(PadMotion, FigureEightClosesAndCrossesItself) {
 
 TEST(PadMotion, ReversingKeepsItsHeadingAndStopsStand) {
   const PadMotion back(Config(Kind::kReversing));
-  EXPECT_EQ(back.At(4.0).yaw, back.At(12.0).yaw);
-  EXPECT_NEAR(back.At(12.0).v_WP.dot(back.At(4.0).v_WP), -0.64, 1e-9);
+  EXPECT_EQ(back.At(0.5).yaw, back.At(8.5).yaw);
+  EXPECT_NEAR(back.At(8.5).v_WP.dot(back.At(0.5).v_WP), -0.64, 1e-9);
   PadMotionConfig config = Config(Kind::kStopAndGo);
   const PadMotion stop(config);
-  EXPECT_LT(stop.At(10.5).v_WP.norm(), 1e-12);
-  EXPECT_LT((stop.At(10.5).p_WP - stop.At(10.6).p_WP).norm(), 1e-12);
+  EXPECT_LT(stop.At(8.1).v_WP.norm(), 1e-12);
+  EXPECT_LT((stop.At(8.1).p_WP - stop.At(9.3).p_WP).norm(), 1e-12);
 }
 
 TEST(PadMotion, RandomDrivesKeepTheirLimitsAndDiffer) {
@@ -205,7 +205,7 @@ TEST(PadMotion, RandomDrivesKeepTheirLimitsAndDiffer) {
   config.turn_rate = 0.8;
   for (const double speed : {0.8, 5.0}) {
     config.speed = speed;
-    double sharpest = 0.0;
+    double sharpest = 0.0, steepest = 0.0;
     std::vector<Eigen::Vector3d> ends;
     for (config.seed = 1; config.seed <= 4; ++config.seed) {
       const PadMotion motion(config);
@@ -213,6 +213,11 @@ TEST(PadMotion, RandomDrivesKeepTheirLimitsAndDiffer) {
         const PadState pad = motion.At(t);
         ASSERT_LE(pad.j_WP.norm(), config.jerk * (1.0 + 1e-9));
         ASSERT_LE(std::abs(pad.yaw_rate), config.turn_rate * (1.0 + 1e-9));
+        const Eigen::Vector3d ahead(std::cos(pad.yaw), std::sin(pad.yaw), 0.0);
+        const double along = ahead.dot(pad.a_WP), across = ahead.cross(pad.a_WP).z();
+        ASSERT_LE(std::abs(along), config.acceleration * (1.0 + 1e-9));
+        ASSERT_LE(std::abs(across), config.acceleration * (1.0 + 1e-9));
+        steepest = std::max({steepest, std::abs(along), std::abs(across)});
         sharpest = std::max(sharpest, pad.j_WP.norm());
       }
       ends.push_back(motion.At(60.0).p_WP);
@@ -220,7 +225,41 @@ TEST(PadMotion, RandomDrivesKeepTheirLimitsAndDiffer) {
         EXPECT_GT((ends[i] - ends.back()).norm(), 1.0);
       EXPECT_EQ(PadMotion(config).At(60.0).p_WP, ends.back());
     }
-    EXPECT_GT(sharpest, 0.2 * config.jerk);
+    EXPECT_GT(sharpest, 0.1 * config.jerk);
+    EXPECT_GT(steepest, 0.4 * config.acceleration);
+  }
+}
+
+// Phases and times as far as a scenario's keys go: no motion runs out of its drive.
+TEST(PadMotion, ChangesItsSpeedAtAnyPhaseAndTime) {
+  for (const Kind kind : {Kind::kStopAndGo, Kind::kReversing, Kind::kRandom}) {
+    PadMotionConfig config = Config(kind);
+    config.speed = 0.01;
+    for (config.phase = kind == Kind::kRandom ? 0.0 : -100.0; config.phase <= 100.0;
+         config.phase += 50.0) {
+      const PadMotion motion(config);
+      for (const double from : {0.0, 540.0}) {
+        double slowest = config.speed, fastest = 0.0;
+        for (double t = from; t < from + 60.0; t += 0.1) {
+          const PadState pad = motion.At(t);
+          const double speed = pad.v_WP.x() * std::cos(pad.yaw) + pad.v_WP.y() * std::sin(pad.yaw);
+          slowest = std::min(slowest, speed);
+          fastest = std::max(fastest, speed);
+        }
+        EXPECT_LT(slowest, 0.9 * fastest) << config.phase << " m, " << from << " s";
+      }
+    }
+  }
+}
+
+TEST(PadMotion, ARandomDriveIsTheSameWhateverItsPhase) {
+  PadMotionConfig config = Config(Kind::kRandom);
+  config.seed = 3;
+  const PadMotion motion(config);
+  config.phase = 100.0;  // drawn for longer
+  const PadMotion ahead(config);
+  for (const double t : {0.0, 30.0, 500.0}) {
+    EXPECT_LT((ahead.At(t).p_WP - motion.At(t + 125.0).p_WP).norm(), 1e-9);
   }
 }
 
@@ -259,6 +298,14 @@ TEST(PadMotion, RefusesByNameValueAndRange) {
               AllOf(HasSubstr("pad.stop_time is 0"), HasSubstr("[3.6, 600]")));
   EXPECT_THAT(changing(Kind::kReversing, [](PadMotionConfig* c) { c->acceleration = 0.0; }),
               HasSubstr("pad.acceleration is 0"));
+  EXPECT_THAT(changing(Kind::kReversing,
+                       [](PadMotionConfig* c) {
+                         c->acceleration = 0.05;
+                         c->speed = 10.0;
+                       }),
+              AllOf(HasSubstr("pad.acceleration is 0.05"), HasSubstr("[0.075, 20]")));
+  EXPECT_THAT(changing(Kind::kRandom, [](PadMotionConfig* c) { c->phase = 9000.0; }),
+              AllOf(HasSubstr("pad.phase is 9000"), HasSubstr("8000]")));
   EXPECT_THAT(changing(Kind::kRandom, [](PadMotionConfig* c) { c->jerk = -1.0; }),
               HasSubstr("pad.jerk is -1"));
   EXPECT_THAT(changing(Kind::kFigureEight, [](PadMotionConfig* c) { c->turn_rate = 0.0; }),

@@ -23,19 +23,27 @@ estimation::VehicleModel Imported(const std::string& file, const AirframeExtras&
   return LoadVehicleModel(ImportVehicle(kModels + file, extras));
 }
 
-// What is said to the model mini with `from` replaced by `to`.
-std::string Refusal(const std::string& from, const std::string& to) {
+// Path of the model mini with `from` replaced by `to`.
+std::string ChangedMini(const std::string& from, const std::string& to) {
   std::string text = ReadVehicleFile(kModels + "mini.xml");
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   text.replace(at, from.size(), to);
   const std::string path = ::testing::TempDir() + "changed_mini.xml";
   std::ofstream(path) << text;
+  return path;
+}
+
+// What is said to that.
+std::string Refusal(const std::string& from, const std::string& to) {
+  const std::string path = ChangedMini(from, to);
   return test::MessageOf<std::invalid_argument>([&] { LoadVehicleModel(ImportVehicle(path, {})); });
 }
 
 TEST(VehicleImport, OwnFormStaysAsItIs) {
   EXPECT_EQ(ImportVehicle(kModels + "quadrotor.xml", {}), DefaultVehicleMjcf());
+  EXPECT_TRUE(IsInOwnForm(kModels + "quadrotor.xml"));
+  EXPECT_FALSE(IsInOwnForm(kModels + "mini.xml"));
 }
 
 TEST(VehicleImport, MiniIsReadAboutItsCentreOfMass) {
@@ -56,8 +64,10 @@ TEST(VehicleImport, MiniIsReadAboutItsCentreOfMass) {
   EXPECT_EQ(model.rotor_lag_s, 0.03);
   // The plate's corners, 2 mm off the centre of mass; the battery below.
   EXPECT_NEAR(model.hull_radius, std::hypot(0.047, 0.045), 1e-6);
-  EXPECT_NEAR(model.hull_top, 0.010, 1e-6);  // flatter than a centimetre: the hull is not
-  EXPECT_GT(model.foot_depth, 0.008 + 0.005 - 1e-9);
+  EXPECT_NEAR(model.hull_top, 0.007, 1e-6);
+  // From the battery's lower face on; the feet reach below it.
+  EXPECT_NEAR(model.hull_bottom, 0.008 + 0.005, 1e-6);
+  EXPECT_NEAR(model.foot_depth, 0.013 + 0.35 * 0.6 * model.hull_radius, 1e-6);
   EXPECT_EQ(model.rotor_drag, Eigen::Vector3d::Zero());
 }
 
@@ -73,7 +83,8 @@ TEST(VehicleImport, CarrierIsPutTogether) {
   // The boom at the back is turned about.
   EXPECT_TRUE(model.rotors[0].p_BR.isApprox(Eigen::Vector3d(-0.14, 0.18, 0.04 - height), 1e-9));
   EXPECT_TRUE(model.rotors[1].p_BR.isApprox(Eigen::Vector3d(-0.14, -0.18, 0.04 - height), 1e-9));
-  EXPECT_NEAR(model.foot_depth, 0.11 + height, 1e-6);
+  EXPECT_NEAR(model.hull_bottom, 0.11 + height, 1e-6);  // the frame's legs
+  EXPECT_NEAR(model.foot_depth, 0.11 + height + 0.35 * 0.6 * model.hull_radius, 1e-6);
   EXPECT_GT(model.hull_radius, std::hypot(0.14, 0.18));
 }
 
@@ -92,6 +103,19 @@ TEST(VehicleImport, WhatTheFileDoesNotSayIsTheCallers) {
   EXPECT_NEAR(model.hull_top, 0.03, 1e-12);
   EXPECT_NEAR(model.foot_radius, 0.04, 1e-12);
   EXPECT_NEAR(model.foot_depth, 0.03, 1e-12);
+}
+
+// The force is limited before the gear, as the control is: 0.8 of 0.17 N.
+TEST(VehicleImport, ThrustKeepsEveryRangeOfTheActuator) {
+  const auto limited = [](const std::string& attributes) {
+    const std::string path =
+        ChangedMini("<motor ctrlrange=\"0 1\"/>", "<motor ctrlrange=\"0 1\" " + attributes + "/>");
+    return LoadVehicleModel(ImportVehicle(path, {}));
+  };
+  EXPECT_NEAR(limited("forcerange=\"0.1 0.8\"").rotor_thrust_max, 0.136, 1e-12);
+  EXPECT_NEAR(limited("forcerange=\"0.1 0.8\"").rotor_thrust_min, 0.017, 1e-12);
+  EXPECT_NEAR(limited("forcerange=\"0 7\"").rotor_thrust_max, 0.17, 1e-12);
+  EXPECT_NEAR(limited("forcelimited=\"false\" forcerange=\"0 0.8\"").rotor_thrust_max, 0.17, 1e-12);
 }
 
 TEST(VehicleImport, HoversInTheWorld) {
@@ -139,6 +163,13 @@ TEST(VehicleImport, RefusesWhatCannotBeFlown) {
               HasSubstr("thrust and three moments"));
   EXPECT_THAT(Refusal("<site name=\"back_left\"", "<site euler=\"0 10 0\" name=\"back_left\""),
               HasSubstr("actuator \"m3\" does not push along the z axis"));
+  EXPECT_THAT(Refusal("name=\"m1\"", "name=\"m1\" refsite=\"back_left\""),
+              HasSubstr("actuator \"m1\" has a refsite"));
+  for (const std::string has : {"damping", "armature", "frictionloss", "stiffness"}) {
+    EXPECT_THAT(Refusal("<freejoint/>", "<joint type=\"free\" " + has + "=\"0.01\"/>"),
+                HasSubstr("joint 0 has " + has))
+        << has;
+  }
   EXPECT_THAT(Refusal("ctrlrange=\"0 1\"", "gear=\"1\""), HasSubstr("has no ctrlrange"));
   EXPECT_THAT(Refusal("mass=\"0.030\"", "mass=\"0.066\""), HasSubstr("carry its weight"));
   EXPECT_THAT(Refusal("diaginertia=\"1.6e-5 1.7e-5 2.9e-5\"",

@@ -16,24 +16,56 @@ namespace {
 using ::testing::HasSubstr;
 
 std::vector<PadWaypoint> Street() {
-  return {{{0.0, 0.0}, 2.0, 2},   {{8.0, 0.0}, 12.0, 3},   {{8.0, 0.0}, 15.0, 4},
-          {{16.0, 1.0}, 25.0, 5}, {{16.0, 12.0}, 39.0, 6}, {{9.0, 18.0}, 50.0, 7}};
+  return {{{0.0, 0.0}, 2.0, 2},   {{8.0, 0.0}, 12.0, 3},   {{8.0, 0.0}, 17.0, 4},
+          {{16.0, 1.0}, 27.0, 5}, {{16.0, 12.0}, 41.0, 6}, {{9.0, 18.0}, 52.0, 7}};
 }
 
-TEST(WaypointDrive, ComesNearEveryPointAtItsTime) {
+// Of the path, the nearest to `p`: by symmetry the middle of a turn.
+double WayTo(const Eigen::Vector2d& p, const CurvatureChain& path) {
+  double way = 0.0, least = INFINITY;
+  for (double s = 0.0; s < path.length(); s += 1e-3) {
+    const double off = (path.At(s).p - p).norm();
+    if (off < least) {
+      least = off;
+      way = s;
+    }
+  }
+  return way;
+}
+
+TEST(WaypointDrive, IsAtEveryPointAtItsTimeButForWhatSmoothingTakes) {
   const std::vector<PadWaypoint> points = Street();
   const PathDrive drive = WaypointDrive(points, 0.5, 1.0);
+  const double w = Pace::SmoothingFor(drive.pace.GreatestSpeed(), 0.5, 1.0);
   for (const PadWaypoint& point : points) {
-    const Eigen::Vector2d p = drive.path.At(drive.pace.At(point.t).s).p;
-    EXPECT_LT((p - point.p).norm(), 0.6)
-        << point.line;  // corners are cut, starts and stops smoothed
+    // Changes of speed are over within 1.5 w, and all legs are longer.
+    const double change =
+        drive.pace.At(point.t + 1.5 * w).speed - drive.pace.At(point.t - 1.5 * w).speed;
+    EXPECT_NEAR(drive.pace.At(point.t).s, WayTo(point.p, drive.path) + 13.0 / 64.0 * w * change,
+                2e-3)
+        << point.line;
+    if (change > 0.7) {
+      EXPECT_GT(drive.pace.At(point.t).s, WayTo(point.p, drive.path) + 0.15);
+    }
   }
-  // Before, after and, up to what the smoothing takes, at the stop it stands.
-  EXPECT_NEAR(drive.pace.At(-3.0).speed, 0.0, 1e-12);
-  EXPECT_NEAR(drive.path.At(drive.pace.At(-3.0).s).p.norm(), 0.0, 1e-9);
-  EXPECT_NEAR(drive.pace.At(60.0).speed, 0.0, 1e-12);
-  EXPECT_LT((drive.path.At(drive.pace.At(60.0).s).p - points.back().p).norm(), 1e-9);
-  EXPECT_LT(drive.pace.At(13.5).speed, 0.15);
+}
+
+TEST(WaypointDrive, StandsBetweenChangesOfSpeed) {
+  const std::vector<PadWaypoint> points = Street();
+  const PathDrive drive = WaypointDrive(points, 0.5, 1.0);
+  const double change = 1.5 * Pace::SmoothingFor(drive.pace.GreatestSpeed(), 0.5, 1.0);
+  const auto stands = [&](double t, const Eigen::Vector2d& p) {
+    EXPECT_NEAR(drive.pace.At(t).speed, 0.0, 1e-12) << t;
+    EXPECT_LT((drive.path.At(drive.pace.At(t).s).p - p).norm(), 1e-9) << t;
+  };
+  const Eigen::Vector2d corner = drive.path.At(drive.pace.At(14.5).s).p;
+  EXPECT_LT((corner - points[1].p).norm(), 0.03);  // cut
+  for (const double t : {-300.0, 0.0, 2.0 - change}) stands(t, points.front().p);
+  for (const double t : {12.0 + change, 14.5, 17.0 - change}) stands(t, corner);
+  for (const double t : {52.0 + change, 400.0}) stands(t, points.back().p);
+  for (const double t : {2.1 - change, 11.9 + change, 17.1 - change, 51.9 + change}) {
+    EXPECT_GT(drive.pace.At(t).speed, 1e-6) << t;
+  }
 }
 
 TEST(WaypointDrive, TurnsAreNoSharperThanAsked) {
@@ -77,13 +109,18 @@ TEST(WaypointDrive, RefusesNamingTheLine) {
   };
   EXPECT_EQ(message([](auto*) {}), "");
   EXPECT_THAT(message([](auto* p) { p->resize(1); }), HasSubstr("two places"));
-  EXPECT_THAT(message([](auto* p) { (*p)[3].t = 14.0; }), HasSubstr("line 5: its time is 14 s"));
+  EXPECT_THAT(message([](auto* p) { (*p)[3].t = 16.0; }), HasSubstr("line 5: its time is 16 s"));
+  EXPECT_THAT(message([](auto* p) { (*p)[1].t = 2.3; }),
+              HasSubstr("line 3: the way there is driven at 26.67 m/s; allowed is at most 20"));
+  EXPECT_THAT(message([](auto* p) { (*p)[2].t = 15.0; }),
+              HasSubstr("line 3: the stop of 3 s there is shorter than a change of speed, which "
+                        "takes 3.8"));
   EXPECT_THAT(message([](auto* p) {
                 (*p)[3].p = {1.0, 0.2};
               }),
               HasSubstr("line 3: the path turns by 178 degrees"));
   EXPECT_THAT(message([](auto* p) {
-                (*p)[5] = {{15.0, 12.0}, 40.5, 7};
+                (*p)[5] = {{15.0, 12.0}, 42.5, 7};
               }),
               HasSubstr("line 6: the turn by 90 degrees at 0.7"));
 }
