@@ -156,6 +156,8 @@ INSTANTIATE_TEST_SUITE_P(
              TransitionReason::kErrorTooLarge},
         Loss{"beside_committed", 0.2, [](MissionInputs& in) { in.horizontal_distance = 1.0; },
              TransitionReason::kErrorTooLarge},
+        Loss{"too_fast", 0.2, [](MissionInputs& in) { in.horizontal_speed = 2.5; },
+             TransitionReason::kTooFast},
         Loss{"no_plan", 0.95, [](MissionInputs& in) { in.plan_failed_for = 0.5; },
              TransitionReason::kPlanFailed},
         Loss{"overdue", 0.05, [](MissionInputs&) {}, TransitionReason::kNoContact},
