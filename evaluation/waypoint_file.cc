@@ -119,4 +119,12 @@ std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path) {
   return Reader(path).Read();
 }
 
+std::string WaypointText(const std::vector<sim::PadWaypoint>& points) {
+  std::string text;
+  for (const sim::PadWaypoint& point : points) {
+    text += fmt::format("{} {} {}\n", point.t, point.p.x(), point.p.y());
+  }
+  return text;
+}
+
 }  // namespace touchdown::evaluation

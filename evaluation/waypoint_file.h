@@ -14,4 +14,7 @@ namespace touchdown::evaluation {
 /// Throws std::invalid_argument, the line first; the caller names the file.
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path);
 
+/// The points to the last bit, `t x y` in lines: what a record keeps of the file.
+std::string WaypointText(const std::vector<sim::PadWaypoint>& points);
+
 }  // namespace touchdown::evaluation
