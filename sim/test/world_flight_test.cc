@@ -172,7 +172,9 @@ TEST(WorldFlight, PadLagsItsMotionByNoMoreThanStated) {
       EXPECT_LE(worst.yaw, most.yaw) << speed << " " << static_cast<int>(kind);
       EXPECT_LE(worst.yaw_rate, most.yaw_rate) << speed << " " << static_cast<int>(kind);
       // There is a lag to be stated: the turn builds up at 0.3 rad/s^2.
-      if (kind == Kind::kStraightTurn && speed == 0.8) EXPECT_GT(worst.yaw_rate, 0.001);
+      if (kind == Kind::kStraightTurn && speed == 0.8) {
+        EXPECT_GT(worst.yaw_rate, 0.001);
+      }
     }
   }
 }
