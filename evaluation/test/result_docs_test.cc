@@ -131,7 +131,11 @@ std::uint32_t Fingerprint(const std::vector<std::string>& texts) {
 // A reader knows a format by its version alone: with other columns the version must be another one
 // too. Who changes a table raises the format's version and enters both here.
 TEST(ResultDocs, OtherColumnsAreAnotherVersion) {
-  const std::map<std::string, std::string> known = {FINGERPRINTS};
+  const std::map<std::string, std::string> known = {
+      {"record", "4 2171881221"},       {"trials", "2 3675095064"},
+      {"comparison", "2 851369565"},    {"profile", "1 945522990"},
+      {"replan study", "2 1129062132"}, {"forest flights", "1 1622777177"},
+      {"pad study", "2 3143308301"},    {"tag study", "1 1906377180"}};
   const std::string path = ::testing::TempDir() + "touchdown_result_versions.db";
   for (const ResultFile& result : ResultFiles()) {
     std::filesystem::remove(path);
