@@ -191,7 +191,7 @@ TEST(WindFlight, AGustComesWhenAndAsStrongAsTheScenarioSays) {
            {"wind.mean=2", "wind.gust.speed=5", "wind.gust.start=3", "wind.gust.duration=1.6",
             "wind.gust.period=4", "timeout=9"}),
       &record);
-  const auto along = [&record](double t) {
+  const auto along = [&record](double t) -> double {
     for (const RecordSample& sample : record.samples) {
       if (sample.t >= t - 1e-6) return sample.air.y();
     }
