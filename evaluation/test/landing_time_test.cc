@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -198,6 +199,42 @@ TEST(LandingTime, LowerBoundIsBelowWhatIsFoundAndNear) {
   std::sort(gaps.begin(), gaps.end());
   EXPECT_LT(gaps[100], 0.02);
   EXPECT_LT(gaps[190], 0.07);
+}
+
+// The pads of straight_turn and circle, from starts as far away as there, with the lag of their drives.
+TEST(LandingTime, GapIsSmallForTheShippedPads) {
+  std::mt19937_64 random(9);
+  for (const Kind kind : {Kind::kStraightTurn, Kind::kCircle}) {
+    std::vector<double> gaps, lowers;
+    for (int i = 0; i < 60; ++i) {
+      sim::PadMotionConfig config;
+      config.kind = kind;
+      config.p_start = {7.0, 6.5, 0.5};
+      config.speed = 0.8;
+      config.turn_start = 5.0;
+      config.turn_rate = kind == Kind::kCircle ? 0.15 : 0.25;
+      config.phase = Uniform(&random, -2.0, 2.0);
+      const sim::PadMotion motion(config);
+      LandingTimeTask task = TaskOn(motion);
+      task.p_WB = {Uniform(&random, -1, 1), Uniform(&random, -1, 1), Uniform(&random, 1.5, 3.5)};
+      task.pad_position_error = 0.004;
+      task.pad_velocity_error = 0.006;
+      task.pad_yaw_error = 0.004;
+      task.pad_yaw_rate_error = 0.007;
+      const sim::OraclePadPrediction oracle(motion);
+      lowers.push_back(LandingTimeLowerBound(task, oracle));
+      const auto upper = LandingTimeUpperBound(task, oracle, lowers.back());
+      ASSERT_TRUE(upper.has_value()) << i;
+      gaps.push_back(upper->time / lowers.back() - 1.0);
+    }
+    std::sort(gaps.begin(), gaps.end());
+    std::sort(lowers.begin(), lowers.end());
+    const std::string name = kind == Kind::kCircle ? "circle" : "straight_turn";
+    RecordProperty(name + "_gap_median", std::to_string(gaps[30]));
+    RecordProperty(name + "_gap_largest", std::to_string(gaps.back()));
+    RecordProperty(name + "_lower_median_s", std::to_string(lowers[30]));
+    EXPECT_LT(gaps.back(), 0.045) << name;
+  }
 }
 
 /// De Boor's algorithm is not needed: between knots a quadratic B-spline is a parabola.
