@@ -52,7 +52,7 @@ double LandingTimeLowerBound(const LandingTimeTask& task, const estimation::PadP
 /// A flight that was found and checked: T* is not far below its time. It comes from above the deck
 /// and ends with B over the deck and the feet of the level vehicle on it, whatever errors of the pad
 /// the task allows. Empty if none was found within the horizon, as where the start is lower than
-/// that end. `lower_bound`: where to begin to look. Some 0.1 s.
+/// that end. `lower_bound`: where to begin to look. Tens of milliseconds.
 std::optional<LandingFlight> LandingTimeUpperBound(const LandingTimeTask& task,
                                                    const estimation::PadPrediction& pad,
                                                    double lower_bound);
