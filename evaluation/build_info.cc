@@ -38,16 +38,20 @@ std::string Kernel() {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-// SHA-1 of the facts and of the program file, in the shape of a version 5 UUID. The program file
-// holds the library's own code; the facts stand for what it is linked to and runs on.
+// Of the facts and of the program file. The program file holds the library's own code; the facts stand
+// for what it is linked to and runs on.
 std::string Hash(const Pairs& facts) {
   std::ifstream file("/proc/self/exe", std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   for (const auto& [key, value] : facts) bytes += key + '\0' + value + '\0';
-  return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::x500dn())(bytes));
+  return HashOf(bytes);
 }
 
 }  // namespace
+
+std::string HashOf(const std::string& bytes) {
+  return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::x500dn())(bytes));
+}
 
 Pairs BuildManifest() {
   Pairs facts = {

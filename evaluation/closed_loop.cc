@@ -38,8 +38,10 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
   task.p_WB = world.vehicle().p_WB;
   task.speed = scenario.limits.speed;
   task.acceleration = scenario.limits.acceleration;
-  task.deck_radius = std::sqrt(2.0) * world.config().pad.deck_half_size;
+  task.deck_half_size = world.config().pad.deck_half_size;
+  task.deck_thickness = world.config().pad.deck_thickness;
   task.foot_reach = world.model().foot_reach;
+  task.foot_depth = world.model().foot_depth;
   task.horizontal_speed = rule.horizontal_speed;
   task.vertical_speed = rule.vertical_speed;
   task.horizon = scenario.timeout;
@@ -47,6 +49,8 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
   const sim::World::PadLag lag = world.MaxPadLag();
   task.pad_position_error = lag.position;
   task.pad_velocity_error = lag.velocity;
+  task.pad_yaw_error = lag.yaw;
+  task.pad_yaw_rate_error = lag.yaw_rate;
   return task;
 }
 
@@ -293,7 +297,9 @@ class Trial {
   void BoundLandingTime() {
     const sim::OraclePadPrediction pad(world_.pad_motion());
     result_.t_star_s = LandingTimeLowerBound(landing_time_, pad);
-    result_.t_star_upper_s = LandingTimeUpperBound(landing_time_, pad, *result_.t_star_s);
+    if (const auto flight = LandingTimeUpperBound(landing_time_, pad, *result_.t_star_s)) {
+      result_.t_star_upper_s = flight->time;
+    }
   }
 
   sim::World world_;

@@ -124,23 +124,22 @@ int CheckTerm(const CheckTermArguments& arguments, const Registries& registries)
 
 }  // namespace
 
-void AddCheckTermCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command =
-      app.add_subcommand("check-term", "Check a term's derivatives on every view of the problem");
+void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command =
+      app.AddCommand("check-term", "Check a term's derivatives on every view of the problem");
   const auto arguments = std::make_shared<CheckTermArguments>();
-  command->add_option("NAME", arguments->name, "Name of a term (`touchdown list terms`)")
-      ->required();
-  command->add_option("--points", arguments->options.control_points, "Control points of the spline")
-      ->check(CLI::Range(9, 60))
-      ->capture_default_str();
-  command->add_option("--trials", arguments->options.trials, "Random landings")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->options.seed, "Seed of the landings and points")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
-      ->capture_default_str();
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, &registries, run] {
+  command.Add("NAME", arguments->name, "Name of a term (`touchdown list terms`)").Required();
+  command.Add("--points", arguments->options.control_points, "Control points of the spline")
+      .Check(Range(9, 60))
+      .ShowDefault();
+  command.Add("--trials", arguments->options.trials, "Random landings")
+      .Check(Range(1, 10000))
+      .ShowDefault();
+  command.Add("--seed", arguments->options.seed, "Seed of the landings and points")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      .ShowDefault();
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return CheckTerm(*arguments, registries); };
   });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown compare: solver backends on the same random landing problems.
 #include <algorithm>
+#include <charconv>
 #include <iostream>
 #include <memory>
 
@@ -11,7 +12,6 @@
 #include "touchdown/evaluation/compare.h"
 #include "touchdown/evaluation/compare_report.h"
 #include "touchdown/evaluation/compare_table.h"
-#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/planner_options.h"
@@ -57,7 +57,9 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   std::string number = shaped ? text.substr(is + 1) : "";
   if (number == "true") number = "1";
   if (number == "false") number = "0";
-  if (!shaped || !CLI::detail::lexical_cast(number, value) || !std::isfinite(value)) {
+  const char* end = number.data() + number.size();
+  const std::from_chars_result read = std::from_chars(number.data(), end, value);
+  if (!shaped || read.ec != std::errc() || read.ptr != end || !std::isfinite(value)) {
     throw BadInput(fmt::format("--set {}: it must be terms.<term>.<key>=<number>.", text));
   }
   const std::string term = text.substr(name + 1, key - name - 1);
@@ -114,78 +116,72 @@ int Compare(CompareArguments arguments, const Registries& registries) {
 
 }  // namespace
 
-void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command =
-      app.add_subcommand("compare", "Compare solver backends on random landing problems");
+void AddCompareCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command =
+      app.AddCommand("compare", "Compare solver backends on random landing problems");
   const auto arguments = std::make_shared<CompareArguments>();
   CompareOptions& options = arguments->options;
   CaseOptions& cases = options.cases;
-  const auto one_of = [](std::vector<std::string> words) {
-    return CLI::IsMember(std::move(words));
-  };
-  command->add_option("--problems", options.problems, "Number of problems of each size")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  AddListOption(*command, "--points", &options.points, "Control points: one size or several",
-                "N,N,...", CLI::Range(9, 1000));
+  const auto one_of = [](std::vector<std::string> words) { return OneOf(std::move(words)); };
+  command.Add("--problems", options.problems, "Number of problems of each size")
+      .Check(Range(1, 100000))
+      .ShowDefault();
+  command.AddList("--points", &options.points, "Control points: one size or several", "N,N,...",
+                  Range(9, 1000));
+  command.Add("--start", arguments->start, "From a Hermite guess, or shifted from 0.1 s ago")
+      .Check(one_of({"cold", "warm"}))
+      .ShowDefault();
+  command.Add("--arrival", arguments->arrival, "Arrival time")
+      .Check(one_of({"fixed", "free"}))
+      .ShowDefault();
+  command.Add("--limits", arguments->limits, "As a penalty, or as constraints")
+      .Check(one_of({"soft", "hard"}))
+      .ShowDefault();
+  command.Add("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
+      .Check(one_of({"eliminated", "explicit"}))
+      .ShowDefault();
+  command.AddList("--backends", &options.backends, "Which ones; default: all that can solve it",
+                  "NAME,NAME,...", OneOf(BackendNames(registries)));
   command
-      ->add_option("--start", arguments->start, "From a Hermite guess, or shifted from 0.1 s ago")
-      ->check(one_of({"cold", "warm"}))
-      ->capture_default_str();
-  command->add_option("--arrival", arguments->arrival, "Arrival time")
-      ->check(one_of({"fixed", "free"}))
-      ->capture_default_str();
-  command->add_option("--limits", arguments->limits, "As a penalty, or as constraints")
-      ->check(one_of({"soft", "hard"}))
-      ->capture_default_str();
-  command->add_option("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
-      ->check(one_of({"eliminated", "explicit"}))
-      ->capture_default_str();
-  AddListOption(*command, "--backends", &options.backends,
-                "Which ones; default: all that can solve it", "NAME,NAME,...",
-                CLI::IsMember(BackendNames(registries)));
+      .Add("--set", arguments->set,
+           "Change a term: terms.<term>.<key>=<number>, as in a scenario; may be given again")
+      .TypeName("KEY=VALUE")
+      .OneWord();
+  command.Add("--seed", cases.seed, "Seed of the problems")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      .ShowDefault();
+  command.Add("--gap", options.gap, "Relative gap to the best known cost: solved")
+      .Check(Range(1e-9, 1.0))
+      .ShowDefault();
+  command.Add("--repeats", options.repeats, "Timed solves of each problem; the median counts")
+      .Check(Range(1, 1000))
+      .ShowDefault();
+  command.Add("--deadline-ms", options.deadline_ms, "Also stop solves after this wall time")
+      .Check(Range(1e-3, 1e5));
+  command.Add("--forest", cases.forest, "Kind of forest")
+      .Check(one_of(ComparedForests()))
+      .ShowDefault();
+  command.Add("--inflation", cases.inflation, "Obstacles are grown by this [m]")
+      .Check(Range(0.0, 1.0))
+      .ShowDefault();
+  command.Add("--speed-limit", cases.problem.limits.speed, "[m/s]")
+      .Check(Range(1.0, 30.0))
+      .ShowDefault();
+  command.Add("--acceleration-limit", cases.problem.limits.acceleration, "[m/s^2]")
+      .Check(Range(1.0, 50.0))
+      .ShowDefault();
   command
-      ->add_option(
-          "--set", arguments->set,
-          "Change a term: terms.<term>.<key>=<number>, as in a scenario; may be given again")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--seed", cases.seed, "Seed of the problems")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
-      ->capture_default_str();
-  command->add_option("--gap", options.gap, "Relative gap to the best known cost: solved")
-      ->check(FiniteRange(1e-9, 1.0))
-      ->capture_default_str();
-  command
-      ->add_option("--repeats", options.repeats, "Timed solves of each problem; the median counts")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--deadline-ms", options.deadline_ms, "Also stop solves after this wall time")
-      ->check(FiniteRange(1e-3, 1e5));
-  command->add_option("--forest", cases.forest, "Kind of forest")
-      ->check(one_of(ComparedForests()))
-      ->capture_default_str();
-  command->add_option("--inflation", cases.inflation, "Obstacles are grown by this [m]")
-      ->check(FiniteRange(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--speed-limit", cases.problem.limits.speed, "[m/s]")
-      ->check(FiniteRange(1.0, 30.0))
-      ->capture_default_str();
-  command->add_option("--acceleration-limit", cases.problem.limits.acceleration, "[m/s^2]")
-      ->check(FiniteRange(1.0, 50.0))
-      ->capture_default_str();
-  command
-      ->add_option("--backend-seconds", options.backend_seconds,
-                   "A backend that used this much wall time at one size sits out the rest [s]")
-      ->check(FiniteRange(0.1, 1e6))
-      ->capture_default_str();
-  command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
-  AddFileOption(*command, "--db", &arguments->db, "Write every solve, an SQLite file", "F.db");
-  AddFileOption(*command, "--picture", &arguments->picture,
-                "Draw performance profile, latency and scaling", "F.png");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
-  command->callback([arguments, &registries, run] {
+      .Add("--backend-seconds", options.backend_seconds,
+           "A backend that used this much wall time at one size sits out the rest [s]")
+      .Check(Range(0.1, 1e6))
+      .ShowDefault();
+  command.Add("--pin", arguments->pin, "Run on this CPU only").Check(Range(0, 1023));
+  command.AddFile("--db", &arguments->db, "Write every solve, an SQLite file", "F.db");
+  command.AddFile("--picture", &arguments->picture, "Draw performance profile, latency and scaling",
+                  "F.png");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.AddFlag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return Compare(*arguments, registries); };
   });
 }

@@ -116,22 +116,22 @@ int Land(const LandArguments& arguments, const Registries& registries) {
 
 }  // namespace
 
-void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command = app.add_subcommand("land", "Fly one closed-loop landing");
+void AddLandCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command = app.AddCommand("land", "Fly one closed-loop landing");
   const auto arguments = std::make_shared<LandArguments>();
-  arguments->scenario.AddTo(*command, false);
-  command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=")->type_name("S");
-  AddFileOption(*command, "--record", &arguments->record,
-                "Write the record, an SQLite file; an older one is overwritten", "F.db");
-  AddFileOption(*command, "--plot", &arguments->plot,
-                "Draw plan and side view; an older file is overwritten", "F.png");
-  AddFileOption(
-      *command, "--save-map", &arguments->save_map,
+  arguments->scenario.AddTo(command, false);
+  command.Add("--seed", arguments->scenario.seed, "Short for --set seed=").TypeName("S");
+  command.AddFile("--record", &arguments->record,
+                  "Write the record, an SQLite file; an older one is overwritten", "F.db");
+  command.AddFile("--plot", &arguments->plot,
+                  "Draw plan and side view; an older file is overwritten", "F.png");
+  command.AddFile(
+      "--save-map", &arguments->save_map,
       "Write what was seen of the world, an OctoMap file; an older file is overwritten; see "
       "map.prior",
       "F.bt|F.ot");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, &registries, run] {
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return Land(*arguments, registries); };
   });
 }

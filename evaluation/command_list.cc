@@ -185,18 +185,18 @@ void Print(const std::string& what, const Json& list) {
 
 }  // namespace
 
-void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command = app.add_subcommand("list", "List backends, planners, terms or scenarios");
+void AddListCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command = app.AddCommand("list", "List backends, planners, terms or scenarios");
   struct Arguments {
     std::string what;
     bool json = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("WHAT", arguments->what, "What to list")
-      ->required()
-      ->check(CLI::IsMember({"backends", "planners", "terms", "scenarios"}));
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, &registries, run] {
+  command.Add("WHAT", arguments->what, "What to list")
+      .Required()
+      .Check(OneOf({"backends", "planners", "terms", "scenarios"}));
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] {
       Json list;
       if (arguments->what == "backends") list = ListBackends(registries);

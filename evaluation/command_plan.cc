@@ -94,25 +94,25 @@ int RunPlan(const PlanArguments& arguments, const Registries& registries) {
 
 }  // namespace
 
-void AddPlanCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command = app.add_subcommand("plan", "Solve one planning problem and explain it");
+void AddPlanCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command = app.AddCommand("plan", "Solve one planning problem and explain it");
   const auto arguments = std::make_shared<PlanArguments>();
-  arguments->scenario.AddTo(*command, false);
-  CLI::Option* seed =
-      command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=");
-  seed->type_name("S");
-  AddFileOption(*command, "--from", &arguments->from,
-                "Solve replanning step N of a record again (`land --record`) instead of a first "
-                "plan from the scenario's start, where obstacles and pad are known. --backend, "
-                "--set solver.*, terms.* and planning.guides change the planner",
-                "RECORD:N")
-      ->excludes(seed)
-      ->excludes(command->get_option("SCENARIO"));
-  AddFileOption(*command, "--picture", &arguments->picture,
-                "Draw views, speed and acceleration against the limits, cost by iteration",
-                "F.png");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, &registries, run] {
+  arguments->scenario.AddTo(command, false);
+  const Option seed = command.Add("--seed", arguments->scenario.seed, "Short for --set seed=");
+  seed.TypeName("S");
+  command
+      .AddFile("--from", &arguments->from,
+               "Solve replanning step N of a record again (`land --record`) instead of a first "
+               "plan from the scenario's start, where obstacles and pad are known. --backend, "
+               "--set solver.*, terms.* and planning.guides change the planner",
+               "RECORD:N")
+      .Excludes(seed)
+      .Excludes(command.Find("SCENARIO"));
+  command.AddFile("--picture", &arguments->picture,
+                  "Draw views, speed and acceleration against the limits, cost by iteration",
+                  "F.png");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return RunPlan(*arguments, registries); };
   });
 }

@@ -87,46 +87,45 @@ int RunProfile(const ProfileArguments& arguments, const Registries& registries) 
 
 }  // namespace
 
-void AddProfileCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command =
-      app.add_subcommand("profile", "Replanning latency by stage, in flight or from a record");
+void AddProfileCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command =
+      app.AddCommand("profile", "Replanning latency by stage, in flight or from a record");
   const auto arguments = std::make_shared<ProfileArguments>();
   ProfileOptions& options = arguments->options;
-  arguments->scenario.AddTo(*command, false);
-  CLI::Option* seed =
-      command->add_option("--seed", arguments->scenario.seed, "Short for --set seed=");
-  seed->type_name("S");
-  CLI::Option* trials = command->add_option("--trials", options.trials,
-                                            "Flights, with this seed and the ones that follow it");
-  trials->check(CLI::Range(1, 10000))->capture_default_str();
-  CLI::Option* from = AddFileOption(
-      *command, "--from", &arguments->record,
+  arguments->scenario.AddTo(command, false);
+  const Option seed = command.Add("--seed", arguments->scenario.seed, "Short for --set seed=");
+  seed.TypeName("S");
+  const Option trials = command.Add("--trials", options.trials,
+                                    "Flights, with this seed and the ones that follow it");
+  trials.Check(Range(1, 10000)).ShowDefault();
+  const Option from = command.AddFile(
+      "--from", &arguments->record,
       "Replay every replanning step of a record (`land --record`) instead of flying: with the map, "
       "the pad prediction, the committed trajectory and the input that it had, whatever the step "
       "before it answers. --backend, --set solver.*, terms.* and planning.guides change the "
       "planner",
       "RECORD");
-  from->excludes(seed)->excludes(trials)->excludes(command->get_option("SCENARIO"));
+  from.Excludes(seed).Excludes(trials).Excludes(command.Find("SCENARIO"));
   command
-      ->add_option("--repeats", options.repeats,
-                   "With --from: measured passes over all steps, after one that is compared with "
-                   "the record and not measured")
-      ->check(CLI::Range(1, 10000))
-      ->needs(from)
-      ->capture_default_str();
+      .Add("--repeats", options.repeats,
+           "With --from: measured passes over all steps, after one that is compared with "
+           "the record and not measured")
+      .Check(Range(1, 10000))
+      .Needs(from)
+      .ShowDefault();
   command
-      ->add_option("--deadline-ms", options.deadline_ms,
-                   "Steps that take longer than this wall time are misses; default: "
-                   "planning.latency, or the replanning period where that is measured or 0")
-      ->check(FiniteRange(1e-3, 1e5));
-  command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
-  AddFileOption(*command, "--trace", &arguments->trace,
-                "Write the spans in Chrome's trace format, for Perfetto or chrome://tracing",
-                "F.json");
-  AddFileOption(*command, "--db", &arguments->db, "Write every sample, an SQLite file", "F.db");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
-  command->callback([arguments, &registries, run] {
+      .Add("--deadline-ms", options.deadline_ms,
+           "Steps that take longer than this wall time are misses; default: "
+           "planning.latency, or the replanning period where that is measured or 0")
+      .Check(Range(1e-3, 1e5));
+  command.Add("--pin", arguments->pin, "Run on this CPU only").Check(Range(0, 1023));
+  command.AddFile("--trace", &arguments->trace,
+                  "Write the spans in Chrome's trace format, for Perfetto or chrome://tracing",
+                  "F.json");
+  command.AddFile("--db", &arguments->db, "Write every sample, an SQLite file", "F.db");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.AddFlag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return RunProfile(*arguments, registries); };
   });
 }

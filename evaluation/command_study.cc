@@ -14,7 +14,6 @@
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/forest_flight_report.h"
-#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/replan_growth.h"
@@ -137,14 +136,13 @@ const std::vector<LonePart>& LoneParts() {
   return parts;
 }
 
-void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const CLI::App& command) {
+void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const Command& command) {
   if (arguments.parts.size() > 1)
     throw BadInput(fmt::format("--parts: {} stands alone.", part.name));
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_name();
+  for (const std::string& name : command.Given()) {
     const bool fits =
         std::find(part.options.begin(), part.options.end(), name) != part.options.end();
-    if (option->count() == 0 || fits) continue;
+    if (fits) continue;
     throw BadInput(fmt::format("{} does not go with --parts {}.", name, part.name));
   }
 }
@@ -154,18 +152,18 @@ bool Named(const std::vector<std::string>& list, const char* name) {
 }
 
 /// Options that change nothing beside the others are refused. @throws BadInput
-void CheckEffects(const StudyArguments& arguments, const CLI::App& command) {
+void CheckEffects(const StudyArguments& arguments, const Command& command) {
   const bool flights = Named(arguments.parts, "flights");
   for (const char* option : {"--flights", "--planners"}) {
-    if (command.count(option) == 0 || flights) continue;
+    if (!command.Given(option) || flights) continue;
     throw BadInput(fmt::format("{} goes with --parts flights.", option));
   }
   for (const char* option : {"--backend", "--guides"}) {
-    if (command.count(option) == 0 || !flights || Named(arguments.planners, "landing")) continue;
+    if (!command.Given(option) || !flights || Named(arguments.planners, "landing")) continue;
     throw BadInput(fmt::format("{} is of the planner landing: name it in --planners.", option));
   }
   const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
-  if (only_growth && command.count("--kinds") > 0 && arguments.kinds.size() != 1) {
+  if (only_growth && command.Given("--kinds") && arguments.kinds.size() != 1) {
     throw BadInput("--kinds: the part growth is of one kind.");
   }
   for (const LonePart& part : LoneParts()) {
@@ -214,62 +212,63 @@ int Study(StudyArguments arguments, const Registries& registries) {
 
 }  // namespace
 
-void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* study = app.add_subcommand("study", "The standing studies");
-  study->require_subcommand(1);
-  AddPadStudyCommand(*study, registries, run);
-  AddTagStudyCommand(*study, run);
-  CLI::App* command = study->add_subcommand(
+void AddStudyCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command study = app.AddCommand("study", "The standing studies");
+  study.RequireCommand();
+  AddPadStudyCommand(study, registries, run);
+  AddTagStudyCommand(study, run);
+  const Command command = study.AddCommand(
       "replan", "Latency, success and safety of replanning steps in random forests");
   const auto arguments = std::make_shared<StudyArguments>();
   ReplanStudyOptions& options = arguments->options;
-  AddListOption(*command, "--parts", &arguments->parts,
-                "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
-                "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
-                "stand alone",
-                "safety,growth,...", CLI::IsMember({"safety", "growth", "flights", "fidelity"}));
-  command->add_option("--scenes", options.count, "Scenes of each kind")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  AddListOption(*command, "--kinds", &arguments->kinds, "Kinds of scenes", "A,B,...",
-                CLI::IsMember({"A", "B", "C", "D"}));
-  command->add_option("--flights", arguments->flights, "Flights of each kind and planner")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  AddListOption(*command, "--planners", &arguments->planners, "Whose flights", "landing,ego",
-                CLI::IsMember({"landing", "ego"}));
-  command->add_option("--backend", options.replanner.backend, "Solver backend")
-      ->check(CLI::IsMember(BackendNames(registries)))
-      ->capture_default_str();
-  command->add_option("--arrival", arguments->arrival, "Arrival time")
-      ->check(CLI::IsMember({"fixed", "free"}))
-      ->capture_default_str();
-  command->add_option("--limits", arguments->limits, "As a penalty, or as constraints")
-      ->check(CLI::IsMember({"soft", "hard"}))
-      ->capture_default_str();
-  command->add_option("--guides", options.replanner.max_guides, "Most guide paths to try")
-      ->check(CLI::Range(1, 8))
-      ->capture_default_str();
-  command->add_option("--horizon", options.scenes.horizon, "Start to end [m]")
-      ->check(CLI::Range(3.0, 40.0))
-      ->capture_default_str();
-  command->add_option("--resolution", options.scenes.resolution, "Of the map [m]")
-      ->check(CLI::Range(0.05, 0.4))
-      ->capture_default_str();
-  command->add_option("--repeats", options.repeats, "Timed steps of each scene; the median counts")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--seed", options.scenes.seed, "Seed of the scenes")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
-      ->capture_default_str();
-  command->add_option("--pin", arguments->pin, "Run on this CPU only")->check(CLI::Range(0, 1023));
-  AddFileOption(*command, "--db", &arguments->db, "Write every step, an SQLite file", "F.db");
-  AddFileOption(*command, "--picture", &arguments->picture, "Draw the part growth", "F.png");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->add_flag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
-  command->callback([arguments, &registries, run, command] {
+  command.AddList(
+      "--parts", &arguments->parts,
+      "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
+      "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
+      "stand alone",
+      "safety,growth,...", OneOf({"safety", "growth", "flights", "fidelity"}));
+  command.Add("--scenes", options.count, "Scenes of each kind")
+      .Check(Range(1, 100000))
+      .ShowDefault();
+  command.AddList("--kinds", &arguments->kinds, "Kinds of scenes", "A,B,...",
+                  OneOf({"A", "B", "C", "D"}));
+  command.Add("--flights", arguments->flights, "Flights of each kind and planner")
+      .Check(Range(1, 100000))
+      .ShowDefault();
+  command.AddList("--planners", &arguments->planners, "Whose flights", "landing,ego",
+                  OneOf({"landing", "ego"}));
+  command.Add("--backend", options.replanner.backend, "Solver backend")
+      .Check(OneOf(BackendNames(registries)))
+      .ShowDefault();
+  command.Add("--arrival", arguments->arrival, "Arrival time")
+      .Check(OneOf({"fixed", "free"}))
+      .ShowDefault();
+  command.Add("--limits", arguments->limits, "As a penalty, or as constraints")
+      .Check(OneOf({"soft", "hard"}))
+      .ShowDefault();
+  command.Add("--guides", options.replanner.max_guides, "Most guide paths to try")
+      .Check(Range(1, 8))
+      .ShowDefault();
+  command.Add("--horizon", options.scenes.horizon, "Start to end [m]")
+      .Check(Range(3.0, 40.0))
+      .ShowDefault();
+  command.Add("--resolution", options.scenes.resolution, "Of the map [m]")
+      .Check(Range(0.05, 0.4))
+      .ShowDefault();
+  command.Add("--repeats", options.repeats, "Timed steps of each scene; the median counts")
+      .Check(Range(1, 1000))
+      .ShowDefault();
+  command.Add("--seed", options.scenes.seed, "Seed of the scenes")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      .ShowDefault();
+  command.Add("--pin", arguments->pin, "Run on this CPU only").Check(Range(0, 1023));
+  command.AddFile("--db", &arguments->db, "Write every step, an SQLite file", "F.db");
+  command.AddFile("--picture", &arguments->picture, "Draw the part growth", "F.png");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.AddFlag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
+  command.OnChosen([arguments, &registries, run, command] {
     *run = [arguments, &registries, command] {
-      CheckEffects(*arguments, *command);
+      CheckEffects(*arguments, command);
       if (Named(arguments->parts, "fidelity")) return RunFidelity(*arguments);
       if (Named(arguments->parts, "flights")) return RunFlights(*arguments, registries);
       return Study(*arguments, registries);

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/pad_report.h"
 #include "touchdown/evaluation/pad_summary.h"
 #include "touchdown/evaluation/progress.h"
@@ -48,32 +47,29 @@ int Run(const PadStudyArguments& arguments, const Registries& registries) {
 
 }  // namespace
 
-void AddPadStudyCommand(CLI::App& study, const Registries& registries, CommandRun* run) {
-  CLI::App* command = study.add_subcommand(
+void AddPadStudyCommand(Command study, const Registries& registries, CommandRun* run) {
+  const Command command = study.AddCommand(
       "pad", "How well the pad is known and foretold in flights, by both models of its filter");
   const auto arguments = std::make_shared<PadStudyArguments>();
   PadStudyOptions& options = arguments->options;
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  AddListOption(*command, "--scenarios", &options.scenarios, "Names or files", "NAME,...", {});
-  AddListOption(*command, "--sigmas", &options.sigmas, "Of the pad's GPS [m]", "0.01,0.5,...",
-                FiniteRange(0.0, 100.0));
-  command->add_option("--trials", options.trials, "Flights of each scenario and sigma")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command->add_option("--set", options.overrides, "Change a key of the scenarios")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command->add_option("--jobs", options.jobs, "Threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_option("--seed", options.seed, "Seed of the study; trial seeds follow from it")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
-      ->capture_default_str();
-  AddFileOption(*command, "--db", &arguments->db, "Write the table, an SQLite file", "F.db");
-  AddFileOption(*command, "--picture", &arguments->picture, "Draw the prediction's errors",
-                "F.png");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, &registries, run] {
+  command.AddList("--scenarios", &options.scenarios, "Names or files", "NAME,...", AnyWord());
+  command.AddList("--sigmas", &options.sigmas, "Of the pad's GPS [m]", "0.01,0.5,...",
+                  Range(0.0, 100.0));
+  command.Add("--trials", options.trials, "Flights of each scenario and sigma")
+      .Check(Range(1, 1000000))
+      .ShowDefault();
+  command.Add("--set", options.overrides, "Change a key of the scenarios")
+      .TypeName("KEY=VALUE")
+      .OneWord();
+  command.Add("--jobs", options.jobs, "Threads").Check(Range(1, 1024)).ShowDefault();
+  command.Add("--seed", options.seed, "Seed of the study; trial seeds follow from it")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      .ShowDefault();
+  command.AddFile("--db", &arguments->db, "Write the table, an SQLite file", "F.db");
+  command.AddFile("--picture", &arguments->picture, "Draw the prediction's errors", "F.png");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return Run(*arguments, registries); };
   });
 }

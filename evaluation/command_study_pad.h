@@ -7,6 +7,6 @@ namespace touchdown::evaluation {
 
 /// Adds `pad` to the command `study`; when it is chosen, sets `run` to what returns the exit
 /// status. `registries` must outlive it.
-void AddPadStudyCommand(CLI::App& study, const Registries& registries, CommandRun* run);
+void AddPadStudyCommand(Command study, const Registries& registries, CommandRun* run);
 
 }  // namespace touchdown::evaluation

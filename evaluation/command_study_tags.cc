@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/list_option.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/tag_fit.h"
@@ -108,41 +107,41 @@ int Run(const TagStudyArguments& arguments) {
 
 }  // namespace
 
-void AddTagStudyCommand(CLI::App& study, CommandRun* run) {
-  CLI::App* command = study.add_subcommand(
+void AddTagStudyCommand(Command study, CommandRun* run) {
+  const Command command = study.AddCommand(
       "tags", "How well the pad is found in rendered images of its tags, by height");
   const auto arguments = std::make_shared<TagStudyArguments>();
   TagStudyOptions& options = arguments->options;
-  command->add_option("--poses", options.poses, "Views for each camera")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  AddListOption(*command, "--fov", &arguments->fovs, "Vertical fields of view [deg]", "90,60,...",
-                FiniteRange(10.0, 100.0));
-  AddListOption(*command, "--noise", &arguments->noises, "Noise of the images [grey levels]",
-                "0,5,...", FiniteRange(0.0, 100.0));
-  command->add_option("--width", options.camera.width, "Of the images, 4:3 [pixel]")
-      ->check(CLI::Range(32, 4096))
-      ->capture_default_str();
-  command->add_option("--exposure", options.camera.exposure_ms, "Of the images [ms]")
-      ->check(FiniteRange(0.0, 100.0))
-      ->capture_default_str();
-  command->add_option("--speed", options.speed, "Of the vehicle over the pad while exposed [m/s]")
-      ->check(FiniteRange(0.0, 20.0))
-      ->capture_default_str();
-  command->add_flag("--no-align", arguments->no_align,
-                    "Poses from the tags' corners alone, the sheet is not aligned");
-  command->add_flag("--fit", arguments->fit,
-                    "Fit the constants of the fast tag camera to the views (sim/tag_model.h)");
-  command->add_option("--seed", options.seed, "Seed of the views")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
-      ->capture_default_str();
-  AddFileOption(*command, "--db", &arguments->db, "Write every view, an SQLite file", "F.db");
-  AddFileOption(
-      *command, "--frames", &arguments->frames,
+  command.Add("--poses", options.poses, "Views for each camera")
+      .Check(Range(1, 1000000))
+      .ShowDefault();
+  command.AddList("--fov", &arguments->fovs, "Vertical fields of view [deg]", "90,60,...",
+                  Range(10.0, 100.0));
+  command.AddList("--noise", &arguments->noises, "Noise of the images [grey levels]", "0,5,...",
+                  Range(0.0, 100.0));
+  command.Add("--width", options.camera.width, "Of the images, 4:3 [pixel]")
+      .Check(Range(32, 4096))
+      .ShowDefault();
+  command.Add("--exposure", options.camera.exposure_ms, "Of the images [ms]")
+      .Check(Range(0.0, 100.0))
+      .ShowDefault();
+  command.Add("--speed", options.speed, "Of the vehicle over the pad while exposed [m/s]")
+      .Check(Range(0.0, 20.0))
+      .ShowDefault();
+  command.AddFlag("--no-align", arguments->no_align,
+                  "Poses from the tags' corners alone, the sheet is not aligned");
+  command.AddFlag("--fit", arguments->fit,
+                  "Fit the constants of the fast tag camera to the views (sim/tag_model.h)");
+  command.Add("--seed", options.seed, "Seed of the views")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      .ShowDefault();
+  command.AddFile("--db", &arguments->db, "Write every view, an SQLite file", "F.db");
+  command.AddFile(
+      "--frames", &arguments->frames,
       fmt::format("Save the first {} images of each camera with what was found in them", kFrames),
       "DIR");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, run] { *run = [arguments] { return Run(*arguments); }; });
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, run] { *run = [arguments] { return Run(*arguments); }; });
 }
 
 }  // namespace touchdown::evaluation

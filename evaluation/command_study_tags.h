@@ -7,6 +7,6 @@ namespace touchdown::evaluation {
 
 /// Adds `tags` to the command `study`; when it is chosen, sets `run` to what returns the exit
 /// status.
-void AddTagStudyCommand(CLI::App& study, CommandRun* run);
+void AddTagStudyCommand(Command study, CommandRun* run);
 
 }  // namespace touchdown::evaluation

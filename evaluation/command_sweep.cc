@@ -59,27 +59,25 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
 
 }  // namespace
 
-void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run) {
-  CLI::App* command = app.add_subcommand("sweep", "Fly many landings of one scenario");
+void AddSweepCommand(Command app, const Registries& registries, CommandRun* run) {
+  const Command command = app.AddCommand("sweep", "Fly many landings of one scenario");
   const auto arguments = std::make_shared<SweepArguments>();
-  arguments->scenario.AddTo(*command, true);
-  command->add_option("--trials", arguments->trials, "Number of trials")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
+  arguments->scenario.AddTo(command, true);
+  command.Add("--trials", arguments->trials, "Number of trials")
+      .Check(Range(1, 1000000))
+      .ShowDefault();
   command
-      ->add_option("--vary", arguments->vary,
-                   "Change a key from trial to trial: a range to draw from, or values in turn")
-      ->type_name("KEY=LO..HI|a,b,c")
-      ->allow_extra_args(false);
-  command->add_option("--jobs", arguments->jobs, "Threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53))
-      ->capture_default_str();
-  AddFileOption(*command, "--db", &arguments->db, "Write the trial table, an SQLite file", "F.db");
-  command->add_flag("--json", arguments->json, "Print one JSON document on stdout");
-  command->callback([arguments, &registries, run] {
+      .Add("--vary", arguments->vary,
+           "Change a key from trial to trial: a range to draw from, or values in turn")
+      .TypeName("KEY=LO..HI|a,b,c")
+      .OneWord();
+  command.Add("--jobs", arguments->jobs, "Threads").Check(Range(1, 1024)).ShowDefault();
+  command.Add("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
+      .ShowDefault();
+  command.AddFile("--db", &arguments->db, "Write the trial table, an SQLite file", "F.db");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return Sweep(*arguments, registries); };
   });
 }

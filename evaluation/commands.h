@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "touchdown/evaluation/command_line.h"
 #include "touchdown/evaluation/program.h"
 #include "touchdown/evaluation/scenario.h"
 
@@ -20,14 +19,14 @@ inline constexpr int kBadInput = 2;
 
 /// Adds a sub-command to `app`; when it is chosen, sets `run` to what returns the exit status.
 using CommandRun = std::function<int()>;
-void AddLandCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddCompareCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddStudyCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddSweepCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddCheckTermCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddListCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddPlanCommand(CLI::App& app, const Registries& registries, CommandRun* run);
-void AddProfileCommand(CLI::App& app, const Registries& registries, CommandRun* run);
+void AddLandCommand(Command app, const Registries& registries, CommandRun* run);
+void AddCompareCommand(Command app, const Registries& registries, CommandRun* run);
+void AddStudyCommand(Command app, const Registries& registries, CommandRun* run);
+void AddSweepCommand(Command app, const Registries& registries, CommandRun* run);
+void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* run);
+void AddListCommand(Command app, const Registries& registries, CommandRun* run);
+void AddPlanCommand(Command app, const Registries& registries, CommandRun* run);
+void AddProfileCommand(Command app, const Registries& registries, CommandRun* run);
 
 /// The options that choose a scenario, shared by the commands that fly.
 struct ScenarioArguments {
@@ -37,7 +36,7 @@ struct ScenarioArguments {
   std::string backend;
   std::string seed;
 
-  void AddTo(CLI::App& command, bool scenario_required);
+  void AddTo(Command command, bool scenario_required);
   /// --set and its short forms, in the order in which they count.
   std::vector<std::string> Overrides() const;
   /// The scenario with these. @throws BadInput as LoadScenario does, and for a --backend of a planner that
@@ -46,14 +45,6 @@ struct ScenarioArguments {
   /// The overrides for a recorded flight, of which only the planner can be changed. @throws BadInput
   std::vector<std::string> ReplayOverrides() const;
 };
-
-/// An option that names a file; an empty name is refused. For one to write the command asks
-/// CheckOutputPath before it runs.
-CLI::Option* AddFileOption(CLI::App& command, const std::string& name, std::string* path,
-                           const std::string& help, const std::string& type);
-
-/// A number in [low, high]; unlike CLI::Range it does not let NaN through.
-CLI::Validator FiniteRange(double low, double high);
 
 /// @throws BadInput if the timings of this build mean nothing and the user did not ask for them.
 void CheckTimings(bool allow_debug);

@@ -13,6 +13,8 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr ResultFormat kFormat{"touchdown comparison", 2};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE problem(points INTEGER, problem INTEGER, draws INTEGER, not_clear INTEGER,
   unsolved INTEGER, rounds INTEGER, clear INTEGER, pairs INTEGER, duration_s REAL, start_speed_mps REAL, pad_speed_mps REAL, pad_rate_radps REAL,
@@ -84,15 +86,13 @@ void WriteSummary(SqliteDb& db, const CompareOptions& options, const CompareResu
 
 void WriteCompareTable(const std::string& path, const CompareOptions& options,
                        const CompareResult& result, const MachineState& machine) {
-  WriteResultFile(path, "touchdown comparison", kSchema, Facts(options, machine),
-                  [&](SqliteDb& db) {
-                    WriteProblems(db, result);
-                    WriteSolves(db, result);
-                    SqliteStatement refusal = db.Prepare("INSERT INTO refusal VALUES(?, ?, ?)");
-                    for (const Refusal& row : result.refusals)
-                      refusal.Run(row.points, row.backend, row.reason);
-                    WriteSummary(db, options, result);
-                  });
+  WriteResultFile(path, kFormat, kSchema, Facts(options, machine), [&](SqliteDb& db) {
+    WriteProblems(db, result);
+    WriteSolves(db, result);
+    SqliteStatement refusal = db.Prepare("INSERT INTO refusal VALUES(?, ?, ?)");
+    for (const Refusal& row : result.refusals) refusal.Run(row.points, row.backend, row.reason);
+    WriteSummary(db, options, result);
+  });
 }
 
 }  // namespace touchdown::evaluation

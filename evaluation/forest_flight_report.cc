@@ -14,6 +14,8 @@ using Json = nlohmann::ordered_json;
 constexpr FlightOutcome kOutcomes[] = {FlightOutcome::kReached, FlightOutcome::kCollided,
                                        FlightOutcome::kStuck, FlightOutcome::kCrashed};
 
+constexpr ResultFormat kFormat{"touchdown forest flights", 1};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE flight(planner TEXT, kind TEXT, flight INTEGER, seed INTEGER, outcome TEXT,
   message TEXT, time_s REAL, length_m REAL, clearance_m REAL, max_speed_mps REAL,
@@ -110,7 +112,7 @@ Json ForestFlightJson(const std::vector<ForestFlightPart>& parts) {
 }
 
 void WriteForestFlights(const std::string& path, const std::vector<ForestFlightPart>& parts) {
-  WriteResultFile(path, "touchdown forest flights", kSchema, {}, [&](SqliteDb& db) {
+  WriteResultFile(path, kFormat, kSchema, {}, [&](SqliteDb& db) {
     SqliteStatement insert =
         db.Prepare("INSERT INTO flight VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement timing = db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?)");

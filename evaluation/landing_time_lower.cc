@@ -77,10 +77,13 @@ class Exclusion {
     const sim::PadMotionBounds& rates = task_.pad_rates;
     latest_ = to;
     at_ = pad_.At(from + half);
-    widen_p_ = task_.pad_position_error + rates.speed * half;
+    const double yaw_rate = std::abs(at_.yaw_rate) + rates.yaw_acceleration * half;
+    // A turn moves no point of the deck by more than its corners.
+    widen_p_ = task_.pad_position_error + rates.speed * half +
+               task_.deck_radius() * (task_.pad_yaw_error + yaw_rate * half);
     widen_v_ = task_.pad_velocity_error + rates.acceleration * half;
-    turning_ = (std::abs(at_.yaw_rate) + rates.yaw_acceleration * half) *
-               (task_.deck_radius + task_.foot_reach);
+    turning_ = (yaw_rate + task_.pad_yaw_rate_error) * (task_.deck_radius() + task_.foot_reach);
+    x_WP_ = {std::cos(at_.yaw), std::sin(at_.yaw)};
     top_ = std::min(task_.speed, task_.acceleration * to);
   }
 
@@ -94,8 +97,12 @@ class Exclusion {
     const double too_fast = -top_ - (v + spread);
     if (too_slow > kRounding || too_fast > kRounding) return std::max(too_slow, too_fast);
     const double u = std::clamp(v + spread, -top_, top_);
-    const double nearest =
-        n.dot(at_.p_WP - task_.p_WB) - task_.deck_radius * n_h - task_.foot_reach - widen_p_;
+    const double along_deck = std::abs(n.x() * x_WP_.x() + n.y() * x_WP_.y()) +
+                              std::abs(n.y() * x_WP_.x() - n.x() * x_WP_.y());
+    // A foot may also meet the deck's side, below its upper face.
+    const double deck =
+        task_.deck_half_size * along_deck + task_.deck_thickness * std::max(0.0, n.z());
+    const double nearest = n.dot(at_.p_WP - task_.p_WB) - deck - task_.foot_reach - widen_p_;
     return nearest - Reach(latest_, u, task_.speed, task_.acceleration);
   }
 
@@ -126,6 +133,7 @@ class Exclusion {
   Eigen::Vector3d best_;
   // Of the interval: the pad in its middle, and what every T in it is bounded by.
   estimation::PadState at_;
+  Eigen::Vector2d x_WP_;  // its x axis
   double latest_ = 0.0;
   double widen_p_ = 0.0;  // [m]
   double widen_v_ = 0.0;  // [m/s]

@@ -13,6 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr ResultFormat kFormat{"touchdown pad study", 2};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE flight(flight INTEGER PRIMARY KEY, scenario TEXT, gps_sigma_m REAL, trial INTEGER,
   seed INTEGER, outcome TEXT);
@@ -145,7 +147,7 @@ void WritePadStudy(const std::string& path, const PadStudyOptions& options, cons
   for (std::size_t i = 0; i < options.overrides.size(); ++i) {
     facts.emplace_back(fmt::format("set_{}", i), options.overrides[i]);
   }
-  WriteResultFile(path, "touchdown pad study", kSchema, facts, [&](SqliteDb& db) {
+  WriteResultFile(path, kFormat, kSchema, facts, [&](SqliteDb& db) {
     SqliteStatement flown = db.Prepare("INSERT INTO flight VALUES(?, ?, ?, ?, ?, ?)");
     for (std::size_t i = 0; i < study.flights.size(); ++i) {
       const PadStudyFlight& flight = study.flights[i];

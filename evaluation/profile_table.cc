@@ -7,6 +7,8 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr ResultFormat kFormat{"touchdown profile", 1};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE run(run INTEGER PRIMARY KEY, seed INTEGER, outcome TEXT, warm_up INTEGER);
 CREATE TABLE replan(run INTEGER, replan INTEGER, t_now REAL, status TEXT, reason TEXT,
@@ -70,7 +72,7 @@ void WriteFrames(SqliteDb& db, const Profile& profile, int run,
 
 void WriteProfileTable(const std::string& path, const Profile& profile,
                        const MachineState& machine) {
-  WriteResultFile(path, "touchdown profile", kSchema, Facts(profile, machine), [&](SqliteDb& db) {
+  WriteResultFile(path, kFormat, kSchema, Facts(profile, machine), [&](SqliteDb& db) {
     SqliteStatement insert = db.Prepare("INSERT INTO run VALUES(?, ?, ?, ?)");
     int id = 0;
     for (const ProfileRun& run : profile.runs) {

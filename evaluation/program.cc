@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
@@ -22,19 +23,19 @@
 
 namespace touchdown::evaluation {
 
-void ScenarioArguments::AddTo(CLI::App& command, bool scenario_required) {
-  CLI::Option* positional = command.add_option(
+void ScenarioArguments::AddTo(Command command, bool scenario_required) {
+  const Option positional = command.Add(
       "SCENARIO", scenario, "Name of a shipped scenario (`touchdown list scenarios`) or a file");
   if (scenario_required) {
-    positional->required();
+    positional.Required();
   } else {
-    positional->capture_default_str();
+    positional.ShowDefault();
   }
-  command.add_option("--set", set, "Change a key of the scenario; may be given again")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--planner", planner, "Short for --set planner=")->type_name("NAME");
-  command.add_option("--backend", backend, "Short for --set solver.backend=")->type_name("NAME");
+  command.Add("--set", set, "Change a key of the scenario; may be given again")
+      .TypeName("KEY=VALUE")
+      .OneWord();
+  command.Add("--planner", planner, "Short for --set planner=").TypeName("NAME");
+  command.Add("--backend", backend, "Short for --set solver.backend=").TypeName("NAME");
 }
 
 std::vector<std::string> ScenarioArguments::Overrides() const {
@@ -68,24 +69,6 @@ std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
     }
   }
   return overrides;
-}
-
-CLI::Option* AddFileOption(CLI::App& command, const std::string& name, std::string* path,
-                           const std::string& help, const std::string& type) {
-  const auto named = [](const std::string& text) {
-    return std::string(text.empty() ? "no file is named" : "");
-  };
-  return command.add_option(name, *path, help)->type_name(type)->check(named);
-}
-
-CLI::Validator FiniteRange(double low, double high) {
-  const std::string range = fmt::format("[{:g} - {:g}]", low, high);
-  const auto check = [low, high, range](const std::string& text) {
-    double value = 0.0;
-    const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-    return inside ? std::string() : fmt::format("Value {} not in range {}", text, range);
-  };
-  return CLI::Validator(check, "FLOAT in " + range);
 }
 
 void CheckTimings(bool allow_debug) {
@@ -149,14 +132,14 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     spdlog::error("{}.", error.what());
     return kBadInput;
   }
-  AddLandCommand(app, registries, &run);
-  AddCompareCommand(app, registries, &run);
-  AddStudyCommand(app, registries, &run);
-  AddSweepCommand(app, registries, &run);
-  AddPlanCommand(app, registries, &run);
-  AddProfileCommand(app, registries, &run);
-  AddCheckTermCommand(app, registries, &run);
-  AddListCommand(app, registries, &run);
+  AddLandCommand(Command(&app), registries, &run);
+  AddCompareCommand(Command(&app), registries, &run);
+  AddStudyCommand(Command(&app), registries, &run);
+  AddSweepCommand(Command(&app), registries, &run);
+  AddPlanCommand(Command(&app), registries, &run);
+  AddProfileCommand(Command(&app), registries, &run);
+  AddCheckTermCommand(Command(&app), registries, &run);
+  AddListCommand(Command(&app), registries, &run);
   try {
     CheckCommand(app, argc, argv);
     app.parse(argc, argv);

@@ -70,6 +70,9 @@ void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result
   insert.Run("map_resolution", fmt::format("{}", record.map_resolution));
   const planning::CellIndex& cells = record.map_size;
   insert.Run("map_size", fmt::format("{} {} {}", cells.x(), cells.y(), cells.z()));
+  const OutsideFiles outside = OutsideFilesOf(scenario);
+  insert.Run("pad_waypoints", outside.pad_waypoints);
+  insert.Run("vehicle_hash", outside.vehicle_hash);
   nlohmann::ordered_json json = LandJson(scenario, result);
   json.erase("wall_clock");  // wall-clock figures stand only in the table timing
   insert.Run("result_json", json.dump());

@@ -11,6 +11,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/table_rows.h"
 
 namespace touchdown::evaluation {
@@ -244,6 +245,21 @@ void CheckMap(const Meta& meta, const Scenario& scenario) {
   }
 }
 
+// Nor may the files that the scenario names have become others: a step would be solved against
+// another pad or vehicle.
+void CheckOutsideFiles(const Meta& meta, const Scenario& scenario) {
+  const OutsideFiles now = OutsideFilesOf(scenario);
+  if (meta.at("pad_waypoints") != now.pad_waypoints) {
+    throw std::invalid_argument(
+        fmt::format("its pad drove past other points than pad.waypoints, {}, holds now",
+                    scenario.pad.waypoints));
+  }
+  if (meta.at("vehicle_hash") != now.vehicle_hash) {
+    throw std::invalid_argument(fmt::format(
+        "its vehicle was another one than the file {} describes now", scenario.vehicle));
+  }
+}
+
 void CheckFormat(const Meta& meta) {
   const auto value = [&meta](const char* key) {
     const auto entry = meta.find(key);
@@ -260,7 +276,7 @@ void CheckFormat(const Meta& meta) {
                                             value("version"), Version()));
   }
   for (const char* key : {"scenario", "scenario_yaml", "seed", "build_hash", "revision",
-                          "map_resolution", "map_size"}) {
+                          "map_resolution", "map_size", "pad_waypoints", "vehicle_hash"}) {
     value(key);
   }
 }
@@ -278,6 +294,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),
                                   path + " (scenario_yaml)", all, registries);
   CheckMap(meta, flight.scenario);
+  CheckOutsideFiles(meta, flight.scenario);
   flight.build_hash = meta.at("build_hash");
   flight.revision = meta.at("revision");
   ReadResults(db, &flight.plans);

@@ -15,6 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr ResultFormat kFormat{"touchdown replan study", 2};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, varied TEXT, kind TEXT, backend TEXT, arrival TEXT,
   limits TEXT, guides INTEGER, horizon_m REAL, resolution_m REAL, inflation_m REAL,
@@ -183,7 +185,7 @@ void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart
                       const MachineState& machine) {
   ManifestFacts facts;
   AddMachine(machine, &facts);
-  WriteResultFile(path, "touchdown replan study", kSchema, facts, [&](SqliteDb& db) {
+  WriteResultFile(path, kFormat, kSchema, facts, [&](SqliteDb& db) {
     SqliteStatement insert_part =
         db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement insert = db.Prepare(

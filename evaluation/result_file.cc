@@ -5,19 +5,13 @@
 #include "touchdown/evaluation/build_info.h"
 
 namespace touchdown::evaluation {
-namespace {
-
-constexpr char kVersion[] = "1";
-
-}  // namespace
-
 void AddMachine(const MachineState& machine, ManifestFacts* facts) {
   facts->emplace_back("pinned_cpu", machine.pinned ? std::to_string(*machine.pinned) : "none");
   facts->emplace_back("load_before", std::to_string(machine.load_before));
   facts->emplace_back("load_after", std::to_string(machine.load_after));
 }
 
-void WriteResultFile(const std::string& path, const std::string& format, const char* schema,
+void WriteResultFile(const std::string& path, const ResultFormat& format, const char* schema,
                      const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill) {
   AtomicFile file(path);
   {
@@ -28,8 +22,8 @@ void WriteResultFile(const std::string& path, const std::string& format, const c
     db.Execute("CREATE TABLE manifest(key TEXT PRIMARY KEY, value TEXT NOT NULL)");
     db.Execute(schema);
     SqliteStatement manifest = db.Prepare("INSERT INTO manifest VALUES(?, ?)");
-    manifest.Run("format", format);
-    manifest.Run("version", kVersion);
+    manifest.Run("format", format.name);
+    manifest.Run("version", std::to_string(format.version));
     for (const auto& [key, value] : facts) manifest.Run(key, value);
     for (const auto& [key, value] : BuildManifest()) manifest.Run(key, value);
     fill(db);

@@ -14,6 +14,13 @@ namespace touchdown::evaluation {
 /// What a result file says of itself in its table `manifest`: pairs of key and value.
 using ManifestFacts = std::vector<std::pair<std::string, std::string>>;
 
+/// What a file says that it is. A format whose tables change gets a new version: readers refuse those
+/// that they do not know.
+struct ResultFormat {
+  const char* name;
+  int version;
+};
+
 /// Where times were taken: `pinned_cpu`, `load_before`, `load_after`.
 void AddMachine(const MachineState& machine, ManifestFacts* facts);
 
@@ -21,7 +28,7 @@ void AddMachine(const MachineState& machine, ManifestFacts* facts);
 /// `manifest` (key, value) with `format`, `version`, the facts and the build, and the tables of
 /// `schema` (SQL), which `fill` fills in one transaction. @throws SqliteError,
 /// std::filesystem::filesystem_error
-void WriteResultFile(const std::string& path, const std::string& format, const char* schema,
+void WriteResultFile(const std::string& path, const ResultFormat& format, const char* schema,
                      const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
 
 }  // namespace touchdown::evaluation

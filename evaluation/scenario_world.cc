@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/waypoint_file.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/sim/vehicle_file.h"
@@ -100,6 +101,15 @@ std::string VehicleMjcf(const Scenario& scenario) {
   const Scenario::Airframe& frame = scenario.airframe;
   return sim::ImportVehicle(scenario.vehicle, {frame.rotor_lag, frame.rotor_drag,
                                                frame.body_drag_area, frame.hull, frame.feet});
+}
+
+OutsideFiles OutsideFilesOf(const Scenario& scenario) {
+  OutsideFiles files{"none", "none"};
+  if (scenario.pad.motion == PadMotionKind::kWaypoints) {
+    files.pad_waypoints = WaypointText(ReadWaypointFile(scenario.pad.waypoints));
+  }
+  if (scenario.vehicle != "default") files.vehicle_hash = HashOf(VehicleMjcf(scenario));
+  return files;
 }
 
 TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {

@@ -33,6 +33,15 @@ sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 /// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
 std::string VehicleMjcf(const Scenario& scenario);
 
+/// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
+/// points of the waypoint file, the hash of the vehicle's MJCF text; each `none` without such a file.
+/// @throws std::invalid_argument as PadMotionOf and VehicleMjcf do.
+struct OutsideFiles {
+  std::string pad_waypoints;
+  std::string vehicle_hash;
+};
+OutsideFiles OutsideFilesOf(const Scenario& scenario);
+
 /// What a trial draws before it begins.
 struct TrialDraw {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start of the vehicle [m]

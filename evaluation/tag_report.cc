@@ -12,6 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr ResultFormat kFormat{"touchdown tag study", 1};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE part(part INTEGER PRIMARY KEY, seed INTEGER, width_px INTEGER, height_px INTEGER,
   fov_y_deg REAL, noise_gray REAL, exposure_ms REAL, speed_mps REAL, align INTEGER, enlarge INTEGER,
@@ -154,7 +156,7 @@ Json TagStudyJson(const std::vector<TagStudyPart>& parts) {
 }
 
 void WriteTagStudy(const std::string& path, const std::vector<TagStudyPart>& parts) {
-  WriteResultFile(path, "touchdown tag study", kSchema, {}, [&](SqliteDb& db) {
+  WriteResultFile(path, kFormat, kSchema, {}, [&](SqliteDb& db) {
     SqliteStatement insert_part =
         db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement insert_view =

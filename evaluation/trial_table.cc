@@ -12,6 +12,8 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr ResultFormat kFormat{"touchdown trials", 2};
+
 constexpr char kSchema[] = R"sql(
 CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outcome TEXT,
   detail TEXT, time_to_land_s REAL, touchdown_error_m REAL, relative_vx_mps REAL,
@@ -108,7 +110,7 @@ ManifestFacts Facts(const SweepOptions& options, const std::vector<SweepRow>& ro
 
 void WriteTrialTable(const std::string& path, const SweepOptions& options,
                      const std::vector<SweepRow>& rows) {
-  WriteResultFile(path, "touchdown trials", kSchema, Facts(options, rows), [&](SqliteDb& db) {
+  WriteResultFile(path, kFormat, kSchema, Facts(options, rows), [&](SqliteDb& db) {
     SqliteStatement trial = db.Prepare(
         "INSERT INTO trial VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
         "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");

@@ -131,4 +131,12 @@ std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path) {
   return ReadWaypoints(file);
 }
 
+std::string WaypointText(const std::vector<sim::PadWaypoint>& points) {
+  std::string text;
+  for (const sim::PadWaypoint& point : points) {
+    text += fmt::format("{} {} {}\n", point.t, point.p.x(), point.p.y());
+  }
+  return text;
+}
+
 }  // namespace touchdown::evaluation

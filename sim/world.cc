@@ -365,12 +365,15 @@ const estimation::VehicleModel& World::model() const { return impl_->model_; }
 const estimation::VehicleModel& World::plant() const { return impl_->plant_; }
 const PadMotion& World::pad_motion() const { return impl_->motion_; }
 
-// The drive's velocity lags by mass / gain times the acceleration, and its position by this over the
+// A drive's velocity lags by inertia / gain times the acceleration, and its position by this over the
 // position gain; twice that is allowed, and what a step of the physics leaves.
 World::PadLag World::MaxPadLag() const {
-  const double velocity = 2.0 * PadDrive::kMass / PadDrive::kVelocityGain *
-                          impl_->motion_.bounds().acceleration;
-  return {0.001 + velocity / PadDrive::kPositionGain, 0.002 + velocity};
+  const PadMotionBounds motion = impl_->motion_.bounds();
+  const double velocity = 2.0 * PadDrive::kMass / PadDrive::kVelocityGain * motion.acceleration;
+  const double yaw_rate =
+      2.0 * PadDrive::YawInertia(impl_->config_.pad) / PadDrive::kYawGain * motion.yaw_acceleration;
+  return {0.001 + velocity / PadDrive::kPositionGain, 0.002 + velocity,
+          0.0002 + yaw_rate / PadDrive::kPositionGain, 0.0005 + yaw_rate};
 }
 const WorldConfig& World::config() const { return impl_->config_; }
 estimation::VehicleState World::vehicle() const { return impl_->Vehicle(); }

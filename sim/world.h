@@ -83,6 +83,8 @@ class World {
   struct PadLag {
     double position = 0.0;  ///< [m]
     double velocity = 0.0;  ///< [m/s]
+    double yaw = 0.0;       ///< [rad]
+    double yaw_rate = 0.0;  ///< [rad/s]
   };
   PadLag MaxPadLag() const;
   const WorldConfig& config() const;

@@ -31,16 +31,13 @@ void WritePad(const WorldConfig& config, std::ostream& xml) {
   const Eigen::Vector3d origin = at_origin.p_WP;
   const Box deck = DeckBox(config.pad, at_origin);
   const Box body = PadBodyBox(config.pad, at_origin);
-  const double length = config.pad.body_half_length;
-  const double width = config.pad.body_half_width;
-  const double yaw_inertia = PadDrive::kMass * (length * length + width * width) / 3.0;
   xml << "<body name='pad' pos='" << VectorText(origin) << "'>\n"
       << "<joint name='pad_x' type='slide' axis='1 0 0' limited='false'/>\n"
       << "<joint name='pad_y' type='slide' axis='0 1 0' limited='false'/>\n"
       << "<joint name='pad_yaw' type='hinge' axis='0 0 1' limited='false'/>\n"
       << "<inertial pos='" << VectorText(body.center - origin) << "' mass='"
       << NumberText(PadDrive::kMass) << "' diaginertia='"
-      << VectorText(Eigen::Vector3d::Constant(yaw_inertia))
+      << VectorText(Eigen::Vector3d::Constant(PadDrive::YawInertia(config.pad)))
       << "'/>\n"
       // Priority: the deck's own friction holds, whatever the vehicle's feet say.
       << "<geom name='deck' type='box' size='" << VectorText(deck.half_extents) << "' pos='"

@@ -13,6 +13,12 @@ struct PadDrive {
   static constexpr double kVelocityGain = 4000.0;  ///< both slides [N s/m]
   static constexpr double kYawGain = 800.0;        ///< hinge [N m s/rad]
   static constexpr double kPositionGain = 1.5;     ///< control = v_ref + this * (p_ref - p) [1/s]
+
+  /// About the hinge, of a slab as long and wide as the body [kg m^2].
+  static double YawInertia(const PadGeometry& pad) {
+    const double length = pad.body_half_length, width = pad.body_half_width;
+    return kMass * (length * length + width * width) / 3.0;
+  }
 };
 
 /// MJCF text of the world: ground, obstacles, pad vehicle; the vehicle is included under

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "touchdown/evaluation/landing_judge.h"
 
@@ -65,40 +67,68 @@ struct RandomTask {
   LandingTimeTask task;
 };
 
-/// Some foot may touch the deck and contact would be soft enough.
+/// Some point of the feet at some attitude may touch the deck, and contact would be soft enough.
 bool InContact(const LandingTimeTask& task, const estimation::PadState& pad,
                const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
   const Eigen::Vector3d offset = p - pad.p_WP;
-  const double beyond = std::max(0.0, offset.head<2>().norm() - task.deck_radius);
+  const Eigen::Vector2d on_deck = Eigen::Rotation2Dd(-pad.yaw) * offset.head<2>();
+  const double beyond = (on_deck.cwiseAbs().array() - task.deck_half_size).max(0.0).matrix().norm();
   const Eigen::Vector3d relative = v - DeckPointVelocity(pad, p);
   return std::hypot(beyond, offset.z()) <= task.foot_reach &&
          relative.head<2>().norm() <= task.horizontal_speed &&
          std::abs(relative.z()) <= task.vertical_speed;
 }
 
-TEST(LandingTime, PadAtRestStraightAheadIsTheTextbookCase) {
-  // From rest along x to the near edge, where the vehicle may still move at 0.6 m/s.
-  const sim::PadMotion pad = Line(20.0, 0.0);
-  const LandingTimeTask task = TaskOn(pad);
-  const double way = 20.0 - task.deck_radius - task.foot_reach;
-  const double v = task.speed, a = task.acceleration, u = task.horizontal_speed;
+/// From rest along a straight line, ending at u after some coasting.
+double StraightFlight(const LandingTimeTask& task, double way, double u) {
+  const double v = task.speed, a = task.acceleration;
   const double ramps = (v * v + v * v - u * u) / (2.0 * a);
-  const double exact = v / a + (v - u) / a + (way - ramps) / v;
+  return v / a + (v - u) / a + (way - ramps) / v;
+}
+
+TEST(LandingTime, PadAtRestStraightAheadIsTheTextbookCase) {
+  // To the near edge of a deck that is square on, or to the near corner of one at 45 degrees.
+  for (const double heading : {0.0, 0.78539816339744831}) {
+    sim::PadMotionConfig config;
+    config.kind = Kind::kStatic;
+    config.p_start = {20.0, 0.0, 0.0};
+    config.heading = heading;
+    config.speed = 0.0;
+    const sim::PadMotion pad(config);
+    LandingTimeTask task = TaskOn(pad);
+    const sim::OraclePadPrediction oracle(pad);
+    const double deck = heading == 0.0 ? task.deck_half_size : task.deck_radius();
+
+    // With a foot stretched forwards, where the vehicle may still move at 0.6 m/s.
+    const double u = task.horizontal_speed;
+    const double reached = StraightFlight(task, 20.0 - deck - task.foot_reach, u);
+    const double bound = LandingTimeLowerBound(task, oracle);
+    EXPECT_LE(bound, reached) << heading;
+    EXPECT_GT(bound, reached - 2e-4) << heading;
+
+    // With the vehicle itself over the deck, level: its feet slide onto it.
+    task.p_WB.z() = task.foot_depth;
+    const double level = StraightFlight(task, 20.0 - deck, u);
+    const auto found = LandingTimeUpperBound(task, oracle, bound);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_GE(found->time, level) << heading;
+    EXPECT_LT(found->time, 1.005 * level) << heading;
+  }
+}
+
+TEST(LandingTime, NoFlightIsFoundFromBelowTheDeck) {
+  const sim::PadMotion pad = Line(5.0, 0.0);
+  LandingTimeTask task = TaskOn(pad);
   const sim::OraclePadPrediction oracle(pad);
-  const double bound = LandingTimeLowerBound(task, oracle);
-  EXPECT_LE(bound, exact);
-  EXPECT_GT(bound, exact - 2e-4);
-  const auto found = LandingTimeUpperBound(task, oracle, bound);
-  ASSERT_TRUE(found.has_value());
-  EXPECT_GE(*found, exact);
-  EXPECT_LT(*found, 1.005 * exact);
+  task.p_WB.z() = task.foot_depth - 0.01;
+  EXPECT_FALSE(LandingTimeUpperBound(task, oracle, 1.0).has_value());
 }
 
 TEST(LandingTime, ShortWayWithoutCoasting) {
   const sim::PadMotion pad = Line(3.0, 0.0);
   LandingTimeTask task = TaskOn(pad);
   task.acceleration = 1.0;
-  const double way = 3.0 - task.deck_radius - task.foot_reach;
+  const double way = 3.0 - task.deck_half_size - task.foot_reach;
   const double u = task.horizontal_speed;
   const double peak = std::sqrt(way * task.acceleration + 0.5 * u * u);
   const double bound = LandingTimeLowerBound(task, sim::OraclePadPrediction(pad));
@@ -118,7 +148,7 @@ TEST(LandingTime, PadThatDrivesAheadOrTowards) {
       return (2.0 * v * v - u * u) / (2.0 * a) + v * (T - (2.0 * v - u) / a);
     };
     // reach(T) = 10 + speed T - radius - foot, linear in T.
-    const double way = 10.0 - task.deck_radius - task.foot_reach;
+    const double way = 10.0 - task.deck_half_size - task.foot_reach;
     const double exact = (way - reach(0.0)) / (v - speed);
     const double bound = LandingTimeLowerBound(task, sim::OraclePadPrediction(pad));
     EXPECT_LE(bound, exact) << speed;
@@ -163,12 +193,112 @@ TEST(LandingTime, LowerBoundIsBelowWhatIsFoundAndNear) {
     const double lower = LandingTimeLowerBound(r.task, oracle);
     const auto upper = LandingTimeUpperBound(r.task, oracle, lower);
     ASSERT_TRUE(upper.has_value()) << i << " " << lower;
-    ASSERT_LE(lower, *upper) << i;
-    gaps.push_back(*upper / lower - 1.0);
+    ASSERT_LE(lower, upper->time) << i;
+    gaps.push_back(upper->time / lower - 1.0);
   }
   std::sort(gaps.begin(), gaps.end());
-  EXPECT_LT(gaps[100], 0.01);
-  EXPECT_LT(gaps[190], 0.05);
+  EXPECT_LT(gaps[100], 0.02);
+  EXPECT_LT(gaps[190], 0.07);
+}
+
+// The pads of straight_turn and circle, from starts as far away as there, with the lag of their drives.
+TEST(LandingTime, GapIsSmallForTheShippedPads) {
+  std::mt19937_64 random(9);
+  for (const Kind kind : {Kind::kStraightTurn, Kind::kCircle}) {
+    std::vector<double> gaps, lowers;
+    for (int i = 0; i < 60; ++i) {
+      sim::PadMotionConfig config;
+      config.kind = kind;
+      config.p_start = {7.0, 6.5, 0.5};
+      config.speed = 0.8;
+      config.turn_start = 5.0;
+      config.turn_rate = kind == Kind::kCircle ? 0.15 : 0.25;
+      config.phase = Uniform(&random, -2.0, 2.0);
+      const sim::PadMotion motion(config);
+      LandingTimeTask task = TaskOn(motion);
+      task.p_WB = {Uniform(&random, -1, 1), Uniform(&random, -1, 1), Uniform(&random, 1.5, 3.5)};
+      task.pad_position_error = 0.004;
+      task.pad_velocity_error = 0.006;
+      task.pad_yaw_error = 0.004;
+      task.pad_yaw_rate_error = 0.007;
+      const sim::OraclePadPrediction oracle(motion);
+      lowers.push_back(LandingTimeLowerBound(task, oracle));
+      const auto upper = LandingTimeUpperBound(task, oracle, lowers.back());
+      ASSERT_TRUE(upper.has_value()) << i;
+      gaps.push_back(upper->time / lowers.back() - 1.0);
+    }
+    std::sort(gaps.begin(), gaps.end());
+    std::sort(lowers.begin(), lowers.end());
+    const std::string name = kind == Kind::kCircle ? "circle" : "straight_turn";
+    RecordProperty(name + "_gap_median", std::to_string(gaps[30]));
+    RecordProperty(name + "_gap_largest", std::to_string(gaps.back()));
+    RecordProperty(name + "_lower_median_s", std::to_string(lowers[30]));
+    EXPECT_LT(gaps.back(), 0.045) << name;
+  }
+}
+
+/// De Boor's algorithm is not needed: between knots a quadratic B-spline is a parabola.
+Eigen::Vector3d PositionOf(const LandingFlight& flight, double t) {
+  const int segments = static_cast<int>(flight.control_points.size()) - 2;
+  const double x = std::clamp(t / flight.time, 0.0, 1.0) * segments;
+  const int k = std::min(static_cast<int>(x), segments - 1);
+  const double s = x - k;
+  const std::vector<Eigen::Vector3d>& q = flight.control_points;
+  return 0.5 *
+         ((1.0 - s) * (1.0 - s) * q[k] + (1.0 + 2.0 * s * (1.0 - s)) * q[k + 1] + s * s * q[k + 2]);
+}
+
+// Sampled, with differences for velocity and acceleration and the feet as they are: what the bound
+// is called is what is found.
+TEST(LandingTime, WhatIsFoundIsAFlightThatLands) {
+  std::mt19937_64 random(8);
+  int over_a_corner = 0;
+  for (int i = 0; i < 60; ++i) {
+    RandomTask r(&random);
+    r.task.pad_yaw_error = 0.002;
+    r.task.pad_yaw_rate_error = 0.004;
+    const sim::OraclePadPrediction oracle(r.motion);
+    const double lower = LandingTimeLowerBound(r.task, oracle);
+    const auto flight = LandingTimeUpperBound(r.task, oracle, lower);
+    ASSERT_TRUE(flight.has_value()) << i;
+    const double T = flight->time, dt = 1e-3;
+    const estimation::PadState pad = r.motion.At(T);
+    EXPECT_LT((PositionOf(*flight, 0.0) - r.task.p_WB).norm(), 1e-9);
+    EXPECT_LT((PositionOf(*flight, 1e-4) - r.task.p_WB).norm(), 1e-6);  // from rest
+    for (double t = dt; t < T - dt; t += 4.0 * dt) {
+      const Eigen::Vector3d before = PositionOf(*flight, t - dt), now = PositionOf(*flight, t),
+                            after = PositionOf(*flight, t + dt);
+      EXPECT_LE((after - now).norm(), r.task.speed * dt * (1.0 + 1e-9)) << i;
+      EXPECT_LE((after - 2.0 * now + before).norm(), r.task.acceleration * dt * dt * (1.0 + 1e-6))
+          << i;
+      EXPECT_GE(now.z() - r.task.foot_depth, pad.p_WP.z() - 1e-4) << i;
+    }
+    const Eigen::Vector3d end = PositionOf(*flight, T);
+    const Eigen::Vector3d velocity = (end - PositionOf(*flight, T - 1e-6)) / 1e-6;
+    const Eigen::Vector3d relative = velocity - DeckPointVelocity(pad, end);
+    EXPECT_LE(relative.head<2>().norm(), r.task.horizontal_speed) << i;
+    EXPECT_GE(relative.z(), -r.task.vertical_speed - 1e-5) << i;
+    EXPECT_LE(relative.z(), 1e-2) << i;
+    EXPECT_NEAR(end.z() - r.task.foot_depth, pad.p_WP.z(), 1e-4) << i;
+    const auto on_deck = [&](const Eigen::Vector2d& p) {
+      const Eigen::Vector2d p_P = Eigen::Rotation2Dd(-pad.yaw) * (p - pad.p_WP.head<2>());
+      return p_P.cwiseAbs().maxCoeff() <= r.task.deck_half_size;
+    };
+    EXPECT_TRUE(on_deck(end.head<2>())) << i;
+    // One of four feet stands on the deck at any heading.
+    for (int heading = 0; heading < 90; ++heading) {
+      int standing = 0;
+      for (int foot = 0; foot < 4; ++foot) {
+        const double azimuth = heading * 0.0174532925199433 + foot * 1.5707963267948966;
+        standing +=
+            on_deck(end.head<2>() + 0.16 * Eigen::Vector2d(std::cos(azimuth), std::sin(azimuth)));
+      }
+      EXPECT_GE(standing, 1) << i;
+    }
+    const Eigen::Vector2d p_P = Eigen::Rotation2Dd(-pad.yaw) * (end - pad.p_WP).head<2>();
+    over_a_corner += p_P.cwiseAbs().minCoeff() > 0.6;
+  }
+  EXPECT_GT(over_a_corner, 3);  // where the disc about the deck would be left
 }
 
 TEST(LandingTime, LargerLimitsAndALargerPadAreNeverLater) {
@@ -185,7 +315,7 @@ TEST(LandingTime, LargerLimitsAndALargerPadAreNeverLater) {
     const double slack = 2e-4;  // resolution of the search
     EXPECT_LE(relaxed(&LandingTimeTask::speed), bound + slack) << i;
     EXPECT_LE(relaxed(&LandingTimeTask::acceleration), bound + slack) << i;
-    EXPECT_LE(relaxed(&LandingTimeTask::deck_radius), bound + slack) << i;
+    EXPECT_LE(relaxed(&LandingTimeTask::deck_half_size), bound + slack) << i;
     EXPECT_LE(relaxed(&LandingTimeTask::horizontal_speed), bound + slack) << i;
     EXPECT_LE(relaxed(&LandingTimeTask::foot_reach), bound + slack) << i;
   }
@@ -231,7 +361,7 @@ TEST(LandingTime, NoSampledFlightArrivesBeforeIt) {
       Eigen::Vector3d aim = r.task.p_WB - r.motion.At(meeting).p_WP;
       if (flight % 2 == 1) aim = OnSphere(&random);
       aim.z() = 0.0;
-      aim *= r.task.deck_radius / aim.norm();
+      aim *= r.task.deck_half_size / aim.norm();
       aim.z() = Uniform(&random, 0.0, r.task.foot_reach);
       const double jolt = flight < 2 ? 0.0 : Uniform(&random, 0.0, 0.5);
       const double t = SampledFlight(r, aim, meeting, jolt, 1.5 * bound + 1.0, &random);

@@ -3,6 +3,7 @@
 #include "touchdown/evaluation/replay.h"
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -99,7 +100,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 3");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 4");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");
@@ -111,6 +112,30 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
   damaged("UPDATE state_point SET i = 4 WHERE plan = 3 AND i = 3", "state_point");
   damaged("UPDATE map_change SET count = -1 WHERE rowid = 1", "map_change");
   damaged("UPDATE replanner_state SET next_h = -1 WHERE plan = 3", "interval");
+}
+
+// What a record does not hold itself must be what it was in flight.
+TEST_F(Replayed, OtherWaypointsThanInFlightAreRefused) {
+  const std::string points = ::testing::TempDir() + "touchdown_replay_waypoints.csv";
+  const auto write = [&points](const char* text) { std::ofstream(points) << text; };
+  write("t,x,y\n0,0,0\n4,2,0\n30,15,0\n");
+  Fly("open",
+      {"pad.motion=waypoints", "pad.waypoints=" + points, "pad.prediction=oracle", "timeout=4"});
+  EXPECT_EQ(Refusal(), "");
+  write("# the same points\nt,x,y\n0,0,0\n4,2,0\n30,15,0\n");
+  EXPECT_EQ(Refusal(), "");
+  ExpectTheSameBits(ReadRecord(path_, {}, registries_), registries_);
+  write("t,x,y\n0,0,0\n4,2,0\n30,15.1,0\n");
+  EXPECT_EQ(Refusal(), path_ + ": its pad drove past other points than pad.waypoints, " + points +
+                           ", holds now.");
+  std::filesystem::remove(points);
+  EXPECT_NE(Refusal(), "");
+}
+
+TEST_F(Replayed, AnotherVehicleThanInFlightIsRefused) {
+  Fly("open", {"timeout=2"});
+  Execute("UPDATE meta SET value = 'another' WHERE key = 'vehicle_hash'");
+  EXPECT_THAT(Refusal(), ::testing::HasSubstr("its vehicle was another one"));
 }
 
 TEST(MapRecorder, RebuildsARollingMap) {

@@ -2,9 +2,11 @@
 // docs/record.md against the files that the program writes: every table and column, and every key of a
 // manifest that is not of the build, must be named in the section of that file's format.
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -46,9 +48,9 @@ std::vector<ResultFile> ResultFiles() {
           {"tag study", [](auto& path) { WriteTagStudy(path, {}); }}};
 }
 
-/// The words in backquotes of the table row that begins with `table`, in the section with `format`;
-/// none where there is no such row.
-std::set<std::string> Documented(const std::string& format, const std::string& table) {
+/// The columns' text of the table row that begins with `table`, in the section with `format`; empty
+/// where there is no such row.
+std::string RowOf(const std::string& format, const std::string& table) {
   std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/record.md");
   std::ostringstream text;
   text << file.rdbuf();
@@ -61,7 +63,12 @@ std::set<std::string> Documented(const std::string& format, const std::string& t
   const std::size_t begin = all.find(head, section);
   if (begin == std::string::npos || begin >= end) return {};
   const std::size_t columns = begin + head.size();
-  std::istringstream row(all.substr(columns, all.find('\n', columns) - columns));
+  return all.substr(columns, all.find('\n', columns) - columns);
+}
+
+/// The words in backquotes of that row.
+std::set<std::string> Documented(const std::string& format, const std::string& table) {
+  std::istringstream row(RowOf(format, table));
   std::set<std::string> words;
   std::string part;
   for (bool quoted = false; std::getline(row, part, '`'); quoted = !quoted) {
@@ -91,6 +98,11 @@ TEST(ResultDocs, EveryTableAndColumnIsNamed) {
     const std::vector<std::string> tables =
         Texts(db, "SELECT name FROM sqlite_master WHERE type = 'table'");
     EXPECT_GE(tables.size(), 2U);
+    const std::string facts_table = tables.front();
+    const std::string version =
+        Texts(db, "SELECT value FROM " + facts_table + " WHERE key = 'version'").at(0);
+    EXPECT_NE(RowOf(format, facts_table).find("`version` (" + version + ")"), std::string::npos)
+        << version;
     for (const std::string& table : tables) {
       const std::set<std::string> words = Documented(format, table);
       EXPECT_FALSE(words.empty()) << "no row of the table " << table;
@@ -103,6 +115,47 @@ TEST(ResultDocs, EveryTableAndColumnIsNamed) {
         EXPECT_EQ(words.count(name), 1U) << table << "." << name;
       }
     }
+  }
+  std::filesystem::remove(path);
+}
+
+/// FNV-1a, 32 bits.
+std::uint32_t Fingerprint(const std::vector<std::string>& texts) {
+  std::uint32_t hash = 2166136261U;
+  for (const std::string& text : texts) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  }
+  return hash;
+}
+
+// A reader knows a format by its version alone: with other columns the version must be another one
+// too. Who changes a table raises the format's version and enters both here.
+TEST(ResultDocs, OtherColumnsAreAnotherVersion) {
+  const std::map<std::string, std::string> known = {
+      {"record", "4 2171881221"},       {"trials", "2 3675095064"},
+      {"comparison", "2 851369565"},    {"profile", "1 945522990"},
+      {"replan study", "2 1129062132"}, {"forest flights", "1 1622777177"},
+      {"pad study", "2 3143308301"},    {"tag study", "1 1906377180"}};
+  const std::string path = ::testing::TempDir() + "touchdown_result_versions.db";
+  for (const ResultFile& result : ResultFiles()) {
+    std::filesystem::remove(path);
+    result.writer(path);
+    SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+    std::vector<std::string> columns;
+    std::string facts = "manifest";
+    for (const std::string& table :
+         Texts(db, "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")) {
+      columns.push_back(table);
+      if (table == "meta") facts = table;
+      for (const std::string& name :
+           Texts(db, "SELECT name FROM pragma_table_info('" + table + "')")) {
+        columns.push_back(name);
+      }
+    }
+    const std::string version =
+        Texts(db, "SELECT value FROM " + facts + " WHERE key = 'version'").at(0);
+    EXPECT_EQ(known.at(result.name), version + " " + std::to_string(Fingerprint(columns)))
+        << result.name;
   }
   std::filesystem::remove(path);
 }

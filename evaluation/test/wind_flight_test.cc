@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whole flights in wind, and with vehicles that are not what their pilot thinks.
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -9,7 +10,9 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/equilibrium.h"
+#include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/trial_json.h"
+#include "touchdown/sim/pad_wake.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -160,6 +163,53 @@ TEST(WindFlight, GroundEffectAndWakeChangeTheFlightAndItLandsAllTheSame) {
   const TrialResult both = Fly({"wind.mean=4", "air.ground_effect=true", "air.pad_wake=true"});
   EXPECT_EQ(both.outcome, Outcome::kLanded) << both.detail;
   EXPECT_NE(plain.effort_n2s, both.effort_n2s);
+}
+
+// The air that the record holds is that which the physics was given: wind and wake, each by itself.
+TEST(WindFlight, TheWakeAloneIsInTheAirBehindThePad) {
+  const Overrides overrides = Join(kNorthWind, {"wind.mean=6", "air.pad_wake=true"});
+  const Scenario scenario = Open(overrides);
+  TrialRecord record;
+  const TrialResult with = Fly(overrides, &record);
+  const TrialResult without = Fly(Join(kNorthWind, {"wind.mean=6"}));
+  EXPECT_NE(with.effort_n2s, without.effort_n2s);
+  const Eigen::Vector3d wind(0.0, 6.0, 0.0);
+  double strongest = 0.0;
+  for (const RecordSample& sample : record.samples) {
+    const Eigen::Vector3d wake =
+        sim::PadWake(PadGeometryOf(scenario), sample.pad, wind, sample.vehicle.p_WB);
+    EXPECT_LT((sample.air - wind - wake).norm(), 1e-9) << sample.t;
+    strongest = std::max(strongest, (sample.air - wind).norm());
+  }
+  RecordProperty("strongest_mps", std::to_string(strongest));
+  EXPECT_GT(strongest, 0.1);
+}
+
+TEST(WindFlight, AGustComesWhenAndAsStrongAsTheScenarioSays) {
+  TrialRecord record;
+  Fly(Join(kAbovePad, kNorthWind,
+           {"wind.mean=2", "wind.gust.speed=5", "wind.gust.start=3", "wind.gust.duration=1.6",
+            "wind.gust.period=4", "timeout=9"}),
+      &record);
+  const auto along = [&record](double t) -> double {
+    for (const RecordSample& sample : record.samples) {
+      if (sample.t >= t - 1e-6) return sample.air.y();
+    }
+    return NAN;
+  };
+  EXPECT_NEAR(along(2.0), 2.0, 1e-9);
+  EXPECT_NEAR(along(3.4), 2.0 + 2.5, 1e-2);  // half way up
+  EXPECT_NEAR(along(3.8), 2.0 + 5.0, 1e-2);  // its peak
+  EXPECT_NEAR(along(5.0), 2.0, 1e-9);
+  EXPECT_NEAR(along(7.8), 2.0 + 5.0, 1e-2);  // the next one's
+  // It pushes: the vehicle is driven off, to the north, more than it ever was before.
+  double before = 0.0, after = 0.0;
+  for (const RecordSample& sample : record.samples) {
+    const double off = sample.vehicle.p_WB.y() - sample.reference.p_WB.y();
+    if (sample.t > 2.0 && sample.t < 3.0) before = std::max(before, off);
+    if (sample.t > 3.0 && sample.t < 4.6) after = std::max(after, off);
+  }
+  EXPECT_GT(after, before + 0.01);
 }
 
 TEST(WindFlight, RefusesWhatCannotBe) {

@@ -164,9 +164,17 @@ TEST(WorldFlight, PadLagsItsMotionByNoMoreThanStated) {
         const estimation::PadState path = world.pad_motion().At(world.time());
         worst.position = std::max(worst.position, (truth.p_WP - path.p_WP).norm());
         worst.velocity = std::max(worst.velocity, (truth.v_WP - path.v_WP).norm());
+        worst.yaw = std::max(worst.yaw, std::abs(truth.yaw - path.yaw));
+        worst.yaw_rate = std::max(worst.yaw_rate, std::abs(truth.yaw_rate - path.yaw_rate));
       }
       EXPECT_LE(worst.position, most.position) << speed << " " << static_cast<int>(kind);
       EXPECT_LE(worst.velocity, most.velocity) << speed << " " << static_cast<int>(kind);
+      EXPECT_LE(worst.yaw, most.yaw) << speed << " " << static_cast<int>(kind);
+      EXPECT_LE(worst.yaw_rate, most.yaw_rate) << speed << " " << static_cast<int>(kind);
+      // There is a lag to be stated: the turn builds up at 0.3 rad/s^2.
+      if (kind == Kind::kStraightTurn && speed == 0.8) {
+        EXPECT_GT(worst.yaw_rate, 0.001);
+      }
     }
   }
 }

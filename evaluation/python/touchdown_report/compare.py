@@ -16,7 +16,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-SUPPORTED_VERSION = "1"
+SUPPORTED_VERSION = "2"
 # A line style for each backend: colour alone does not tell ten of them apart.
 COLOURS = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#D55E00", "#0072B2", "#CC79A7", "#999999"]
 DASHES = ["-", "--", ":", "-."]

@@ -14,7 +14,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-SUPPORTED_VERSION = "1"
+SUPPORTED_VERSION = "2"
 MODELS = {"paper": "#E69F00", "turn_rate": "#0072B2"}
 SOURCES = {"gps": "GPS alone", "tags": "tags seen"}
 COURSES = ["straight", "turn"]
