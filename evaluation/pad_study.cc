@@ -86,14 +86,15 @@ void Give(const PadArrival& arrival, estimation::PadFilter* filter) {
 }
 
 // The flights of a scenario and a sigma. The sigma goes before the user's own changes, which shows
-// whether they touch it. @throws BadInput
+// whether they touch it; and so does the style whose flights are longer, unless they want the other.
+// @throws BadInput
 std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t scenario,
                                  std::size_t sigma, const Registries& registries) {
   SweepOptions sweep;
   sweep.scenario_path = FindScenario(options.scenarios[scenario]);
   sweep.overrides = options.overrides;
   sweep.overrides.insert(sweep.overrides.begin(),
-                         "gps.sigma=" + WriteNumber(options.sigmas[sigma]));
+                         {"gps.sigma=" + WriteNumber(options.sigmas[sigma]), "descent=vertical"});
   sweep.trials = options.trials;
   sweep.seed = options.seed;
   std::vector<SweepTrial> trials = PlanSweep(sweep, registries);
