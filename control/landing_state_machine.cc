@@ -106,7 +106,9 @@ struct Transition {
 // A planned landing that is decided does not pause: what a pause would have to wait for ends it.
 Transition FromArriving(const MissionState& s, const MissionInputs& in, const Conditions& now,
                         const MissionParameters& p) {
-  if (!now.gate_open) return {MissionMode::kGoAround, TransitionReason::kTagsLost};
+  if (!now.gate_open && in.own_usable) {  // else it is not the tags, and own_timeout decides
+    return {MissionMode::kGoAround, TransitionReason::kTagsLost};
+  }
   if (in.plan_failed_for > p.arrival_plan_timeout) {
     return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
   }

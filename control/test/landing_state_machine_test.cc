@@ -225,7 +225,7 @@ TEST(LandingStateMachine, FuzzNeverDisarmsInTheAir) {
     std::uniform_real_distribution<double> uniform;
     MissionState state;
     MissionInputs in = Fine();
-    double touching_for = 0.0;
+    double touching_for = 0.0, lifted_for = -1.0, contact_for = 0.0;
     for (int k = 0; k < 4000; ++k) {
       const double dt = uniform(random) < 0.02 ? 0.2 * uniform(random) : 0.01;
       if (uniform(random) < 0.05) in.pad_available = uniform(random) < 0.9;
@@ -247,7 +247,12 @@ TEST(LandingStateMachine, FuzzNeverDisarmsInTheAir) {
                             std::abs(fed.height) <= parameters.contact_height;
       const MissionMode before = state.mode;
       const MissionStep step = Step(state, fed, parameters);
-      if (std::isfinite(fed.t)) touching_for = touching ? touching_for + dt : 0.0;
+      if (std::isfinite(fed.t)) {
+        touching_for = touching ? touching_for + dt : 0.0;
+        // Nothing is known of the time between two samples.
+        lifted_for = touching ? -1.0 : std::max(0.0, lifted_for + (lifted_for < 0.0 ? 0.0 : dt));
+        contact_for = lifted_for <= parameters.contact_break + 1e-9 ? contact_for + dt : 0.0;
+      }
       state = step.state;
       ASSERT_TRUE(std::isfinite(state.foot_height) && std::isfinite(state.foot_height_rate));
       ASSERT_EQ(step.outputs.motors_armed, state.mode != MissionMode::kDisarmed);
@@ -256,13 +261,37 @@ TEST(LandingStateMachine, FuzzNeverDisarmsInTheAir) {
         ASSERT_EQ(before, MissionMode::kLanding);
         ASSERT_EQ(step.outputs.reason, TransitionReason::kContact);
         ASSERT_TRUE(touching);
-        ASSERT_GE(touching_for, parameters.contact_time - 1e-9);
+        ASSERT_GE(touching_for, parameters.contact_rest - 1e-9);
+        ASSERT_GE(contact_for, parameters.contact_time - 1e-9);
         break;
       }
       ASSERT_EQ(step.outputs.reason == TransitionReason::kNone, before == state.mode);
     }
   }
   EXPECT_GT(disarmed, 30);
+}
+
+// Feet that bounce have come to stay, but the rotors stop only when they rest.
+TEST(LandingStateMachine, ABounceDoesNotInterruptContactAndIsNoRest) {
+  const auto disarms_after = [](double lifted) {
+    Mission mission;
+    mission.DescendTo(0.05);
+    const double begin = mission.in.t;
+    const auto bouncing = [&](MissionInputs& in) {
+      const double since = in.t - begin;
+      in.height = 0.0;
+      in.foot_force = since > 0.2 && since < 0.2 + lifted ? 0.0 : 10.0;
+    };
+    for (int k = 0; k < 300 && mission.outputs.mode == MissionMode::kLanding; ++k) {
+      mission.Tick(bouncing);
+    }
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kDisarmed);
+    return mission.in.t - begin;
+  };
+  const MissionParameters p;
+  EXPECT_NEAR(disarms_after(0.0), p.contact_time, 0.03);
+  EXPECT_NEAR(disarms_after(0.08), 0.2 + 0.08 + p.contact_rest, 0.03);
+  EXPECT_NEAR(disarms_after(0.2), 0.2 + 0.2 + p.contact_time, 0.03);
 }
 
 TEST(LandingStateMachine, NamesAndParametersAreChecked) {
