@@ -180,7 +180,7 @@ struct MissionParameters {
   double contact_height = 0.15;  ///< |height| must be below it for contact to count [m]
   double contact_gap = 0.05;     ///< samples farther apart do not count as lasting contact [s]
   double contact_rest = 0.15;    ///< at the end of contact_time without a break [s]
-  double contact_break = 0.1;    ///< feet that bounce lose it for so long without an end [s]
+  double contact_break = 0.2;    ///< feet that bounce lose it for so long without an end [s]
 
   double pad_timeout = 1.0;       ///< [s]
   double plan_timeout = 1.0;      ///< [s]

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Both laws' desired force is linear in reference and disturbance (the paper's eq. 19): moving the
 // reference to the vehicle itself takes the position loop out, and an acceleration of
-// -(1 - share) g leaves the rotors that share of the weight, along the vertical. The attitude loop
-// then levels the vehicle about the feet that touch, and friction holds it against the wind.
+// -(1 - share) g leaves the rotors that share of the weight, along the vertical. Velocities are taken out
+// of both sides, and with them the drag that is fed forward: friction holds the vehicle against the wind
+// of the drive and any other, and the attitude loop levels it about the feet that touch.
 
 #include "touchdown/control/settling.h"
 
@@ -39,14 +40,15 @@ double Settling::Share(double t) const noexcept {
   return std::clamp(share_ + rate_ * (t - t_), 0.0, 1.0);
 }
 
-void Settling::Apply(const estimation::VehicleState& state, planning::FlatState* reference,
+void Settling::Apply(estimation::VehicleState* state, planning::FlatState* reference,
                      Disturbance* disturbance) const noexcept {
-  const double share = Share(state.t);
+  const double share = Share(state->t);
   if (share == 0.0) return;
   const Eigen::Vector3d a_standing =
       -(1.0 - parameters_.thrust_share) * estimation::kGravity * Eigen::Vector3d::UnitZ();
-  reference->p_WB += share * (state.p_WB - reference->p_WB);
-  reference->v_WB += share * (state.v_WB - reference->v_WB);
+  reference->p_WB += share * (state->p_WB - reference->p_WB);
+  reference->v_WB *= 1.0 - share;
+  state->v_WB *= 1.0 - share;
   reference->a_WB += share * (a_standing - reference->a_WB);
   reference->j_WB *= 1.0 - share;
   disturbance->force_W *= 1.0 - share;

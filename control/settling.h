@@ -28,8 +28,8 @@ class Settling {
   /// Share of standing at time t, not before that of the last note, in [0, 1]. Continuous.
   double Share(double t) const noexcept;
 
-  /// Blends what the law is asked with standing at state.t; without contact nothing is changed.
-  void Apply(const estimation::VehicleState& state, planning::FlatState* reference,
+  /// Blends what the law is told and asked with standing at state.t; without contact nothing is changed.
+  void Apply(estimation::VehicleState* state, planning::FlatState* reference,
              Disturbance* disturbance) const noexcept;
 
  private:

@@ -247,13 +247,14 @@ const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& ma
 control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   if (!mission_.motors_armed) return {};
   if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
+  estimation::VehicleState told = vehicle;
   planning::FlatState reference = Reference(vehicle.t);
   control::Disturbance compensated = disturbance();
   const bool landing = mission_.mode == control::MissionMode::kLanding;
   const bool low = landing && foot_height_ < kFlareHeight;
   const control::Controller& law = low ? *low_controller_ : *controller_;
-  settling_.Apply(vehicle, &reference, &compensated);
-  const control::MixerOutput mix = mixer_.Mix(law.Update(vehicle, reference, compensated).wrench);
+  settling_.Apply(&told, &reference, &compensated);
+  const control::MixerOutput mix = mixer_.Mix(law.Update(told, reference, compensated).wrench);
   if (observer_) observer_->Command(mix.thrusts);
   return mix;
 }

@@ -291,7 +291,7 @@ TEST(LandingStateMachine, ABounceDoesNotInterruptContactAndIsNoRest) {
   const MissionParameters p;
   EXPECT_NEAR(disarms_after(0.0), p.contact_time, 0.03);
   EXPECT_NEAR(disarms_after(0.08), 0.2 + 0.08 + p.contact_rest, 0.03);
-  EXPECT_NEAR(disarms_after(0.2), 0.2 + 0.2 + p.contact_time, 0.03);
+  EXPECT_NEAR(disarms_after(0.3), 0.2 + 0.3 + p.contact_time, 0.03);
 }
 
 TEST(LandingStateMachine, NamesAndParametersAreChecked) {
