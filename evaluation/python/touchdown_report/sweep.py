@@ -186,7 +186,7 @@ def draw_cloud(axes, sweep, key):
         [0.95] * len(failed),
         "x",
         color=FAILED,
-        label=f"{len(failed)} failed",
+        label=f"{len(failed)} failed: no time",
         transform=axes.get_xaxis_transform(),
     )
     axes.margins(y=0.15)
