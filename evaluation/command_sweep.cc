@@ -10,6 +10,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/progress.h"
+#include "touchdown/evaluation/report_program.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
 #include "touchdown/evaluation/trial_table.h"
@@ -24,8 +25,26 @@ struct SweepArguments {
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 1;
   std::string db;
+  std::string picture;
   bool json = false;
 };
+
+// A picture has the axes that were varied: two lists at most, for a table of cells is flat.
+void CheckPicture(const std::string& picture, const std::vector<Variation>& variations) {
+  if (picture.empty()) return;
+  const auto lists = std::count_if(variations.begin(), variations.end(),
+                                   [](const Variation& v) { return !v.values.empty(); });
+  if (variations.empty()) {
+    throw BadInput(fmt::format(
+        "--picture {}: it shows the outcome over what is varied, so it needs --vary.", picture));
+  }
+  if (lists > 2) {
+    throw BadInput(
+        fmt::format("--picture {}: lists of values can be given for two keys at most, and --vary "
+                    "gives {}.",
+                    picture, lists));
+  }
+}
 
 int Sweep(const SweepArguments& arguments, const Registries& registries) {
   SweepOptions options;
@@ -33,6 +52,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   options.overrides = arguments.scenario.Overrides();
   for (const std::string& text : arguments.vary)
     options.variations.push_back(Variation::Parse(text));
+  CheckPicture(arguments.picture, options.variations);
   options.trials = arguments.trials;
   options.seed = arguments.seed;
   const std::vector<SweepTrial> trials = PlanSweep(options, registries);
@@ -42,7 +62,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
           "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
     }
   }
-  if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+  CheckOutputs(arguments.db, arguments.picture);
   const std::vector<SweepRow> rows = RunSweep(trials, arguments.jobs, registries,
                                               Progress({.things = "trials", .with_rate = true}));
   if (arguments.json) {
@@ -50,7 +70,9 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   } else {
     std::cout << SweepText(options, rows) << std::flush;
   }
-  if (!arguments.db.empty()) WriteTrialTable(arguments.db, options, rows);
+  const auto write = [&](const std::string& path) { WriteTrialTable(path, options, rows); };
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawSweep);
   const bool all_flown = std::none_of(rows.begin(), rows.end(), [](const SweepRow& row) {
     return row.result.outcome == Outcome::kError;
   });
@@ -76,6 +98,8 @@ void AddSweepCommand(Command app, const Registries& registries, CommandRun* run)
       .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       .ShowDefault();
   command.AddFile("--db", &arguments->db, "Write the trial table, an SQLite file", "F.db");
+  command.AddFile("--picture", &arguments->picture, "Draw success and time to land over --vary",
+                  "F.png");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
   command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return Sweep(*arguments, registries); };

@@ -6,13 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/result_file.h"
+#include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/statistics.h"
+#include "touchdown/evaluation/sweep_cells.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-constexpr ResultFormat kFormat{"touchdown trials", 2};
+constexpr ResultFormat kFormat{"touchdown trials", 3};
 
 constexpr char kSchema[] = R"sql(
 CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outcome TEXT,
@@ -27,6 +29,10 @@ CREATE TABLE trial(trial INTEGER PRIMARY KEY, seed INTEGER, landed INTEGER, outc
   own_rmse_attitude_rad REAL, own_max_attitude_rad REAL, t_star_s REAL, t_star_upper_s REAL,
   time_ratio REAL, within_limits INTEGER);
 CREATE TABLE variation(trial INTEGER, key TEXT, value TEXT);
+CREATE TABLE varied_key(key TEXT PRIMARY KEY, unit TEXT, kind TEXT);
+CREATE TABLE cell(cell INTEGER PRIMARY KEY, trials INTEGER, succeeded INTEGER, rate_lo REAL,
+  rate_hi REAL, time_to_land_median_s REAL, touchdown_error_median_m REAL);
+CREATE TABLE cell_value(cell INTEGER, key TEXT, value TEXT);
 CREATE TABLE timing(trial INTEGER PRIMARY KEY, wall_s REAL, cpu_s REAL, physics_cpu_s REAL,
   sensing_cpu_s REAL, mapping_cpu_s REAL, planning_cpu_s REAL, control_cpu_s REAL,
   judging_cpu_s REAL, replan_median_ms REAL, replan_p95_ms REAL, replan_max_ms REAL,
@@ -91,6 +97,26 @@ void WriteTiming(SqliteStatement& insert, const SweepRow& row) {
              t.sensing_stages.pad_filter, t.sensing_stages.own_state);
 }
 
+void WriteKeys(SqliteDb& db, const std::vector<Variation>& variations) {
+  SqliteStatement insert = db.Prepare("INSERT INTO varied_key VALUES(?, ?, ?)");
+  for (const Variation& variation : variations) {
+    insert.Run(variation.key, FindScenarioKey(variation.key)->unit,
+               variation.values.empty() ? "range" : "list");
+  }
+}
+
+void WriteCells(SqliteDb& db, const std::vector<SweepCell>& cells) {
+  SqliteStatement insert = db.Prepare("INSERT INTO cell VALUES(?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement insert_value = db.Prepare("INSERT INTO cell_value VALUES(?, ?, ?)");
+  int id = 0;
+  for (const SweepCell& cell : cells) {
+    insert.Run(id, cell.trials, cell.succeeded, cell.rate.lo, cell.rate.hi,
+               cell.time_to_land_median_s, cell.touchdown_error_median_m);
+    for (const auto& [key, value] : cell.values) insert_value.Run(id, key, value);
+    ++id;
+  }
+}
+
 ManifestFacts Facts(const SweepOptions& options, const std::vector<SweepRow>& rows) {
   ManifestFacts facts;
   facts.emplace_back("sweep_seed", std::to_string(options.seed));
@@ -122,6 +148,8 @@ void WriteTrialTable(const std::string& path, const SweepOptions& options,
       for (const auto& [key, value] : row.trial.varied) variation.Run(row.trial.index, key, value);
       WriteTiming(timing, row);
     }
+    WriteKeys(db, options.variations);
+    WriteCells(db, SweepCells(options, rows));
   });
 }
 

@@ -101,6 +101,13 @@ TEST(Program, WhatDoesNotGoTogetherIsBadInput) {
   const Ran growth = Call({"study", "replan", "--parts", "growth", "--kinds", "B,C"});
   EXPECT_EQ(growth.status, 2);
   EXPECT_THAT(growth.err, HasSubstr("--kinds"));
+  const Ran flat = Call({"sweep", "open", "--picture", "p.png", "--vary", "gps.sigma=0,1", "--vary",
+                         "pad.speed=0.2,0.4", "--vary", "controller=geometric,paper"});
+  EXPECT_EQ(flat.status, 2);
+  EXPECT_THAT(flat.err, AllOf(HasSubstr("--picture p.png"), HasSubstr("--vary gives 3")));
+  const Ran nothing_varied = Call({"sweep", "open", "--picture", "p.png"});
+  EXPECT_EQ(nothing_varied.status, 2);
+  EXPECT_THAT(nothing_varied.err, AllOf(HasSubstr("--picture p.png"), HasSubstr("--vary")));
   const Ran replay = Call({"profile", "--from", "none.db", "--set", "planning.rate=5"});
   EXPECT_EQ(replay.status, 2);
   EXPECT_THAT(replay.err, HasSubstr("planning.guides"));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/sweep_cells.h"
 #include "touchdown/evaluation/sweep_report.h"
 
 namespace touchdown::evaluation {
@@ -139,6 +140,56 @@ TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
     EXPECT_NEAR(value["median"].get<double>(), expected.at(key), 1e-12) << key;
   }
   for (const auto& [key, value] : expected) EXPECT_TRUE(summary.contains(key)) << key << value;
+}
+
+SweepRow RowAfter(const SweepTrial& trial, std::optional<double> landed_after_s) {
+  SweepRow row{trial, {}};
+  row.result.outcome = landed_after_s ? Outcome::kLanded : Outcome::kTimeout;
+  if (landed_after_s) {
+    row.result.touchdown.emplace();
+    row.result.touchdown->t = *landed_after_s;
+    row.result.touchdown->error_m = 0.01 * *landed_after_s;
+  }
+  return row;
+}
+
+TEST(SweepCells, GatherTrialsByTheirListedValues) {
+  SweepOptions options = OpenSweep(7);
+  options.variations = {Variation::Parse("controller=geometric,paper"),
+                        Variation::Parse("gps.sigma=0.1..0.5"),
+                        Variation::Parse("pad.speed=0.2,0.4,0.6")};
+  std::vector<SweepRow> rows;
+  for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
+    const bool paper = trial.index % 2 == 1;
+    rows.push_back(RowAfter(trial, paper ? std::nullopt : std::optional(5.0 + trial.index)));
+  }
+  const std::vector<SweepCell> cells = SweepCells(options, rows);
+  ASSERT_EQ(cells.size(), 6U);
+  using Values = std::vector<std::pair<std::string, std::string>>;
+  EXPECT_EQ(cells[0].values, (Values{{"controller", "geometric"}, {"pad.speed", "0.2"}}));
+  EXPECT_EQ(cells[5].values, (Values{{"controller", "paper"}, {"pad.speed", "0.6"}}));
+  EXPECT_EQ(cells[0].trials, 2);  // the first and the last of seven
+  EXPECT_EQ(cells[0].succeeded, 2);
+  EXPECT_DOUBLE_EQ(*cells[0].time_to_land_median_s, 8.0);
+  EXPECT_DOUBLE_EQ(*cells[0].touchdown_error_median_m, 0.08);
+  EXPECT_EQ(cells[1].trials, 1);
+  EXPECT_EQ(cells[1].succeeded, 0);
+  EXPECT_FALSE(cells[1].time_to_land_median_s);
+  EXPECT_DOUBLE_EQ(cells[1].rate.lo, 0.0);
+  EXPECT_NEAR(cells[1].rate.hi, 0.975, 1e-12);  // 1 - 0.025^(1/n)
+}
+
+TEST(SweepCells, ARangeMakesOneCell) {
+  SweepOptions options = OpenSweep(4);
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  std::vector<SweepRow> rows;
+  for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
+    rows.push_back(RowAfter(trial, 5.0));
+  }
+  const std::vector<SweepCell> cells = SweepCells(options, rows);
+  ASSERT_EQ(cells.size(), 1U);
+  EXPECT_TRUE(cells[0].values.empty());
+  EXPECT_EQ(cells[0].trials, 4);
 }
 
 // Between the buildings: search, pairs and the map take part.

@@ -61,6 +61,13 @@ def test_help_lists_what_is_built(run):
             ("sweep", "open", "--vary", "solver.backend=banded,lbfgs", "--backend", "banded"),
             ["solver.backend", "no effect"],
         ),
+        (("sweep", "open", "--picture", "out.png"), ["out.png", "--vary"]),
+        (("sweep", "open", "--vary", "gps.sigma=0,1", "--picture", "out.gif"), ["out.gif", ".png"]),
+        (
+            ("sweep", "open", "--picture", "out.png", "--vary", "gps.sigma=0,1")
+            + ("--vary", "pad.speed=0.2,0.4", "--vary", "controller=geometric,paper"),
+            ["out.png", "--vary", "two", "3"],
+        ),
         (("list", "bananas"), ["bananas"]),
         (("compare", "--points", "20,,40"), ["--points", "20,,40", "empty"]),
         (("compare", "--points", "20,40,20"), ["--points", "20", "twice"]),
