@@ -316,7 +316,7 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
     return;
   }
   const bool due = in.arrival_in <= p.decide_time;
-  const bool low = in.height < p.gate_height && in.horizontal_distance < p.abort_distance;
+  const bool low = in.height < p.gate_height + p.turn_room && now.in_cone;
   s.waits_above = s.waits_above ? !now.gate_open : (due || low) && !now.gate_open;
 }
 

@@ -170,6 +170,7 @@ struct MissionParameters {
   double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
   double arrival_timeout = 1.5;       ///< contact overdue for longer: go around [s]
+  double turn_room = 0.4;             ///< above gate_height, to end a planned descent above it [m]
   double contact_speed = 0.8;  ///< horizontal, relative: committed to contact no faster [m/s], ...
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]

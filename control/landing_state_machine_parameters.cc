@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 36> positive = {{
+  const std::array<Named, 37> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -71,6 +71,7 @@ void Validate(const MissionParameters& p) {
       {"arrival_commit_time", p.arrival_commit_time},
       {"arrival_plan_timeout", p.arrival_plan_timeout},
       {"arrival_timeout", p.arrival_timeout},
+      {"turn_room", p.turn_room},
       {"contact_speed", p.contact_speed},
       {"closing_rate", p.closing_rate},
       {"cone_slope", p.cone_slope},

@@ -222,20 +222,22 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
   }
 }
 
-// No tag is ever seen, however good the GPS: the gate stays closed, the vehicle waits above it, goes
-// around, and never comes down.
+// No tag is ever seen, however good the GPS: the gate stays closed, the vehicle waits above it, in the
+// vertical style goes around, and never comes down.
 TEST(SensingFlight, WithoutTagsNothingDescendsBelowTheGate) {
-  const Scenario scenario = Open({"camera.occlusion=0.9", "gps.sigma=0.01", "timeout=25"});
-  TrialRecord record;
-  const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
-  EXPECT_EQ(result.outcome, Outcome::kTimeout);
-  bool tags_lost = false;
-  for (const RecordEvent& event : record.events) {
-    tags_lost = tags_lost || event.text.find("tags_lost") != std::string::npos;
-  }
-  EXPECT_TRUE(tags_lost);
-  for (const RecordSample& sample : record.samples) {
-    ASSERT_GT(sample.vehicle.p_WB.z() - sample.pad.p_WP.z(), 1.0) << sample.t;
+  for (const char* style : {"descent=planned", "descent=vertical"}) {
+    const Scenario scenario = Open({"camera.occlusion=0.9", "gps.sigma=0.01", "timeout=25", style});
+    TrialRecord record;
+    const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
+    EXPECT_EQ(result.outcome, Outcome::kTimeout);
+    bool tags_lost = false;
+    for (const RecordEvent& event : record.events) {
+      tags_lost = tags_lost || event.text.find("tags_lost") != std::string::npos;
+    }
+    EXPECT_EQ(tags_lost, scenario.descent == DescentKind::kVertical);
+    for (const RecordSample& sample : record.samples) {
+      ASSERT_GT(sample.vehicle.p_WB.z() - sample.pad.p_WP.z(), 1.0) << style << sample.t;
+    }
   }
 }
 
