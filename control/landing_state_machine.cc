@@ -43,10 +43,10 @@ Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionP
   Conditions now{};
   // pad_sigma, contact_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
-                      std::isfinite(in.horizontal_speed) && std::isfinite(in.foot_force) &&
-                      !std::isnan(in.pad_sigma) && !std::isnan(in.contact_sigma) &&
-                      !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for) &&
-                      !std::isnan(in.arrival_in);
+                      std::isfinite(in.horizontal_speed) && std::isfinite(in.sink_rate) &&
+                      std::isfinite(in.foot_force) && !std::isnan(in.pad_sigma) &&
+                      !std::isnan(in.contact_sigma) && !std::isnan(in.tag_age) &&
+                      !std::isnan(in.plan_failed_for) && !std::isnan(in.arrival_in);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
   // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
   const bool own_good =
@@ -316,7 +316,9 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
     return;
   }
   const bool due = in.arrival_in <= p.decide_time;
-  const bool low = in.height < p.gate_height + p.turn_room && now.in_cone;
+  const double sinks = std::max(0.0, in.sink_rate);
+  const double turn = sinks * (p.turn_time + 0.5 * sinks / p.turn_acceleration);
+  const bool low = in.height < p.gate_height + turn && now.in_cone;
   s.waits_above = s.waits_above ? !now.gate_open : (due || low) && !now.gate_open;
 }
 

@@ -121,6 +121,7 @@ struct MissionInputs {
   double horizontal_distance = 0.0;  ///< vehicle to pad centre, estimated [m]
   double height = 0.0;               ///< feet above the deck, estimated [m]
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
+  double sink_rate = 0.0;            ///< towards the deck, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
   /// The same foretold for ContactIn from now, without further measurements; may be inf.
   double contact_sigma = std::numeric_limits<double>::infinity();
@@ -170,7 +171,8 @@ struct MissionParameters {
   double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
   double arrival_timeout = 1.5;       ///< contact overdue for longer: go around [s]
-  double turn_room = 0.4;             ///< above gate_height, to end a planned descent above it [m]
+  double turn_time = 0.2;             ///< until a new plan ends a planned descent [s] ...
+  double turn_acceleration = 3.0;     ///< ... above gate_height [m/s^2]
   double contact_speed = 0.8;  ///< horizontal, relative: committed to contact no faster [m/s], ...
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]

@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 37> positive = {{
+  const std::array<Named, 38> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -71,7 +71,8 @@ void Validate(const MissionParameters& p) {
       {"arrival_commit_time", p.arrival_commit_time},
       {"arrival_plan_timeout", p.arrival_plan_timeout},
       {"arrival_timeout", p.arrival_timeout},
-      {"turn_room", p.turn_room},
+      {"turn_time", p.turn_time},
+      {"turn_acceleration", p.turn_acceleration},
       {"contact_speed", p.contact_speed},
       {"closing_rate", p.closing_rate},
       {"cone_slope", p.cone_slope},

@@ -128,6 +128,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     inputs.horizontal_distance = (vehicle.p_WB - pad.p_WP).head<2>().norm();
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
+    inputs.sink_rate = pad.v_WP.z() - vehicle.v_WB.z();
   }
   foot_height_ = inputs.height;
   inputs.tag_age = filter.TagAge(t);
