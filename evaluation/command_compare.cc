@@ -122,23 +122,22 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   const auto arguments = std::make_shared<CompareArguments>();
   CompareOptions& options = arguments->options;
   CaseOptions& cases = options.cases;
-  const auto one_of = [](std::vector<std::string> words) { return OneOf(std::move(words)); };
   command.Add("--problems", options.problems, "Number of problems of each size")
       .Check(Range(1, 100000))
       .ShowDefault();
   command.AddList("--points", &options.points, "Control points: one size or several", "N,N,...",
                   Range(9, 1000));
   command.Add("--start", arguments->start, "From a Hermite guess, or shifted from 0.1 s ago")
-      .Check(one_of({"cold", "warm"}))
+      .Check(OneOf({"cold", "warm"}))
       .ShowDefault();
   command.Add("--arrival", arguments->arrival, "Arrival time")
-      .Check(one_of({"fixed", "free"}))
+      .Check(OneOf({"fixed", "free"}))
       .ShowDefault();
   command.Add("--limits", arguments->limits, "As a penalty, or as constraints")
-      .Check(one_of({"soft", "hard"}))
+      .Check(OneOf({"soft", "hard"}))
       .ShowDefault();
   command.Add("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
-      .Check(one_of({"eliminated", "explicit"}))
+      .Check(OneOf({"eliminated", "explicit"}))
       .ShowDefault();
   command.AddList("--backends", &options.backends, "Which ones; default: all that can solve it",
                   "NAME,NAME,...", OneOf(BackendNames(registries)));
@@ -159,7 +158,7 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   command.Add("--deadline-ms", options.deadline_ms, "Also stop solves after this wall time")
       .Check(Range(1e-3, 1e5));
   command.Add("--forest", cases.forest, "Kind of forest")
-      .Check(one_of(ComparedForests()))
+      .Check(OneOf(ComparedForests()))
       .ShowDefault();
   command.Add("--inflation", cases.inflation, "Obstacles are grown by this [m]")
       .Check(Range(0.0, 1.0))

@@ -159,7 +159,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   if (!mission_.plan_requested) requested_t_.reset();
   const bool landing = mission_.mode == control::MissionMode::kLanding;
   const bool at_deck = std::abs(foot_height_) <= parameters_.contact_height;
-  settling_.Note(t, landing && at_deck && foot_force > kTouchForce, landing);
+  settling_.Note(t, at_deck && foot_force > kTouchForce, landing);
 
   yaw_ = control::StepYaw(yaw_, heading, dt);
   yaw_t_ = t + dt;
