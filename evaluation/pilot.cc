@@ -204,9 +204,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
 
 // Longer, and the shortest plan would end too early to be decided on.
 double Pilot::LevelTime(const Eigen::Vector3d& pull_W) const {
-  const double shortest = planning::ReplannerOptions{}.min_contact_duration;
   return std::min(kLevelTime + kLevelTimeInPull * pull_W.head<2>().norm(),
-                  parameters_.decide_time - 1.3 * shortest);
+                  parameters_.decide_time - 1.3 * shortest_contact_plan_);
 }
 
 bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
@@ -276,7 +275,7 @@ planning::FlatState Pilot::Reference(double t) const {
 // planned, along the pad's way as it is known by now.
 bool Pilot::Levelled(double t) const {
   const double left = plan_end_t_ - (t + replan_.latency_s);
-  return arriving() && left < planning::ReplannerOptions{}.min_contact_duration;
+  return arriving() && left < shortest_contact_plan_;
 }
 
 bool Pilot::arriving() const {
