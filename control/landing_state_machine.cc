@@ -3,7 +3,7 @@
 // Each step: update how long the conditions have lasted, decide at most one transition (contact
 // first, then emergency, invalid input, and the mode's own), then move the commanded foot height
 // by one step of a rate- and acceleration-limited profile. The height never jumps, whatever the
-// transition, because only its target changes.
+// transition, because only its target changes; while a plan leads to the deck it is the vehicle's own.
 
 #include "touchdown/control/landing_state_machine.h"
 
@@ -62,7 +62,8 @@ Conditions Assess(const MissionState& s, const MissionInputs& in, const MissionP
       now.numbers_valid &&
       in.horizontal_distance <= p.landing_distance + p.cone_slope * std::max(0.0, in.height);
   now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
-                 std::abs(in.height) <= p.contact_height;
+                 std::abs(in.height) <= p.contact_height &&
+                 in.horizontal_distance <= p.contact_distance;
   return now;
 }
 
@@ -112,6 +113,10 @@ Transition FromArriving(const MissionState& s, const MissionInputs& in, const Co
   if (in.plan_failed_for > p.arrival_plan_timeout) {
     return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
   }
+  // Contact that every new plan puts off would never be overdue.
+  if (LastedLonger(s.mode_since, s.t, p.decide_time + p.arrival_timeout)) {
+    return {MissionMode::kGoAround, TransitionReason::kNoContact};
+  }
   return {s.mode, TransitionReason::kNone};
 }
 
@@ -125,7 +130,8 @@ bool TooFarOff(const MissionState& s, const MissionInputs& in, const Conditions&
 
 // Will the feet be still enough over the deck when they touch it?
 bool TooFast(const MissionInputs& in, const MissionParameters& p) {
-  const double left = Planned(in) ? std::max(0.0, in.arrival_in) : 0.0;
+  const bool foretold = Planned(in) && std::isfinite(in.arrival_in);
+  const double left = foretold ? std::max(0.0, in.arrival_in) : 0.0;
   return in.horizontal_speed > p.contact_speed + p.closing_rate * left;
 }
 
@@ -265,7 +271,7 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
   }
   if (s.mode == MissionMode::kLanding && Planned(in)) {
     // The plan leads; a climb would begin where the vehicle is.
-    s.foot_height = std::clamp(in.height, 0.0, p.follow_height);
+    if (now.numbers_valid) s.foot_height = std::clamp(in.height, 0.0, p.follow_height);
     s.foot_height_rate = 0.0;
     return hold;
   }

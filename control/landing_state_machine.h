@@ -18,12 +18,14 @@
 //   landing        go_around       tags_lost          gate closed for over gate_timeout (descent
 //                                                     planned: at all), or committed and the bridge
 //                                                     is over
-//   landing        go_around       error_too_large    horizontal error beyond abort_distance
+//   landing        go_around       error_too_large    horizontal error beyond abort_distance (descent
+//                                                     planned: outside the cone)
 //   landing        go_around       too_fast           committed, but the pad moves otherwise
 //   landing        go_around       plan_failed        no plan for over plan_timeout (descent
 //                                                     planned: arrival_plan_timeout)
 //   landing        go_around       no_contact         committed for over commit_timeout, or the
-//                                                     plan's contact overdue by arrival_timeout
+//                                                     plan's contact overdue by arrival_timeout, or
+//                                                     put off for so long
 //   landing        go_around       own_state_lost     own state not usable for over own_timeout
 //   go_around      tracking        climb_complete     at the follow height, pad converged
 //   go_around      tracking        climb_timeout      climbing took too long, pad converged
@@ -37,7 +39,7 @@
 //
 // (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance, too_fast, the end of the bridge before the feet touch, no_contact,
+// error beyond commit_abort_distance (or outside the cone), too_fast, the end of the bridge before the feet touch, no_contact,
 // own_state_lost, invalid_input or emergency. A pad counts as converged only while the vehicle's
 // own state is usable. Dead reckoning closes the gate for own_patience: a short outage of position
 // and velocity is waited out.
@@ -177,13 +179,14 @@ struct MissionParameters {
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
 
-  double press_depth = 0.3;      ///< the command goes this far below the deck until contact [m]
-  double contact_force = 2.0;    ///< [N]
-  double contact_time = 0.4;     ///< [s]: so long it takes to stand upright (settling.h)
-  double contact_height = 0.15;  ///< |height| must be below it for contact to count [m]
-  double contact_gap = 0.05;     ///< samples farther apart do not count as lasting contact [s]
-  double contact_rest = 0.15;    ///< at the end of contact_time without a break [s]
-  double contact_break = 0.2;    ///< feet that bounce lose it for so long without an end [s]
+  double press_depth = 0.3;       ///< the command goes this far below the deck until contact [m]
+  double contact_force = 2.0;     ///< [N]
+  double contact_time = 0.4;      ///< [s]: so long it takes to stand upright (settling.h)
+  double contact_height = 0.15;   ///< |height| must be below it for contact to count [m] ...
+  double contact_distance = 1.2;  ///< ... and the horizontal distance, by the size of the deck [m]
+  double contact_gap = 0.05;      ///< samples farther apart do not count as lasting contact [s]
+  double contact_rest = 0.15;     ///< at the end of contact_time without a break [s]
+  double contact_break = 0.2;     ///< feet that bounce lose it for so long without an end [s]
 
   double pad_timeout = 1.0;       ///< [s]
   double plan_timeout = 1.0;      ///< [s]
@@ -232,8 +235,8 @@ struct MissionOutputs {
   bool motors_armed = true;
   bool plan_requested = false;  ///< planning to the pad makes sense now
   bool committed = false;
-  /// Feet above the deck [m], continuous in time, and its rate [m/s]: the offset and the approach
-  /// velocity of the plan's endpoint.
+  /// Feet above the deck [m], continuous in time but for the beginning of a planned landing, and its rate
+  /// [m/s]: the offset and the approach velocity of the plan's endpoint.
   double foot_height = 0.0;
   double foot_height_rate = 0.0;
 };

@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 38> positive = {{
+  const std::array<Named, 39> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -80,6 +80,7 @@ void Validate(const MissionParameters& p) {
       {"contact_force", p.contact_force},
       {"contact_time", p.contact_time},
       {"contact_height", p.contact_height},
+      {"contact_distance", p.contact_distance},
       {"contact_gap", p.contact_gap},
       {"pad_timeout", p.pad_timeout},
       {"plan_timeout", p.plan_timeout},

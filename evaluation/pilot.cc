@@ -36,6 +36,8 @@ constexpr double kTouchForce = 0.2;  // on the feet: something holds them [N]
 constexpr double kLevelTime = 0.15;  // between a plan's end and contact: the tilt dies away [s]
 constexpr double kLevelTimeInPull = 0.2;  // ... and errors in wind [s per m/s^2 of its force]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
+constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
+constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
 
 control::DescentStyle StyleOf(DescentKind kind) {
   if (kind == DescentKind::kNone) return control::DescentStyle::kNone;
@@ -90,6 +92,8 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
              const estimation::VehicleState& start, const planning::OccupancyMap& map)
     : scenario_(scenario),
       model_(model),
+      shortest_contact_plan_(
+          PlannerOptions(scenario, model, registries.terms).min_contact_duration),
       oracle_(truth),
       planner_(MakePlanner(scenario, model, registries)),
       controller_(MakeLaw(scenario, model, TrackingOptions(scenario))),
@@ -105,6 +109,12 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   // A light vehicle never presses as hard as the default asks.
   parameters_.contact_force =
       std::min(parameters_.contact_force, kContactShare * model.HoverThrust());
+  parameters_.contact_distance = scenario.pad.deck_size * std::sqrt(0.5) + model.foot_radius;
+  // A plan that turns away from the deck is made at the next step, flown a latency later and followed when
+  // the attitude is there.
+  const double latency = scenario.planning.latency.measured ? LongestLatency(scenario) : Latency();
+  parameters_.turn_time = 1.0 / PlannerRate(scenario) + latency + kAttitudeLag;
+  parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
   if (scenario.control.disturbance && scenario.controller == ControllerKind::kGeometric) {
     observer_.emplace(model);
   }
@@ -158,7 +168,8 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
   const bool landing = mission_.mode == control::MissionMode::kLanding;
-  const bool at_deck = std::abs(foot_height_) <= parameters_.contact_height;
+  const bool at_deck = std::abs(foot_height_) <= parameters_.contact_height &&
+                       inputs.horizontal_distance <= parameters_.contact_distance;
   settling_.Note(t, at_deck && foot_force > kTouchForce, landing);
 
   yaw_ = control::StepYaw(yaw_, heading, dt);

@@ -83,6 +83,7 @@ class Pilot {
 
   Scenario scenario_;
   estimation::VehicleModel model_;
+  double shortest_contact_plan_;  ///< that the replanner makes [s]
   sim::OraclePadPrediction oracle_;
   std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
@@ -108,9 +109,7 @@ class Pilot {
   std::optional<double> requested_t_;  ///< since when plans are asked for without a break
   /// When the committed plan that leads to contact ends [s]; infinite if there is none.
   double plan_end_t_ = std::numeric_limits<double>::infinity();
-  double level_time_ = 0.0;  ///< from there to contact [s]
-  /// That the replanner makes [s]. Options are not cheap to make: they hold a registry of terms.
-  const double shortest_contact_plan_ = planning::ReplannerOptions{}.min_contact_duration;
+  double level_time_ = 0.0;        ///< from there to contact [s]
   double measured_latency_ = 0.0;  ///< of the last replanning step [s]
 };
 

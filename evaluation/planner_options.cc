@@ -95,6 +95,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.reaction =
       period + (scenario.planning.latency.measured ? period : 1e-3 * scenario.planning.latency.ms);
   options.floor_height = LowestPlan(model);
+  options.contact_height = model.foot_depth;
   return options;
 }
 
@@ -135,9 +136,10 @@ double PlannerRate(const Scenario& scenario) {
 double ClosePlannerRate(const Scenario& scenario) {
   const double usual = PlannerRate(scenario);
   if (scenario.planning.latency.measured) return usual;
-  // A plan takes over before the next is asked for.
-  const double fastest = 1e3 / std::max(1.0, scenario.planning.latency.ms);
-  return std::max(usual, std::min(kCloseRate, fastest));
+  // A plan takes over before the next is asked for, on the simulation's clock.
+  const double step = sim::WorldConfig{}.timestep;
+  const double shortest = step * std::ceil(1e-3 * scenario.planning.latency.ms / step - 1e-6);
+  return std::max(usual, 1.0 / std::max(1.0 / kCloseRate, shortest));
 }
 
 double LongestLatency(const Scenario& scenario) {

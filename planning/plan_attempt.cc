@@ -217,7 +217,8 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
   later_space_ = *request->space;
   later.space = &later_space_;
   LayPadStrip(*request->pad, request->target, request->start.p, request->t0,
-              request->t0 + later.duration, later_space_.pad_radius, &later_space_);
+              request->t0 + later.duration, later_space_.pad_radius, options_.contact_height,
+              &later_space_);
   if (SetEnds(later) == ReplanReason::kNone) {
     *request = later;
     now_->problem->WarmGuess(first_curve_, &now_->first_guess);

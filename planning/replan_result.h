@@ -29,9 +29,10 @@ struct ReplannerOptions {
                                   ///< arrival and durations follow from here
   double floor_height = 0.45;     ///< body origin stays above this away from the pad [m]
   double ceiling_height = 10.0;   ///< and below this everywhere [m]
-  double pad_radius = 1.2;        ///< half width of the strip over the pad without a floor [m]
-  double max_duration = 30.0;     ///< a pad farther away in time is unreachable [s]
-  double min_duration = 0.8;      ///< shortest plan: a vehicle above the pad keeps following [s]
+  double pad_radius = 1.2;  ///< half width of the strip over the pad [m], which has as its floor
+  double contact_height = 0.12;  ///< ... this, body origin above the deck when the feet touch [m]
+  double max_duration = 30.0;    ///< a pad farther away in time is unreachable [s]
+  double min_duration = 0.8;     ///< shortest plan: a vehicle above the pad keeps following [s]
   double min_contact_duration = 0.3;  ///< ... and one that is to end in contact [s]
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
   double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]

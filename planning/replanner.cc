@@ -117,7 +117,7 @@ FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineSt
                                         double t_end, const OccupancyMap& map) const {
   FreeSpace space = Space(map);
   LayPadStrip(*input.pad, input.endpoint, start.p, input.t_start, t_end, options_.pad_radius,
-              &space);
+              options_.contact_height, &space);
   return space;
 }
 

@@ -216,26 +216,88 @@ TEST(LandingStateMachine, BrokenTimeHoldsWithoutLosingTheState) {
   EXPECT_EQ(Step(mission.state, in, mission.parameters).state.t, mission.state.t);
 }
 
-// Any inputs whatsoever: disarmed only after lasting force near the deck, in landing.
-TEST(LandingStateMachine, FuzzNeverDisarmsInTheAir) {
+class EachDescent : public testing::TestWithParam<DescentStyle> {};
+
+INSTANTIATE_TEST_SUITE_P(LandingStateMachine, EachDescent,
+                         testing::Values(DescentStyle::kVertical, DescentStyle::kPlanned),
+                         [](const auto& test) {
+                           return test.param == DescentStyle::kPlanned ? "planned" : "vertical";
+                         });
+
+// Lands a mission of either style, so far that feet which touch would end it.
+void Land(DescentStyle style, Mission* mission) {
+  mission->in.descent = style;
+  mission->GoTo(MissionMode::kTracking);
+  mission->in.horizontal_distance = 0.1;
+  mission->in.arrival_in = 0.6;
+  ASSERT_NE(mission->RunUntil(MissionMode::kLanding), TransitionReason::kNone);
+}
+
+TEST_P(EachDescent, WhatTheFeetTouchFarFromThePadIsNotTheDeck) {
+  for (const double distance : {1.5, 3.0, 50.0}) {
+    Mission mission;
+    Land(GetParam(), &mission);
+    mission.height_follows = false;
+    mission.Run(5.0, [&](MissionInputs& in) {
+      in.height = 0.0;
+      in.foot_force = 5.0;
+      in.horizontal_distance = distance;
+    });
+    EXPECT_NE(mission.outputs.mode, MissionMode::kDisarmed) << distance;
+    EXPECT_NE(mission.outputs.mode, MissionMode::kLanding) << distance;
+  }
+}
+
+TEST_P(EachDescent, NumbersThatComeBackAreFlownByAgain) {
+  const auto cases = {&MissionInputs::height,           &MissionInputs::horizontal_distance,
+                      &MissionInputs::horizontal_speed, &MissionInputs::sink_rate,
+                      &MissionInputs::arrival_in,       &MissionInputs::foot_force};
+  for (double MissionInputs::*number : cases) {
+    Mission mission;
+    Land(GetParam(), &mission);
+    const double good = mission.in.*number;
+    mission.height_follows = false;
+    mission.Run(0.3, [&](MissionInputs& in) { in.*number = kNan; });
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kHold);
+    EXPECT_TRUE(std::isfinite(mission.outputs.foot_height));
+    mission.in.*number = good;
+    mission.in.horizontal_distance = 5.0;
+    mission.Run(3.0);
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kTracking);
+    EXPECT_NEAR(mission.outputs.foot_height, mission.parameters.follow_height, 1e-9);
+  }
+}
+
+// Any inputs whatsoever: disarmed only after lasting force at the deck, in landing.
+TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
   const MissionParameters parameters;
+  // A plan leads down by itself, and does not wait for tags.
+  const bool planned = GetParam() == DescentStyle::kPlanned;
+  const double stays = planned ? 0.8 : 1.0, oldest = planned ? 0.302 : 0.4;
   int disarmed = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> uniform;
     MissionState state;
     MissionInputs in = Fine();
+    in.descent = GetParam();
     double touching_for = 0.0, lifted_for = -1.0, contact_for = 0.0;
     for (int k = 0; k < 4000; ++k) {
       const double dt = uniform(random) < 0.02 ? 0.2 * uniform(random) : 0.01;
       if (uniform(random) < 0.05) in.pad_available = uniform(random) < 0.9;
       if (uniform(random) < 0.05) in.pad_converged = uniform(random) < 0.9;
       if (uniform(random) < 0.05) in.horizontal_distance = 0.35 * uniform(random);
+      if (uniform(random) < 0.005) in.horizontal_distance = 3.0 * uniform(random);
       if (uniform(random) < 0.05) in.horizontal_speed = 0.5 * uniform(random);
-      if (uniform(random) < 0.2) in.height = state.foot_height + 0.1 * (uniform(random) - 0.5);
-      if (uniform(random) < 0.05) in.tag_age = 0.4 * uniform(random);
+      if (uniform(random) < 0.2) {
+        in.height = stays * state.foot_height + 0.1 * (uniform(random) - 0.5);
+      }
+      if (uniform(random) < 0.05) in.tag_age = oldest * uniform(random);
       if (uniform(random) < 0.05) in.foot_force = 6.0 * uniform(random) - 1.0;
       if (uniform(random) < 0.02) in.plan_failed_for = uniform(random) < 0.95 ? 0.0 : 2.0;
+      in.arrival_in -= dt;
+      if (uniform(random) < 0.01) in.arrival_in = 2.0 * uniform(random);
+      if (uniform(random) < 0.05) in.sink_rate = uniform(random);
       in.emergency = uniform(random) < 0.0005;
       MissionInputs fed = in;
       fed.t = in.t += dt;
@@ -244,7 +306,8 @@ TEST(LandingStateMachine, FuzzNeverDisarmsInTheAir) {
       if (uniform(random) < 0.002) fed.t = kNan;
 
       const bool touching = fed.foot_force >= parameters.contact_force &&
-                            std::abs(fed.height) <= parameters.contact_height;
+                            std::abs(fed.height) <= parameters.contact_height &&
+                            fed.horizontal_distance <= parameters.contact_distance;
       const MissionMode before = state.mode;
       const MissionStep step = Step(state, fed, parameters);
       if (std::isfinite(fed.t)) {

@@ -97,6 +97,87 @@ TEST(PlannedDescent, BelowTheGateHeightIsNoPlaceToWait) {
   EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
 }
 
+// What is left of the descent once its end is asked for: until then it goes on at its rate.
+TEST(PlannedDescent, TurnsSoFarAboveTheGateHeightThatItEndsThere) {
+  for (const double sink_rate : {-1.0, 0.0, 0.6, 1.6}) {
+    Approach mission;
+    const MissionParameters& p = mission.parameters;
+    double turned_at = 0.0;
+    for (double height = 4.0; height > 0.0 && turned_at == 0.0; height -= 0.01) {
+      mission.Tick([&](MissionInputs& in) {
+        in.arrival_in = 10.0;
+        in.tag_age = 5.0;
+        in.height = height;
+        in.sink_rate = sink_rate;
+        in.horizontal_distance = 0.1;
+      });
+      if (mission.outputs.guidance == Guidance::kFollowPad) turned_at = height;
+    }
+    const double sinks = std::max(0.0, sink_rate);
+    const double way = sinks * p.turn_time + sinks * sinks / (2.0 * p.turn_acceleration);
+    EXPECT_NEAR(turned_at, p.gate_height + way, 0.02) << sink_rate;
+  }
+}
+
+TEST(PlannedDescent, OnHighItIsTheTimeThatEndsItWithAClosedGate) {
+  Approach mission;
+  const auto high = [&](double arrival) {
+    mission.Tick([&](MissionInputs& in) {
+      in.arrival_in = arrival;
+      in.tag_age = 5.0;
+      in.height = 3.0;
+      in.horizontal_distance = 0.1;
+    });
+    return mission.outputs.guidance;
+  };
+  EXPECT_EQ(high(mission.parameters.decide_time + 0.1), Guidance::kTouchDown);
+  EXPECT_EQ(high(mission.parameters.decide_time - 0.1), Guidance::kFollowPad);
+}
+
+// However suddenly the contact comes near.
+TEST(PlannedDescent, IsNeverDecidedWithAClosedGateOrAPadThatIsNotGood) {
+  const Mission::Change unseen = [](MissionInputs& in) { in.tag_age = 5.0; };
+  const Mission::Change vague = [](MissionInputs& in) { in.pad_converged = false; };
+  for (const Mission::Change& lack : {unseen, vague}) {
+    Approach mission;
+    mission.Run(0.5, [&](MissionInputs& in) {
+      in.arrival_in = 0.6;
+      in.height = 0.8;
+      in.horizontal_distance = 0.1;
+      lack(in);
+    });
+    EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  }
+}
+
+TEST(PlannedDescent, AfterAGoAroundItComesDownAgainOnlyWithAnOpenGate) {
+  Approach mission;
+  mission.FlyTo(0.9);
+  const auto unseen = [](MissionInputs& in) {
+    in.tag_age = 5.0;
+    in.arrival_in = kNever;
+    in.horizontal_distance = 0.1;
+  };
+  mission.height_follows = true;
+  mission.Run(6.0, unseen);
+  ASSERT_EQ(ModeOf(mission), MissionMode::kTracking);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
+  mission.Run(0.05, [](MissionInputs& in) { in.tag_age = 0.05; });
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kTouchDown);
+}
+
+TEST(PlannedDescent, ContactIsAsNearAsThePlanSaysAndAReserve) {
+  const MissionParameters p;
+  MissionInputs in = Fine();
+  in.descent = DescentStyle::kPlanned;
+  in.arrival_in = 0.5;
+  EXPECT_DOUBLE_EQ(ContactIn({}, in, p), 0.5 + p.contact_reserve);
+  in.arrival_in = -0.5;
+  EXPECT_DOUBLE_EQ(ContactIn({}, in, p), p.contact_reserve);
+  in.arrival_in = kNever;
+  EXPECT_EQ(ContactIn({}, in, p), kNever);
+}
+
 TEST(PlannedDescent, AShortLossOfTheTagsIsBridged) {
   Approach mission;
   mission.FlyTo(0.9);
@@ -130,7 +211,7 @@ TEST_P(LostLanding, EndsInAClimb) {
     in.arrival_in = mission.contact_t - in.t;
     loss.change(in);
   };
-  for (int k = 0; k < 200 && reason == TransitionReason::kNone; ++k) {
+  for (int k = 0; k < 400 && reason == TransitionReason::kNone; ++k) {
     mission.Tick(along);
     reason = mission.outputs.reason;
   }
@@ -158,6 +239,16 @@ INSTANTIATE_TEST_SUITE_P(
              TransitionReason::kErrorTooLarge},
         Loss{"too_fast", 0.2, [](MissionInputs& in) { in.horizontal_speed = 2.5; },
              TransitionReason::kTooFast},
+        Loss{"too_fast_for_the_time_left", 0.05,
+             [](MissionInputs& in) { in.horizontal_speed = 1.2; }, TransitionReason::kTooFast},
+        Loss{"too_fast_without_a_plan", 0.2,
+             [](MissionInputs& in) {
+               in.horizontal_speed = 1.2;
+               in.arrival_in = kNever;
+             },
+             TransitionReason::kTooFast},
+        Loss{"put_off_for_ever", 0.9, [](MissionInputs& in) { in.arrival_in = 0.6; },
+             TransitionReason::kNoContact},
         Loss{"no_plan", 0.95, [](MissionInputs& in) { in.plan_failed_for = 0.5; },
              TransitionReason::kPlanFailed},
         Loss{"overdue", 0.05, [](MissionInputs&) {}, TransitionReason::kNoContact},
@@ -165,13 +256,24 @@ INSTANTIATE_TEST_SUITE_P(
              TransitionReason::kOwnStateLost}),
     [](const auto& test) { return test.param.name; });
 
+TEST(PlannedDescent, SpeedThatCanStillBeTakenOffIsNotTooFast) {
+  Approach mission;
+  mission.FlyTo(0.35);
+  ASSERT_TRUE(mission.outputs.committed);
+  mission.FlyTo(0.2, [](MissionInputs& in) { in.horizontal_speed = 1.5; });
+  EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
+}
+
 TEST(PlannedDescent, FeetThatTouchAreNotPulledOffAgain) {
   Approach mission;
   mission.FlyTo(0.05);
   ASSERT_TRUE(mission.outputs.committed);
-  mission.parameters.contact_time = 2.0;
-  mission.Run(1.5, [&](MissionInputs& in) {
+  mission.parameters.contact_time = 4.0;
+  mission.Run(2.5, [&](MissionInputs& in) {
     in.arrival_in = mission.contact_t - in.t;
+    in.height = 0.0;
+    in.horizontal_distance = 1.0;
+    in.horizontal_speed = 2.0;
     in.foot_force = 10.0;
     in.tag_age = 9.0;
   });

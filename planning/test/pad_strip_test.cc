@@ -8,7 +8,7 @@
 namespace touchdown::planning {
 namespace {
 
-constexpr double kRadius = 0.8, kDeck = 0.3;
+constexpr double kRadius = 0.8, kDeck = 0.3, kContactHeight = 0.12;
 
 EndpointTarget AtHeight(double height) {
   EndpointTarget target;
@@ -19,7 +19,7 @@ EndpointTarget AtHeight(double height) {
 TEST(PadStrip, CoversThePadFromStartToArrival) {
   const ArcPad pad({1.0, 2.0, kDeck}, 0.5, 0.0, 0.0);
   FreeSpace space;
-  LayPadStrip(pad, AtHeight(1.0), {-5.0, 0.0, 2.0}, 1.0, 5.0, kRadius, &space);
+  LayPadStrip(pad, AtHeight(1.0), {-5.0, 0.0, 2.0}, 1.0, 5.0, kRadius, kContactHeight, &space);
   for (double t = 1.0; t <= 5.0; t += 0.25) {
     EXPECT_TRUE(space.OverPad(pad.At(t).p_WP)) << t;
     EXPECT_FALSE(space.OverPad(pad.At(t).p_WP + Eigen::Vector3d(0.0, 1.01 * kRadius, 0.0))) << t;
@@ -28,19 +28,32 @@ TEST(PadStrip, CoversThePadFromStartToArrival) {
   EXPECT_FALSE(space.OverPad(pad.At(5.0).p_WP + Eigen::Vector3d(1.01 * kRadius, 0.0, 0.0)));
 }
 
-TEST(PadStrip, ItsFloorIsBelowBothEndsThatAreOverThePad) {
+double FloorOf(double target_height, const Eigen::Vector3d& start) {
   const ArcPad pad({0.0, 0.0, kDeck}, 0.5, 0.0, 0.0);
-  const double end = kDeck + 1.0;
-  const auto floor_from = [&](const Eigen::Vector3d& start) {
-    FreeSpace space;
-    LayPadStrip(pad, AtHeight(1.0), start, 0.0, 4.0, kRadius, &space);
-    return space.pad_floor;
-  };
-  const double beside = floor_from({-5.0, 0.0, 0.6});
-  EXPECT_LT(beside, end);
-  EXPECT_GT(beside, end - 0.3);
-  EXPECT_DOUBLE_EQ(floor_from({0.5, 0.1, 2.0}), beside);  // from higher up over the pad
-  EXPECT_NEAR(floor_from({0.5, 0.1, 0.7}), beside - (end - 0.7), 1e-12);
+  FreeSpace space;
+  LayPadStrip(pad, AtHeight(target_height), start, 0.0, 4.0, kRadius, kContactHeight, &space);
+  return space.pad_floor;
+}
+
+TEST(PadStrip, ItsFloorIsTheDeckHoweverHighAPlanEnds) {
+  const double on_deck = kDeck + kContactHeight;
+  for (const double target_height : {1.0, 1.5, 3.0}) {
+    for (const Eigen::Vector3d& start :
+         {Eigen::Vector3d(-5.0, 0.0, 0.2), Eigen::Vector3d(0.5, 0.1, 2.0)}) {
+      EXPECT_GT(FloorOf(target_height, start), on_deck);
+      EXPECT_LT(FloorOf(target_height, start), on_deck + 0.2);
+    }
+  }
+}
+
+TEST(PadStrip, ItsFloorIsBelowBothEndsThatAreOverThePad) {
+  const Eigen::Vector3d beside(-5.0, 0.0, 0.2), low(0.5, 0.1, kDeck + 0.14);
+  for (const double contact : {kContactHeight, 0.0, -0.3}) {
+    EXPECT_LT(FloorOf(contact, beside), kDeck + contact);
+    EXPECT_GT(FloorOf(contact, beside), kDeck + contact - 0.3);
+  }
+  EXPECT_LT(FloorOf(1.0, low), low.z());
+  EXPECT_GT(FloorOf(1.0, low), low.z() - 0.3);
 }
 
 }  // namespace
