@@ -3,7 +3,8 @@
 // reference to the vehicle itself takes the position loop out, and an acceleration of
 // -(1 - share) g leaves the rotors that share of the weight, along the vertical. Velocities are taken out
 // of both sides, and with them the drag that is fed forward: friction holds the vehicle against the wind
-// of the drive and any other, and the attitude loop levels it about the feet that touch.
+// of the drive and any other, and the attitude loop levels it about the feet that touch. Most of its damping
+// is left to them: rotors that answer to each knock of the deck lift the feet off it.
 
 #include "touchdown/control/settling.h"
 
@@ -14,6 +15,12 @@
 #include "touchdown/estimation/vehicle_model.h"
 
 namespace touchdown::control {
+
+namespace {
+
+constexpr double kDampingTakenOut = 0.6;  // of the attitude loop's, standing
+
+}  // namespace
 
 Settling::Settling(const SettlingParameters& parameters) : parameters_(parameters) {
   const auto require = [](bool good, const char* name, double value, const char* range) {
@@ -49,6 +56,7 @@ void Settling::Apply(estimation::VehicleState* state, planning::FlatState* refer
   reference->p_WB += share * (state->p_WB - reference->p_WB);
   reference->v_WB *= 1.0 - share;
   state->v_WB *= 1.0 - share;
+  state->w_WB_B *= 1.0 - kDampingTakenOut * share;
   reference->a_WB += share * (a_standing - reference->a_WB);
   reference->j_WB *= 1.0 - share;
   disturbance->force_W *= 1.0 - share;

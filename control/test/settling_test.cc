@@ -54,6 +54,23 @@ TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
     const ControlOutput output = MakeController(law, model)->Update(state, reference, disturbance);
     EXPECT_GT(output.R_WB_desired(2, 2), 1.0 - 1e-9) << law;
     EXPECT_GT(output.wrench.moment_B.y(), 0.5) << law;  // levels it
+    // What the deck knocks is answered with less than half as much.
+    const auto moment_x = [&](double rate) {
+      estimation::VehicleState told = Leaning(1.0 + parameters.fade_time);
+      told.w_WB_B.x() = rate;
+      planning::FlatState asked = Sinking();
+      Disturbance taken = Wind();
+      settling.Apply(&told, &asked, &taken);
+      return MakeController(law, model)->Update(told, asked, taken).wrench.moment_B.x();
+    };
+    const auto flying_x = [&](double rate) {
+      estimation::VehicleState told = Leaning(1.0);
+      told.w_WB_B.x() = rate;
+      return MakeController(law, model)->Update(told, Sinking(), {}).wrench.moment_B.x();
+    };
+    const double standing = std::abs(moment_x(1.0) - moment_x(0.0));
+    EXPECT_LT(standing, 0.5 * std::abs(flying_x(1.0) - flying_x(0.0))) << law;
+    EXPECT_GT(standing, 0.0) << law;
     EXPECT_NEAR(output.wrench.thrust, parameters.thrust_share * model.HoverThrust() * std::cos(0.4),
                 1e-9)
         << law;
