@@ -24,9 +24,9 @@ class Document:
         fence, start, language = None, 0, ""
         lines = path.read_text().split("\n")
         for number, line in enumerate(lines, 1):
-            if fence is None and (opening := re.match(r"(```+)\s*(\w*)\s*$", line)):
+            if fence is None and (opening := re.match(r" *(```+)\s*(\w*)\s*$", line)):
                 fence, start, language = opening[1], number + 1, opening[2]
-            elif fence is not None and line.rstrip() == fence:
+            elif fence is not None and line.strip() == fence:
                 text = "\n".join(lines[start - 1 : number - 1])
                 self.blocks.append(Block(start, language, text))
                 fence = None

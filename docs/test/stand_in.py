@@ -20,10 +20,11 @@ BUILD = Path(os.environ.get("TOUCHDOWN_BUILD", ""))
 # Options that say how much work there is: never more than this ...
 SHORT = {"--trials": 2, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1}
 # ... which these sub-commands are given where the document leaves them to their default.
-GIVEN = {"compare": ["--problems"], "study replan": ["--scenes"], "study pad": ["--trials"],
-         "study tags": ["--poses"]}  # fmt: skip
-# Simulated seconds of each flight in commands that make many, and of each rendered one.
-MANY, TIMEOUT = ("sweep", "study pad"), "--set timeout=1"
+GIVEN = {"compare": ["--problems", "--repeats"], "study replan": ["--scenes", "--repeats"],
+         "study pad": ["--trials"], "study tags": ["--poses"]}  # fmt: skip
+# Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
+# pad` draws nothing of shorter ones.
+SECONDS = {"land": 15, "profile": 15, "sweep": 1, "study pad": 6}
 # A command that needs more than this in its short form needs a rule here.
 CPU_SECONDS = int(os.environ.get("TOUCHDOWN_CPU_SECONDS", "20"))
 OUTPUTS = ("--record", "--plot", "--save-map", "--db", "--picture", "--trace", "--frames")
@@ -52,10 +53,14 @@ def shortened(arguments):
     for option in GIVEN.get(command, []):
         if option not in short and not flights:
             short += [option, str(SHORT[option])]
-    if flights and "--flights" not in short:
-        short += ["--flights", str(SHORT["--flights"])]
-    if command in MANY or "sensing=rendered" in short:
-        short += TIMEOUT.split()
+    if flights:  # of one kind
+        short += [] if "--flights" in short else ["--flights", str(SHORT["--flights"])]
+        short += [] if "--kinds" in short else ["--kinds", "A"]
+    if command in SECONDS and "--from" not in short:
+        rendered = "sensing=rendered" in short
+        short += ["--set", f"timeout={1 if rendered else SECONDS[command]}"]
+        if rendered and "--trials" in short:
+            short[short.index("--trials") + 1] = "1"
     return short
 
 

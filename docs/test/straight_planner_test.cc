@@ -74,8 +74,10 @@ TEST_F(ExamplePlanner, BrakesWithoutAPadAndForOneItCannotReach) {
   EXPECT_LT((planner.Reference(20.0).p_WB - Vector3d(0.0, 0.0, 2.0)).norm(), 1e-9);
 }
 
-TEST_F(ExamplePlanner, Climbs) {
-  EXPECT_EQ(planner.Rest(InputAt(0.0), 1.5, map).status, ReplanStatus::kClimbing);
+TEST_F(ExamplePlanner, ClimbsOnceHoweverOftenItIsAsked) {
+  for (double t = 0.0; t < 5.0; t += 0.1) {
+    EXPECT_EQ(planner.Rest(InputAt(t), 1.5, map).status, ReplanStatus::kClimbing);
+  }
   EXPECT_NEAR(planner.Reference(20.0).p_WB.z(), 3.5, 1e-9);
 }
 

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrival time is the landing planner's guess; the curve is the quintic between both ends as a
-// uniform B-spline. Source: this example.
+// The curve is the quintic between both ends as a uniform B-spline; the arrival is put off until it keeps
+// the limits. Source: this example.
 
 #include "touchdown/planning/straight_planner.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/rest_trajectory.h"
 
 namespace touchdown::planning {
@@ -18,6 +15,7 @@ namespace {
 constexpr int kSegments = 12;
 constexpr double kShortest = 0.8;  // of a plan [s]
 constexpr double kLongest = 30.0;  // [s]
+constexpr double kGrowth = 1.1;
 }  // namespace
 
 void StraightPlanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
@@ -28,25 +26,27 @@ void StraightPlanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
 const ReplanResult& StraightPlanner::Replan(const ReplanInput& input, const OccupancyMap& map) {
   if (input.pad == nullptr) return Rest(input, 0.0, map);
   const SplineState start = StartAt(input.t_start);
-  const double guess =
-      GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, 0.0);
-  if (!(guess < kLongest)) {  // NaN too
-    return Commit(MakeRestTrajectory(start, input.t_start, Eigen::Vector3d::Zero(), limits_),
-                  ReplanStatus::kBraking, ReplanReason::kPadUnreachable);
+  for (double T = kShortest; T < kLongest; T *= kGrowth) {
+    const EndState end = EndStateAt(*input.pad, input.endpoint, input.t_start + T);
+    UniformBspline curve(HermiteControlPoints(start, end.state, kSegments, T), T / kSegments,
+                         input.t_start);
+    const DerivativeBounds bounds = BoundDerivatives(curve);
+    if (bounds.speed <= limits_.speed && bounds.acceleration <= limits_.acceleration) {
+      return Commit(std::move(curve), ReplanStatus::kPlanned, ReplanReason::kNone);
+    }
   }
-  const double T = std::max(guess, kShortest);
-  const EndState end = EndStateAt(*input.pad, input.endpoint, input.t_start + T);
-  return Commit(UniformBspline(HermiteControlPoints(start, end.state, kSegments, T), T / kSegments,
-                               input.t_start),
-                ReplanStatus::kPlanned, ReplanReason::kNone);
+  return Commit(MakeRestTrajectory(start, input.t_start, Eigen::Vector3d::Zero(), limits_),
+                ReplanStatus::kBraking, ReplanReason::kPadUnreachable);
 }
 
 const ReplanResult& StraightPlanner::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& /*map*/) {
+  if (climb_ == climb) return result_;  // asked again at every step while it lasts
   const Eigen::Vector3d up = climb * Eigen::Vector3d::UnitZ();
-  return Commit(MakeRestTrajectory(StartAt(input.t_start), input.t_start, up, limits_),
-                climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking,
-                ReplanReason::kNone);
+  Commit(MakeRestTrajectory(StartAt(input.t_start), input.t_start, up, limits_),
+         climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking, ReplanReason::kNone);
+  climb_ = climb;
+  return result_;
 }
 
 FlatState StraightPlanner::Reference(double t) const {
@@ -56,6 +56,7 @@ FlatState StraightPlanner::Reference(double t) const {
 const ReplanResult& StraightPlanner::Commit(UniformBspline curve, ReplanStatus status,
                                             ReplanReason reason) {
   current_ = std::exchange(next_, std::move(curve));
+  climb_.reset();
   result_ = {};
   result_.status = status;
   result_.reason = reason;

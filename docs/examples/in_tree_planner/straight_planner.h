@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "touchdown/planning/limits.h"
 #include "touchdown/planning/planner.h"
 
@@ -24,6 +26,7 @@ class StraightPlanner : public Planner {
 
   Limits limits_;
   UniformBspline current_, next_;  // next_ takes over at its t0
+  std::optional<double> climb_;    // of the rest under way [m]
   ReplanResult result_;
 };
 
