@@ -18,9 +18,9 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("TOUCHDOWN_BUILD", ""))
 
 # Options that say how much work there is: never more than this ...
-SHORT = {"--trials": 2, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1}
+SHORT = {"--trials": 1, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1}
 # ... which these sub-commands are given where the document leaves them to their default.
-GIVEN = {"compare": ["--problems", "--repeats"], "study replan": ["--scenes", "--repeats"],
+GIVEN = {"compare": ["--problems", "--repeats"], "study replan": ["--scenes"],
          "study pad": ["--trials"], "study tags": ["--poses"]}  # fmt: skip
 # Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
 # pad` draws nothing of shorter ones.
@@ -57,10 +57,8 @@ def shortened(arguments):
         short += [] if "--flights" in short else ["--flights", str(SHORT["--flights"])]
         short += [] if "--kinds" in short else ["--kinds", "A"]
     if command in SECONDS and "--from" not in short:
-        rendered = "sensing=rendered" in short
-        short += ["--set", f"timeout={1 if rendered else SECONDS[command]}"]
-        if rendered and "--trials" in short:
-            short[short.index("--trials") + 1] = "1"
+        seconds = 1 if "sensing=rendered" in short else SECONDS[command]
+        short += ["--set", f"timeout={seconds}"]
     return short
 
 
@@ -92,7 +90,7 @@ def look_at_script(name, arguments):
     script = ROOT / name
     if not os.access(script, os.X_OK) or arguments:
         raise Wrong(f"{name} is no program without options at the top of the repository")
-    if subprocess.run(["bash", "-n", script], check=False).returncode != 0:
+    if subprocess.run(["/bin/bash", "-n", script], check=False).returncode != 0:
         raise Wrong(f"{name} is not valid bash")
 
 

@@ -48,11 +48,12 @@ def run_script(script, folder):
     )  # fmt: skip
     entries = [json.loads(line) for line in log.read_text().splitlines()] if log.exists() else []
     wrong = [f"{e['line']}: {shlex.join(e['arguments'])}: {e['wrong']}" for e in entries if "wrong" in e]
+    told = {sentence.split(":")[0] for sentence in wrong}
     errors = Path(f"{log}.errors")
-    if errors.exists() and not wrong:
-        wrong = errors.read_text().splitlines() + [done.stderr]
-    if done.stderr and not wrong:
-        wrong = [done.stderr]
+    if errors.exists():  # of the shell itself: what a stand-in says is known already
+        wrong += [e for e in errors.read_text().splitlines() if e.split(":")[0] not in told]
+    if done.stderr:
+        wrong.append(done.stderr)
     return wrong, [entry for entry in entries if "short" in entry]
 
 
