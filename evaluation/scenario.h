@@ -10,21 +10,13 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/registries.h"
+#include "touchdown/sim/pad_motion.h"
 #include "touchdown/sim/plant.h"
 
 namespace touchdown::evaluation {
 
-enum class PadMotionKind {
-  kStraightTurn,
-  kCircle,
-  kLine,
-  kStatic,
-  kFigureEight,
-  kStopAndGo,
-  kReversing,
-  kRandom,
-  kWaypoints
-};
+/// By the names of pad.motion, in this order.
+using PadMotionKind = sim::PadMotionConfig::Kind;
 enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };

@@ -21,30 +21,6 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadPerDeg = kPi / 180.0;
 
-sim::PadMotionConfig::Kind KindOf(PadMotionKind kind) {
-  switch (kind) {
-    case PadMotionKind::kStraightTurn:
-      return sim::PadMotionConfig::Kind::kStraightTurn;
-    case PadMotionKind::kCircle:
-      return sim::PadMotionConfig::Kind::kCircle;
-    case PadMotionKind::kLine:
-      return sim::PadMotionConfig::Kind::kLine;
-    case PadMotionKind::kStatic:
-      return sim::PadMotionConfig::Kind::kStatic;
-    case PadMotionKind::kFigureEight:
-      return sim::PadMotionConfig::Kind::kFigureEight;
-    case PadMotionKind::kStopAndGo:
-      return sim::PadMotionConfig::Kind::kStopAndGo;
-    case PadMotionKind::kReversing:
-      return sim::PadMotionConfig::Kind::kReversing;
-    case PadMotionKind::kRandom:
-      return sim::PadMotionConfig::Kind::kRandom;
-    case PadMotionKind::kWaypoints:
-      return sim::PadMotionConfig::Kind::kWaypoints;
-  }
-  return sim::PadMotionConfig::Kind::kStatic;
-}
-
 }  // namespace
 
 ObstacleList ObstaclesOf(const Scenario& scenario) {
@@ -70,7 +46,7 @@ ObstacleList ObstaclesOf(const Scenario& scenario) {
 sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase, std::uint64_t seed) {
   const Scenario::Pad& pad = scenario.pad;
   sim::PadMotionConfig config;
-  config.kind = KindOf(pad.motion);
+  config.kind = pad.motion;
   config.p_start << pad.start, pad.deck_height;
   config.heading = pad.heading_deg * kRadPerDeg;
   config.speed = pad.motion == PadMotionKind::kStatic ? 0.0 : pad.speed;

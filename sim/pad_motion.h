@@ -19,10 +19,10 @@ namespace touchdown::sim {
 /// Path of the pad and how it is driven, with the pad's x axis along the path.
 struct PadMotionConfig {
   enum class Kind {
-    kStatic,        ///< stands at p_start
-    kLine,          ///< straight on for ever
-    kCircle,        ///< radius speed / |turn_rate|, to the left for a positive turn_rate
     kStraightTurn,  ///< straight, one turn by turn_angle, straight
+    kCircle,        ///< radius speed / |turn_rate|, to the left for a positive turn_rate
+    kLine,          ///< straight on for ever
+    kStatic,        ///< stands at p_start
     kFigureEight,   ///< from the end of a loop, where the turn rate is turn_rate
     kStopAndGo,     ///< straight, for go_time at speed, then standing for stop_time, and so on
     kReversing,     ///< straight, for go_time forwards, then as long backwards, and so on

@@ -1,8 +1,9 @@
 # Installs BUILD_DIR to a fresh prefix, then configures, builds and runs against it: this folder, and
-# the out-of-tree program of docs/adding_a_term.md in EXAMPLE_DIR, whose term every backend meets.
+# the programs of docs/adding_a_term.md, whose terms every backend meets, and of
+# docs/adding_a_backend.md in EXAMPLES. The tests of the documents run what is built here.
 cmake_minimum_required(VERSION 3.25)
 
-foreach(name BUILD_DIR WORK_DIR EXAMPLE_DIR)
+foreach(name BUILD_DIR WORK_DIR EXAMPLES)
   if(NOT ${name})
     message(FATAL_ERROR "run.cmake needs -D${name}=")
   endif()
@@ -23,7 +24,7 @@ endfunction()
 
 function(build source name)
   run(0 ${CMAKE_COMMAND} -S "${source}" -B "${WORK_DIR}/${name}" -G Ninja
-      "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix")
+      "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DEXAMPLES=${EXAMPLES}")
   run(0 ${CMAKE_COMMAND} --build "${WORK_DIR}/${name}")
 endfunction()
 
@@ -33,7 +34,7 @@ run(0 "${WORK_DIR}/prefix/bin/touchdown" list scenarios --json)
 build("${CMAKE_CURRENT_LIST_DIR}" consumer)
 run(0 "${WORK_DIR}/consumer/consumer")
 
-build("${EXAMPLE_DIR}" own_program)
+build("${EXAMPLES}/own_program" own_program)
 set(own "${WORK_DIR}/own_program/own_program")
 run(0 ${own} list terms --json)
 if(NOT output MATCHES "\"reach\"")
@@ -63,3 +64,19 @@ foreach(i RANGE ${last})
     message(FATAL_ERROR "${backend} refuses rows without a reason: ${errors}")
   endif()
 endforeach()
+
+# Which costs of the example backend come out right is the comparison's to say, by others' solutions.
+build("${EXAMPLES}/own_backend" own_backend)
+set(own "${WORK_DIR}/own_backend/own_backend")
+foreach(arrival fixed free)
+  run(0 ${own} compare --problems 5 --repeats 1 --arrival ${arrival} --backends chord,banded --json)
+  string(JSON solved GET "${output}" backends chord solved_fraction)
+  if(NOT solved EQUAL 1)
+    message(FATAL_ERROR "chord solves ${solved} of the problems with ${arrival} arrival:\n${output}")
+  endif()
+endforeach()
+run(0 ${own} land open --backend chord --json)
+run(2 ${own} land open --backend chord --set solver.limits=hard)
+if(NOT errors MATCHES "backend chord takes no inequality constraints")
+  message(FATAL_ERROR "chord refuses rows without a reason: ${errors}")
+endif()

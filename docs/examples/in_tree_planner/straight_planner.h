@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "touchdown/planning/limits.h"
+#include "touchdown/planning/planner.h"
+
+namespace touchdown::planning {
+
+/// A planner in as little as there can be: the quintic from where the vehicle is to where the pad will
+/// be, whatever stands between. Nothing is certified. An example.
+class StraightPlanner : public Planner {
+ public:
+  explicit StraightPlanner(const Limits& limits) : limits_(limits) {}
+
+  void CommitHover(const Eigen::Vector3d& p_W, double t) override;
+  const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
+  const ReplanResult& Rest(const ReplanInput& input, double climb,
+                           const OccupancyMap& map) override;
+  FlatState Reference(double t) const override;
+
+ private:
+  const ReplanResult& Commit(UniformBspline curve, ReplanStatus status, ReplanReason reason);
+  SplineState StartAt(double t) const;
+
+  Limits limits_;
+  UniformBspline current_, next_;  // next_ takes over at its t0
+  std::optional<double> climb_;    // of the rest under way [m]
+  ReplanResult result_;
+};
+
+}  // namespace touchdown::planning
