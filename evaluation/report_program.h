@@ -33,4 +33,7 @@ void DrawSweep(const std::string& table_path, const std::string& picture_path);
 /// Draws the picture of a solved step from its document (plan_report.h). @throws as DrawLanding
 void DrawPlan(const std::string& document_path, const std::string& picture_path);
 
+/// Writes report, tables and figures of a flown study into its folder (study_run.h). @throws as DrawLanding
+void WriteStudyReport(const std::string& folder);
+
 }  // namespace touchdown::evaluation
