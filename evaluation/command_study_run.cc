@@ -8,10 +8,10 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/report_program.h"
@@ -27,6 +27,7 @@ struct StudyRunArguments {
   bool report_only = false;
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::string seed;
+  std::string shard = "1/1";
   bool json = false;
 };
 
@@ -54,17 +55,14 @@ std::string SummaryText(const nlohmann::ordered_json& summary, const std::string
   return text + fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
 }
 
-int Run(const StudyRunArguments& arguments, const Registries& registries) {
-  const StudyFile file = LoadStudyFile(FindStudyFile(arguments.file), registries);
-  const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
-  if (!arguments.report_only) {
-    const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
-    const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
-    FlyStudy(plan, folder, arguments.jobs, registries);
-  } else if (!std::filesystem::exists(StudyTablePath(folder))) {
-    throw BadInput(fmt::format("--report-only: {} is missing; the study must be flown first.",
-                               StudyTablePath(folder)));
-  }
+// Nothing is to be reported yet; what was flown is in the folder.
+int Unfinished(const CampaignState& state, const std::string& table) {
+  spdlog::warn("{} of {} trials are in {}: the same command goes on from there", state.flown,
+               state.all, table);
+  return kFellShort;
+}
+
+int Report(const StudyRunArguments& arguments, const std::string& folder) {
   WriteStudyReport(folder);
   const nlohmann::ordered_json summary = ReadSummary(folder);
   if (arguments.json) {
@@ -75,16 +73,40 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   return summary.at("errors").get<int>() == 0 ? kDone : kFellShort;
 }
 
+int Run(const StudyRunArguments& arguments, const Registries& registries) {
+  const StudyFile file = LoadStudyFile(FindStudyFile(arguments.file), registries);
+  const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
+  if (arguments.report_only) {
+    if (std::filesystem::exists(StudyTablePath(folder))) return Report(arguments, folder);
+    throw BadInput(fmt::format("--report-only: {} is missing; the study must be flown first.",
+                               StudyTablePath(folder)));
+  }
+  const Shard shard = Shard::Parse(arguments.shard);
+  const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
+  const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
+  const CampaignState state = FlyStudy(plan, folder, arguments.jobs, shard, registries);
+  if (state.flown < state.all) return Unfinished(state, StudyTablePath(folder, shard));
+  if (shard.of == 1) return Report(arguments, folder);
+  std::cout << fmt::format("{} trials of shard {} are in {}\n", state.flown, arguments.shard,
+                           StudyTablePath(folder, shard));
+  return kDone;
+}
+
 void AddOptions(Command command, const std::shared_ptr<StudyRunArguments>& arguments,
                 const Registries& registries, CommandRun* run) {
   command.AddFlag("--quick", arguments->quick, "The short form: few seeds, main cells");
   command.AddFile("--out", &arguments->out,
                   "The study's folder, made where it is missing; study_NAME unless given",
                   "FOLDER");
-  command.Add("--jobs", arguments->jobs, "Threads").Check(Range(1, 1024)).ShowDefault();
+  command.Add("--jobs", arguments->jobs, "Trials flown at a time")
+      .Check(Range(1, 1024))
+      .ShowDefault();
   command.Add("--seed", arguments->seed, "Seed of the study instead of its file's")
       .TypeName("S")
       .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+  command.Add("--shard", arguments->shard, "Fly only the K-th of N parts, into a file of its own")
+      .TypeName("K/N")
+      .ShowDefault();
   command.AddFlag("--report-only", arguments->report_only,
                   "Write the report of what the folder holds, without flying");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");

@@ -27,7 +27,7 @@ void DrawGrowth(const std::string& table_path, const std::string& picture_path);
 /// DrawLanding
 void DrawPadStudy(const std::string& table_path, const std::string& picture_path);
 
-/// Draws the outcome of a sweep from its table (trial_table.h). @throws as DrawLanding
+/// Draws the outcome of a sweep from its table (trial_store.h). @throws as DrawLanding
 void DrawSweep(const std::string& table_path, const std::string& picture_path);
 
 /// Draws the picture of a solved step from its document (plan_report.h). @throws as DrawLanding

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a study file to its trials: the product of cells and methods, each part's scenario loaded once.
+// From a study file to a campaign: the product of cells and methods, every part with the same seeds.
 #include "touchdown/evaluation/study_plan.h"
 
 #include <algorithm>
@@ -8,20 +8,10 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/rendering_check.h"
+#include "touchdown/evaluation/sweep.h"
 
 namespace touchdown::evaluation {
 namespace {
-
-// As a shell reads it back.
-std::string ShellWord(const std::string& word) {
-  const bool plain = word.find_first_not_of(
-                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=+-") ==
-                     std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char letter : word) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
-  return quoted + "'";
-}
 
 // Later pairs replace earlier ones of the same key: a method's key counts, not the cell's.
 std::vector<std::string> Overrides(const std::vector<const StudyPairs*>& layers) {
@@ -47,64 +37,78 @@ bool Flies(const StudyCell& cell, const StudyMethod& method) {
          std::find(cell.methods.begin(), cell.methods.end(), method.name) != cell.methods.end();
 }
 
-StudyPart PlanPart(const StudyFile& file, int cell_index, int method_index,
-                   const Registries& registries) {
-  StudyPart part;
-  part.cell = cell_index;
-  part.method = method_index;
-  const StudyCell& cell = file.cells[static_cast<std::size_t>(cell_index)];
-  const StudyMethod& method = file.methods[static_cast<std::size_t>(method_index)];
-  const auto overrides = Overrides({&file.set, &cell.set, &method.set});
-  part.command = "touchdown land " + ShellWord(cell.scenario);
-  for (const std::string& text : overrides) part.command += " --set " + ShellWord(text);
-  try {
-    part.scenario = LoadScenario(FindScenario(cell.scenario), overrides, registries);
-  } catch (const BadInput& refusal) {
-    if (!method.may_refuse) {
-      throw BadInput(
-          fmt::format("study {}, {} in {}: {}", file.name, method.name, cell.name, refusal.what()));
-    }
-    part.refusal = refusal.what();
+void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* plan) {
+  const StudyCell& cell = plan->CellOf(part);
+  const StudyMethod& method = plan->MethodOf(part);
+  const std::string scenario = FindScenario(cell.scenario);
+  const auto overrides = Overrides({&plan->file.set, &cell.set, &method.set});
+  std::vector<std::pair<std::string, std::string>> labels = {{"cell", cell.name},
+                                                             {"method", method.name}};
+  labels.insert(labels.end(), cell.labels.begin(), cell.labels.end());
+  std::vector<SweepTrial>& trials = plan->campaign.trials;
+  for (int i = 0; i < part.trials; ++i) {
+    trials.push_back(MakeTrial(static_cast<int>(trials.size()), TrialSeed(plan->campaign.seed, i),
+                               scenario, overrides, labels, registries));
   }
-  return part;
 }
 
-void AddTrials(const StudyCell& cell, const StudyMethod& method, const StudyPart& part,
-               StudyPlan* plan) {
-  for (int i = 0; i < part.trials; ++i) {
-    SweepTrial trial;
-    trial.index = static_cast<int>(plan->trials.size());
-    trial.seed = TrialSeed(plan->seed, i);
-    trial.varied = {{"cell", cell.name}, {"method", method.name}};
-    trial.varied.insert(trial.varied.end(), cell.labels.begin(), cell.labels.end());
-    trial.scenario = part.scenario;
-    plan->trials.push_back(std::move(trial));
+// Adds the trials, or why there are none.
+void PlanPart(StudyPart part, const Registries& registries, StudyPlan* plan) {
+  const StudyMethod& method = plan->MethodOf(part);
+  part.trials = plan->quick ? method.quick : method.trials;
+  part.first = static_cast<int>(plan->campaign.trials.size());
+  try {
+    AddPart(part, registries, plan);
+  } catch (const BadInput& refusal) {
+    if (!method.may_refuse) {
+      throw BadInput(fmt::format("study {}, {} in {}: {}", plan->file.name, method.name,
+                                 plan->CellOf(part).name, refusal.what()));
+    }
+    part.trials = 0;
+    part.refusal = refusal.what();
   }
+  plan->parts.push_back(std::move(part));
 }
 
 }  // namespace
+
+const StudyCell& StudyPlan::CellOf(const StudyPart& part) const {
+  return file.cells.at(static_cast<std::size_t>(part.cell));
+}
+
+const StudyMethod& StudyPlan::MethodOf(const StudyPart& part) const {
+  return file.methods.at(static_cast<std::size_t>(part.method));
+}
+
+bool StudyPlan::MustFlyAlone() const {
+  return std::any_of(campaign.trials.begin(), campaign.trials.end(), [](const SweepTrial& trial) {
+    return trial.scenario.planning.latency.measured;
+  });
+}
 
 StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,
                     const Registries& registries) {
   StudyPlan plan;
   plan.file = file;
   plan.quick = quick;
-  plan.seed = seed;
+  plan.campaign.name = "study " + file.name;
+  plan.campaign.seed = seed;
+  plan.campaign.keys = {{"cell"}, {"method"}};
+  for (const auto& [label, value] : file.cells.front().labels)
+    plan.campaign.keys.push_back({label});
   for (std::size_t c = 0; c < file.cells.size(); ++c) {
-    const StudyCell& cell = file.cells[c];
-    if (quick && !cell.quick) continue;
+    if (quick && !file.cells[c].quick) continue;
     for (std::size_t m = 0; m < file.methods.size(); ++m) {
-      const StudyMethod& method = file.methods[m];
-      if (!Flies(cell, method)) continue;
-      StudyPart part = PlanPart(file, static_cast<int>(c), static_cast<int>(m), registries);
-      if (part.refusal.empty()) part.trials = quick ? method.quick : method.trials;
-      AddTrials(cell, method, part, &plan);
-      plan.parts.push_back(std::move(part));
+      if (!Flies(file.cells[c], file.methods[m])) continue;
+      StudyPart part;
+      part.cell = static_cast<int>(c);
+      part.method = static_cast<int>(m);
+      PlanPart(std::move(part), registries, &plan);
     }
   }
   const bool rendered = std::any_of(
-      plan.parts.begin(), plan.parts.end(),
-      [](const StudyPart& part) { return part.scenario.sensing == SensingKind::kRendered; });
+      plan.campaign.trials.begin(), plan.campaign.trials.end(),
+      [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
   if (rendered) RequireRendering("sensing: rendered");
   return plan;
 }
@@ -116,11 +120,16 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
     for (const auto& [key, value] : pairs) map[key] = value;
     return map;
   };
-  Json document = {{"study", plan.file.name},      {"title", plan.file.title},
-                   {"report", plan.file.report},   {"reference", plan.file.reference},
-                   {"quick", plan.quick},          {"seed", plan.seed},
-                   {"trials", plan.trials.size()}, {"set", text_map(plan.file.set)},
-                   {"cells", Json::array()},       {"methods", Json::array()},
+  Json document = {{"study", plan.file.name},
+                   {"title", plan.file.title},
+                   {"report", plan.file.report},
+                   {"reference", plan.file.reference},
+                   {"quick", plan.quick},
+                   {"seed", plan.campaign.seed},
+                   {"trials", plan.campaign.trials.size()},
+                   {"set", text_map(plan.file.set)},
+                   {"cells", Json::array()},
+                   {"methods", Json::array()},
                    {"parts", Json::array()}};
   for (const StudyCell& cell : plan.file.cells) {
     document["cells"].push_back({{"name", cell.name},
@@ -136,12 +145,15 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
                                    {"record", method.record}});
   }
   for (const StudyPart& part : plan.parts) {
-    Json entry = {{"cell", plan.file.cells[static_cast<std::size_t>(part.cell)].name},
-                  {"method", plan.file.methods[static_cast<std::size_t>(part.method)].name},
-                  {"trials", part.trials},
-                  {"timeout_s", part.scenario.timeout},
-                  {"command", part.command}};
-    if (!part.refusal.empty()) entry["refusal"] = part.refusal;
+    Json entry = {{"cell", plan.CellOf(part).name},
+                  {"method", plan.MethodOf(part).name},
+                  {"trials", part.trials}};
+    if (part.refusal.empty()) {
+      entry["timeout_s"] =
+          plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario.timeout;
+    } else {
+      entry["refusal"] = part.refusal;
+    }
     document["parts"].push_back(std::move(entry));
   }
   return document;

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "touchdown/evaluation/campaign.h"
 #include "touchdown/evaluation/study_file.h"
-#include "touchdown/evaluation/sweep.h"
 
 namespace touchdown::evaluation {
 
@@ -17,8 +17,7 @@ struct StudyPart {
   int cell = 0;    ///< of the file's cells
   int method = 0;  ///< of the file's methods
   int trials = 0;
-  Scenario scenario;
-  std::string command;  ///< that flies one of its trials: `touchdown land ...` without --seed
+  int first = 0;        ///< of the campaign's trials
   std::string refusal;  ///< why it is not flown; empty: it is
 };
 
@@ -26,9 +25,13 @@ struct StudyPart {
 struct StudyPlan {
   StudyFile file;
   bool quick = false;
-  std::uint64_t seed = 0;
-  std::vector<StudyPart> parts;    ///< cell by cell, in the order of the file
-  std::vector<SweepTrial> trials;  ///< part by part; labels `cell`, `method` and the cell's
+  std::vector<StudyPart> parts;  ///< cell by cell, in the order of the file
+  Campaign campaign;             ///< part by part; labels `cell`, `method` and the cell's own
+
+  const StudyCell& CellOf(const StudyPart& part) const;
+  const StudyMethod& MethodOf(const StudyPart& part) const;
+  /// Some plans take as long as the clock says: trials would slow each other.
+  bool MustFlyAlone() const;
 };
 
 /// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i): common random numbers.

@@ -7,14 +7,14 @@
 
 namespace touchdown::evaluation {
 
-/// Flies a planned study into a folder, which is made where it is missing: `study.json` (the plan),
-/// `study.db` (every trial, see trial_table.h) and `records/CELL-METHOD.db`, the first trial of each
-/// part that is to be recorded. What is there of the same plan is kept. Trials with a measured latency
-/// are flown one at a time, whatever `jobs` says. @throws BadInput where the folder holds another study
-void FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
-              const Registries& registries);
+/// Flies a planned study into a folder, which is made where it is missing: `study.db` (every trial, see
+/// campaign.h), `study.json` (the plan and how it was flown), `records/CELL-METHOD.db` (of parts that are
+/// to be recorded the first trial). Trials that are there already are kept. A shard goes to a file of its own,
+/// StudyTablePath, and brings nothing else. @throws as RunCampaign does
+CampaignState FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
+                       const Shard& shard, const Registries& registries);
 
-/// Where the files of a study are.
-std::string StudyTablePath(const std::string& folder);
+/// Where the trials of a study are.
+std::string StudyTablePath(const std::string& folder, const Shard& shard = {});
 
 }  // namespace touchdown::evaluation
