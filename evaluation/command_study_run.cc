@@ -55,11 +55,12 @@ std::string SummaryText(const nlohmann::ordered_json& summary, const std::string
   return text + fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
 }
 
-// Nothing is to be reported yet; what was flown is in the folder.
-int Unfinished(const CampaignState& state, const std::string& table) {
-  spdlog::warn("{} of {} trials are in {}: the same command goes on from there", state.flown,
-               state.all, table);
-  return kFellShort;
+// 128 + the signal's number, as a shell has it. What was flown is in the folder.
+int Interrupted(const CampaignResult& result, const std::string& table) {
+  spdlog::warn(
+      "interrupted after {} of {} trials: they are in {}, and the same command goes on from there",
+      result.state.flown, result.state.all, table);
+  return 128 + result.interrupted_by;
 }
 
 int Report(const StudyRunArguments& arguments, const std::string& folder) {
@@ -84,10 +85,11 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const Shard shard = Shard::Parse(arguments.shard);
   const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
   const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
-  const CampaignState state = FlyStudy(plan, folder, arguments.jobs, shard, registries);
-  if (state.flown < state.all) return Unfinished(state, StudyTablePath(folder, shard));
+  const CampaignResult result = FlyStudy(plan, folder, arguments.jobs, shard, registries);
+  if (!result.reports) return kDone;
+  if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));
   if (shard.of == 1) return Report(arguments, folder);
-  std::cout << fmt::format("{} trials of shard {} are in {}\n", state.flown, arguments.shard,
+  std::cout << fmt::format("{} trials of shard {} are in {}\n", result.state.flown, arguments.shard,
                            StudyTablePath(folder, shard));
   return kDone;
 }

@@ -82,23 +82,23 @@ std::string StudyTablePath(const std::string& folder, const Shard& shard) {
   return fmt::format("{}/shard_{}_of_{}.db", folder, shard.number, shard.of);
 }
 
-CampaignState FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
-                       const Shard& shard, const Registries& registries) {
+CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
+                        const Shard& shard, const Registries& registries) {
   MakeFolder(folder);
   CampaignOptions options;
   options.jobs = plan.MustFlyAlone() ? 1 : jobs;
   options.db = StudyTablePath(folder, shard);
   options.shard = shard;
   const auto begin = std::chrono::steady_clock::now();
-  const CampaignState state =
-      RunCampaign(plan.campaign, options, registries, CampaignProgress()).state;
+  const CampaignResult result = RunCampaign(plan.campaign, options, registries, CampaignProgress());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  if (shard.of > 1) return state;
+  if (!result.reports || shard.of > 1) return result;
+  const CampaignState& state = result.state;
   WritePlan(
       plan, folder,
       {{"trials", state.flown - state.resumed}, {"jobs", options.jobs}, {"wall_s", taken.count()}});
   if (state.flown == state.all) RecordFirstTrials(plan, folder, jobs, registries);
-  return state;
+  return result;
 }
 
 }  // namespace touchdown::evaluation

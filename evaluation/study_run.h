@@ -11,8 +11,8 @@ namespace touchdown::evaluation {
 /// campaign.h), `study.json` (the plan and how it was flown), `records/CELL-METHOD.db` (of parts that are
 /// to be recorded the first trial). Trials that are there already are kept. A shard goes to a file of its own,
 /// StudyTablePath, and brings nothing else. @throws as RunCampaign does
-CampaignState FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
-                       const Shard& shard, const Registries& registries);
+CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
+                        const Shard& shard, const Registries& registries);
 
 /// Where the trials of a study are.
 std::string StudyTablePath(const std::string& folder, const Shard& shard = {});

@@ -7,7 +7,7 @@ import pandas as pd
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "3"
+SUPPORTED_VERSION = "4"
 FLOWN = ("landed", "followed")
 
 
@@ -34,7 +34,12 @@ class Study:
 
     def _read(self, db, manifest):
         self.manifest = manifest
-        trials = pd.read_sql("SELECT * FROM trial JOIN timing USING(trial) ORDER BY trial", db)
+        trials = pd.read_sql(
+            "SELECT trial.*, timing.*, planned.replay AS command FROM trial JOIN timing USING(trial) "
+            "JOIN planned USING(trial) ORDER BY trial",
+            db,
+        )
+        trials = trials.loc[:, ~trials.columns.duplicated()]
         labels = pd.read_sql("SELECT trial, key, value FROM variation", db)
         if trials.empty or labels.empty:
             raise StudyError(f"{self.path}: the study holds no trial.")
@@ -43,9 +48,6 @@ class Study:
         trials["landed"] = trials["landed"].astype(bool)
         parts = {(part["cell"], part["method"]): part for part in self.plan["parts"]}
         keys = list(zip(trials["cell"], trials["method"]))
-        trials["command"] = [
-            f"{parts[key]['command']} --seed {seed}" for key, seed in zip(keys, trials["seed"])
-        ]
         trials["horizon_s"] = [parts[key]["timeout_s"] for key in keys]
         self.trials = trials
         self.replans = pd.read_sql("SELECT trial, replan, wall_ms, cpu_ms FROM replan_time", db)
@@ -57,7 +59,9 @@ class Study:
 
     def parts(self):
         """(cell, method) of everything flown, in the order of the study's file."""
-        return [(p["cell"], p["method"]) for p in self.plan["parts"] if p["trials"] > 0]
+        flown = set(zip(self.trials["cell"], self.trials["method"]))
+        planned = [(part["cell"], part["method"]) for part in self.plan["parts"]]
+        return [part for part in planned if part in flown]
 
     def cells(self):
         """Names of the cells that were flown, in the order of the study's file."""

@@ -126,6 +126,8 @@ def time_to_land(times, landed, horizon):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         lo, hi = function.quantile_ci(0.5, alpha=1.0 - LEVEL)
+    half = float(function.quantile(0.5))
+    half = half if np.isfinite(half) else np.inf  # less than half ever land
     end = float(np.max(times))
 
     def steps(values):
@@ -136,7 +138,7 @@ def time_to_land(times, landed, horizon):
         steps(share),
         steps(np.clip(share - error, 0.0, 1.0)),
         steps(np.clip(share + error, 0.0, 1.0)),
-        Estimate(float(function.quantile(0.5)), float(lo), float(hi), len(times)),
+        Estimate(half, float(lo), float(hi), len(times)),
     )
 
 
