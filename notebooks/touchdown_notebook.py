@@ -23,12 +23,10 @@ sys.path.insert(0, str(ROOT / "evaluation" / "python"))
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.patches import Circle  # noqa: E402
-from statsmodels.duration.survfunc import SurvfuncRight  # noqa: E402
-from statsmodels.stats.contingency_tables import mcnemar as mcnemar_test  # noqa: E402
-from statsmodels.stats.proportion import proportion_confint  # noqa: E402
 
 from touchdown_report import compare, landing  # noqa: E402
 from touchdown_report.record import Record  # noqa: E402
+from touchdown_report.study import statistics  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
 # Okabe and Ito's palette, as in touchdown_report.
@@ -62,7 +60,7 @@ def start(name):
     Result files of an earlier run are removed, because a study is never overwritten."""
     folder = Path(os.environ.get("TOUCHDOWN_NOTEBOOK_OUT") or ROOT / "out" / "notebooks") / name
     folder.mkdir(parents=True, exist_ok=True)
-    for result in folder.glob("*.db"):
+    for result in folder.rglob("*.db"):
         result.unlink()
     os.chdir(folder)
     print(f"program {program()}\nfiles   {folder}")
@@ -163,26 +161,10 @@ def spans(path):
     return rows.sort_values("start", kind="stable", ignore_index=True)
 
 
-# Statistics: statsmodels' own
-
-
-def interval(successes, trials):
-    """95 % Clopper-Pearson interval of a rate."""
-    return proportion_confint(successes, trials, alpha=0.05, method="beta")
-
-
 def rate(successes, trials):
-    """'k of n, 95 % [lo, hi] %'."""
-    low, high = interval(successes, trials)
-    return f"{successes} of {trials}, 95 % [{100 * low:.0f}, {100 * high:.0f}] %"
-
-
-def mcnemar(first, second):
-    """p-value of the exact McNemar test: `first` and `second` say of the same trials, in the same
-    order, whether each method succeeded. Only trials where they differ count."""
-    first, second = np.asarray(first, dtype=bool), np.asarray(second, dtype=bool)
-    pairs = [[np.sum((first == a) & (second == b)) for b in (True, False)] for a in (True, False)]
-    return float(mcnemar_test(pairs, exact=True).pvalue)
+    """'k of n, 95 % [lo, hi] %', by Clopper and Pearson."""
+    of = statistics.rate(successes, trials)
+    return f"{successes} of {trials}, 95 % [{100 * of.lo:.0f}, {100 * of.hi:.0f}] %"
 
 
 # Pictures
@@ -276,30 +258,5 @@ def distributions_figure(samples, label):
         for (name, values), colour in zip(samples.items(), COLOURS):
             axes.step(*compare.steps(values, len(values)), where="post", color=colour, label=name)
         axes.set(xscale="log", xlabel=label, ylabel="fraction of steps", ylim=(0, 1.02))
-        axes.legend(frameon=False)
-        return figure
-
-
-def not_landed_figure(trials):
-    """Kaplan-Meier: of each method {name: trial table} the share that has not landed yet over time,
-    with its 95 % band. A trial that ended otherwise was seen until then and counts until then."""
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(8.0, 4.2), layout="constrained")
-        end = max(trial.simulated_s.max() for trial in trials.values())
-        for (name, trial), colour in zip(trials.items(), COLOURS):
-            landed = trial.landed.astype(bool)
-            label = f"{name}: {landed.sum()} of {len(trial)} landed"
-            seen = np.where(landed, trial.time_to_land_s, trial.simulated_s)
-            if not landed.any():
-                axes.step([0.0, end], [1.0, 1.0], color=colour, label=label)
-                continue
-            curve = SurvfuncRight(seen.astype(float), landed.astype(int))
-            t = np.concatenate([[0.0], curve.surv_times, [end]])
-            share = np.concatenate([[1.0], curve.surv_prob, curve.surv_prob[-1:]])
-            spread = 1.96 * np.concatenate([[0.0], curve.surv_prob_se, curve.surv_prob_se[-1:]])
-            axes.step(t, share, where="post", color=colour, label=label)
-            low, high = np.clip([share - spread, share + spread], 0.0, 1.0)
-            axes.fill_between(t, low, high, step="post", color=colour, alpha=0.15, lw=0)
-        axes.set(xlabel="time [s]", ylabel="share that has not landed", ylim=(-0.02, 1.04))
         axes.legend(frameon=False)
         return figure
