@@ -58,6 +58,7 @@ def program():
 def start(name):
     """Makes the notebook's own folder, where everything that it writes goes, and changes to it.
     Result files of an earlier run are removed, because a study is never overwritten."""
+    os.environ["TOUCHDOWN_PROGRAM"] = str(program())  # a relative path would be lost on the way
     folder = Path(os.environ.get("TOUCHDOWN_NOTEBOOK_OUT") or ROOT / "out" / "notebooks") / name
     folder.mkdir(parents=True, exist_ok=True)
     for result in folder.rglob("*.db"):

@@ -14,6 +14,7 @@ import touchdown_notebook as td  # noqa: E402
 
 @pytest.fixture()
 def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("TOUCHDOWN_PROGRAM", os.environ["TOUCHDOWN_PROGRAM"])  # as it was, afterwards
     monkeypatch.setenv("TOUCHDOWN_NOTEBOOK_OUT", str(tmp_path))
     monkeypatch.chdir(tmp_path)
     td.start("here")
