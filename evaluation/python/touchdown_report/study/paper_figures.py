@@ -170,7 +170,8 @@ def following(found):
 
 
 def _panels(study, cells, methods):
-    panels = [(study.cell_title(cell), flights(study, cell, methods)) for cell in cells]
+    flown = [cell for cell in cells if cell in study.cells()]
+    panels = [(study.cell_title(cell), flights(study, cell, methods)) for cell in flown]
     return [(title, found) for title, found in panels if found]
 
 
