@@ -45,10 +45,15 @@ void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* pla
   std::vector<std::pair<std::string, std::string>> labels = {{"cell", cell.name},
                                                              {"method", method.name}};
   labels.insert(labels.end(), cell.labels.begin(), cell.labels.end());
-  std::vector<SweepTrial>& trials = plan->campaign.trials;
+  // All of a part share the scenario: it is read and checked once.
+  SweepTrial trial = MakeTrial(part.first, TrialSeed(plan->campaign.seed, 0), scenario, overrides,
+                               labels, registries);
+  const std::string replay = trial.replay.substr(0, trial.replay.rfind(' ') + 1);
   for (int i = 0; i < part.trials; ++i) {
-    trials.push_back(MakeTrial(static_cast<int>(trials.size()), TrialSeed(plan->campaign.seed, i),
-                               scenario, overrides, labels, registries));
+    trial.index = part.first + i;
+    trial.seed = TrialSeed(plan->campaign.seed, i);
+    trial.replay = replay + std::to_string(trial.seed);
+    plan->campaign.trials.push_back(trial);
   }
 }
 

@@ -42,6 +42,8 @@ TEST_P(ShippedStudy, EveryScenarioLoadsAndSeedsArePaired) {
     EXPECT_EQ(trial.index, index++);
     EXPECT_EQ(trial.scenario.timeout, 30.0);
     EXPECT_EQ(trial.replay.rfind("touchdown land ", 0), 0U);
+    const std::string seed = " --seed " + std::to_string(trial.seed);
+    EXPECT_EQ(trial.replay.substr(trial.replay.size() - seed.size()), seed);
     ASSERT_EQ(trial.varied.size(), plan.campaign.keys.size());
     seeds[{trial.varied.at(0).second, trial.varied.at(1).second}].push_back(trial.seed);
   }
