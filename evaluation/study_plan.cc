@@ -85,6 +85,12 @@ const StudyMethod& StudyPlan::MethodOf(const StudyPart& part) const {
   return file.methods.at(static_cast<std::size_t>(part.method));
 }
 
+bool StudyPlan::Records(const StudyPart& part) const {
+  const StudyMethod& method = MethodOf(part);
+  const auto& cells = method.record_in;
+  return method.record || std::find(cells.begin(), cells.end(), CellOf(part).name) != cells.end();
+}
+
 bool StudyPlan::MustFlyAlone() const {
   return std::any_of(campaign.trials.begin(), campaign.trials.end(), [](const SweepTrial& trial) {
     return trial.scenario.planning.latency.measured;
@@ -144,15 +150,14 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
                                  {"set", text_map(cell.set)}});
   }
   for (const StudyMethod& method : plan.file.methods) {
-    document["methods"].push_back({{"name", method.name},
-                                   {"title", method.title},
-                                   {"set", text_map(method.set)},
-                                   {"record", method.record}});
+    document["methods"].push_back(
+        {{"name", method.name}, {"title", method.title}, {"set", text_map(method.set)}});
   }
   for (const StudyPart& part : plan.parts) {
     Json entry = {{"cell", plan.CellOf(part).name},
                   {"method", plan.MethodOf(part).name},
-                  {"trials", part.trials}};
+                  {"trials", part.trials},
+                  {"recorded", plan.Records(part)}};
     if (part.refusal.empty()) {
       entry["timeout_s"] =
           plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario.timeout;

@@ -128,12 +128,15 @@ class WrittenStudy : public testing::Test {
 };
 
 TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
-  const StudyFile file = Load(std::string(kHead) +
-                              "set: {timeout: 9, descent: none}\n"
-                              "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
-                              "methods: [{name: a, set: {timeout: 7}, quick: 2}, {name: b}]\n");
+  const StudyFile file =
+      Load(std::string(kHead) +
+           "set: {timeout: 9, descent: none}\n"
+           "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
+           "methods: [{name: a, set: {timeout: 7}, quick: 2, record: [c]}, {name: b}]\n");
   const StudyPlan plan = PlanStudy(file, true, 4, kRegistries);
   ASSERT_EQ(plan.parts.size(), 2U);
+  EXPECT_TRUE(plan.Records(plan.parts[0]));
+  EXPECT_FALSE(plan.Records(plan.parts[1]));
   EXPECT_EQ(plan.parts[0].trials, 2);
   EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 7.0);
   EXPECT_EQ(plan.campaign.trials.at(2).scenario.timeout, 8.0);
@@ -158,6 +161,7 @@ TEST_F(WrittenStudy, MistakesAreNamed) {
        "must have the labels of the first cell"},
       {head + "cells: [{name: c, scenario: nowhere}]\n" + methods, "nowhere"},
       {head + cells + "methods: [{name: a, set: {pad.sped: 1}}]\n", "unknown key pad.sped"},
+      {head + cells + "methods: [{name: a, record: [d]}]\n", "the cell d, which is not there"},
       {head + cells + methods + "backends: {set: 3}\n", "must be a map of keys"},
       {head + cells + "methods: [", ".yaml:"}};
   for (const auto& [text, part] : mistakes) {
