@@ -97,6 +97,7 @@ class Trial {
     if (record_ != nullptr) {
       record_->map_resolution = perception_.map().resolution();
       record_->map_size = perception_.map().size();
+      record_->outside = OutsideFilesOf(scenario);
     }
   }
 

@@ -89,7 +89,8 @@ struct EndSet {
                   task.deck_radius() * task.pad_yaw_error),
         height(task.foot_depth),
         horizontal_speed(task.horizontal_speed - task.pad_velocity_error -
-                         task.deck_radius() * task.pad_yaw_rate_error),
+                         task.deck_radius() * task.pad_yaw_rate_error -
+                         std::abs(pad_then.yaw_rate) * task.pad_position_error),
         vertical_speed(task.vertical_speed) {}
 
   estimation::PadState pad;

@@ -7,7 +7,6 @@
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/build_info.h"
-#include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/trial_json.h"
 
@@ -70,9 +69,8 @@ void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result
   insert.Run("map_resolution", fmt::format("{}", record.map_resolution));
   const planning::CellIndex& cells = record.map_size;
   insert.Run("map_size", fmt::format("{} {} {}", cells.x(), cells.y(), cells.z()));
-  const OutsideFiles outside = OutsideFilesOf(scenario);
-  insert.Run("pad_waypoints", outside.pad_waypoints);
-  insert.Run("vehicle_hash", outside.vehicle_hash);
+  insert.Run("pad_waypoints", record.outside.pad_waypoints);
+  insert.Run("vehicle_hash", record.outside.vehicle_hash);
   nlohmann::ordered_json json = LandJson(scenario, result);
   json.erase("wall_clock");  // wall-clock figures stand only in the table timing
   insert.Run("result_json", json.dump());

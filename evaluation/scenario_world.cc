@@ -80,7 +80,7 @@ std::string VehicleMjcf(const Scenario& scenario) {
 }
 
 OutsideFiles OutsideFilesOf(const Scenario& scenario) {
-  OutsideFiles files{"none", "none"};
+  OutsideFiles files;
   if (scenario.pad.motion == PadMotionKind::kWaypoints) {
     files.pad_waypoints = WaypointText(ReadWaypointFile(scenario.pad.waypoints));
   }

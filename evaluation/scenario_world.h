@@ -37,8 +37,8 @@ std::string VehicleMjcf(const Scenario& scenario);
 /// points of the waypoint file, the hash of the vehicle's MJCF text; each `none` without such a file.
 /// @throws std::invalid_argument as PadMotionOf and VehicleMjcf do.
 struct OutsideFiles {
-  std::string pad_waypoints;
-  std::string vehicle_hash;
+  std::string pad_waypoints = "none";
+  std::string vehicle_hash = "none";
 };
 OutsideFiles OutsideFilesOf(const Scenario& scenario);
 

@@ -12,6 +12,7 @@
 #include "touchdown/estimation/vehicle_state.h"
 #include "touchdown/evaluation/map_history.h"
 #include "touchdown/evaluation/replan_request.h"
+#include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/planning/occupancy_map.h"
 #include "touchdown/planning/replanner.h"
 
@@ -71,6 +72,7 @@ struct RecordPlan {
 struct TrialRecord {
   double map_resolution = 0.1;                                 ///< [m]
   planning::CellIndex map_size = planning::CellIndex::Ones();  ///< of the window
+  OutsideFiles outside;  ///< as they were when the flight began
   std::vector<RecordSample> samples;
   std::vector<RecordEvent> events;
   std::vector<RecordPlan> plans;
