@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whole landings by one plan to contact: soft, soon, in wind; and pads that nobody can land on.
 #include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -16,6 +19,10 @@ Scenario Shipped(const std::string& name, const std::vector<std::string>& overri
 
 double Horizontal(const Touchdown& touchdown) {
   return touchdown.relative_velocity.head<2>().norm();
+}
+
+bool TouchedAnything(const TrialResult& result) {
+  return result.touchdown.has_value() || result.detail.find("Touched") != std::string::npos;
 }
 
 TEST(PlannedLanding, IsTheDefaultSoftAndSoonerThanTheVerticalOne) {
@@ -44,16 +51,58 @@ TEST(PlannedLanding, PlansAtTwentyHertzBeforeContact) {
   EXPECT_GE(close, 20);
 }
 
+double LowestFeet(const TrialRecord& record, const estimation::VehicleModel& model) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const RecordSample& sample : record.samples) {
+    const double height = sample.vehicle.p_WB.z() - model.foot_depth - sample.pad.p_WP.z();
+    lowest = std::min(lowest, height);
+  }
+  return lowest;
+}
+
+// Whoever has not seen the tags turns away above the deck, by plans that are certified.
+TEST(PlannedLanding, WithoutTagsItStaysAboveThePadHoweverSeldomItPlans) {
+  const std::vector<std::vector<std::string>> cases = {
+      {}, {"planning.rate=5"}, {"planning.latency=90"}, {"planning.rate=1"}};
+  for (std::vector<std::string> overrides : cases) {
+    overrides.insert(overrides.end(), {"tags.rate=0.01", "timeout=10"});
+    TrialRecord record;
+    const TrialResult result =
+        RunTrial(Shipped("open", overrides), 1, StandardRegistries(), &record);
+    EXPECT_EQ(result.outcome, Outcome::kTimeout) << overrides.front() << result.detail;
+    EXPECT_EQ(result.replans_by_status.count("unsafe"), 0u) << overrides.front();
+    EXPECT_GT(LowestFeet(record, estimation::VehicleModel{}), 0.8) << overrides.front();
+  }
+}
+
+TEST(PlannedLanding, AFastPadIsNotTouchedBlindEither) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    TrialRecord record;
+    const TrialResult result = RunTrial(Shipped("open_fast", {"tags.rate=0.01", "timeout=10"}),
+                                        seed, StandardRegistries(), &record);
+    EXPECT_EQ(result.outcome, Outcome::kTimeout) << seed << result.detail;
+    EXPECT_GT(LowestFeet(record, estimation::VehicleModel{}), 0.8) << seed;
+  }
+}
+
+// Every latency, on the simulation's clock or off it.
+TEST(PlannedLanding, CloseStepsAreNotAskedForBeforeThePlanBeforeIsFlown) {
+  for (const char* latency : {"50", "55", "65", "75", "95"}) {
+    const TrialResult result = RunTrial(
+        Shipped("open", {std::string("planning.latency=") + latency}), 1, StandardRegistries());
+    EXPECT_EQ(result.outcome, Outcome::kLanded) << latency;
+    const auto kept = result.replans_by_status.find("kept");
+    const int refused = kept == result.replans_by_status.end() ? 0 : kept->second;
+    EXPECT_LE(refused, 1) << latency << " ms: at the change of the rate";
+  }
+}
+
 TEST(PlannedLanding, InAStrongWindToo) {
   const Scenario scenario = Shipped("straight_turn", {"wind.mean=11", "wind.max=15"});
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const TrialResult result = RunTrial(scenario, seed, StandardRegistries());
     EXPECT_EQ(result.outcome, Outcome::kLanded) << seed << result.detail;
   }
-}
-
-bool TouchedAnything(const TrialResult& result) {
-  return result.touchdown.has_value() || result.detail.find("Touched") != std::string::npos;
 }
 
 TEST(PlannedLanding, APadThatDrivesIntoATunnelIsNotFollowedThere) {
