@@ -7,7 +7,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/.ci/setup.sh"
 cd "$TOUCHDOWN_ROOT"
 
-install_tiers build report test
+install_tiers build report study notebooks test
 build_release ON
 
 say "Testing"

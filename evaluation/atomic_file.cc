@@ -27,4 +27,15 @@ void AtomicFile::Commit() {
   committed_ = true;
 }
 
+bool AtomicFile::CommitNew() {
+  // Unlike rename(2), link(2) never replaces; the destructor removes the other name.
+  std::error_code error;
+  std::filesystem::create_hard_link(working_path_, path_, error);
+  if (error == std::errc::file_exists) return false;
+  if (error) {
+    throw std::filesystem::filesystem_error("a file cannot be put in its place", path_, error);
+  }
+  return true;
+}
+
 }  // namespace touchdown::evaluation

@@ -19,6 +19,8 @@ class AtomicFile {
 
   /// Moves the finished file to its place. @throws std::filesystem::filesystem_error
   void Commit();
+  /// The same where there is nothing in its place; false if there is. @throws as Commit
+  bool CommitNew();
 
  private:
   std::string path_;

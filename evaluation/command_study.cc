@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown study: the standing studies. `replan`: the replanner's latency, success and safety in
-// random forests, and how faithful its baseline is. `tags` and `pad`: see command_study_tags.cc and
-// command_study_pad.cc.
+// random forests, and how faithful its baseline is. The others: command_study_run.cc,
+// command_study_pad.cc and command_study_tags.cc.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -10,6 +10,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/command_study_pad.h"
+#include "touchdown/evaluation/command_study_run.h"
 #include "touchdown/evaluation/command_study_tags.h"
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/ego_fidelity.h"
@@ -216,6 +217,7 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   const Command study = app.AddCommand("study", "The standing studies");
   study.RequireCommand();
   AddPadStudyCommand(study, registries, run);
+  AddStudyRunCommands(study, registries, run);
   AddTagStudyCommand(study, run);
   const Command command = study.AddCommand(
       "replan", "Latency, success and safety of replanning steps in random forests");

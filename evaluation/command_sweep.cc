@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown sweep: many landings of one scenario on threads, their table and its study file.
+// touchdown sweep: many landings of one scenario, their table and their file.
 #include <algorithm>
 #include <iostream>
 #include <memory>
 #include <thread>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/commands.h"
-#include "touchdown/evaluation/progress.h"
+#include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
-#include "touchdown/evaluation/trial_table.h"
+#include "touchdown/evaluation/trial_store.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -24,6 +26,8 @@ struct SweepArguments {
   int trials = 20;
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 1;
+  std::string shard = "1/1";
+  double trial_limit_s = 600.0;
   std::string db;
   std::string picture;
   bool json = false;
@@ -46,6 +50,30 @@ void CheckPicture(const std::string& picture, const std::vector<Variation>& vari
   }
 }
 
+// The trial came to an outcome, whichever.
+bool Flown(const SweepRow& row) {
+  const Outcome outcome = row.result.outcome;
+  return outcome != Outcome::kError && outcome != Outcome::kCrashed && outcome != Outcome::kHung;
+}
+
+void CheckOutputs(const SweepArguments& arguments) {
+  if (!arguments.db.empty() && arguments.db == arguments.picture) {
+    throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
+  }
+  if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
+  if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
+}
+
+// 128 + the signal's number, as a shell has it.
+int Interrupted(const CampaignResult& result, const std::string& db) {
+  const CampaignState& state = result.state;
+  spdlog::warn("interrupted after {} of {} trials: {}", state.flown, state.all,
+               db.empty()
+                   ? "nothing is kept without --db"
+                   : fmt::format("they are in {}, and the same command goes on from there", db));
+  return 128 + result.interrupted_by;
+}
+
 int Sweep(const SweepArguments& arguments, const Registries& registries) {
   SweepOptions options;
   options.scenario_path = FindScenario(arguments.scenario.scenario);
@@ -55,28 +83,26 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   CheckPicture(arguments.picture, options.variations);
   options.trials = arguments.trials;
   options.seed = arguments.seed;
-  const std::vector<SweepTrial> trials = PlanSweep(options, registries);
-  for (const SweepTrial& trial : trials) {
-    if (trial.scenario.planning.latency.measured && arguments.jobs > 1) {
-      throw BadInput(
-          "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
-    }
-  }
-  CheckOutputs(arguments.db, arguments.picture);
-  const std::vector<SweepRow> rows = RunSweep(trials, arguments.jobs, registries,
-                                              Progress({.things = "trials", .with_rate = true}));
+  CampaignOptions flight;
+  flight.jobs = arguments.jobs;
+  flight.db = arguments.db;
+  flight.shard = Shard::Parse(arguments.shard);
+  flight.trial_limit_s = arguments.trial_limit_s;
+  const Campaign campaign = SweepCampaign(options, registries);
+  CheckOutputs(arguments);
+  const CampaignResult result = RunCampaign(campaign, flight, registries, CampaignProgress());
+  if (!result.reports) return kDone;
+  if (result.interrupted_by != 0) return Interrupted(result, arguments.db);
+  if (result.rows.empty())
+    throw BadInput(fmt::format("--shard {}: it has no trials.", arguments.shard));
   if (arguments.json) {
-    std::cout << SweepJson(options, rows).dump(2) << std::endl;
+    std::cout << SweepJson(campaign, result.rows).dump(2) << std::endl;
   } else {
-    std::cout << SweepText(options, rows) << std::flush;
+    std::cout << SweepText(campaign, result.rows) << std::flush;
   }
-  const auto write = [&](const std::string& path) { WriteTrialTable(path, options, rows); };
-  if (!arguments.db.empty()) write(arguments.db);
+  const auto write = [&](const std::string& path) { WriteTrials(path, campaign, result.rows); };
   if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawSweep);
-  const bool all_flown = std::none_of(rows.begin(), rows.end(), [](const SweepRow& row) {
-    return row.result.outcome == Outcome::kError;
-  });
-  return all_flown ? kDone : kFellShort;
+  return std::all_of(result.rows.begin(), result.rows.end(), Flown) ? kDone : kFellShort;
 }
 
 }  // namespace
@@ -93,11 +119,23 @@ void AddSweepCommand(Command app, const Registries& registries, CommandRun* run)
            "Change a key from trial to trial: a range to draw from, or values in turn")
       .TypeName("KEY=LO..HI|a,b,c")
       .OneWord();
-  command.Add("--jobs", arguments->jobs, "Threads").Check(Range(1, 1024)).ShowDefault();
+  command.Add("--jobs", arguments->jobs, "Trials flown at a time")
+      .Check(Range(1, 1024))
+      .ShowDefault();
   command.Add("--seed", arguments->seed, "Seed of the sweep; trial seeds follow from it")
       .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       .ShowDefault();
-  command.AddFile("--db", &arguments->db, "Write the trial table, an SQLite file", "F.db");
+  command.Add("--shard", arguments->shard, "Fly only the K-th of N parts of the trials")
+      .TypeName("K/N")
+      .ShowDefault();
+  command
+      .Add("--trial-limit", arguments->trial_limit_s,
+           "Wall time after which a trial is given up as hung [s]")
+      .Check(Range(0.1, 1e6))
+      .ShowDefault();
+  command.AddFile("--db", &arguments->db,
+                  "Keep the trials, an SQLite file; with one of the same sweep go on where it ends",
+                  "F.db");
   command.AddFile("--picture", &arguments->picture, "Draw success and time to land over --vary",
                   "F.png");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");

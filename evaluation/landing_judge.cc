@@ -52,6 +52,10 @@ const char* ToString(Outcome outcome) {
       return "unstable";
     case Outcome::kError:
       return "error";
+    case Outcome::kCrashed:
+      return "crashed";
+    case Outcome::kHung:
+      return "hung";
   }
   return "error";
 }
@@ -86,8 +90,19 @@ const char* Explain(Outcome outcome) {
       return "The simulated physics failed.";
     case Outcome::kError:
       return "The program failed in this trial.";
+    case Outcome::kCrashed:
+      return "The process that flew this trial died.";
+    case Outcome::kHung:
+      return "The trial did not end in the time that it was given.";
   }
   return "The program failed in this trial.";
+}
+
+std::optional<Outcome> OutcomeNamed(std::string_view name) {
+  for (int i = 0; i <= static_cast<int>(kLastOutcome); ++i) {
+    if (name == ToString(static_cast<Outcome>(i))) return static_cast<Outcome>(i);
+  }
+  return std::nullopt;
 }
 
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB) {

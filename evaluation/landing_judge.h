@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include <Eigen/Core>
 
@@ -26,10 +27,16 @@ enum class Outcome {
   kFollowed,  ///< time ran out as it should: nothing more was asked than to stay above the pad
   kTimeout,   ///< time ran out otherwise
   kUnstable,  ///< the simulated physics failed
-  kError,     ///< the program failed in this trial; never set by the judge
+  // Never set by the judge:
+  kError,    ///< the program failed in this trial, and said why
+  kCrashed,  ///< the process that flew it died
+  kHung,     ///< it took longer than it was given
 };
+inline constexpr Outcome kLastOutcome = Outcome::kHung;
 
 const char* ToString(Outcome outcome);
+/// The outcome that ToString gives this name, if there is one.
+std::optional<Outcome> OutcomeNamed(std::string_view name);
 /// One sentence for people.
 const char* Explain(Outcome outcome);
 

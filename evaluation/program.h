@@ -9,9 +9,10 @@ namespace touchdown::evaluation {
 /// 0 done; for `land`: landed, and all that was asked for is written; for `sweep`: every trial was
 ///   flown to an outcome, whichever
 /// 1 ran but fell short: not landed, a picture or file that could not be made, a trial that came to
-///   no outcome (`error`), a demand of a study that is missed, derivatives that disagree
+///   no outcome (`error`, `crashed`, `hung`), a demand of a study that is missed, derivatives that disagree
 ///   (`check-term`), an internal error
 /// 2 bad usage or bad input; nothing was run and nothing written
+/// 128 + N a sweep was interrupted by signal N (SIGINT, SIGTERM)
 int RunProgram(int argc, const char* const* argv, const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -40,12 +40,11 @@ std::string LastLine(const std::string& text) {
   return text.substr(begin + 1, end - begin);
 }
 
-// Runs `python -m module input picture`; `option` is the one that named the picture.
-void Draw(const char* module, const std::string& option, const std::string& input_path,
-          const std::string& picture_path) {
+// Runs `python -m module arguments...`; `failure` begins the sentence of what went wrong.
+void RunPython(const char* module, const std::vector<std::string>& arguments,
+               const std::string& failure) {
   const auto fail = [&](const std::string& why) {
-    throw std::runtime_error(
-        fmt::format("{} {}: the picture was not drawn: {}.", option, picture_path, why));
+    throw std::runtime_error(fmt::format("{}: {}.", failure, why));
   };
   const std::string python = TOUCHDOWN_PYTHON;
   if (access(python.c_str(), X_OK) != 0) {
@@ -53,6 +52,9 @@ void Draw(const char* module, const std::string& option, const std::string& inpu
   }
   const std::vector<std::string> directories = PythonDirectories();
   if (directories.empty()) fail("the package touchdown_report is missing");
+  std::vector<const char*> words = {python.c_str(), "-m", module};
+  for (const std::string& argument : arguments) words.push_back(argument.c_str());
+  words.push_back(nullptr);
 
   std::array<int, 2> ends;
   if (pipe(ends.data()) != 0) fail("no pipe could be opened");
@@ -63,8 +65,7 @@ void Draw(const char* module, const std::string& option, const std::string& inpu
     close(ends[0]);
     close(ends[1]);
     setenv("PYTHONPATH", directories.front().c_str(), 1);
-    execl(python.c_str(), python.c_str(), "-m", module, input_path.c_str(), picture_path.c_str(),
-          static_cast<char*>(nullptr));
+    execv(python.c_str(), const_cast<char* const*>(words.data()));
     _exit(127);
   }
   close(ends[1]);
@@ -74,6 +75,13 @@ void Draw(const char* module, const std::string& option, const std::string& inpu
   int status = 0;
   waitpid(child, &status, 0);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail(LastLine(said));
+}
+
+// `option` is the one that named the picture.
+void Draw(const char* module, const std::string& option, const std::string& input_path,
+          const std::string& picture_path) {
+  RunPython(module, {input_path, picture_path},
+            fmt::format("{} {}: the picture was not drawn", option, picture_path));
 }
 
 }  // namespace
@@ -109,6 +117,11 @@ void DrawSweep(const std::string& table_path, const std::string& picture_path) {
 
 void DrawPlan(const std::string& document_path, const std::string& picture_path) {
   Draw("touchdown_report.plan", "--picture", document_path, picture_path);
+}
+
+void WriteStudyReport(const std::string& folder) {
+  RunPython("touchdown_report.study", {folder},
+            fmt::format("{}: the report was not written", folder));
 }
 
 }  // namespace touchdown::evaluation

@@ -27,10 +27,13 @@ void DrawGrowth(const std::string& table_path, const std::string& picture_path);
 /// DrawLanding
 void DrawPadStudy(const std::string& table_path, const std::string& picture_path);
 
-/// Draws the outcome of a sweep from its table (trial_table.h). @throws as DrawLanding
+/// Draws the outcome of a sweep from its table (trial_store.h). @throws as DrawLanding
 void DrawSweep(const std::string& table_path, const std::string& picture_path);
 
 /// Draws the picture of a solved step from its document (plan_report.h). @throws as DrawLanding
 void DrawPlan(const std::string& document_path, const std::string& picture_path);
+
+/// Writes report, tables and figures of a flown study into its folder (study_run.h). @throws as DrawLanding
+void WriteStudyReport(const std::string& folder);
 
 }  // namespace touchdown::evaluation

@@ -24,10 +24,13 @@ struct ResultFormat {
 /// Where times were taken: `pinned_cpu`, `load_before`, `load_after`.
 void AddMachine(const MachineState& machine, ManifestFacts* facts);
 
-/// Writes a result file, an SQLite file that appears at `path` when it is complete: the table
-/// `manifest` (key, value) with `format`, `version`, the facts and the build, and the tables of
-/// `schema` (SQL), which `fill` fills in one transaction. @throws SqliteError,
-/// std::filesystem::filesystem_error
+/// What a result file holds: the table `manifest` (key, value) with `format`, `version`, the facts and the
+/// build, and the tables of `schema` (SQL), which `fill` fills; in one transaction. @throws SqliteError
+void FillResultFile(SqliteDb& db, const ResultFormat& format, const char* schema,
+                    const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
+
+/// Writes a result file, an SQLite file that appears at `path` when it is complete, see FillResultFile.
+/// @throws SqliteError, std::filesystem::filesystem_error
 void WriteResultFile(const std::string& path, const ResultFormat& format, const char* schema,
                      const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
 

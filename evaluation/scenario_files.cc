@@ -10,6 +10,7 @@
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/evaluation/shipped_files.h"
+#include "touchdown/evaluation/study_file.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -32,6 +33,42 @@ fs::path ProgramDirectory() {
   return error ? fs::path(".") : program.parent_path();
 }
 
+std::vector<std::string> StudyDirectories() {
+  return ExistingDirectories({ProgramDirectory() / "../share/touchdown/studies",
+                              fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "studies"});
+}
+
+// Names of the YAML files in the first of these directories, sorted.
+std::vector<std::string> NamesIn(const std::vector<std::string>& directories) {
+  std::vector<std::string> names;
+  if (directories.empty()) return names;
+  for (const auto& entry : fs::directory_iterator(directories.front())) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// A path that exists, or a shipped file. `what` says what kind of file it is.
+std::string FindYaml(const std::string& name_or_path, const std::vector<std::string>& directories,
+                     const std::string& what) {
+  std::error_code ignored;
+  if (fs::is_regular_file(name_or_path, ignored)) return name_or_path;
+  if (name_or_path.find('/') == std::string::npos) {
+    for (const std::string& directory : directories) {
+      for (const char* extension : {".yaml", ""}) {
+        const fs::path path = fs::path(directory) / (name_or_path + extension);
+        if (fs::is_regular_file(path, ignored)) return path.string();
+      }
+    }
+  }
+  if (fs::is_directory(name_or_path, ignored)) {
+    throw BadInput(fmt::format("{}: a {} is a file, and this is a directory.", name_or_path, what));
+  }
+  throw BadInput(fmt::format("{}: there is no such {} file; shipped are {}.", name_or_path, what,
+                             Enumerate(NamesIn(directories))));
+}
+
 }  // namespace
 
 std::vector<std::string> ScenarioDirectories() {
@@ -50,32 +87,15 @@ std::vector<std::string> DataDirectories() {
 }
 
 std::string FindScenario(const std::string& name_or_path) {
-  std::error_code ignored;
-  if (fs::is_regular_file(name_or_path, ignored)) return name_or_path;
-  if (name_or_path.find('/') == std::string::npos) {
-    for (const std::string& directory : ScenarioDirectories()) {
-      for (const char* extension : {".yaml", ""}) {
-        const fs::path path = fs::path(directory) / (name_or_path + extension);
-        if (fs::is_regular_file(path, ignored)) return path.string();
-      }
-    }
-  }
-  if (fs::is_directory(name_or_path, ignored)) {
-    throw BadInput(fmt::format("{}: a scenario is a file, and this is a directory.", name_or_path));
-  }
-  throw BadInput(fmt::format("{}: there is no such scenario file; shipped are {}.", name_or_path,
-                             Enumerate(ListScenarios())));
+  return FindYaml(name_or_path, ScenarioDirectories(), "scenario");
 }
 
-std::vector<std::string> ListScenarios() {
-  std::vector<std::string> names;
-  const std::vector<std::string> directories = ScenarioDirectories();
-  if (directories.empty()) return names;
-  for (const auto& entry : fs::directory_iterator(directories.front())) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
+std::vector<std::string> ListScenarios() { return NamesIn(ScenarioDirectories()); }
+
+std::string FindStudyFile(const std::string& name_or_path) {
+  return FindYaml(name_or_path, StudyDirectories(), "study");
 }
+
+std::vector<std::string> ListStudyFiles() { return NamesIn(StudyDirectories()); }
 
 }  // namespace touchdown::evaluation

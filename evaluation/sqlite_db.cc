@@ -43,6 +43,13 @@ void SqliteStatement::Bind(int index, std::string_view value) {
                                SQLITE_TRANSIENT));
 }
 
+void SqliteStatement::Bind(int index, const SqlValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return Bind(index, *whole);
+  if (const auto* number = std::get_if<double>(&value)) return Bind(index, *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return Bind(index, *text);
+  BindNull(index);
+}
+
 void SqliteStatement::BindNull(int index) { Check(db_, sqlite3_bind_null(statement_, index + 1)); }
 
 bool SqliteStatement::Step() {
@@ -51,7 +58,38 @@ bool SqliteStatement::Step() {
   return code == SQLITE_ROW;
 }
 
+void SqliteStatement::RunRow(std::int64_t first, const std::vector<SqlValue>& values) {
+  Bind(0, first);
+  for (std::size_t i = 0; i < values.size(); ++i) Bind(static_cast<int>(i) + 1, values[i]);
+  Run();
+}
+
+void SqliteStatement::RunRow(const std::vector<SqlValue>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) Bind(static_cast<int>(i), values[i]);
+  Run();
+}
+
 void SqliteStatement::Reset() { Check(db_, sqlite3_reset(statement_)); }
+
+std::vector<SqlValue> SqliteStatement::Row(int first) const {
+  std::vector<SqlValue> row;
+  for (int i = first; i < sqlite3_column_count(statement_); ++i) {
+    switch (sqlite3_column_type(statement_, i)) {
+      case SQLITE_INTEGER:
+        row.emplace_back(Integer(i));
+        break;
+      case SQLITE_FLOAT:
+        row.emplace_back(Real(i));
+        break;
+      case SQLITE_NULL:
+        row.emplace_back();
+        break;
+      default:
+        row.emplace_back(Text(i));
+    }
+  }
+  return row;
+}
 
 bool SqliteStatement::IsNull(int column) const {
   return sqlite3_column_type(statement_, column) == SQLITE_NULL;
@@ -80,6 +118,7 @@ SqliteDb::SqliteDb(const std::string& path, Mode mode) {
     sqlite3_close(db_);
     throw SqliteError(path + ": " + words);
   }
+  sqlite3_busy_timeout(db_, 10000);
 }
 
 SqliteDb::~SqliteDb() { sqlite3_close(db_); }

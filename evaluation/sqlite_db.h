@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 struct sqlite3;
@@ -17,6 +18,9 @@ namespace touchdown::evaluation {
 struct SqliteError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// What stands in a column: nothing, a whole number, a number, a text.
+using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 /// A prepared statement. Parameters and columns are counted from 0. Must not outlive its database.
 class SqliteStatement {
@@ -43,6 +47,7 @@ class SqliteStatement {
       BindNull(index);
     }
   }
+  void Bind(int index, const SqlValue& value);
   void BindNull(int index);
 
   /// Runs to the next row; false when there is none. @throws SqliteError
@@ -58,8 +63,14 @@ class SqliteStatement {
     Reset();
   }
 
+  /// The same for a row that begins with `first`, then has `values`.
+  void RunRow(std::int64_t first, const std::vector<SqlValue>& values);
+  void RunRow(const std::vector<SqlValue>& values);
+
   void Reset();
 
+  /// The row's columns from `first` on.
+  std::vector<SqlValue> Row(int first = 0) const;
   bool IsNull(int column) const;
   double Real(int column) const;
   std::int64_t Integer(int column) const;
@@ -75,6 +86,7 @@ class SqliteDb {
  public:
   enum class Mode { kReadOnly, kReadWrite, kCreate };
 
+  /// `path` may be ":memory:". Another process that is just writing is waited for, 10 s at most.
   /// @throws SqliteError when the file cannot be opened or created.
   SqliteDb(const std::string& path, Mode mode);
   ~SqliteDb();

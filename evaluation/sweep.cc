@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Monte Carlo on threads. Each trial is a pure function of its scenario and seed, so that the rows are
-// the same for any number of threads.
+// Monte Carlo: the trials of a sweep, each with its own seed and its own values of what is varied.
 #include "touchdown/evaluation/sweep.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <exception>
 #include <set>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/on_threads.h"
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
@@ -66,18 +63,6 @@ std::size_t Combinations(const std::vector<Variation>& variations) {
   return count;
 }
 
-SweepRow RunOne(const SweepTrial& trial, const Registries& registries) {
-  SweepRow row{trial, {}};
-  try {
-    row.result = RunTrial(trial.scenario, trial.seed, registries);
-  } catch (const std::exception& error) {
-    row.result.seed = trial.seed;
-    row.result.outcome = Outcome::kError;
-    row.result.detail = error.what();
-  }
-  return row;
-}
-
 }  // namespace
 
 Variation Variation::Parse(const std::string& text) {
@@ -126,27 +111,24 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
   CheckKeys(options);
   std::vector<SweepTrial> trials;
   for (int i = 0; i < options.trials; ++i) {
-    SweepTrial trial;
-    trial.index = i;
-    trial.seed = TrialSeed(options.seed, i);
+    const std::uint64_t seed = TrialSeed(options.seed, i);
     std::vector<std::string> overrides = options.overrides;
+    std::vector<std::pair<std::string, std::string>> varied;
     std::size_t combination = static_cast<std::size_t>(i) % Combinations(options.variations);
     for (const Variation& variation : options.variations) {
       std::string value;
       if (variation.values.empty()) {
-        sim::RandomStream stream(trial.seed, "vary " + variation.key);
+        sim::RandomStream stream(seed, "vary " + variation.key);
         value = WriteNumber(stream.Uniform(variation.lo, variation.hi));
       } else {
         value = variation.values[combination % variation.values.size()];
         combination /= variation.values.size();
       }
-      trial.varied.emplace_back(variation.key, value);
+      varied.emplace_back(variation.key, value);
       overrides.push_back(variation.key + "=" + value);
     }
-    const bool same = options.variations.empty() && !trials.empty();
-    trial.scenario =
-        same ? trials.front().scenario : LoadScenario(options.scenario_path, overrides, registries);
-    trials.push_back(std::move(trial));
+    trials.push_back(
+        MakeTrial(i, seed, options.scenario_path, overrides, std::move(varied), registries));
   }
   const bool rendered = std::any_of(trials.begin(), trials.end(), [](const SweepTrial& trial) {
     return trial.scenario.sensing == SensingKind::kRendered;
@@ -155,18 +137,19 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
   return trials;
 }
 
-std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
-                               const Registries& registries,
-                               const std::function<void(int done, int all)>& progress) {
-  std::vector<SweepRow> rows(trials.size());
-  RunOnThreads(
-      static_cast<int>(trials.size()), jobs,
-      [&](int i) {
-        const auto at = static_cast<std::size_t>(i);
-        rows[at] = RunOne(trials[at], registries);
-      },
-      progress);
-  return rows;
+Campaign SweepCampaign(const SweepOptions& options, const Registries& registries) {
+  Campaign campaign;
+  campaign.name = "sweep";
+  campaign.seed = options.seed;
+  nlohmann::json vary = nlohmann::json::array();
+  for (const Variation& variation : options.variations) {
+    vary.push_back(variation.text);
+    campaign.keys.push_back(
+        {variation.key, FindScenarioKey(variation.key)->unit, variation.values.empty()});
+  }
+  campaign.facts = {{"set", nlohmann::json(options.overrides).dump()}, {"vary", vary.dump()}};
+  campaign.trials = PlanSweep(options, registries);
+  return campaign;
 }
 
 }  // namespace touchdown::evaluation

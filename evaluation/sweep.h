@@ -2,13 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "touchdown/evaluation/scenario.h"
-#include "touchdown/evaluation/trial_result.h"
+#include "touchdown/evaluation/campaign.h"
 
 namespace touchdown::evaluation {
 
@@ -29,21 +26,7 @@ struct SweepOptions {
   std::vector<std::string> overrides;  ///< as --set
   std::vector<Variation> variations;
   int trials = 20;
-  int jobs = 1;
   std::uint64_t seed = 1;
-};
-
-/// One planned trial: everything that decides it.
-struct SweepTrial {
-  int index = 0;
-  std::uint64_t seed = 0;
-  std::vector<std::pair<std::string, std::string>> varied;  ///< key and value
-  Scenario scenario;
-};
-
-struct SweepRow {
-  SweepTrial trial;
-  TrialResult result;
 };
 
 /// Seed of trial `index` in a sweep with seed `sweep_seed`.
@@ -54,11 +37,7 @@ std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index);
 /// @throws BadInput
 std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries& registries);
 
-/// Runs the trials on `jobs` threads. Rows come back in the order of the trials and do not depend
-/// on `jobs`. A trial that throws becomes a row with outcome `error`. `progress` is called after
-/// each trial with the numbers done and in all, never from two threads at a time.
-std::vector<SweepRow> RunSweep(const std::vector<SweepTrial>& trials, int jobs,
-                               const Registries& registries,
-                               const std::function<void(int done, int all)>& progress);
+/// The same with what their file says of them. @throws BadInput
+Campaign SweepCampaign(const SweepOptions& options, const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -2,48 +2,43 @@
 // Rates and medians by combination of listed values: what is asked of a sweep that varies a key.
 #include "touchdown/evaluation/sweep_cells.h"
 
-#include <algorithm>
+#include <map>
 
 namespace touchdown::evaluation {
-namespace {
 
-struct Gathered {
-  SweepCell cell;
-  std::vector<double> times;
-  std::vector<double> errors;
-};
-
-void Add(const TrialResult& result, Gathered* to) {
-  ++to->cell.trials;
-  to->cell.succeeded += result.succeeded() ? 1 : 0;
-  if (!result.landed()) return;
-  to->times.push_back(result.touchdown->t);
-  to->errors.push_back(result.touchdown->error_m);
+CellPlan PlanCells(const Campaign& campaign) {
+  CellPlan plan;
+  std::map<std::vector<std::pair<std::string, std::string>>, int> known;
+  for (const SweepTrial& trial : campaign.trials) {
+    CellPlan::Cell cell;
+    for (std::size_t i = 0; i < campaign.keys.size(); ++i) {
+      if (!campaign.keys[i].range) cell.values.push_back(trial.varied.at(i));
+    }
+    const int next = static_cast<int>(plan.cells.size());
+    const int at = known.emplace(cell.values, next).first->second;
+    if (at == next) plan.cells.push_back(std::move(cell));
+    ++plan.cells[static_cast<std::size_t>(at)].trials;
+    plan.cell_of.push_back(at);
+  }
+  return plan;
 }
 
-}  // namespace
+void CellTally::Add(const TrialResult& result) {
+  ++trials_;
+  succeeded_ += result.succeeded() ? 1 : 0;
+  if (!result.landed()) return;
+  times_.push_back(result.touchdown->t);
+  errors_.push_back(result.touchdown->error_m);
+}
 
-std::vector<SweepCell> SweepCells(const SweepOptions& options, const std::vector<SweepRow>& rows) {
-  std::vector<Gathered> all;
-  for (const SweepRow& row : rows) {
-    SweepCell cell;
-    for (std::size_t i = 0; i < options.variations.size(); ++i) {
-      if (!options.variations[i].values.empty()) cell.values.push_back(row.trial.varied[i]);
-    }
-    auto at = std::find_if(all.begin(), all.end(), [&](const Gathered& gathered) {
-      return gathered.cell.values == cell.values;
-    });
-    if (at == all.end()) at = all.insert(at, {std::move(cell), {}, {}});
-    Add(row.result, &*at);
-  }
-  std::vector<SweepCell> cells;
-  for (Gathered& gathered : all) {
-    SweepCell& cell = cells.emplace_back(std::move(gathered.cell));
-    cell.rate = ClopperPearson(cell.succeeded, cell.trials);
-    cell.time_to_land_median_s = Quantile(gathered.times, 0.5);
-    cell.touchdown_error_median_m = Quantile(gathered.errors, 0.5);
-  }
-  return cells;
+CellFigures CellTally::Figures() const {
+  CellFigures figures;
+  figures.trials = trials_;
+  figures.succeeded = succeeded_;
+  if (trials_ > 0) figures.rate = ClopperPearson(succeeded_, trials_);
+  figures.time_to_land_median_s = Quantile(times_, 0.5);
+  figures.touchdown_error_median_m = Quantile(errors_, 0.5);
+  return figures;
 }
 
 }  // namespace touchdown::evaluation

@@ -6,23 +6,43 @@
 #include <utility>
 #include <vector>
 
+#include "touchdown/evaluation/campaign.h"
 #include "touchdown/evaluation/statistics.h"
-#include "touchdown/evaluation/sweep.h"
 
 namespace touchdown::evaluation {
 
-/// The trials of a sweep with one combination of the listed values.
-struct SweepCell {
-  std::vector<std::pair<std::string, std::string>> values;  ///< key and value, listed keys alone
+/// The cells of a campaign, in the order of their first trials. Where no label is listed, the one cell is
+/// the whole campaign.
+struct CellPlan {
+  struct Cell {
+    std::vector<std::pair<std::string, std::string>> values;  ///< labels that are not ranges
+    int trials = 0;                                           ///< that are planned
+  };
+  std::vector<Cell> cells;
+  std::vector<int> cell_of;  ///< of each trial
+};
+CellPlan PlanCells(const Campaign& campaign);
+
+/// What the flown trials of a cell came to.
+struct CellFigures {
   int trials = 0;
   int succeeded = 0;
-  Interval rate;                                   ///< 95 % Clopper-Pearson
+  std::optional<Interval> rate;                    ///< 95 % Clopper-Pearson
   std::optional<double> time_to_land_median_s;     ///< of the landed trials
   std::optional<double> touchdown_error_median_m;  ///< of the landed trials
 };
 
-/// The cells in the order of their first trials. A key with a range makes no cells: where no key is
-/// listed, the one cell is the whole sweep.
-std::vector<SweepCell> SweepCells(const SweepOptions& options, const std::vector<SweepRow>& rows);
+/// Gathers trials of one cell, in any order.
+class CellTally {
+ public:
+  void Add(const TrialResult& result);
+  CellFigures Figures() const;
+
+ private:
+  int trials_ = 0;
+  int succeeded_ = 0;
+  std::vector<double> times_;
+  std::vector<double> errors_;
+};
 
 }  // namespace touchdown::evaluation

@@ -139,6 +139,7 @@ Json TrialJson(const SweepRow& row) {
   Json json = LandJson(row.trial.scenario, row.result);
   json.erase("wall_clock");
   json["trial"] = row.trial.index;
+  json["replay"] = row.trial.replay;
   json["varied"] = Json::object();
   for (const auto& [key, value] : row.trial.varied) json["varied"][key] = value;
   return json;
@@ -146,14 +147,14 @@ Json TrialJson(const SweepRow& row) {
 
 }  // namespace
 
-std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& rows) {
+std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& rows) {
   const int n = static_cast<int>(rows.size());
   const int k = Count(rows, &TrialResult::succeeded);
   const Interval interval = ClopperPearson(k, n);
   std::string text =
       fmt::format("{}: {} of {} {}, 95 % Clopper-Pearson [{:.1f} %, {:.1f} %], sweep seed {}\n",
                   rows.front().trial.scenario.name, k, n, SuccessWord(rows), 100.0 * interval.lo,
-                  100.0 * interval.hi, options.seed);
+                  100.0 * interval.hi, campaign.seed);
   text += fmt::format("  {:<28}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "", "median", "p95", "min", "max",
                       "n");
   for (const Column& column : Columns(rows)) {
@@ -173,20 +174,20 @@ std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& 
     text += fmt::format("  {} x {}: {}\n", failed.size(), outcome,
                         Explain(failed.front()->result.outcome));
     for (const SweepRow* row : failed) {
-      text += fmt::format("    trial {} (--seed {}) at {:.2f} s. {}\n", row->trial.index,
-                          row->trial.seed, row->result.simulated_s, row->result.detail);
+      text += fmt::format("    trial {} at {:.2f} s. {}\n      {}\n", row->trial.index,
+                          row->result.simulated_s, row->result.detail, row->trial.replay);
     }
   }
   return text;
 }
 
-Json SweepJson(const SweepOptions& options, const std::vector<SweepRow>& rows) {
+Json SweepJson(const Campaign& campaign, const std::vector<SweepRow>& rows) {
   const int n = static_cast<int>(rows.size());
   const int k = Count(rows, &TrialResult::landed);
   const Interval interval = ClopperPearson(k, n);
   Json json;
   json["scenario"] = rows.front().trial.scenario.name;
-  json["seed"] = options.seed;
+  json["seed"] = campaign.seed;
   json["trials"] = n;
   json["landed"] = k;
   json["landed_fraction"] = static_cast<double>(k) / n;

@@ -6,15 +6,16 @@
 
 #include <nlohmann/json.hpp>
 
-#include "touchdown/evaluation/sweep.h"
+#include "touchdown/evaluation/campaign.h"
 
 namespace touchdown::evaluation {
 
-/// The table that `touchdown sweep` prints.
-std::string SweepText(const SweepOptions& options, const std::vector<SweepRow>& rows);
+/// The table that `touchdown sweep` prints, of at least one row; beside each failure the command that
+/// flies it alone.
+std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& rows);
 
 /// The document of `touchdown sweep --json`: summary, failures, trials. Everything but `wall_clock`
-/// is the same for the same options, whatever the number of threads.
-nlohmann::ordered_json SweepJson(const SweepOptions& options, const std::vector<SweepRow>& rows);
+/// is the same for the same options, whoever flew the trials.
+nlohmann::ordered_json SweepJson(const Campaign& campaign, const std::vector<SweepRow>& rows);
 
 }  // namespace touchdown::evaluation

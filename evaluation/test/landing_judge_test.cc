@@ -293,13 +293,15 @@ TEST_F(LandingJudgeTest, TheFirstOutcomeStays) {
 TEST(OutcomeText, EveryClassHasItsOwnNameAndSentence) {
   std::set<std::string> names;
   std::set<std::string> sentences;
-  const int last = static_cast<int>(Outcome::kError);
+  const int last = static_cast<int>(kLastOutcome);
   for (int i = 0; i <= last; ++i) {
     const auto outcome = static_cast<Outcome>(i);
     names.insert(ToString(outcome));
     sentences.insert(Explain(outcome));
     EXPECT_EQ(std::string(Explain(outcome)).back(), '.');
+    EXPECT_EQ(OutcomeNamed(ToString(outcome)), outcome);
   }
+  EXPECT_FALSE(OutcomeNamed("sunk"));
   EXPECT_EQ(static_cast<int>(names.size()), last + 1);
   EXPECT_EQ(static_cast<int>(sentences.size()), last + 1);
 }

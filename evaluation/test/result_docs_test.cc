@@ -23,7 +23,7 @@
 #include "touchdown/evaluation/replan_report.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/tag_report.h"
-#include "touchdown/evaluation/trial_table.h"
+#include "touchdown/evaluation/trial_store.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -34,12 +34,19 @@ struct ResultFile {
   std::function<void(const std::string& path)> writer;
 };
 
+Campaign OneTrial() {
+  Campaign campaign;
+  campaign.trials.emplace_back();
+  campaign.facts = {{"set", "[]"}, {"vary", "[]"}};
+  return campaign;
+}
+
 std::vector<ResultFile> ResultFiles() {
   PadStudyOptions pad;
   pad.scenarios.clear();
   pad.overrides = {"gps.rate=5", "seed=2"};
   return {{"record", [](auto& path) { WriteRecord(path, {}, {}, {}); }},
-          {"trials", [](auto& path) { WriteTrialTable(path, {}, {SweepRow()}); }},
+          {"trials", [](auto& path) { WriteTrials(path, OneTrial(), {}); }},
           {"comparison", [](auto& path) { WriteCompareTable(path, {}, {}, {}); }},
           {"profile", [](auto& path) { WriteProfileTable(path, {}, {}); }},
           {"replan study", [](auto& path) { WriteReplanStudy(path, {}, {}); }},

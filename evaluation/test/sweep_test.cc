@@ -2,6 +2,7 @@
 #include "touchdown/evaluation/sweep.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -90,23 +91,10 @@ TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
   EXPECT_THROW(Variation::Parse("controller=geometric,psychic"), BadInput);
 }
 
-TEST(RunSweep, ATrialThatThrowsIsARowAndNotTheEnd) {
-  SweepOptions options = OpenSweep(3);
-  std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
-  trials[1].scenario.solver.backend = "none";
-  const std::vector<SweepRow> rows = RunSweep(trials, 2, StandardRegistries(), [](int, int) {});
-  ASSERT_EQ(rows.size(), 3U);
-  EXPECT_EQ(rows[1].result.outcome, Outcome::kError);
-  EXPECT_FALSE(rows[1].result.detail.empty());
-  EXPECT_NE(rows[0].result.outcome, Outcome::kError);
-  const std::string text = SweepText(options, rows);
-  EXPECT_NE(text.find("1 x error"), std::string::npos);
-}
-
 TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
-  const SweepOptions options = OpenSweep(1);
+  const Campaign campaign = SweepCampaign(OpenSweep(1), kRegistries);
   SweepRow row;
-  row.trial = PlanSweep(options, kRegistries).front();
+  row.trial = campaign.trials.front();
   TrialResult& r = row.result;
   r.outcome = Outcome::kLanded;
   r.touchdown.emplace();
@@ -122,7 +110,7 @@ TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
   r.t_star_s = 4.0;
   r.t_star_upper_s = 5.0;
   r.within_limits = true;
-  const auto summary = SweepJson(options, {row})["summary"];
+  const auto summary = SweepJson(campaign, {row})["summary"];
   const std::map<std::string, double> expected = {
       {"time_to_land_s", 6.0},        {"touchdown_error_m", 0.2},
       {"relative_speed_mps", 1.3},    {"relative_horizontal_mps", 0.5},
@@ -142,15 +130,15 @@ TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
   for (const auto& [key, value] : expected) EXPECT_TRUE(summary.contains(key)) << key << value;
 }
 
-SweepRow RowAfter(const SweepTrial& trial, std::optional<double> landed_after_s) {
-  SweepRow row{trial, {}};
-  row.result.outcome = landed_after_s ? Outcome::kLanded : Outcome::kTimeout;
+TrialResult After(std::optional<double> landed_after_s) {
+  TrialResult result;
+  result.outcome = landed_after_s ? Outcome::kLanded : Outcome::kTimeout;
   if (landed_after_s) {
-    row.result.touchdown.emplace();
-    row.result.touchdown->t = *landed_after_s;
-    row.result.touchdown->error_m = 0.01 * *landed_after_s;
+    result.touchdown.emplace();
+    result.touchdown->t = *landed_after_s;
+    result.touchdown->error_m = 0.01 * *landed_after_s;
   }
-  return row;
+  return result;
 }
 
 TEST(SweepCells, GatherTrialsByTheirListedValues) {
@@ -158,55 +146,40 @@ TEST(SweepCells, GatherTrialsByTheirListedValues) {
   options.variations = {Variation::Parse("controller=geometric,paper"),
                         Variation::Parse("gps.sigma=0.1..0.5"),
                         Variation::Parse("pad.speed=0.2,0.4,0.6")};
-  std::vector<SweepRow> rows;
-  for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
-    const bool paper = trial.index % 2 == 1;
-    rows.push_back(RowAfter(trial, paper ? std::nullopt : std::optional(5.0 + trial.index)));
-  }
-  const std::vector<SweepCell> cells = SweepCells(options, rows);
-  ASSERT_EQ(cells.size(), 6U);
+  const CellPlan plan = PlanCells(SweepCampaign(options, kRegistries));
+  ASSERT_EQ(plan.cells.size(), 6U);
   using Values = std::vector<std::pair<std::string, std::string>>;
-  EXPECT_EQ(cells[0].values, (Values{{"controller", "geometric"}, {"pad.speed", "0.2"}}));
-  EXPECT_EQ(cells[5].values, (Values{{"controller", "paper"}, {"pad.speed", "0.6"}}));
-  EXPECT_EQ(cells[0].trials, 2);  // the first and the last of seven
-  EXPECT_EQ(cells[0].succeeded, 2);
-  EXPECT_DOUBLE_EQ(*cells[0].time_to_land_median_s, 8.0);
-  EXPECT_DOUBLE_EQ(*cells[0].touchdown_error_median_m, 0.08);
-  EXPECT_EQ(cells[1].trials, 1);
-  EXPECT_EQ(cells[1].succeeded, 0);
-  EXPECT_FALSE(cells[1].time_to_land_median_s);
-  EXPECT_DOUBLE_EQ(cells[1].rate.lo, 0.0);
-  EXPECT_NEAR(cells[1].rate.hi, 0.975, 1e-12);  // 1 - 0.025^(1/n)
+  EXPECT_EQ(plan.cells[0].values, (Values{{"controller", "geometric"}, {"pad.speed", "0.2"}}));
+  EXPECT_EQ(plan.cells[5].values, (Values{{"controller", "paper"}, {"pad.speed", "0.6"}}));
+  EXPECT_EQ(plan.cells[0].trials, 2);  // the first and the last of seven
+  EXPECT_EQ(plan.cells[1].trials, 1);
+  EXPECT_EQ(plan.cell_of, (std::vector<int>{0, 1, 2, 3, 4, 5, 0}));
+}
+
+TEST(SweepCells, FiguresAreOfTheFlownAndTimesOfTheLanded) {
+  CellTally tally;
+  EXPECT_EQ(tally.Figures().trials, 0);
+  EXPECT_FALSE(tally.Figures().rate);
+  tally.Add(After(5.0));
+  tally.Add(After(11.0));
+  EXPECT_EQ(tally.Figures().succeeded, 2);
+  EXPECT_DOUBLE_EQ(*tally.Figures().time_to_land_median_s, 8.0);
+  EXPECT_DOUBLE_EQ(*tally.Figures().touchdown_error_median_m, 0.08);
+  CellTally failed;
+  failed.Add(After({}));
+  EXPECT_EQ(failed.Figures().succeeded, 0);
+  EXPECT_FALSE(failed.Figures().time_to_land_median_s);
+  EXPECT_DOUBLE_EQ(failed.Figures().rate->lo, 0.0);
+  EXPECT_NEAR(failed.Figures().rate->hi, 0.975, 1e-12);  // 1 - 0.025^(1/n)
 }
 
 TEST(SweepCells, ARangeMakesOneCell) {
   SweepOptions options = OpenSweep(4);
   options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
-  std::vector<SweepRow> rows;
-  for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
-    rows.push_back(RowAfter(trial, 5.0));
-  }
-  const std::vector<SweepCell> cells = SweepCells(options, rows);
-  ASSERT_EQ(cells.size(), 1U);
-  EXPECT_TRUE(cells[0].values.empty());
-  EXPECT_EQ(cells[0].trials, 4);
-}
-
-// Between the buildings: search, pairs and the map take part.
-TEST(RunSweep, OneAndTwoThreadsGiveTheSameRows) {
-  SweepOptions options = OpenSweep(4);
-  options.scenario_path = FindScenario("straight_turn");
-  options.overrides = {"start.position_spread=[1, 1, 0]", "start.yaw_random=true", "timeout=4"};
-  const std::vector<SweepTrial> trials = PlanSweep(options, kRegistries);
-  const auto rows = [&](int jobs) {
-    nlohmann::ordered_json json =
-        SweepJson(options, RunSweep(trials, jobs, StandardRegistries(), [](int, int) {}));
-    json.erase("wall_clock");
-    return json.dump();
-  };
-  const std::string one = rows(1);
-  EXPECT_EQ(one, rows(2));
-  EXPECT_EQ(one, rows(1));
+  const CellPlan plan = PlanCells(SweepCampaign(options, kRegistries));
+  ASSERT_EQ(plan.cells.size(), 1U);
+  EXPECT_TRUE(plan.cells[0].values.empty());
+  EXPECT_EQ(plan.cells[0].trials, 4);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-SUPPORTED_VERSION = "3"
+SUPPORTED_VERSION = "4"
 MOST_LISTS = 2
 LANDED, FAILED = "#0072B2", "#D55E00"
 
@@ -44,7 +44,7 @@ class Cell:
 
 class Sweep:
     """One file: `manifest`, `lists` {key: values in order}, `ranges` (keys), `cells` {tuple of one
-    value of each list: Cell}, and for each key `trials(key)`."""
+    value of each list: Cell} as far as trials of them were flown, and for each key `trials(key)`."""
 
     def __init__(self, path):
         self._path = path
@@ -70,7 +70,8 @@ class Sweep:
                 self.lists[key].append(value)
         self.cells = {}
         for cell, *figures in db.execute(
-            "SELECT cell, trials, succeeded, rate_lo, rate_hi, time_to_land_median_s FROM cell"
+            "SELECT cell, trials, succeeded, rate_lo, rate_hi, time_to_land_median_s FROM cell "
+            "WHERE trials > 0"
         ):
             place = places.get(cell, {})
             self.cells[tuple(place[key] for key in self.lists)] = Cell(*figures)
@@ -83,7 +84,7 @@ class Sweep:
 
     def trials(self, key):
         """Of every trial [value of the key, time to land in s or None, whether it succeeded]."""
-        return self._trials[key]
+        return self._trials.get(key, [])
 
     def label(self, key):
         unit = self._units[key]
@@ -141,7 +142,9 @@ def draw_maps(rate, time, sweep):
 def draw_rates(axes, sweep, values):
     """The rate of each value with its interval."""
     for place, value in enumerate(values):
-        cell = sweep.cells[value,]
+        cell = sweep.cells.get((value,))
+        if cell is None:
+            continue
         reach = [[cell.rate - cell.low], [cell.high - cell.rate]]
         axes.errorbar(place, cell.rate, yerr=reach, fmt="o", color=LANDED, capsize=4)
         axes.annotate(
@@ -199,7 +202,10 @@ def draw_cloud(axes, sweep, key):
 def headline(sweep):
     manifest = sweep.manifest
     cells = sweep.cells.values()
-    counts = f"{sum(c.succeeded for c in cells)} of {sum(c.trials for c in cells)} trials succeeded"
+    flown = sum(c.trials for c in cells)
+    counts = f"{sum(c.succeeded for c in cells)} of {flown} trials succeeded"
+    if flown < int(manifest["trials"]):
+        counts += f" ({manifest['trials']} planned)"
     if () in sweep.cells:
         counts += f", 95 % {str(sweep.cells[()]).splitlines()[1]}"
     settings = " ".join(json.loads(manifest["set"])) or "as shipped"

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// touchdown study run FILE, and study paper, solvers and ablation: the shipped ones. Every method in
+// every cell of a study file, flown into a folder, and the report that is drawn from the folder.
+#include "touchdown/evaluation/command_study_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/study_run.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+struct StudyRunArguments {
+  std::string file;
+  std::string out;
+  bool quick = false;
+  bool report_only = false;
+  int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  std::string seed;
+  std::string shard = "1/1";
+  bool json = false;
+};
+
+nlohmann::ordered_json ReadSummary(const std::string& folder) {
+  std::ifstream stream(folder + "/summary.json");
+  return nlohmann::ordered_json::parse(stream);
+}
+
+// One line for each method in each cell.
+std::string SummaryText(const nlohmann::ordered_json& summary, const std::string& folder) {
+  std::string text;
+  std::string cell;
+  for (const auto& row : summary.at("parts")) {
+    if (row.at("cell") != cell)
+      text += fmt::format("{}\n", row.at("cell_title").get<std::string>());
+    cell = row.at("cell");
+    const auto seconds = row.at("time_to_land_median_s");
+    text += fmt::format(
+        "  {:<24} landed {} of {} [{:.1f}, {:.1f}] %{}\n", row.at("method").get<std::string>(),
+        row.at("landed").get<int>(), row.at("trials").get<int>(),
+        100.0 * row.at("rate_lo").get<double>(), 100.0 * row.at("rate_hi").get<double>(),
+        seconds.is_null() ? std::string()
+                          : fmt::format(", median {:.1f} s", seconds.get<double>()));
+  }
+  return text + fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
+}
+
+// 128 + the signal's number, as a shell has it. What was flown is in the folder.
+int Interrupted(const CampaignResult& result, const std::string& table) {
+  spdlog::warn(
+      "interrupted after {} of {} trials: they are in {}, and the same command goes on from there",
+      result.state.flown, result.state.all, table);
+  return 128 + result.interrupted_by;
+}
+
+int Report(const StudyRunArguments& arguments, const std::string& folder) {
+  WriteStudyReport(folder);
+  const nlohmann::ordered_json summary = ReadSummary(folder);
+  if (arguments.json) {
+    std::cout << summary.dump(2) << std::endl;
+  } else {
+    std::cout << SummaryText(summary, folder) << std::flush;
+  }
+  return summary.at("errors").get<int>() == 0 ? kDone : kFellShort;
+}
+
+int Run(const StudyRunArguments& arguments, const Registries& registries) {
+  const StudyFile file = LoadStudyFile(FindStudyFile(arguments.file), registries);
+  const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
+  if (arguments.report_only) {
+    if (std::filesystem::exists(StudyTablePath(folder))) return Report(arguments, folder);
+    throw BadInput(fmt::format("--report-only: {} is missing; the study must be flown first.",
+                               StudyTablePath(folder)));
+  }
+  const Shard shard = Shard::Parse(arguments.shard);
+  const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
+  const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
+  const CampaignResult result = FlyStudy(plan, folder, arguments.jobs, shard, registries);
+  if (!result.reports) return kDone;
+  if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));
+  if (shard.of == 1) return Report(arguments, folder);
+  std::cout << fmt::format("{} trials of shard {} are in {}\n", result.state.flown, arguments.shard,
+                           StudyTablePath(folder, shard));
+  return kDone;
+}
+
+void AddOptions(Command command, const std::shared_ptr<StudyRunArguments>& arguments,
+                const Registries& registries, CommandRun* run) {
+  command.AddFlag("--quick", arguments->quick, "The short form: few seeds, main cells");
+  command.AddFile("--out", &arguments->out,
+                  "The study's folder, made where it is missing; study_NAME unless given",
+                  "FOLDER");
+  command.Add("--jobs", arguments->jobs, "Trials flown at a time")
+      .Check(Range(1, 1024))
+      .ShowDefault();
+  command.Add("--seed", arguments->seed, "Seed of the study instead of its file's")
+      .TypeName("S")
+      .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+  command.Add("--shard", arguments->shard, "Fly only the K-th of N parts, into a file of its own")
+      .TypeName("K/N")
+      .ShowDefault();
+  command.AddFlag("--report-only", arguments->report_only,
+                  "Write the report of what the folder holds, without flying");
+  command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
+  command.OnChosen([arguments, &registries, run] {
+    *run = [arguments, &registries] { return Run(*arguments, registries); };
+  });
+}
+
+}  // namespace
+
+void AddStudyRunCommands(Command study, const Registries& registries, CommandRun* run) {
+  const std::pair<const char*, const char*> shipped[] = {
+      {"paper", "The comparative study of the landing paper, with its figures"},
+      {"solvers", "Every solver backend in the closed loop"},
+      {"ablation", "What each part of the method contributes"}};
+  for (const auto& [name, help] : shipped) {
+    const auto arguments = std::make_shared<StudyRunArguments>();
+    arguments->file = name;
+    AddOptions(study.AddCommand(name, help), arguments, registries, run);
+  }
+  const Command command = study.AddCommand("run", "A study of your own, from its file");
+  const auto arguments = std::make_shared<StudyRunArguments>();
+  command.Add("FILE", arguments->file, "Study file, or the name of a shipped one").Required();
+  AddOptions(command, arguments, registries, run);
+}
+
+}  // namespace touchdown::evaluation

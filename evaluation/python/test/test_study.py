@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A small real study from end to end: flown, reported, gone on with, reported again without flying."""
+import json
+import re
+import sqlite3
+
+import pytest
+
+pytest.importorskip("statsmodels")
+pd = pytest.importorskip("pandas")
+
+from touchdown_report.study import tables  # noqa: E402
+from touchdown_report.study.data import Study, StudyError  # noqa: E402
+from touchdown_report.study.report import write_report  # noqa: E402
+
+# Cells and methods with the names of the paper's study, so that its own chapters are drawn, too.
+TINY = """
+title: A tiny study
+report: paper
+seed: 3
+reference: planned
+set: {timeout: 12, start.position_spread: [1, 1, 0]}
+cells:
+  - {name: figure_4, scenario: open, title: "Straight on", labels: {wind_mps: 0}, set: {pad.motion: line}}
+  - {name: case_1_wind_4, scenario: open, labels: {wind_mps: 4}, set: {wind.mean: 4}, methods: [planned, vertical]}
+methods:
+  - {name: planned, set: {descent: planned}, trials: 3, quick: 2, record: true}
+  - {name: vertical, set: {descent: vertical, timeout: 5}, trials: 2, quick: 1}
+  - {name: ego, title: "EGO, 5 Hz", set: {planner: ego, timeout: 3}, trials: 3, quick: 1}
+"""
+
+
+@pytest.fixture(scope="module")
+def flown(run, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("study")
+    (folder / "tiny.yaml").write_text(TINY)
+    done = run("study", "run", "tiny.yaml", "--out", "out", "--jobs", "1", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    return folder, done.stdout
+
+
+def test_the_folder_holds_everything(flown):
+    folder, said = flown
+    out = folder / "out"
+    assert {p.name for p in out.iterdir()} == {
+        *("study.db", "study.json", "summary.json", "report.html", "report.md", "csv", "figures", "records")
+    }
+    assert {p.name for p in (out / "records").iterdir()} == {"figure_4-planned.db", "case_1_wind_4-planned.db"}
+    pictures = {p.stem for p in (out / "figures").iterdir()}
+    assert {"success", "outcomes", "landing_times", "figure_04"} <= pictures
+    for name in pictures:
+        assert (out / "figures" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
+        assert "<svg" in (out / "figures" / f"{name}.svg").read_text()
+    assert "Straight on\n  planned" in said and "landed 3 of 3" in said
+
+
+def test_the_report_says_what_the_table_holds(flown):
+    out = flown[0] / "out"
+    study = Study(str(out))
+    parts = tables.parts(study).set_index(["cell", "method"])
+    assert parts.loc[("figure_4", "planned"), "landed"] == 3
+    assert parts.loc[("figure_4", "vertical"), ["trials", "landed"]].tolist() == [2, 0]
+    assert parts.loc[("figure_4", "ego"), "half_landed_s"] == float("inf")
+    with sqlite3.connect(out / "study.db") as db:
+        times = [t for t, in db.execute("SELECT time_to_land_s FROM trial WHERE landed ORDER BY trial")]
+    assert parts.loc[("figure_4", "planned"), "time_to_land_median_s"] == sorted(times[:3])[1]
+    comparisons = tables.comparisons(study)
+    ego = comparisons[(comparisons["method"] == "ego") & (comparisons["cell"] == "figure_4")].iloc[0]
+    assert (ego["pairs"], ego["reference_only"], ego["method_only"], ego["p"]) == (3, 3, 0, 0.25)
+    assert set(tables.outcomes(study).loc[("figure_4", "ego")].items()) >= {("timeout", 3), ("landed", 0)}
+    text = (out / "report.md").read_text()
+    assert "| Straight on | 3 of 3 [29.2, 100.0] % | 0 of 2 [0.0, 84.2] % | 0 of 3 [0.0, 70.8] % |" in text
+    assert "EGO, 5 Hz" in text
+    html = (out / "report.html").read_text()
+    assert html.count("data:image/png;base64,") == html.count("<img") >= 4 and "http" not in html
+
+
+def test_seeds_are_paired(flown):
+    study = Study(str(flown[0] / "out"))
+    first, second = study.part("figure_4", "planned"), study.part("case_1_wind_4", "planned")
+    assert list(first.index) == list(second.index) and len(set(first.index)) == 3
+    assert set(study.part("figure_4", "vertical").index) < set(first.index)
+
+
+def test_the_command_beside_a_failure_flies_it_again(flown, run):
+    failures = pd.read_csv(flown[0] / "out" / "csv" / "failures.csv")
+    one = failures[failures["method"] == "ego"].iloc[0]
+    program, *words = one["command"].split()
+    assert program == "touchdown" and words[:2] == ["land", "open"]
+    done = run(*(word.strip("'") for word in re.findall(r"'[^']*'|\S+", " ".join(words))), "--json")
+    again = json.loads(done.stdout)
+    assert again["outcome"] == one["outcome"] and again["seed"] == one["seed"]
+    assert again["simulated_s"] == pytest.approx(one["simulated_s"])
+
+
+def test_a_finished_study_is_reported_again_without_a_flight(flown, run):
+    folder, said = flown
+    before = (folder / "out" / "study.db").read_bytes()
+    plan = (folder / "out" / "study.json").read_text()
+    text = (folder / "out" / "report.md").read_text()
+    for option in ((), ("--report-only",)):
+        done = run("study", "run", "tiny.yaml", "--out", "out", *option, cwd=folder)
+        assert done.returncode == 0 and done.stdout == said, done.stderr
+    assert (folder / "out" / "study.db").read_bytes() == before
+    assert (folder / "out" / "study.json").read_text() == plan
+    assert (folder / "out" / "report.md").read_text() == text
+    summary = json.loads(run("study", "run", "tiny.yaml", "--out", "out", "--report-only", "--json", cwd=folder).stdout)
+    assert summary["trials"] == 13 and summary["errors"] == 0 and len(summary["parts"]) == 5
+
+
+def test_another_form_of_the_study_is_refused(flown, run):
+    folder, _ = flown
+    done = run("study", "run", "tiny.yaml", "--out", "out", "--quick", cwd=folder)
+    assert done.returncode == 2 and "study.db" in done.stderr and done.stderr.count("\n") == 1
+
+
+def test_a_report_of_half_a_study(flown, tmp_path):
+    for name in ("study.db", "study.json"):
+        (tmp_path / name).write_bytes((flown[0] / "out" / name).read_bytes())
+    with sqlite3.connect(tmp_path / "study.db") as db:
+        db.execute("DELETE FROM trial WHERE trial >= 4")
+    write_report(Study(str(tmp_path)))
+    assert "4 trials" in (tmp_path / "report.md").read_text()
+
+
+def test_what_is_no_study_is_refused_in_a_sentence(flown, run, tmp_path):
+    with pytest.raises(StudyError, match="study.json: it cannot be read"):
+        Study(str(tmp_path))
+    (tmp_path / "study.json").write_text("[")
+    with pytest.raises(StudyError, match="not a study's plan"):
+        Study(str(tmp_path))
+    done = run("study", "run", "tiny.yaml", "--out", "nothing", "--report-only", cwd=flown[0])
+    assert done.returncode == 2 and "nothing/study.db is missing" in done.stderr
+
+
+def test_missing_packages_are_named(monkeypatch, capsys):
+    from touchdown_report.study import __main__ as program
+
+    monkeypatch.setitem(program.NEEDED, "no_such_module", "python3-none-such")
+    assert program.main(["folder"]) == 2
+    assert "install python3-none-such for this report" in capsys.readouterr().err
+
+
+def test_mistakes_in_a_study_file_are_named(run, tmp_path):
+    path = tmp_path / "mine.yaml"
+    for written, sentence in (
+        (TINY.replace("reference: planned", "reference: other"), "reference must be one of the methods, not other"),
+        (TINY.replace("seed: 3", "sed: 3"), "mine.yaml:4: unknown key sed"),
+        (TINY.replace("pad.motion: line", "pad.motion: lin"), "study mine, planned in figure_4: "),
+    ):
+        path.write_text(written)
+        done = run("study", "run", str(path), "--out", str(tmp_path / "out"))
+        assert done.returncode == 2 and sentence in done.stderr and done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()

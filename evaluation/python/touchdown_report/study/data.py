@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reading a study's folder: study.json (the plan) and study.db (every trial)."""
+import json
+import os
+
+import pandas as pd
+
+from touchdown_report import database
+
+SUPPORTED_VERSION = "4"
+FLOWN = ("landed", "followed")
+
+
+class StudyError(Exception):
+    """The folder is no study that this package can read; the message is one sentence."""
+
+
+class Study:
+    """`plan` (study.json), `manifest` {key: value}, `trials`: one row a trial with its cell, method,
+    labels, figures, timing and `command`; `replans`: one row a replanning step with its times."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        path = os.path.join(folder, "study.json")
+        try:
+            with open(path, encoding="utf-8") as stream:
+                self.plan = json.load(stream)
+        except OSError as problem:
+            raise StudyError(f"{path}: it cannot be read ({problem.strerror}).") from problem
+        except ValueError as problem:
+            raise StudyError(f"{path}: not a study's plan ({problem}).") from problem
+        self.path = os.path.join(folder, "study.db")
+        database.read(self.path, "study", "manifest", SUPPORTED_VERSION, StudyError, self._read)
+
+    def _read(self, db, manifest):
+        self.manifest = manifest
+        trials = pd.read_sql(
+            "SELECT trial.*, timing.*, planned.replay AS command FROM trial JOIN timing USING(trial) "
+            "JOIN planned USING(trial) ORDER BY trial",
+            db,
+        )
+        trials = trials.loc[:, ~trials.columns.duplicated()]
+        labels = pd.read_sql("SELECT trial, key, value FROM variation", db)
+        if trials.empty or labels.empty:
+            raise StudyError(f"{self.path}: the study holds no trial.")
+        labels = labels.pivot(index="trial", columns="key", values="value")
+        trials = trials.join(labels, on="trial")
+        trials["landed"] = trials["landed"].astype(bool)
+        parts = {(part["cell"], part["method"]): part for part in self.plan["parts"]}
+        keys = list(zip(trials["cell"], trials["method"]))
+        trials["horizon_s"] = [parts[key]["timeout_s"] for key in keys]
+        self.trials = trials
+        self.replans = pd.read_sql("SELECT trial, replan, wall_ms, cpu_ms FROM replan_time", db)
+
+    def part(self, cell, method):
+        """The trials of one method in one cell, by seed."""
+        chosen = self.trials[(self.trials["cell"] == cell) & (self.trials["method"] == method)]
+        return chosen.set_index("seed").sort_index()
+
+    def parts(self):
+        """(cell, method) of everything flown, in the order of the study's file."""
+        flown = set(zip(self.trials["cell"], self.trials["method"]))
+        planned = [(part["cell"], part["method"]) for part in self.plan["parts"]]
+        return [part for part in planned if part in flown]
+
+    def cells(self):
+        """Names of the cells that were flown, in the order of the study's file."""
+        return list(dict.fromkeys(cell for cell, _ in self.parts()))
+
+    def methods(self, cell=None):
+        """Names of the methods that were flown, in the order of the study's file."""
+        flown = {method for c, method in self.parts() if cell in (None, c)}
+        return [m["name"] for m in self.plan["methods"] if m["name"] in flown]
+
+    def _title(self, kind, name):
+        return next(entry["title"] for entry in self.plan[kind] if entry["name"] == name)
+
+    def cell_title(self, name):
+        return self._title("cells", name)
+
+    def method_title(self, name):
+        return self._title("methods", name)
+
+    def labels(self, cell):
+        return next(entry["labels"] for entry in self.plan["cells"] if entry["name"] == cell)
+
+    @property
+    def reference(self):
+        return self.plan["reference"]
+
+    def record_path(self, cell, method):
+        """The recorded flight of the first trial, or None."""
+        path = os.path.join(self.folder, "records", f"{cell}-{method}.db")
+        return path if os.path.exists(path) else None

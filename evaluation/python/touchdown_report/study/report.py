@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes the report of a study: report.html, report.md, summary.json, csv/ and figures/."""
+import json
+import os
+
+from touchdown_report.study import ablation, figures, paper, solvers, tables
+from touchdown_report.study.document import Document
+from touchdown_report.study.statistics import Estimate
+from touchdown_report.study.style import Gallery
+from touchdown_report.study.texts import duration, interval, number, of, p_value
+
+MOST_FAILURES = 40  # in the report; all of them are in csv/failures.csv
+OWN_CHAPTERS = {"paper": paper.write, "solvers": solvers.write, "ablation": ablation.write}
+
+
+def _estimate(row, name):
+    return Estimate(row[name], row[f"{name}_lo"], row[f"{name}_hi"], 0)
+
+
+def _rate(row):
+    return of(row["landed"], Estimate(0.0, row["rate_lo"], row["rate_hi"], row["trials"]))
+
+
+def _success(study, document, gallery, parts):
+    document.heading(2, "Success")
+    document.text(
+        "k of n [95 % Clopper-Pearson]. What counts as a success was fixed before: docs/evaluation_protocol.md."
+    )
+    methods = study.methods()
+    rows = []
+    for cell in study.cells():
+        mine = parts[parts["cell"] == cell].set_index("method")
+        rows.append([study.cell_title(cell)] + [_rate(mine.loc[m]) if m in mine.index else "" for m in methods])
+    document.table(["cell", *(study.method_title(m) for m in methods)], rows)
+    path = gallery.keep("success", figures.success, study, parts)
+    document.picture(path, "Success of each method in each cell, with 95 % Clopper-Pearson intervals.")
+
+
+def _outcomes(study, document, gallery, counts):
+    document.heading(2, "How the trials ended")
+    names = [name for name in counts.columns if counts[name].sum() > 0]
+    rows = [
+        [study.cell_title(cell), study.method_title(method), *(str(row[n]) if row[n] else "" for n in names)]
+        for (cell, method), row in counts.iterrows()
+    ]
+    path = gallery.keep("outcomes", figures.outcomes, study, counts)
+    document.picture(path, "Shares of the outcomes; every trial has exactly one.")
+    document.table(["cell", "method", *names], rows)
+
+
+def _times(study, document, gallery, parts):
+    document.heading(2, "Time to land")
+    document.text(
+        "Kaplan-Meier estimate of the share that has landed by a time. What did not land is censored at the end "
+        "of its time, also after a crash, so that a curve ends at the share that landed at all. "
+        "Half landed: the time by which half of all trials, the failures among them, had landed."
+    )
+    path = gallery.keep("landing_times", figures.landing_times, study)
+    document.picture(path, "Share that has landed over time; bands (10 trials or more): 95 %, pointwise.")
+    rows = []
+    for _, row in parts.iterrows():
+        half = Estimate(row["half_landed_s"], row["half_landed_lo_s"], row["half_landed_hi_s"], 0)
+        rows.append(
+            [
+                study.cell_title(row["cell"]),
+                study.method_title(row["method"]),
+                f"{row['landed']} of {row['trials']}",
+                interval(half, 1),
+                interval(_estimate(row, "time_to_land_median_s"), 1),
+                number(row["time_ratio_median"], 2),
+                interval(
+                    Estimate(*(100 * row[f"touchdown_error_median_m{e}"] for e in ("", "_lo", "_hi")), 0), 1
+                ),
+                number(row["min_clearance_m"], 2),
+            ]
+        )
+    document.table(
+        [
+            "cell",
+            "method",
+            "landed",
+            "half landed [s]",
+            "time to land, of the landed [s]",
+            "over T*",
+            "touchdown error [cm]",
+            "least clearance [m]",
+        ],
+        rows,
+    )
+
+
+def _comparisons(study, document, comparisons):
+    if comparisons.empty:
+        return
+    reference = study.method_title(study.reference)
+    document.heading(2, f"Against {reference}, on the same seeds")
+    document.text(
+        "Exact McNemar test of the success of paired trials: the same seed is the same world, start, wind and "
+        "noise for every method. The p-values after Holm are adjusted over all cells, those over all cells apart from them. "
+        "With few pairs no difference can be shown: five pairs reach p = 0.0625 at best."
+    )
+    rows = []
+    for _, row in comparisons.iterrows():
+        pooled = row["cell"] == tables.ALL_CELLS
+        rows.append(
+            [
+                "**all cells**" if pooled else study.cell_title(row["cell"]),
+                study.method_title(row["method"]),
+                str(row["pairs"]),
+                str(row["reference_only"]),
+                str(row["method_only"]),
+                p_value(row["p"]),
+                p_value(row["p_holm"]),
+            ]
+        )
+    document.table(
+        ["cell", "method", "pairs", f"only {reference}", "only the method", "p", "p (Holm)"], rows
+    )
+
+
+def _failures(study, document, failures):
+    document.heading(2, "Failures, and how to fly them again")
+    if failures.empty:
+        document.text("Every trial succeeded.")
+        return
+    document.text(
+        f"{len(failures)} trials, all in `csv/failures.csv`. The command for any trial, failed or not, stands in "
+        "`csv/trials.csv`; add `--record F.db --plot F.png` to look at it."
+    )
+    reference_first = failures.sort_values(
+        "method", key=lambda names: names.map(study.methods().index), kind="stable"
+    )
+    rows = [
+        [study.cell_title(r.cell), study.method_title(r.method), r.outcome, f"`{r.command}`"]
+        for r in reference_first.head(MOST_FAILURES).itertuples()
+    ]
+    document.table(["cell", "method", "outcome", "command"], rows)
+    if len(failures) > MOST_FAILURES:
+        document.text(f"The first {MOST_FAILURES} by method; the others are in `csv/failures.csv`.")
+
+
+def _how(study, document):
+    document.heading(2, "How this was made")
+    plan, manifest = study.plan, study.manifest
+    flown = plan.get("flights", [])
+    seconds = sum(f["wall_s"] for f in flown)
+    jobs = ", ".join(str(j) for j in sorted({f["jobs"] for f in flown})) or "–"
+    document.points(
+        [
+            f"{len(study.trials)} trials in simulation, {study.trials['simulated_s'].sum() / 3600:.1f} h of flight, "
+            f"{study.trials['cpu_s'].sum() / 60:.1f} min of CPU time; {duration(seconds)} of wall time with {jobs} jobs.",
+            f"Study `{plan['study']}`{', the short form (--quick)' if plan['quick'] else ''}, seed {plan['seed']}: "
+            "trial i has the same seed in every cell and with every method.",
+            f"Set in every trial: {', '.join(f'`{k}={v}`' for k, v in plan['set'].items()) or 'nothing'}.",
+            f"Machine: {manifest['cpu']}, {manifest['cpus']} CPUs, {manifest['kernel']}.",
+            f"Program: touchdown {manifest['touchdown_version']}, revision {manifest['revision']}, build "
+            f"{manifest['build_type']} (`{manifest['compiler_flags'].strip()}`), compiler {manifest['compiler']}, MuJoCo "
+            f"{manifest['mujoco']}; build hash `{manifest['build_hash']}`, plan hash `{manifest['plan_hash']}`.",
+            "Statistics: scipy and statsmodels; seeds, sample sizes and definitions: docs/evaluation_protocol.md.",
+        ]
+    )
+    refused = [part for part in plan["parts"] if part.get("refusal")]
+    if refused:
+        document.heading(3, "Not flown")
+        document.table(
+            ["cell", "method", "why"],
+            [[study.cell_title(p["cell"]), study.method_title(p["method"]), p["refusal"]] for p in refused],
+        )
+    document.heading(3, "Methods")
+    document.table(
+        ["method", "what is set"],
+        [
+            [m["title"], " ".join(f"`{k}={v}`" for k, v in m["set"].items()) or "nothing: the defaults"]
+            for m in plan["methods"]
+            if m["name"] in study.methods()
+        ],
+    )
+
+
+def _headline(study, document, parts):
+    rows = parts[parts["method"] == study.reference]
+    landed, trials = int(rows["landed"].sum()), int(rows["trials"].sum())
+    worst = rows["trials"] - rows["landed"]
+    document.text(
+        f"{len(study.trials)} trials, {len(study.cells())} cells, {len(study.methods())} methods. "
+        f"{study.method_title(study.reference)}: {landed} of {trials} succeed, at most {int(worst.max())} failures in a cell."
+        + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
+    )
+
+
+def _summary(study, parts):
+    keys = ["cell", "method", "trials", "landed", "rate_lo", "rate_hi", "time_to_land_median_s",
+            "touchdown_error_median_m"]  # fmt: skip
+    rows = [
+        {
+            **{key: tables.finite(row[key]) for key in keys},
+            "cell_title": study.cell_title(row["cell"]),
+        }
+        for _, row in parts.iterrows()
+    ]
+    return {
+        "study": study.plan["study"],
+        "quick": study.plan["quick"],
+        "seed": study.plan["seed"],
+        "trials": len(study.trials),
+        "errors": tables.errors(study),
+        "report": os.path.join(study.folder, "report.html"),
+        "parts": rows,
+    }
+
+
+def _write(folder, name, text):
+    """Whole or not at all."""
+    path = os.path.join(folder, name)
+    with open(path + ".part", "w", encoding="utf-8") as stream:
+        stream.write(text)
+    os.replace(path + ".part", path)
+
+
+def write_report(study):
+    """Everything that is made from the folder of a study."""
+    gallery = Gallery(study.folder)
+    document = Document(study.plan["title"])
+    parts, comparisons = tables.parts(study), tables.comparisons(study)
+    counts, failures = tables.outcomes(study), tables.failures(study)
+    _headline(study, document, parts)
+    own = OWN_CHAPTERS.get(study.plan["report"])
+    if own:
+        own(study, document, gallery, parts, comparisons)
+    _success(study, document, gallery, parts)
+    _outcomes(study, document, gallery, counts)
+    _times(study, document, gallery, parts)
+    _comparisons(study, document, comparisons)
+    _failures(study, document, failures)
+    _how(study, document)
+
+    folder = os.path.join(study.folder, "csv")
+    os.makedirs(folder, exist_ok=True)
+    for name, table in (
+        ("trials", tables.trials(study)),
+        ("parts", parts),
+        ("comparisons", comparisons),
+        ("outcomes", counts.reset_index()),
+        ("failures", failures),
+    ):
+        _write(folder, f"{name}.csv", table.to_csv(index=False))
+    _write(study.folder, "report.md", document.markdown())
+    _write(study.folder, "report.html", document.html(study.folder))
+    _write(study.folder, "summary.json", json.dumps(_summary(study, parts), indent=2) + "\n")

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the trials of any study come to, as pandas tables: one row for each method in each cell, for each
+pair of methods, for each outcome and for each failure."""
+import numpy as np
+import pandas as pd
+
+from touchdown_report.study import statistics
+
+# Column of a trial: name in the tables. All are of landed trials.
+FIGURES = {
+    "time_to_land_s": "time_to_land_median_s",
+    "touchdown_error_m": "touchdown_error_median_m",
+    "mean_abs_error_x_m": "mean_abs_error_x_median_m",
+    "mean_abs_error_y_m": "mean_abs_error_y_median_m",
+    "time_ratio": "time_ratio_median",
+    "effort_n2s": "effort_median_n2s",
+}
+PAIRED = ("time_to_land_s", "touchdown_error_m", "effort_n2s")
+ALL_CELLS = "all"
+
+
+def succeeded(trials):
+    """What counts: landed; where nothing is to land, followed."""
+    return trials["landed"] | (trials["outcome"] == "followed")
+
+
+def parts(study):
+    """One row for each method in each cell: rates, medians with intervals, time to land with what did not
+    land censored."""
+    rows = []
+    for cell, method in study.parts():
+        trials = study.part(cell, method)
+        good = int(succeeded(trials).sum())
+        rate = statistics.rate(good, len(trials))
+        row = {
+            "cell": cell,
+            "method": method,
+            **study.labels(cell),
+            "trials": len(trials),
+            "landed": good,
+            "rate_lo": rate.lo,
+            "rate_hi": rate.hi,
+        }
+        landed = trials[trials["landed"]]
+        for column, name in FIGURES.items():
+            estimate = statistics.bootstrap(landed[column])
+            row |= {name: estimate.value, f"{name}_lo": estimate.lo, f"{name}_hi": estimate.hi}
+        survival = statistics.time_to_land(
+            trials["time_to_land_s"], trials["landed"], trials["horizon_s"]
+        )
+        row |= {
+            "half_landed_s": survival.median.value,
+            "half_landed_lo_s": survival.median.lo,
+            "half_landed_hi_s": survival.median.hi,
+        }
+        following = statistics.bootstrap(trials["following_mean_error_m"])
+        row |= {
+            "following_error_median_m": following.value,
+            "following_error_lo_m": following.lo,
+            "following_error_hi_m": following.hi,
+            "min_clearance_m": trials["min_clearance_m"].astype(float).min(),
+        }
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def outcomes(study):
+    """Counts of every outcome, one row for each method in each cell."""
+    counts = study.trials.groupby(["cell", "method"])["outcome"].value_counts().unstack(fill_value=0)
+    return counts.reindex(pd.MultiIndex.from_tuples(study.parts(), names=["cell", "method"]))
+
+
+def _compare(study, cell, method, first, second):
+    success = statistics.paired_success(succeeded(second), succeeded(first))
+    row = {
+        "cell": cell,
+        "method": method,
+        "reference": study.reference,
+        "pairs": success.pairs,
+        "reference_only": success.first_only,
+        "method_only": success.second_only,
+        "p": success.p,
+    }
+    for column in PAIRED:
+        estimate = statistics.paired_difference(
+            first.loc[first["landed"], column], second.loc[second["landed"], column]
+        )
+        row |= {
+            f"difference_{column}": estimate.value,
+            f"difference_{column}_lo": estimate.lo,
+            f"difference_{column}_hi": estimate.hi,
+            f"difference_{column}_pairs": estimate.n,
+        }
+    return row
+
+
+def comparisons(study):
+    """Each method against the reference on the same seeds: in each cell, and over all cells that both
+    flew in (`cell` = all). `p_holm` is adjusted over the cells, and apart from them over the methods."""
+    rows = []
+    pooled = {}
+    for cell, method in study.parts():
+        if method == study.reference or study.reference not in study.methods(cell):
+            continue
+        first, second = study.part(cell, method), study.part(cell, study.reference)
+        rows.append(_compare(study, cell, method, first, second))
+        pairs = pooled.setdefault(method, ([], []))
+        for side, trials in zip(pairs, (first, second)):
+            side.append(trials.set_axis([f"{cell} {seed}" for seed in trials.index]))
+    in_cells = len(rows)
+    for method, (firsts, seconds) in pooled.items():
+        rows.append(_compare(study, ALL_CELLS, method, pd.concat(firsts), pd.concat(seconds)))
+    table = pd.DataFrame(rows)
+    if not table.empty:
+        adjusted = statistics.holm(table["p"][:in_cells]) + statistics.holm(table["p"][in_cells:])
+        table.insert(table.columns.get_loc("p") + 1, "p_holm", adjusted)
+    return table
+
+
+def failures(study):
+    """Every trial that did not come to what it was to, with the command that flies it again."""
+    bad = study.trials[~succeeded(study.trials)]
+    return bad[["cell", "method", "seed", "outcome", "simulated_s", "detail", "command"]]
+
+
+def trials(study):
+    """Every trial, labels first, what stays empty left out."""
+    lead = ["trial", "cell", "method", "seed"]
+    labels = [key for key in study.labels(study.cells()[0]) if key in study.trials]
+    rest = [c for c in study.trials if c not in lead + labels + ["command"]]
+    return study.trials[lead + labels + rest + ["command"]].dropna(axis=1, how="all")
+
+
+def errors(study):
+    """How many trials ended in an error of the program."""
+    return int(study.trials["outcome"].isin(["error", "crashed", "hung"]).sum())
+
+
+def finite(value):
+    """A figure as JSON has it: null where there is none."""
+    if isinstance(value, (np.floating, float)):
+        return float(value) if np.isfinite(value) else None
+    if isinstance(value, np.integer):
+        return int(value)
+    return value

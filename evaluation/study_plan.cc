@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a study file to a campaign: the product of cells and methods, every part with the same seeds.
+#include "touchdown/evaluation/study_plan.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/rendering_check.h"
+#include "touchdown/evaluation/sweep.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+// Later pairs replace earlier ones of the same key: a method's key counts, not the cell's.
+std::vector<std::string> Overrides(const std::vector<const StudyPairs*>& layers) {
+  StudyPairs merged;
+  for (const StudyPairs* layer : layers) {
+    for (const auto& pair : *layer) {
+      const auto same = [&pair](const auto& other) { return other.first == pair.first; };
+      const auto old = std::find_if(merged.begin(), merged.end(), same);
+      if (old == merged.end()) {
+        merged.push_back(pair);
+      } else {
+        old->second = pair.second;
+      }
+    }
+  }
+  std::vector<std::string> overrides;
+  for (const auto& [key, value] : merged) overrides.push_back(key + "=" + value);
+  return overrides;
+}
+
+bool Flies(const StudyCell& cell, const StudyMethod& method) {
+  return cell.methods.empty() ||
+         std::find(cell.methods.begin(), cell.methods.end(), method.name) != cell.methods.end();
+}
+
+void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* plan) {
+  const StudyCell& cell = plan->CellOf(part);
+  const StudyMethod& method = plan->MethodOf(part);
+  const std::string scenario = FindScenario(cell.scenario);
+  const auto overrides = Overrides({&plan->file.set, &cell.set, &method.set});
+  std::vector<std::pair<std::string, std::string>> labels = {{"cell", cell.name},
+                                                             {"method", method.name}};
+  labels.insert(labels.end(), cell.labels.begin(), cell.labels.end());
+  std::vector<SweepTrial>& trials = plan->campaign.trials;
+  for (int i = 0; i < part.trials; ++i) {
+    trials.push_back(MakeTrial(static_cast<int>(trials.size()), TrialSeed(plan->campaign.seed, i),
+                               scenario, overrides, labels, registries));
+  }
+}
+
+// Adds the trials, or why there are none.
+void PlanPart(StudyPart part, const Registries& registries, StudyPlan* plan) {
+  const StudyMethod& method = plan->MethodOf(part);
+  part.trials = plan->quick ? method.quick : method.trials;
+  part.first = static_cast<int>(plan->campaign.trials.size());
+  try {
+    AddPart(part, registries, plan);
+  } catch (const BadInput& refusal) {
+    if (!method.may_refuse) {
+      throw BadInput(fmt::format("study {}, {} in {}: {}", plan->file.name, method.name,
+                                 plan->CellOf(part).name, refusal.what()));
+    }
+    part.trials = 0;
+    part.refusal = refusal.what();
+  }
+  plan->parts.push_back(std::move(part));
+}
+
+}  // namespace
+
+const StudyCell& StudyPlan::CellOf(const StudyPart& part) const {
+  return file.cells.at(static_cast<std::size_t>(part.cell));
+}
+
+const StudyMethod& StudyPlan::MethodOf(const StudyPart& part) const {
+  return file.methods.at(static_cast<std::size_t>(part.method));
+}
+
+bool StudyPlan::MustFlyAlone() const {
+  return std::any_of(campaign.trials.begin(), campaign.trials.end(), [](const SweepTrial& trial) {
+    return trial.scenario.planning.latency.measured;
+  });
+}
+
+StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,
+                    const Registries& registries) {
+  StudyPlan plan;
+  plan.file = file;
+  plan.quick = quick;
+  plan.campaign.name = "study " + file.name;
+  plan.campaign.seed = seed;
+  plan.campaign.keys = {{"cell"}, {"method"}};
+  for (const auto& [label, value] : file.cells.front().labels)
+    plan.campaign.keys.push_back({label});
+  for (std::size_t c = 0; c < file.cells.size(); ++c) {
+    if (quick && !file.cells[c].quick) continue;
+    for (std::size_t m = 0; m < file.methods.size(); ++m) {
+      if (!Flies(file.cells[c], file.methods[m])) continue;
+      StudyPart part;
+      part.cell = static_cast<int>(c);
+      part.method = static_cast<int>(m);
+      PlanPart(std::move(part), registries, &plan);
+    }
+  }
+  const bool rendered = std::any_of(
+      plan.campaign.trials.begin(), plan.campaign.trials.end(),
+      [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
+  if (rendered) RequireRendering("sensing: rendered");
+  return plan;
+}
+
+nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
+  using Json = nlohmann::ordered_json;
+  const auto text_map = [](const StudyPairs& pairs) {
+    Json map = Json::object();
+    for (const auto& [key, value] : pairs) map[key] = value;
+    return map;
+  };
+  Json document = {{"study", plan.file.name},
+                   {"title", plan.file.title},
+                   {"report", plan.file.report},
+                   {"reference", plan.file.reference},
+                   {"quick", plan.quick},
+                   {"seed", plan.campaign.seed},
+                   {"trials", plan.campaign.trials.size()},
+                   {"set", text_map(plan.file.set)},
+                   {"cells", Json::array()},
+                   {"methods", Json::array()},
+                   {"parts", Json::array()}};
+  for (const StudyCell& cell : plan.file.cells) {
+    document["cells"].push_back({{"name", cell.name},
+                                 {"title", cell.title},
+                                 {"scenario", cell.scenario},
+                                 {"labels", text_map(cell.labels)},
+                                 {"set", text_map(cell.set)}});
+  }
+  for (const StudyMethod& method : plan.file.methods) {
+    document["methods"].push_back({{"name", method.name},
+                                   {"title", method.title},
+                                   {"set", text_map(method.set)},
+                                   {"record", method.record}});
+  }
+  for (const StudyPart& part : plan.parts) {
+    Json entry = {{"cell", plan.CellOf(part).name},
+                  {"method", plan.MethodOf(part).name},
+                  {"trials", part.trials}};
+    if (part.refusal.empty()) {
+      entry["timeout_s"] =
+          plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario.timeout;
+    } else {
+      entry["refusal"] = part.refusal;
+    }
+    document["parts"].push_back(std::move(entry));
+  }
+  return document;
+}
+
+}  // namespace touchdown::evaluation

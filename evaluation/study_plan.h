@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "touchdown/evaluation/campaign.h"
+#include "touchdown/evaluation/study_file.h"
+
+namespace touchdown::evaluation {
+
+/// A method in a cell.
+struct StudyPart {
+  int cell = 0;    ///< of the file's cells
+  int method = 0;  ///< of the file's methods
+  int trials = 0;
+  int first = 0;        ///< of the campaign's trials
+  std::string refusal;  ///< why it is not flown; empty: it is
+};
+
+/// Everything that a study is to fly.
+struct StudyPlan {
+  StudyFile file;
+  bool quick = false;
+  std::vector<StudyPart> parts;  ///< cell by cell, in the order of the file
+  Campaign campaign;             ///< part by part; labels `cell`, `method` and the cell's own
+
+  const StudyCell& CellOf(const StudyPart& part) const;
+  const StudyMethod& MethodOf(const StudyPart& part) const;
+  /// Some plans take as long as the clock says: trials would slow each other.
+  bool MustFlyAlone() const;
+};
+
+/// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i): common random numbers.
+/// @throws BadInput as LoadScenario does, but for the backends of a study, which may refuse a cell.
+StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,
+                    const Registries& registries);
+
+/// What the report needs to know beside the trials (docs/record.md).
+nlohmann::ordered_json StudyJson(const StudyPlan& plan);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
+#include "touchdown/evaluation/study_run.h"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/atomic_file.h"
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/campaign_progress.h"
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/on_threads.h"
+#include "touchdown/evaluation/progress.h"
+#include "touchdown/evaluation/record.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr char kFlights[] = "flights";
+
+void MakeFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder + "/records", error);
+  if (error) throw BadInput(fmt::format("--out {}: {}.", folder, error.message()));
+}
+
+// The plan, with a line for this flight after those of the flights before it.
+void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& flight) {
+  const std::string path = folder + "/study.json";
+  Json flights = Json::array();
+  if (std::ifstream stream(path); stream) {
+    const Json before = Json::parse(stream, nullptr, false);
+    if (before.is_object() && before.contains(kFlights)) flights = before[kFlights];
+  }
+  if (flight.at("trials") > 0) flights.push_back(flight);
+  Json document = StudyJson(plan);
+  document[kFlights] = flights;
+  AtomicFile file(path);
+  std::ofstream stream(file.working_path());
+  stream << document.dump(2) << "\n";
+  stream.close();
+  if (!stream) throw BadInput(fmt::format("{}: it cannot be written.", path));
+  file.Commit();
+}
+
+// Every trial can be flown again from its scenario and seed: so are those that are to be drawn.
+void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int jobs,
+                       const Registries& registries) {
+  struct Flight {
+    const SweepTrial* trial;
+    std::string path;
+  };
+  std::vector<Flight> flights;
+  for (const StudyPart& part : plan.parts) {
+    const std::string path = fmt::format("{}/records/{}-{}.db", folder, plan.CellOf(part).name,
+                                         plan.MethodOf(part).name);
+    if (!plan.MethodOf(part).record || part.trials == 0 || fs::exists(path)) continue;
+    flights.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), path});
+  }
+  RunOnThreads(
+      static_cast<int>(flights.size()), jobs,
+      [&](int i) {
+        const Flight& flight = flights[static_cast<std::size_t>(i)];
+        TrialRecord record;
+        const Scenario& scenario = flight.trial->scenario;
+        const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
+        WriteRecord(flight.path, scenario, result, record);
+      },
+      Progress({.things = "recorded flights"}));
+}
+
+}  // namespace
+
+std::string StudyTablePath(const std::string& folder, const Shard& shard) {
+  if (shard.of == 1) return folder + "/study.db";
+  return fmt::format("{}/shard_{}_of_{}.db", folder, shard.number, shard.of);
+}
+
+CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
+                        const Shard& shard, const Registries& registries) {
+  MakeFolder(folder);
+  CampaignOptions options;
+  options.jobs = plan.MustFlyAlone() ? 1 : jobs;
+  options.db = StudyTablePath(folder, shard);
+  options.shard = shard;
+  const auto begin = std::chrono::steady_clock::now();
+  const CampaignResult result = RunCampaign(plan.campaign, options, registries, CampaignProgress());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  if (!result.reports || shard.of > 1) return result;
+  const CampaignState& state = result.state;
+  WritePlan(
+      plan, folder,
+      {{"trials", state.flown - state.resumed}, {"jobs", options.jobs}, {"wall_s", taken.count()}});
+  if (state.flown == state.all) RecordFirstTrials(plan, folder, jobs, registries);
+  return result;
+}
+
+}  // namespace touchdown::evaluation

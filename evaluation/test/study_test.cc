@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/study_plan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/sweep.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+const Registries kRegistries = StandardRegistries();
+
+StudyPlan Shipped(const std::string& name, bool quick) {
+  const StudyFile file = LoadStudyFile(FindStudyFile(name), kRegistries);
+  return PlanStudy(file, quick, file.seed, kRegistries);
+}
+
+/// Trials of each method in each cell.
+std::map<std::pair<std::string, std::string>, int> Counts(const StudyPlan& plan) {
+  std::map<std::pair<std::string, std::string>, int> counts;
+  for (const SweepTrial& trial : plan.campaign.trials) {
+    ++counts[{trial.varied.at(0).second, trial.varied.at(1).second}];
+  }
+  return counts;
+}
+
+class ShippedStudy : public testing::TestWithParam<std::string> {};
+
+// Common random numbers: trial i of every method in every cell has the same seed.
+TEST_P(ShippedStudy, EveryScenarioLoadsAndSeedsArePaired) {
+  const StudyPlan plan = Shipped(GetParam(), true);
+  std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> seeds;
+  int index = 0;
+  for (const SweepTrial& trial : plan.campaign.trials) {
+    EXPECT_EQ(trial.index, index++);
+    EXPECT_EQ(trial.scenario.timeout, 30.0);
+    EXPECT_EQ(trial.replay.rfind("touchdown land ", 0), 0U);
+    ASSERT_EQ(trial.varied.size(), plan.campaign.keys.size());
+    seeds[{trial.varied.at(0).second, trial.varied.at(1).second}].push_back(trial.seed);
+  }
+  for (const auto& [part, own] : seeds) {
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      EXPECT_EQ(own[i], TrialSeed(plan.campaign.seed, static_cast<int>(i))) << part.first;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedStudy, testing::ValuesIn(ListStudyFiles()));
+
+TEST(PaperStudy, HasTheSampleSizesThatWereFixed) {
+  const auto counts = Counts(Shipped("paper", false));
+  std::set<std::string> cells;
+  for (const auto& [part, count] : counts) {
+    if (part.first != "figure_4_following") cells.insert(part.first);
+    const std::set<std::string> large = {"planned", "vertical", "ego"};
+    EXPECT_EQ(count, large.count(part.second) > 0 ? 100 : 30) << part.first << " " << part.second;
+  }
+  EXPECT_EQ(cells.size(), 15U);  // Figure 4, two cases with three sigmas and four winds
+  for (const std::string& cell : cells) {
+    for (const char* method :
+         {"planned", "vertical", "oracle", "ego", "ego_2hz", "ego_10hz", "ego_velocity"}) {
+      EXPECT_EQ(counts.count({cell, method}), 1U) << cell << " " << method;
+    }
+  }
+}
+
+TEST(PaperStudy, FliesThePapersConditions) {
+  const StudyPlan plan = Shipped("paper", true);
+  std::map<std::string, const Scenario*> scenarios;
+  for (const SweepTrial& trial : plan.campaign.trials) {
+    scenarios.emplace(trial.varied.at(0).second, &trial.scenario);
+    EXPECT_EQ(trial.scenario.pad.speed, 0.8);
+    EXPECT_EQ(trial.scenario.start.position_spread, Eigen::Vector3d::Ones());
+  }
+  EXPECT_EQ(scenarios.at("case_2_sigma_0.5")->gps.sigma, 0.5);
+  EXPECT_EQ(scenarios.at("case_2_sigma_0.5")->pad.turn_rate, 0.15);
+  EXPECT_EQ(scenarios.at("case_1_wind_11")->wind.mean, 11.0);
+  EXPECT_EQ(scenarios.at("case_1_wind_11")->wind.max, 15.0);
+  EXPECT_EQ(scenarios.at("figure_4")->pad.motion, PadMotionKind::kLine);
+}
+
+TEST(SolversStudy, HasEveryBackendOrSaysWhyNot) {
+  const StudyPlan plan = Shipped("solvers", true);
+  std::set<std::string> soft, hard;
+  for (const StudyPart& part : plan.parts) {
+    const std::string& name = plan.MethodOf(part).name;
+    if (plan.CellOf(part).name == "case_1" && part.trials > 0) soft.insert(name);
+    if (plan.CellOf(part).name != "case_1_hard") continue;
+    EXPECT_NE(part.trials > 0, !part.refusal.empty()) << name;
+    if (part.trials > 0) hard.insert(name);
+  }
+  EXPECT_EQ(soft.size(), kRegistries.backends.size());
+  EXPECT_EQ(hard.count("banded"), 1U);
+  EXPECT_EQ(hard.count("lbfgs"), 0U);
+  EXPECT_TRUE(plan.MustFlyAlone());
+  EXPECT_FALSE(Shipped("paper", true).MustFlyAlone());
+}
+
+class WrittenStudy : public testing::Test {
+ protected:
+  ~WrittenStudy() override { std::filesystem::remove(path_); }
+
+  StudyFile Load(const std::string& text) const {
+    std::ofstream(path_) << text;
+    return LoadStudyFile(path_, kRegistries);
+  }
+  /// The sentence that loading it, or planning it, is refused with.
+  std::string Refusal(const std::string& text) const {
+    try {
+      PlanStudy(Load(text), true, 1, kRegistries);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  static constexpr char kHead[] = "title: t\nseed: 1\nreference: a\n";
+  std::string path_ = testing::TempDir() + "written_study.yaml";
+};
+
+TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
+  const StudyFile file = Load(std::string(kHead) +
+                              "set: {timeout: 9, descent: none}\n"
+                              "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
+                              "methods: [{name: a, set: {timeout: 7}, quick: 2}, {name: b}]\n");
+  const StudyPlan plan = PlanStudy(file, true, 4, kRegistries);
+  ASSERT_EQ(plan.parts.size(), 2U);
+  EXPECT_EQ(plan.parts[0].trials, 2);
+  EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 7.0);
+  EXPECT_EQ(plan.campaign.trials.at(2).scenario.timeout, 8.0);
+  EXPECT_EQ(plan.campaign.trials.at(2).scenario.descent, DescentKind::kNone);
+}
+
+TEST_F(WrittenStudy, MistakesAreNamed) {
+  const std::string head = kHead;
+  const std::string cells = "cells: [{name: c, scenario: open}]\n";
+  const std::string methods = "methods: [{name: a}]\n";
+  const std::pair<std::string, const char*> mistakes[] = {
+      {head + cells, "a study needs a cell and a method"},
+      {"title: t\n" + cells + methods, "a study lacks the key reference"},
+      {head + cells + "methods: [{name: b}]\n", "reference must be one of the methods, not a"},
+      {head + cells + "methods: [{name: a}, {name: a}]\n", "another than those before it"},
+      {head + cells + "methods: [{name: a/b}]\n", "made of letters"},
+      {head + cells + "methods: [{name: a, trials: 0}]\n", ".yaml:5: trials must be"},
+      {head + "cells: [{name: c}]\n" + methods, "cells[0] lacks the key scenario"},
+      {head + "cells: [{name: c, scenario: open, methods: [z]}]\n" + methods, "the method z"},
+      {head + "cells: [{name: c, scenario: open}, {name: d, scenario: open, labels: {x: 1}}]\n" +
+           methods,
+       "must have the labels of the first cell"},
+      {head + "cells: [{name: c, scenario: nowhere}]\n" + methods, "nowhere"},
+      {head + cells + "methods: [{name: a, set: {pad.sped: 1}}]\n", "unknown key pad.sped"},
+      {head + cells + methods + "backends: {set: 3}\n", "must be a map of keys"},
+      {head + cells + "methods: [", ".yaml:"}};
+  for (const auto& [text, part] : mistakes) {
+    EXPECT_NE(Refusal(text).find(part), std::string::npos) << text << "\n" << Refusal(text);
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

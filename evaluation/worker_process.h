@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <sys/types.h>
+
+namespace touchdown::evaluation {
+
+/// What became of one piece of work.
+struct WorkerReply {
+  enum class End { kDone, kDied, kTimedOut };
+  int item = 0;
+  End end = End::kDone;
+  std::string text;  ///< what the work gave; of kDied what it died of, in words
+};
+
+/// A process that waits for numbers and answers each with `work(number)`, done in a child process of its
+/// own: work that dies or never ends costs nothing but its own result. It is a copy of the process that
+/// makes it, as that is then; which should have no other threads.
+class WorkerProcess {
+ public:
+  using Work = std::function<std::string(int item)>;
+
+  /// Work that has not ended after `limit_s` of wall time [s] is ended. @throws std::system_error
+  WorkerProcess(const Work& work, double limit_s);
+  ~WorkerProcess();  ///< ends what is under way
+  WorkerProcess(WorkerProcess&& other) noexcept;
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(WorkerProcess&&) = delete;
+
+  /// Only while not busy.
+  void Start(int item);
+  bool busy() const { return busy_; }
+  /// Can be read from once the work has ended.
+  int descriptor() const { return socket_; }
+  /// Waits for the reply to the last Start. @throws std::runtime_error if the process itself is gone
+  WorkerReply Receive();
+
+ private:
+  pid_t process_ = -1;
+  int socket_ = -1;
+  bool busy_ = false;
+};
+
+}  // namespace touchdown::evaluation
