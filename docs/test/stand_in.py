@@ -20,7 +20,7 @@ BUILD = Path(os.environ.get("TOUCHDOWN_BUILD", ""))
 # Options that say how much work there is: never more than this ...
 SHORT = {"--trials": 1, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1}
 # ... which these sub-commands are given where the document leaves them to their default.
-GIVEN = {"compare": ["--problems", "--repeats"], "study replan": ["--scenes"],
+GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"], "study replan": ["--scenes"],
          "study pad": ["--trials"], "study tags": ["--poses"]}  # fmt: skip
 # Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
 # pad` draws nothing of shorter ones.

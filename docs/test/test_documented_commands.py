@@ -25,13 +25,15 @@ trap 'echo "$LINENO: status $? from $BASH_COMMAND" >>"$DOCUMENT_LOG.errors"' ERR
 
 
 def make_folder(folder):
-    """The repository as the commands see it: sources to read, stand-ins to call, no tool besides."""
+    """The repository as the commands see it: sources to read, stand-ins to call, and cp."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "sim").symlink_to(ROOT / "sim")
+    for name in ("sim", "evaluation"):
+        (folder / name).symlink_to(ROOT / name)
     shutil.copytree(ROOT / "docs" / "examples", folder / "docs" / "examples")
     for name in CALLED:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).symlink_to(STAND_IN)
+    (folder / "bin" / "cp").symlink_to("/bin/cp")
     return folder
 
 

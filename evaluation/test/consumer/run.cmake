@@ -65,7 +65,7 @@ foreach(i RANGE ${last})
   endif()
 endforeach()
 
-# Which costs of the example backend come out right is the comparison's to say, by others' solutions.
+# `compare` judges the example backend: by the best cost that any backend found.
 build("${EXAMPLES}/own_backend" own_backend)
 set(own "${WORK_DIR}/own_backend/own_backend")
 foreach(arrival fixed free)
