@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Workers are forked before the file is opened; then trials are handed out one by one, and each reply is
+// Workers are forked before MPI is started and the file opened; then trials are handed out one by one, and each reply is
 // written before the next is looked at. A trial is a pure function of its scenario and seed, so that the rows
 // do not depend on who flew them, nor in which order.
 #include "touchdown/evaluation/campaign.h"
@@ -7,13 +7,17 @@
 #include <algorithm>
 #include <charconv>
 #include <exception>
-#include <map>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/campaign_facts.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/interrupt_watch.h"
+#include "touchdown/evaluation/launch.h"
+#include "touchdown/evaluation/ranks.h"
+#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/trial_columns.h"
 #include "touchdown/evaluation/trial_store.h"
 #include "touchdown/evaluation/work_sharing.h"
@@ -66,15 +70,70 @@ TrialResult ResultFrom(const WorkerReply& reply, const SweepTrial& trial, double
   return lost;
 }
 
-// @throws BadInput
-void CheckLatency(const Campaign& campaign, int jobs) {
+// What no trial could mend is said once, before the first. @throws BadInput
+void CheckTrials(const Campaign& campaign, int at_a_time) {
+  bool rendered = false;
   for (const SweepTrial& trial : campaign.trials) {
-    if (jobs > 1 && trial.scenario.planning.latency.measured) {
+    rendered |= trial.scenario.sensing == SensingKind::kRendered;
+    if (at_a_time > 1 && trial.scenario.planning.latency.measured) {
       throw BadInput(
           "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
     }
   }
+  if (rendered) RequireRendering("sensing: rendered");
 }
+
+const SweepTrial& TrialOf(const Campaign& campaign, int index) {
+  return campaign.trials.at(static_cast<std::size_t>(index));
+}
+
+// The file, and what is told of it.
+class Flight {
+ public:
+  Flight(const Campaign& campaign, const CampaignOptions& options,
+         const std::function<void(const CampaignState&)>& progress)
+      : campaign_(campaign),
+        limit_s_(options.trial_limit_s),
+        progress_(progress),
+        store_(options.db, campaign, options.shard) {
+    for (const SweepTrial& trial : campaign.trials) {
+      if (!options.shard.Takes(trial.index)) continue;
+      ++state_.all;
+      if (!store_.Holds(trial.index)) missing_.push_back(trial.index);
+    }
+    state_.resumed = state_.flown = state_.all - static_cast<int>(missing_.size());
+    state_.succeeded = store_.succeeded();
+    progress_(state_);
+  }
+
+  const std::vector<int>& missing() const { return missing_; }
+
+  void Take(const WorkerReply& reply) {
+    const TrialResult result = ResultFrom(reply, TrialOf(campaign_, reply.item), limit_s_);
+    store_.Add(reply.item, result);
+    ++state_.flown;
+    state_.succeeded = store_.succeeded();
+    progress_(state_);
+  }
+
+  CampaignResult Result(int signal) {
+    CampaignResult result;
+    result.state = state_;
+    if (state_.flown < state_.all) result.interrupted_by = signal;
+    for (auto& [index, flown] : store_.Results()) {
+      result.rows.push_back({TrialOf(campaign_, index), std::move(flown)});
+    }
+    return result;
+  }
+
+ private:
+  const Campaign& campaign_;
+  double limit_s_;
+  const std::function<void(const CampaignState&)>& progress_;
+  TrialStore store_;
+  CampaignState state_;
+  std::vector<int> missing_;
+};
 
 int Number(const std::string& text) {
   int value = 0;
@@ -121,44 +180,38 @@ std::string Shard::ToString() const { return fmt::format("{}/{}", number, of); }
 CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& options,
                            const Registries& registries,
                            const std::function<void(const CampaignState&)>& progress) {
-  CheckLatency(campaign, options.jobs);
-  const auto trial = [&](int i) -> const SweepTrial& {
-    return campaign.trials.at(static_cast<std::size_t>(i));
-  };
+  const bool ranked = LaunchedAsOneOfSeveral();
+  CheckTrials(campaign, ranked ? 2 : options.jobs);
   const InterruptWatch watch;
-  const auto fly = [&](int i) { return PackResult(Fly(trial(i), registries)); };
+  const auto fly = [&](int i) { return PackResult(Fly(TrialOf(campaign, i), registries)); };
   std::vector<WorkerProcess> workers;
-  for (int job = 0; job < std::min(options.jobs, static_cast<int>(campaign.trials.size())); ++job) {
+  const int most = ranked ? 1 : std::min(options.jobs, static_cast<int>(campaign.trials.size()));
+  while (static_cast<int>(workers.size()) < most) {
     workers.emplace_back(fly, options.trial_limit_s);
   }
-  TrialStore store(options.db, campaign, options.shard);
-
-  CampaignResult campaign_result;
-  CampaignState& state = campaign_result.state;
-  std::vector<int> missing;
-  for (const SweepTrial& planned : campaign.trials) {
-    if (!options.shard.Takes(planned.index)) continue;
-    ++state.all;
-    if (!store.Holds(planned.index)) missing.push_back(planned.index);
+  std::unique_ptr<Ranks> ranks;
+  if (ranked) {
+    ranks = std::make_unique<Ranks>();
+    const bool alike = ranks->Agree(CampaignHash(campaign));
+    if (!ranks->leads()) {
+      ranks->Follow(workers.front());
+      CampaignResult none;
+      none.reports = false;
+      return none;
+    }
+    if (!alike) {
+      throw BadInput("The ranks were not started alike: builds, processors or trials differ.");
+    }
   }
-  state.resumed = state.flown = state.all - static_cast<int>(missing.size());
-  for (const auto& [index, result] : store.Results()) state.succeeded += result.succeeded() ? 1 : 0;
-  progress(state);
-  ShareWork(
-      workers, missing,
-      [&](const WorkerReply& reply) {
-        const TrialResult result = ResultFrom(reply, trial(reply.item), options.trial_limit_s);
-        store.Add(reply.item, result);
-        ++state.flown;
-        state.succeeded += result.succeeded() ? 1 : 0;
-        progress(state);
-      },
-      [&] { return watch.signal() != 0; });
-  if (state.flown < state.all) campaign_result.interrupted_by = watch.signal();
-  for (auto& [index, result] : store.Results()) {
-    campaign_result.rows.push_back({trial(index), std::move(result)});
+  Flight flight(campaign, options, progress);
+  const auto take = [&](const WorkerReply& reply) { flight.Take(reply); };
+  const auto stop = [&] { return watch.signal() != 0; };
+  if (ranks) {
+    ranks->Lead(workers.front(), flight.missing(), take, stop);
+  } else {
+    ShareWork(workers, flight.missing(), take, stop);
   }
-  return campaign_result;
+  return flight.Result(watch.signal());
 }
 
 }  // namespace touchdown::evaluation

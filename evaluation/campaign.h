@@ -68,7 +68,7 @@ struct CampaignOptions {
   std::string
       db;  ///< the file of the trials, which are added to one that is there; empty: none is kept
   Shard shard;
-  double trial_limit_s = 600.0;  ///< wall time after which a trial is given up, as `hung` [s]
+  double trial_limit_s = 1800.0;  ///< wall time after which a trial is given up, as `hung` [s]
 };
 
 /// How far a campaign is.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <sstream>
 
@@ -106,6 +107,13 @@ ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard) {
   }
   facts.emplace_back("plan_hash", HashOfPlan(campaign));
   return facts;
+}
+
+std::string CampaignHash(const Campaign& campaign) {
+  const auto build = BuildManifest();
+  const auto hash = std::find_if(build.begin(), build.end(),
+                                 [](const auto& fact) { return fact.first == "build_hash"; });
+  return HashOfPlan(campaign) + hash->second;
 }
 
 Manifest ReadManifest(SqliteDb& db, const std::string& path) {

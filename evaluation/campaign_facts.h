@@ -16,6 +16,9 @@ inline constexpr ResultFormat kTrialFormat{"touchdown trials", 4};
 /// but the build that decides the trials: their seeds, labels and scenarios, and the files that these name.
 ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard);
 
+/// One figure for everything that the results depend on: `plan_hash` and the build.
+std::string CampaignHash(const Campaign& campaign);
+
 /// By key.
 using Manifest = std::map<std::string, std::string>;
 

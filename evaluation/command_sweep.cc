@@ -27,7 +27,7 @@ struct SweepArguments {
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::uint64_t seed = 1;
   std::string shard = "1/1";
-  double trial_limit_s = 600.0;
+  double trial_limit_s = CampaignOptions().trial_limit_s;
   std::string db;
   std::string picture;
   bool json = false;

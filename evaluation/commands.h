@@ -23,6 +23,7 @@ void AddLandCommand(Command app, const Registries& registries, CommandRun* run);
 void AddCompareCommand(Command app, const Registries& registries, CommandRun* run);
 void AddStudyCommand(Command app, const Registries& registries, CommandRun* run);
 void AddSweepCommand(Command app, const Registries& registries, CommandRun* run);
+void AddMergeCommand(Command app, CommandRun* run);
 void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* run);
 void AddListCommand(Command app, const Registries& registries, CommandRun* run);
 void AddPlanCommand(Command app, const Registries& registries, CommandRun* run);

@@ -136,6 +136,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddCompareCommand(Command(&app), registries, &run);
   AddStudyCommand(Command(&app), registries, &run);
   AddSweepCommand(Command(&app), registries, &run);
+  AddMergeCommand(Command(&app), &run);
   AddPlanCommand(Command(&app), registries, &run);
   AddProfileCommand(Command(&app), registries, &run);
   AddCheckTermCommand(Command(&app), registries, &run);

@@ -7,21 +7,36 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/worker_process.h"
 #include "touchdown/sim/gl_context.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-// Empty: nothing stands against it.
-std::optional<std::string> WhyNotRender() {
+constexpr char kWorks[] = "works";
+
+std::string Try() {
   try {
     sim::GlContext().MakeCurrent();
-    return std::nullopt;
+    return kWorks;
   } catch (const std::runtime_error& error) {
     std::string why = error.what();
     while (!why.empty() && why.back() == '.') why.pop_back();
     return why;
   }
+}
+
+// Empty: nothing stands against it. Tried in a process of its own: the rasteriser starts threads that stay, and a
+// process with threads is not to be forked, as a sweep forks for its trials.
+std::optional<std::string> WhyNotRender() {
+  constexpr double kPatience = 60.0;  // [s]
+  WorkerProcess process([](int) { return Try(); }, kPatience);
+  process.Start(0);
+  const WorkerReply reply = process.Receive();
+  if (reply.end == WorkerReply::End::kTimedOut) return "it does not come to an end";
+  if (reply.end == WorkerReply::End::kDied) return "it ends by " + reply.text;
+  if (reply.text == kWorks) return std::nullopt;
+  return reply.text;
 }
 
 }  // namespace

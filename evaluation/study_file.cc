@@ -162,12 +162,23 @@ void DescribeMethod(MapReader& reader, StudyMethod* method) {
   reader.Pairs("set", &method->set)
       .Count("trials", &method->trials)
       .Count("quick", &method->quick)
-      .Flag("record", &method->record);
+      .Key("record", false, [method](const auto& node, const auto& where, const auto& key) {
+        if (node.IsSequence()) {
+          for (const auto& cell : node) method->record_in.push_back(ReadText(cell, where, key));
+        } else {
+          method->record = ReadBool(node, where, key);
+        }
+      });
 }
 
 bool HasMethod(const StudyFile& study, const std::string& name) {
   return std::any_of(study.methods.begin(), study.methods.end(),
                      [&name](const StudyMethod& method) { return method.name == name; });
+}
+
+bool HasCell(const StudyFile& study, const std::string& name) {
+  return std::any_of(study.cells.begin(), study.cells.end(),
+                     [&name](const StudyCell& cell) { return cell.name == name; });
 }
 
 // What only the whole file can tell.
@@ -181,8 +192,15 @@ void CheckNames(const StudyFile& study, const std::string& path) {
   }
   for (const StudyMethod& method : study.methods) {
     const auto same = [&method](const StudyMethod& other) { return other.name == method.name; };
-    if (std::count_if(study.methods.begin(), study.methods.end(), same) == 1) continue;
-    throw BadInput(fmt::format("{}: the method {} is also a backend's name.", path, method.name));
+    if (std::count_if(study.methods.begin(), study.methods.end(), same) > 1) {
+      throw BadInput(fmt::format("{}: the method {} is also a backend's name.", path, method.name));
+    }
+    for (const std::string& name : method.record_in) {
+      if (HasCell(study, name)) continue;
+      throw BadInput(
+          fmt::format("{}: the method {} is to be recorded in the cell {}, which is not there.",
+                      path, method.name, name));
+    }
   }
   const auto keys = [](const StudyCell& cell) {
     std::vector<std::string> names = {"cell", "method"};

@@ -31,7 +31,8 @@ struct StudyMethod {
   StudyPairs set;       ///< keys of the scenario, after the cell's
   int trials = 100;     ///< in each cell
   int quick = 5;        ///< in each cell of the short form
-  bool record = false;  ///< the first trial in each cell is flown again with a record
+  bool record = false;  ///< its first trial in every cell is flown again with a record
+  std::vector<std::string> record_in;  ///< or in these cells
   /// Of the study's `backends`: a cell that the backend cannot solve is left out with a sentence.
   bool may_refuse = false;
 };

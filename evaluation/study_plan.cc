@@ -45,10 +45,15 @@ void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* pla
   std::vector<std::pair<std::string, std::string>> labels = {{"cell", cell.name},
                                                              {"method", method.name}};
   labels.insert(labels.end(), cell.labels.begin(), cell.labels.end());
-  std::vector<SweepTrial>& trials = plan->campaign.trials;
+  // All of a part share the scenario: it is read and checked once.
+  SweepTrial trial = MakeTrial(part.first, TrialSeed(plan->campaign.seed, 0), scenario, overrides,
+                               labels, registries);
+  const std::string replay = trial.replay.substr(0, trial.replay.rfind(' ') + 1);
   for (int i = 0; i < part.trials; ++i) {
-    trials.push_back(MakeTrial(static_cast<int>(trials.size()), TrialSeed(plan->campaign.seed, i),
-                               scenario, overrides, labels, registries));
+    trial.index = part.first + i;
+    trial.seed = TrialSeed(plan->campaign.seed, i);
+    trial.replay = replay + std::to_string(trial.seed);
+    plan->campaign.trials.push_back(trial);
   }
 }
 
@@ -78,6 +83,12 @@ const StudyCell& StudyPlan::CellOf(const StudyPart& part) const {
 
 const StudyMethod& StudyPlan::MethodOf(const StudyPart& part) const {
   return file.methods.at(static_cast<std::size_t>(part.method));
+}
+
+bool StudyPlan::Records(const StudyPart& part) const {
+  const StudyMethod& method = MethodOf(part);
+  const auto& cells = method.record_in;
+  return method.record || std::find(cells.begin(), cells.end(), CellOf(part).name) != cells.end();
 }
 
 bool StudyPlan::MustFlyAlone() const {
@@ -139,15 +150,14 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
                                  {"set", text_map(cell.set)}});
   }
   for (const StudyMethod& method : plan.file.methods) {
-    document["methods"].push_back({{"name", method.name},
-                                   {"title", method.title},
-                                   {"set", text_map(method.set)},
-                                   {"record", method.record}});
+    document["methods"].push_back(
+        {{"name", method.name}, {"title", method.title}, {"set", text_map(method.set)}});
   }
   for (const StudyPart& part : plan.parts) {
     Json entry = {{"cell", plan.CellOf(part).name},
                   {"method", plan.MethodOf(part).name},
-                  {"trials", part.trials}};
+                  {"trials", part.trials},
+                  {"recorded", plan.Records(part)}};
     if (part.refusal.empty()) {
       entry["timeout_s"] =
           plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario.timeout;

@@ -30,6 +30,8 @@ struct StudyPlan {
 
   const StudyCell& CellOf(const StudyPart& part) const;
   const StudyMethod& MethodOf(const StudyPart& part) const;
+  /// Its first trial is to be recorded.
+  bool Records(const StudyPart& part) const;
   /// Some plans take as long as the clock says: trials would slow each other.
   bool MustFlyAlone() const;
 };

@@ -60,7 +60,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
   for (const StudyPart& part : plan.parts) {
     const std::string path = fmt::format("{}/records/{}-{}.db", folder, plan.CellOf(part).name,
                                          plan.MethodOf(part).name);
-    if (!plan.MethodOf(part).record || part.trials == 0 || fs::exists(path)) continue;
+    if (!plan.Records(part) || part.trials == 0 || fs::exists(path)) continue;
     flights.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), path});
   }
   RunOnThreads(

@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/evaluation/split.h"
@@ -130,10 +129,6 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
     trials.push_back(
         MakeTrial(i, seed, options.scenario_path, overrides, std::move(varied), registries));
   }
-  const bool rendered = std::any_of(trials.begin(), trials.end(), [](const SweepTrial& trial) {
-    return trial.scenario.sensing == SensingKind::kRendered;
-  });
-  if (rendered) RequireRendering("sensing: rendered");  // or every trial would say so
   return trials;
 }
 

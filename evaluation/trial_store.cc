@@ -40,11 +40,6 @@ std::string Marks(int columns) {
   return marks;
 }
 
-SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t columns) {
-  return db.Prepare(
-      fmt::format("INSERT INTO {} VALUES({})", table, Marks(static_cast<int>(columns))));
-}
-
 void WritePlan(SqliteDb& db, const Campaign& campaign, const CellPlan& cells) {
   SqliteStatement planned = Insert(db, "planned", 4), variation = Insert(db, "variation", 3),
                   key = Insert(db, "varied_key", 3), cell = Insert(db, "cell", 8),
@@ -98,6 +93,11 @@ void CheckIsThis(SqliteDb& db, const std::string& path, const Campaign& campaign
 
 }  // namespace
 
+SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t columns) {
+  return db.Prepare(
+      fmt::format("INSERT INTO {} VALUES({})", table, Marks(static_cast<int>(columns))));
+}
+
 TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard)
     : cells_(PlanCells(campaign)), tallies_(cells_.cells.size()) {
   if (path.empty()) {
@@ -110,7 +110,7 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
   db_ = std::make_unique<SqliteDb>(path, SqliteDb::Mode::kReadWrite);
   CheckIsThis(*db_, path, campaign, shard);
   db_->Execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL");
-  for (const auto& [trial, result] : Results()) Count(trial, result);
+  for (const auto& [trial, result] : ReadTrials(*db_, false)) Count(trial, result);
 }
 
 TrialStore::~TrialStore() {
@@ -124,15 +124,15 @@ TrialStore::~TrialStore() {
 
 void TrialStore::Count(int trial, const TrialResult& result) {
   flown_.insert(trial);
+  succeeded_ += result.succeeded() ? 1 : 0;
   const int cell = cells_.cell_of.at(static_cast<std::size_t>(trial));
   tallies_[static_cast<std::size_t>(cell)].Add(result);
 }
 
-void TrialStore::WriteCell(int cell) {
-  const CellFigures f = tallies_[static_cast<std::size_t>(cell)].Figures();
-  db_->Prepare(
-         "UPDATE cell SET trials = ?, succeeded = ?, rate_lo = ?, rate_hi = ?, "
-         "time_to_land_median_s = ?, touchdown_error_median_m = ? WHERE cell = ?")
+void WriteCell(SqliteDb& db, int cell, const CellFigures& f) {
+  db.Prepare(
+        "UPDATE cell SET trials = ?, succeeded = ?, rate_lo = ?, rate_hi = ?, "
+        "time_to_land_median_s = ?, touchdown_error_median_m = ? WHERE cell = ?")
       .Run(f.trials, f.succeeded, f.rate->lo, f.rate->hi, f.time_to_land_median_s,
            f.touchdown_error_median_m, cell);
 }
@@ -148,19 +148,19 @@ void TrialStore::Add(int trial, const TrialResult& result) {
     replan.Run(trial, static_cast<int>(i), timing.replan_wall_ms[i], timing.replan_cpu_ms.at(i));
   }
   Count(trial, result);
-  WriteCell(cells_.cell_of[static_cast<std::size_t>(trial)]);
+  const int cell = cells_.cell_of[static_cast<std::size_t>(trial)];
+  WriteCell(*db_, cell, tallies_[static_cast<std::size_t>(cell)].Figures());
   transaction.Commit();
 }
 
-std::map<int, TrialResult> TrialStore::Results() { return ReadTrials(*db_); }
-
-std::map<int, TrialResult> ReadTrials(SqliteDb& db) {
+std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times) {
   std::map<int, TrialResult> results;
   SqliteStatement trial = db.Prepare("SELECT * FROM trial ORDER BY trial");
   SqliteStatement timing = db.Prepare("SELECT * FROM timing ORDER BY trial");
   while (trial.Step() && timing.Step()) {
     results[static_cast<int>(trial.Integer(0))] = ResultOf({trial.Row(1), timing.Row(1)});
   }
+  if (!with_replan_times) return results;
   SqliteStatement replan =
       db.Prepare("SELECT trial, wall_ms, cpu_ms FROM replan_time ORDER BY trial, replan");
   while (replan.Step()) {

@@ -14,6 +14,10 @@
 
 namespace touchdown::evaluation {
 
+/// The results in a file of trials, by trial; the single times of replans only if they are wanted.
+/// @throws SqliteError, std::invalid_argument
+std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times);
+
 /// The file of a campaign's trials while it grows (docs/record.md). It holds from the start what is planned;
 /// each trial is there, whole and with the figures of its cell, from the moment that Add returns, whatever
 /// happens to the process later. Others may read meanwhile.
@@ -28,24 +32,28 @@ class TrialStore {
   TrialStore& operator=(const TrialStore&) = delete;
 
   bool Holds(int trial) const { return flown_.count(trial) > 0; }
+  int succeeded() const { return succeeded_; }
   /// @throws SqliteError
   void Add(int trial, const TrialResult& result);
-  /// By trial; what the file says. @throws SqliteError
-  std::map<int, TrialResult> Results();
+  /// What the file says, by trial. @throws SqliteError
+  std::map<int, TrialResult> Results() { return ReadTrials(*db_, true); }
 
  private:
   void Count(int trial, const TrialResult& result);
-  void WriteCell(int cell);
 
   CellPlan cells_;
   std::vector<CellTally> tallies_;
   std::set<int> flown_;
+  int succeeded_ = 0;
   std::unique_ptr<FileLock> lock_;
   std::unique_ptr<SqliteDb> db_;
 };
 
-/// The results in a file of trials, by trial. @throws SqliteError, std::invalid_argument
-std::map<int, TrialResult> ReadTrials(SqliteDb& db);
+/// A statement that inserts rows with this many columns.
+SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t columns);
+
+/// Writes the figures of a cell, of which trials were flown.
+void WriteCell(SqliteDb& db, int cell, const CellFigures& figures);
 
 /// Writes a file of rows that were flown. @throws as TrialStore does
 void WriteTrials(const std::string& path, const Campaign& campaign,

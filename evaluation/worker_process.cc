@@ -65,6 +65,7 @@ void BindTo(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it was gone before the kernel was told
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
+  std::signal(SIGCHLD, SIG_DFL);  // or there is nothing to wait for
 }
 
 std::string Words(int status) {
@@ -100,7 +101,6 @@ bool ReadUntil(int from, Clock::time_point deadline, std::string* text) {
 }
 
 [[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) {
-  std::signal(SIGPIPE, SIG_IGN);
   const std::string text = work(item);
   // Not exit(): nothing of what the maker has open or would write at its end is this process's.
   _exit(WriteAll(to, text.data(), text.size()) ? 0 : 1);

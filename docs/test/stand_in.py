@@ -44,6 +44,8 @@ def shortened(arguments):
     for before, word in zip([""] + arguments, arguments):
         if before in SHORT and word.isdigit():
             word = str(min(int(word), SHORT[before]))
+        if before == "--trials" and "--shard" in arguments:  # each part has one
+            word = arguments[arguments.index("--shard") + 1].split("/")[1]
         if before == "--points" and "," in word:  # the time goes into the largest sizes
             word = ",".join(word.split(",")[:2])
         if before == "--pin":

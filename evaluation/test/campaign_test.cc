@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/campaign.h"
 
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -15,6 +13,7 @@
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
+#include "touchdown/evaluation/trial_merge.h"
 #include "touchdown/evaluation/trial_store.h"
 
 namespace touchdown::evaluation {
@@ -38,7 +37,7 @@ Campaign Short(int trials, const std::string& timeout = "2") {
   return SweepCampaign(options, kRegistries);
 }
 
-CampaignResult Run(const Campaign& campaign, const CampaignOptions& options,
+CampaignResult Fly(const Campaign& campaign, const CampaignOptions& options,
                    const Registries& registries = kRegistries) {
   return RunCampaign(campaign, options, registries, [](const CampaignState&) {});
 }
@@ -105,18 +104,18 @@ TEST(Shard, IsANumberOfANumber) {
 
 TEST_F(CampaignFiles, OneAndTwoJobsGiveTheSameTables) {
   const Campaign campaign = Short(5);
-  const CampaignResult one = Run(campaign, To(At("one.db")));
-  const CampaignResult two = Run(campaign, To(At("two.db"), 2));
+  const CampaignResult one = Fly(campaign, To(At("one.db")));
+  const CampaignResult two = Fly(campaign, To(At("two.db"), 2));
   EXPECT_EQ(one.rows.size(), 5U);
   EXPECT_EQ(Tables(At("one.db")), Tables(At("two.db")));
   EXPECT_EQ(Report(campaign, one), Report(campaign, two));
-  EXPECT_EQ(Report(campaign, one), Report(campaign, Run(campaign, To(""))));
+  EXPECT_EQ(Report(campaign, one), Report(campaign, Fly(campaign, To(""))));
 }
 
 TEST_F(CampaignFiles, AFinishedOneIsReadAndNotFlown) {
   const Campaign campaign = Short(2);
-  const CampaignResult first = Run(campaign, To(At("a.db")));
-  const CampaignResult again = Run(campaign, To(At("a.db")));
+  const CampaignResult first = Fly(campaign, To(At("a.db")));
+  const CampaignResult again = Fly(campaign, To(At("a.db")));
   EXPECT_EQ(again.state.resumed, 2);
   // With its wall clock: the replans' single times are kept too.
   EXPECT_EQ(SweepJson(campaign, first.rows).dump(), SweepJson(campaign, again.rows).dump());
@@ -125,7 +124,7 @@ TEST_F(CampaignFiles, AFinishedOneIsReadAndNotFlown) {
 
 TEST_F(CampaignFiles, WhatIsMissingIsFlownAndNothingElse) {
   const Campaign campaign = Short(4);
-  const CampaignResult whole = Run(campaign, To(At("whole.db")));
+  const CampaignResult whole = Fly(campaign, To(At("whole.db")));
   {
     TrialStore store(At("part.db"), campaign, {});
     store.Add(2, whole.rows[2].result);
@@ -194,7 +193,7 @@ TEST_F(CampaignFiles, OthersReadWhileItIsWritten) {
   std::vector<int> seen;
   RunCampaign(campaign, To(At("a.db")), kRegistries, [&](const CampaignState& state) {
     SqliteDb reader(At("a.db"), SqliteDb::Mode::kReadOnly);
-    seen.push_back(static_cast<int>(ReadTrials(reader).size()));
+    seen.push_back(static_cast<int>(ReadTrials(reader, true).size()));
     SqliteStatement cells = reader.Prepare("SELECT sum(trials) FROM cell");
     cells.Step();
     EXPECT_EQ(cells.Integer(0), state.flown);
@@ -202,10 +201,61 @@ TEST_F(CampaignFiles, OthersReadWhileItIsWritten) {
   EXPECT_EQ(seen, (std::vector<int>{0, 1, 2, 3}));
 }
 
+TEST_F(CampaignFiles, ShardsMergedAreAsIfOneProcessHadFlownAll) {
+  const Campaign campaign = Short(5);
+  const CampaignResult whole = Fly(campaign, To(At("whole.db")));
+  EXPECT_EQ(Fly(campaign, To(At("1.db"), 2, {1, 2})).rows.size(), 3U);
+  EXPECT_EQ(Fly(campaign, To(At("2.db"), 1, {2, 2})).rows.size(), 2U);
+  const MergedTrials merged = MergeTrials(At("out.db"), {At("2.db"), At("1.db")}, false);
+  EXPECT_EQ(merged.flown, 5);
+  EXPECT_EQ(merged.planned, 5);
+  EXPECT_EQ(Tables(At("out.db")), Tables(At("whole.db")));
+  const CampaignResult read = Fly(campaign, To(At("out.db")));
+  EXPECT_EQ(read.state.resumed, 5);
+  EXPECT_EQ(Report(campaign, read), Report(campaign, whole));
+}
+
+TEST_F(CampaignFiles, AMergeIsRefusedWhereTrialsDoNotFit) {
+  const Campaign campaign = Short(4);
+  const CampaignResult whole = Fly(campaign, To(""));
+  const auto write = [&](const char* name, const Campaign& of, const Shard& shard,
+                         std::vector<int> trials) {
+    TrialStore store(At(name), of, shard);
+    for (const int i : trials) store.Add(i, whole.rows[static_cast<std::size_t>(i)].result);
+    return At(name);
+  };
+  Campaign another = campaign;
+  another.seed = 8;
+  const std::string a = write("a.db", campaign, {1, 2}, {0, 2}),
+                    b = write("b.db", campaign, {2, 2}, {1}),
+                    c = write("c.db", campaign, {1, 4}, {0}),
+                    d = write("d.db", another, {2, 2}, {1, 3});
+  const auto refused = [&](const std::vector<std::string>& files, bool partial,
+                           const std::string& words) {
+    EXPECT_THAT([&] { MergeTrials(At("out.db"), files, partial); },
+                ThrowsMessage<BadInput>(HasSubstr(words)));
+    EXPECT_FALSE(std::filesystem::exists(At("out.db")));
+  };
+  refused({a, b}, false, "1 of 4 trials are in none of the files, the first of them is trial 3");
+  refused({a, c}, true, c + ": trial 0 stands in " + a);
+  refused({a, d}, true, d + ": it does not belong to " + a + ": its sweep_seed is 8, not 7");
+  refused({a, At("none.db")}, true, "none.db");
+  // What is missing can be flown afterwards.
+  EXPECT_EQ(MergeTrials(At("out.db"), {a, b}, true).flown, 3);
+  EXPECT_THAT(
+      [&] {
+        MergeTrials(At("out.db"), {a, b}, true);
+      },
+      ThrowsMessage<BadInput>(HasSubstr("exists")));
+  EXPECT_EQ(Fly(campaign, To(At("out.db"))).state.resumed, 3);
+  Fly(campaign, To(At("whole.db")));
+  EXPECT_EQ(Tables(At("out.db")), Tables(At("whole.db")));
+}
+
 TEST_F(CampaignFiles, ATrialThatThrowsIsARowAndNotTheEnd) {
   Campaign campaign = Short(3);
   campaign.trials[1].scenario.solver.backend = "none";
-  const CampaignResult result = Run(campaign, To("", 2));
+  const CampaignResult result = Fly(campaign, To("", 2));
   ASSERT_EQ(result.rows.size(), 3U);
   EXPECT_EQ(result.rows[1].result.outcome, Outcome::kError);
   EXPECT_FALSE(result.rows[1].result.detail.empty());
@@ -216,7 +266,7 @@ TEST_F(CampaignFiles, ATrialThatThrowsIsARowAndNotTheEnd) {
 TEST_F(CampaignFiles, MeasuredLatencyIsForOneJob) {
   Campaign campaign = Short(2);
   campaign.trials[1].scenario.planning.latency.measured = true;
-  EXPECT_THROW(Run(campaign, To(At("a.db"), 2)), BadInput);
+  EXPECT_THROW(Fly(campaign, To(At("a.db"), 2)), BadInput);
   EXPECT_FALSE(std::filesystem::exists(At("a.db")));
 }
 

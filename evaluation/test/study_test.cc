@@ -42,6 +42,8 @@ TEST_P(ShippedStudy, EveryScenarioLoadsAndSeedsArePaired) {
     EXPECT_EQ(trial.index, index++);
     EXPECT_EQ(trial.scenario.timeout, 30.0);
     EXPECT_EQ(trial.replay.rfind("touchdown land ", 0), 0U);
+    const std::string seed = " --seed " + std::to_string(trial.seed);
+    EXPECT_EQ(trial.replay.substr(trial.replay.size() - seed.size()), seed);
     ASSERT_EQ(trial.varied.size(), plan.campaign.keys.size());
     seeds[{trial.varied.at(0).second, trial.varied.at(1).second}].push_back(trial.seed);
   }
@@ -126,12 +128,15 @@ class WrittenStudy : public testing::Test {
 };
 
 TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
-  const StudyFile file = Load(std::string(kHead) +
-                              "set: {timeout: 9, descent: none}\n"
-                              "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
-                              "methods: [{name: a, set: {timeout: 7}, quick: 2}, {name: b}]\n");
+  const StudyFile file =
+      Load(std::string(kHead) +
+           "set: {timeout: 9, descent: none}\n"
+           "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
+           "methods: [{name: a, set: {timeout: 7}, quick: 2, record: [c]}, {name: b}]\n");
   const StudyPlan plan = PlanStudy(file, true, 4, kRegistries);
   ASSERT_EQ(plan.parts.size(), 2U);
+  EXPECT_TRUE(plan.Records(plan.parts[0]));
+  EXPECT_FALSE(plan.Records(plan.parts[1]));
   EXPECT_EQ(plan.parts[0].trials, 2);
   EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 7.0);
   EXPECT_EQ(plan.campaign.trials.at(2).scenario.timeout, 8.0);
@@ -156,6 +161,7 @@ TEST_F(WrittenStudy, MistakesAreNamed) {
        "must have the labels of the first cell"},
       {head + "cells: [{name: c, scenario: nowhere}]\n" + methods, "nowhere"},
       {head + cells + "methods: [{name: a, set: {pad.sped: 1}}]\n", "unknown key pad.sped"},
+      {head + cells + "methods: [{name: a, record: [d]}]\n", "the cell d, which is not there"},
       {head + cells + methods + "backends: {set: 3}\n", "must be a map of keys"},
       {head + cells + "methods: [", ".yaml:"}};
   for (const auto& [text, part] : mistakes) {

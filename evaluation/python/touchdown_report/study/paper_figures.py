@@ -117,9 +117,10 @@ def positions(found):
 
 
 def near_landing(found):
-    """Figures 9 and 12: the position error over the last seconds, a column for each style."""
+    """Figures 9 and 12: the position error over the last seconds, a column for each style with scales of
+    its own: what is a straight line in one is the whole approach in the other."""
     figure, axes = plt.subplots(
-        3, len(found), figsize=(PAGE, 5.0), squeeze=False, layout="constrained", sharey="row"
+        3, len(found), figsize=(PAGE, 5.0), squeeze=False, layout="constrained"
     )
     for column, (method, flight) in enumerate(found.items()):
         colour, title = LOOKS[method]
@@ -128,8 +129,7 @@ def near_landing(found):
             panel = axes[row, column]
             panel.plot(flight.t[late], flight.error[late, row], color=colour, lw=1.7)
             panel.axhline(0.0, color=PAD, lw=0.9, ls=(0, (4, 2)))
-            if column == 0:
-                panel.set_ylabel(label)
+            panel.set_ylabel(label)
         axes[0, column].set_title(f"{title}, last {LAST:g} s before contact", fontsize=9)
         axes[2, column].set_xlabel("time [s]")
     return figure
@@ -170,7 +170,8 @@ def following(found):
 
 
 def _panels(study, cells, methods):
-    panels = [(study.cell_title(cell), flights(study, cell, methods)) for cell in cells]
+    flown = [cell for cell in cells if cell in study.cells()]
+    panels = [(study.cell_title(cell), flights(study, cell, methods)) for cell in flown]
     return [(title, found) for title, found in panels if found]
 
 

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sweeps that are interrupted, killed, split and spread over ranks: the same tables in the end."""
+import json
+import os
+import random
+import shlex
+import shutil
+import signal
+import sqlite3
+import subprocess
+
+import pytest
+
+SWEEP = ("sweep", "straight_turn", "--seed", "3", "--set", "start.position_spread=[1, 1, 0]")
+SHORT = ("--set", "timeout=1.5", "--vary", "controller=geometric,paper", "--vary", "gps.sigma=0.1..0.5")
+TABLES = ("planned", "variation", "varied_key", "trial", "cell", "cell_value")
+
+
+def tables(path):
+    """Everything that does not depend on the clock, in the order in which it is stored."""
+    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+        assert db.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        return {name: db.execute(f"SELECT * FROM {name} ORDER BY rowid").fetchall() for name in TABLES}
+
+
+def flown(path):
+    """How many trials a reader finds; None before there is a file."""
+    if not path.exists():
+        return None
+    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+        trials = db.execute("SELECT count(*) FROM trial").fetchone()[0]
+        assert db.execute("SELECT count(*) FROM timing").fetchone() == (trials,)
+        assert db.execute("SELECT sum(trials) FROM cell").fetchone() == (trials,)
+        assert db.execute("SELECT sum(replans) FROM trial").fetchone()[0] == (
+            db.execute("SELECT count(*) FROM replan_time").fetchone()[0] if trials else None
+        )
+        return trials
+
+
+def begun(program, folder, *arguments):
+    return subprocess.Popen(
+        [program, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=folder
+    )
+
+
+def sweep(trials, db, *more):
+    return (*SWEEP, *SHORT, "--trials", str(trials), "--db", db, *more)
+
+
+def killed_until_it_is_done(program, folder, name, moment):
+    """Runs a sweep again and again, killed at random moments; returns how often, and the last run's stdout."""
+    kills = seen = 0
+    while True:
+        process = begun(program, folder, *sweep(12, name, "--jobs", "2"))
+        try:
+            # Ever later, so that it ends on a slow machine too.
+            out, err = process.communicate(timeout=moment.uniform(0.0, 0.4 + 0.1 * kills))
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            kills += 1
+            now = flown(folder / name) or 0
+            assert now >= seen
+            seen = now
+            continue
+        assert process.returncode == 0, err
+        return kills, out
+
+
+def test_a_sweep_that_is_killed_goes_on_where_it_was(program, run, tmp_path):
+    whole = run(*sweep(12, "whole.db", "--jobs", "2"), cwd=tmp_path)
+    assert whole.returncode == 0, whole.stderr
+    moment = random.Random(7)
+    kills = files = 0
+    while kills < 20:
+        files += 1
+        more, out = killed_until_it_is_done(program, tmp_path, f"{files}.db", moment)
+        kills += more
+        assert out == whole.stdout
+        assert tables(tmp_path / f"{files}.db") == tables(tmp_path / "whole.db")
+        assert not list(tmp_path.glob(f"{files}.db-*"))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_sweep_says_how_to_go_on(program, run, tmp_path, number):
+    path = tmp_path / "a.db"
+    process = begun(program, tmp_path, *sweep(2000, "a.db", "--jobs", "2"))
+    while not flown(path):  # and is read while it grows
+        assert process.poll() is None
+    process.send_signal(number)
+    out, err = process.communicate()
+    assert process.returncode == 128 + number and out == ""
+    assert "of 2000 trials: they are in a.db, and the same command goes on" in err.splitlines()[-1]
+    assert [p.name for p in tmp_path.iterdir()] == ["a.db"]
+    assert 0 < flown(path) < 2000
+
+
+def test_what_is_resumed_is_told(run, tmp_path):
+    done = run(*sweep(3, "a.db", "--shard", "1/2"), cwd=tmp_path)
+    assert done.returncode == 0 and "2 of 2 trials, 0 succeeded and 2 failed" in done.stderr
+    again = run(*sweep(3, "a.db", "--shard", "1/2"), cwd=tmp_path)
+    assert again.returncode == 0 and again.stdout == done.stdout
+    assert again.stderr == "touchdown: all 2 trials were flown before\n"
+    assert run("merge", "out.db", "a.db", "--partial", cwd=tmp_path).stdout == (
+        "out.db: 2 of 3 trials, from 1 files\n"
+    )
+    rest = run(*sweep(3, "out.db"), cwd=tmp_path)
+    assert "2 of 3 trials were flown before" in rest.stderr and rest.returncode == 0
+    other = run(*sweep(4, "out.db"), cwd=tmp_path)
+    assert other.returncode == 2 and other.stdout == ""
+    assert "out.db" in other.stderr and "its trials is 3, not 4" in other.stderr
+
+
+def test_the_command_beside_a_trial_flies_it_again_bit_for_bit(run, tmp_path):
+    done = run(*sweep(2, "a.db", "--json"), cwd=tmp_path)
+    results = json.loads(done.stdout)["results"]
+    assert len(results) == 2
+    for result in results:
+        program, *arguments = shlex.split(result.pop("replay"))
+        assert program == "touchdown"
+        alone = json.loads(run(*arguments, "--json").stdout)
+        for of_sweep in ("trial", "varied"):
+            result.pop(of_sweep)
+        alone.pop("wall_clock")
+        assert alone == result
+
+
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun")
+def test_two_ranks_give_the_same_tables(program, run, tmp_path):
+    assert run(*sweep(5, "one.db", "--jobs", "1"), cwd=tmp_path).returncode == 0
+    ranks = subprocess.run(
+        ["mpirun", "--oversubscribe", "-n", "2", program, *sweep(5, "two.db")],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"},
+    )
+    if "built without MPI" in ranks.stderr:
+        pytest.skip("the program is built without MPI")
+    assert ranks.returncode == 0, ranks.stderr
+    assert ranks.stdout.count("of 5 landed") == 1
+    assert tables(tmp_path / "two.db") == tables(tmp_path / "one.db")
