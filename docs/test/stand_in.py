@@ -25,9 +25,11 @@ GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"], "study r
 # Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
 # pad` draws nothing of shorter ones.
 SECONDS = {"land": 15, "profile": 15, "sweep": 1, "study pad": 6}
+# These fly the first trial of their quick form.
+STUDIES = ("study paper", "study solvers", "study ablation", "study run")
 # A command that needs more than this in its short form needs a rule here.
 CPU_SECONDS = int(os.environ.get("TOUCHDOWN_CPU_SECONDS", "20"))
-OUTPUTS = ("--record", "--plot", "--save-map", "--db", "--picture", "--trace", "--frames")
+OUTPUTS = ("--record", "--plot", "--save-map", "--db", "--picture", "--trace", "--frames", "--out")
 
 
 class Wrong(Exception):
@@ -42,6 +44,8 @@ def shortened(arguments):
     for before, word in zip([""] + arguments, arguments):
         if before in SHORT and word.isdigit():
             word = str(min(int(word), SHORT[before]))
+        if before == "--trials" and "--shard" in arguments:  # each part has one
+            word = arguments[arguments.index("--shard") + 1].split("/")[1]
         if before == "--points" and "," in word:  # the time goes into the largest sizes
             word = ",".join(word.split(",")[:2])
         if before == "--pin":
@@ -56,6 +60,8 @@ def shortened(arguments):
     if flights:  # of one kind
         short += [] if "--flights" in short else ["--flights", str(SHORT["--flights"])]
         short += [] if "--kinds" in short else ["--kinds", "A"]
+    if command in STUDIES:
+        short += [word for word in ("--quick", "--shard", "1/500") if word not in arguments]
     if command in SECONDS and "--from" not in short:
         seconds = 1 if "sensing=rendered" in short else SECONDS[command]
         short += ["--set", f"timeout={seconds}"]

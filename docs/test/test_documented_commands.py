@@ -125,7 +125,7 @@ def test_options_named_in_prose_exist(program, commands):
     helps, wrong = {}, []
     for document in documents():
         for line, span in document.spans():
-            words = [word.strip(",;") for word in span.split()]
+            words = [word.strip(",;").split("|")[0] for word in span.split()]
             if words[0] != "touchdown" or len(words) < 2 or words[1] not in commands:
                 continue
             study = words[1] == "study" and len(words) > 2 and words[2].islower()

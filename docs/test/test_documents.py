@@ -71,13 +71,13 @@ def test_every_equation_of_the_paper_has_its_row():
 
 
 def test_code_in_the_documents_is_code_of_the_examples():
-    """Blocks of C++ and CMake are excerpts of what the tests compile; blanks do not count."""
+    """Blocks of C++, CMake and YAML are excerpts of what the tests compile; blanks do not count."""
     known = ["".join(path.read_text().split()) for path in EXAMPLES if path.is_file()]
     wrong = []
     for page in PAGES:
         for block in page.blocks:
             text = "".join(block.text.split())
-            if block.language in ("cpp", "cmake") and not any(text in code for code in known):
+            if block.language in ("cpp", "cmake", "yaml") and not any(text in code for code in known):
                 wrong.append(f"{page.name}:{block.line}")
     assert not wrong, "no file of docs/examples holds the code of\n" + "\n".join(wrong)
 

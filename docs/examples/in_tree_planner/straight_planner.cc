@@ -50,12 +50,13 @@ const ReplanResult& StraightPlanner::Rest(const ReplanInput& input, double climb
 }
 
 FlatState StraightPlanner::Reference(double t) const {
-  return (t < next_.t0() ? current_ : next_).Evaluate(t);
+  return (t < takes_over_ ? current_ : next_).Evaluate(t);
 }
 
 const ReplanResult& StraightPlanner::Commit(UniformBspline curve, ReplanStatus status,
                                             ReplanReason reason) {
   current_ = std::exchange(next_, std::move(curve));
+  takes_over_ = next_.t0();
   climb_.reset();
   result_ = {};
   result_.status = status;

@@ -18,6 +18,7 @@ class StraightPlanner : public Planner {
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
+  void TakeOverAt(double t) override { takes_over_ = t; }
   FlatState Reference(double t) const override;
 
  private:
@@ -25,8 +26,9 @@ class StraightPlanner : public Planner {
   SplineState StartAt(double t) const;
 
   Limits limits_;
-  UniformBspline current_, next_;  // next_ takes over at its t0
-  std::optional<double> climb_;    // of the rest under way [m]
+  UniformBspline current_, next_;
+  double takes_over_ = 0.0;      // next_ does [s]
+  std::optional<double> climb_;  // of the rest under way [m]
   ReplanResult result_;
 };
 
