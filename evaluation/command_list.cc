@@ -103,6 +103,7 @@ Json ListPlanners() {
       {PlannerKind::kEgo,
        "EGO-Planner baseline as published; the pad's position as a goal at rest"},
       {PlannerKind::kEgoVelocity, "the same with the pad's velocity at the goal"},
+      {PlannerKind::kPid, "PID law that tracks the pad, then descends; knows no obstacles"},
   };
   Json list = Json::array();
   Scenario scenario;

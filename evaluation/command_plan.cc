@@ -101,11 +101,12 @@ void AddPlanCommand(Command app, const Registries& registries, CommandRun* run) 
   const Option seed = command.Add("--seed", arguments->scenario.seed, "Short for --set seed=");
   seed.TypeName("S");
   command
-      .AddFile("--from", &arguments->from,
-               "Solve replanning step N of a record again (`land --record`) instead of a first "
-               "plan from the scenario's start, where obstacles and pad are known. --backend, "
-               "--set solver.*, terms.* and planning.guides change the planner",
-               "RECORD:N")
+      .AddFile(
+          "--from", &arguments->from,
+          "Solve replanning step N of a record again (`land --record`) instead of a first "
+          "plan from the scenario's start, where obstacles and pad are known. --backend, "
+          "--set solver.*, terms.*, planning.guides and planning.warm_start change the planner",
+          "RECORD:N")
       .Excludes(seed)
       .Excludes(command.Find("SCENARIO"));
   command.AddFile("--picture", &arguments->picture,

@@ -172,6 +172,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     has_plan_ = false;
     return nullptr;
   }
+  if (vehicle.t < busy_until_) return nullptr;
   replan_.latency_s = Latency();
   planning::ReplanInput& input = replan_.request.input;
   input.t_now = vehicle.t;
@@ -186,10 +187,10 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
   const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
-  const bool idle = scenario_.planner != PlannerKind::kLanding && result.detail.empty();
-  if (idle) return nullptr;
+  if (result.idle) return nullptr;
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  DeliverLate(vehicle.t);
   // Where there is nothing left to plan, no plan is missing.
   last_planned_ = result.status == planning::ReplanStatus::kPlanned ||
                   result.reason == planning::ReplanReason::kAtGoal;
@@ -200,6 +201,14 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
     plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
   return &result;
+}
+
+// A measured step that took longer than was reckoned with: its plan is flown from when it was there, and
+// no other step is begun before.
+void Pilot::DeliverLate(double t) {
+  if (!scenario_.planning.latency.measured || measured_latency_ <= replan_.latency_s) return;
+  busy_until_ = t + measured_latency_;
+  planner_->TakeOverAt(busy_until_);
 }
 
 // Longer, and the shortest plan would end too early to be decided on.
@@ -326,6 +335,7 @@ double Pilot::DesiredHeading() {
 planning::EndpointTarget Pilot::Endpoint(double t) const {
   planning::EndpointTarget target;
   target.t_reference = t;
+  target.at_rest = scenario_.planning.endpoint_velocity == EndpointVelocityKind::kRest;
   if (mission_.guidance == control::Guidance::kTouchDown) {
     target.height = target.height_floor =
         model_.foot_depth + parameters_.touchdown_rate * level_time_;

@@ -73,6 +73,7 @@ class Pilot {
   double DesiredHeading();
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
+  void DeliverLate(double t);
   bool Levelled(double t) const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
@@ -110,6 +111,7 @@ class Pilot {
   double plan_end_t_ = std::numeric_limits<double>::infinity();
   double level_time_ = 0.0;        ///< from there to contact [s]
   double measured_latency_ = 0.0;  ///< of the last replanning step [s]
+  double busy_until_ = -std::numeric_limits<double>::infinity();  ///< with a late step [s]
 };
 
 }  // namespace touchdown::evaluation

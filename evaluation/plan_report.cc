@@ -33,6 +33,7 @@ std::string QuestionText(const SolvedStep& solved) {
             : fmt::format(
                   "  wanted     {:.2f} m above the deck, sinking at {:.2f} m/s to {:.2f} m\n",
                   end.height, end.sink_rate, end.height_floor);
+    if (end.at_rest) text += "             without the pad's velocity\n";
   }
   text += fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s\n",
                       asked.before.planned ? "a plan to the pad" : "a curve to rest",

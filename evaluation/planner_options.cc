@@ -90,6 +90,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.limits = LimitsOf(scenario);
   options.ceiling_height = scenario.planning.ceiling;
   options.max_guides = scenario.planning.guides;
+  options.warm_start = scenario.planning.warm_start;
   // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
   const double period = 1.0 / scenario.planning.rate;
   options.reaction =
@@ -120,16 +121,30 @@ planning::EgoPlannerOptions EgoPlannerOptionsOf(const Scenario& scenario,
 std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                const estimation::VehicleModel& model,
                                                const Registries& registries) {
-  if (scenario.planner != PlannerKind::kLanding) {
-    return std::make_unique<planning::EgoPlanner>(EgoPlannerOptionsOf(scenario, model));
+  switch (scenario.planner) {
+    case PlannerKind::kLanding:
+      break;
+    case PlannerKind::kEgo:
+    case PlannerKind::kEgoVelocity:
+      return std::make_unique<planning::EgoPlanner>(EgoPlannerOptionsOf(scenario, model));
+    case PlannerKind::kPid:
+      return std::make_unique<planning::PidFollower>(scenario.pid, LimitsOf(scenario));
   }
   return std::make_unique<planning::Replanner>(PlannerOptions(scenario, model, registries.terms),
                                                registries.backends);
 }
 
 double PlannerRate(const Scenario& scenario) {
-  return scenario.planner == PlannerKind::kLanding ? scenario.planning.rate
-                                                   : planning::EgoPlanner::kRate;
+  switch (scenario.planner) {
+    case PlannerKind::kLanding:
+      break;
+    case PlannerKind::kEgo:
+    case PlannerKind::kEgoVelocity:
+      return planning::EgoPlanner::kRate;
+    case PlannerKind::kPid:
+      return planning::PidFollower::kRate;
+  }
+  return scenario.planning.rate;
 }
 
 double ClosePlannerRate(const Scenario& scenario) {

@@ -6,6 +6,7 @@
 #include "touchdown/estimation/vehicle_model.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/ego/ego_planner.h"
+#include "touchdown/planning/pid/pid_follower.h"
 #include "touchdown/planning/replanner.h"
 
 namespace touchdown::evaluation {
@@ -25,8 +26,8 @@ std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                const estimation::VehicleModel& model,
                                                const Registries& registries);
 
-/// How often it is to be called [Hz]: the landing planner at planning.rate, the baseline at the rate
-/// of its state machine.
+/// How often it is to be called [Hz]: the landing planner at planning.rate, the baselines at the
+/// rates of their state machine and law.
 double PlannerRate(const Scenario& scenario);
 
 /// The same shortly before a planned landing's contact [Hz]: at least 20 Hz, if the latency leaves room.

@@ -50,7 +50,7 @@ Scenario ScenarioArguments::Load(const Registries& registries) const {
   Scenario loaded = LoadScenario(FindScenario(scenario), Overrides(), registries);
   if (!backend.empty() && loaded.planner != PlannerKind::kLanding) {
     throw BadInput(
-        fmt::format("--backend {}: the planner {} has its own solver; backends are of the "
+        fmt::format("--backend {}: the planner {} has no choice of solvers; backends are of the "
                     "planner landing.",
                     backend, FindScenarioKey("planner")->get(loaded)));
   }
@@ -61,10 +61,11 @@ std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
   std::vector<std::string> overrides = Overrides();
   for (const std::string& text : overrides) {
     const auto begins = [&](const char* key) { return text.rfind(key, 0) == 0; };
-    if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=")) {
+    if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=") &&
+        !begins("planning.warm_start=")) {
       throw BadInput(
-          fmt::format("--set {}: of a recorded flight only keys of solver and terms, and "
-                      "planning.guides, can be changed.",
+          fmt::format("--set {}: of a recorded flight only keys of solver and terms, "
+                      "planning.guides and planning.warm_start can be changed.",
                       text));
     }
   }

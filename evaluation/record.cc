@@ -44,7 +44,8 @@ CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL, re
   pad_px REAL, pad_py REAL, pad_pz REAL, pad_vx REAL, pad_vy REAL, pad_vz REAL,
   pad_ax REAL, pad_ay REAL, pad_az REAL, pad_yaw REAL, pad_yaw_rate REAL,
   endpoint_t_reference REAL, endpoint_height REAL, endpoint_sink_rate REAL,
-  endpoint_height_floor REAL, endpoint_arrival_sink REAL, pull_x REAL, pull_y REAL, pull_z REAL);
+  endpoint_height_floor REAL, endpoint_arrival_sink REAL, endpoint_at_rest INTEGER,
+  pull_x REAL, pull_y REAL, pull_z REAL);
 CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t REAL, height REAL,
   noise_position REAL, noise_velocity REAL, noise_acceleration REAL, noise_heading REAL,
   noise_turn REAL);
@@ -141,7 +142,7 @@ void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
              v.q_WB.z(), v.w_WB_B.x(), v.w_WB_B.y(), v.w_WB_B.z(), pad.p_WP.x(), pad.p_WP.y(),
              pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(), pad.a_WP.x(), pad.a_WP.y(),
              pad.a_WP.z(), pad.yaw, pad.yaw_rate, end.t_reference, end.height, end.sink_rate,
-             end.height_floor, end.arrival_sink, input.pull_W.x(), input.pull_W.y(),
+             end.height_floor, end.arrival_sink, end.at_rest, input.pull_W.x(), input.pull_W.y(),
              input.pull_W.z());
 }
 
@@ -155,7 +156,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement input = db.Prepare(
       "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "?, "
-      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement prediction =
       db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");

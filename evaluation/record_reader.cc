@@ -138,6 +138,7 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
     input.endpoint.sink_rate = row.Number();
     input.endpoint.height_floor = row.Number();
     input.endpoint.arrival_sink = row.Number();
+    input.endpoint.at_rest = row.Flag();
     input.pull_W = row.Vector3();
   };
   ReadEach(
@@ -145,7 +146,8 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
                 "plan, t_now, t_start, rest_climb, px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, "
                 "wz, pad_px, pad_py, pad_pz, pad_vx, pad_vy, pad_vz, pad_ax, pad_ay, pad_az, "
                 "pad_yaw, pad_yaw_rate, endpoint_t_reference, endpoint_height, "
-                "endpoint_sink_rate, endpoint_height_floor, endpoint_arrival_sink, pull_x, pull_y, "
+                "endpoint_sink_rate, endpoint_height_floor, endpoint_arrival_sink, "
+                "endpoint_at_rest, pull_x, pull_y, "
                 "pull_z",
                 "plan"),
       plans, read_input);

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/registries.h"
+#include "touchdown/planning/pid/pid_law.h"
 #include "touchdown/sim/plant.h"
 
 namespace touchdown::evaluation {
@@ -29,10 +30,11 @@ enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
 enum class ControllerKind { kGeometric, kPaper };
 enum class DescentKind { kNone, kVertical, kPlanned };
-enum class PlannerKind { kLanding, kEgo, kEgoVelocity };
+enum class PlannerKind { kLanding, kEgo, kEgoVelocity, kPid };
 enum class SensingKind { kFast, kRendered };
 enum class OwnStateKind { kTrue, kEstimated };
 enum class ArrivalKind { kFixed, kFree };
+enum class EndpointVelocityKind { kPad, kRest };
 enum class EndpointKind { kEliminated, kExplicit };
 enum class LimitsKind { kSoft, kHard };
 
@@ -182,6 +184,8 @@ struct Scenario {
     double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
     double ceiling = 10.0;    ///< the body's origin stays below this [m]
     int guides = 2;           ///< most ways around the first obstacle that a step tries
+    EndpointVelocityKind endpoint_velocity = EndpointVelocityKind::kPad;
+    bool warm_start = true;  ///< solves begin at the committed plan
   } planning;
 
   /// Of the EGO-Planner baseline; defaults as published.
@@ -194,6 +198,8 @@ struct Scenario {
     double no_replan_distance = 2.0;      ///< [m]
     double emergency_time = 1.0;          ///< [s]
   } ego;
+
+  planning::PidGains pid;  ///< of the PID baseline
 
   struct Solver {
     std::string backend = "banded";

@@ -207,9 +207,9 @@ void CheckDescent(const ScenarioSource& source) {
   const Scenario& s = source.scenario;
   if (s.descent != DescentKind::kPlanned || s.planner == PlannerKind::kLanding) return;
   throw BadInput(
-      fmt::format("{}: descent must be none or vertical with planner ego or ego-velocity, whose "
+      fmt::format("{}: descent must be none or vertical with planner {}, whose "
                   "plans do not lead to contact, not 'planned'.",
-                  source.WhereOf("descent").ToString()));
+                  source.WhereOf("descent").ToString(), FindScenarioKey("planner")->get(s)));
 }
 
 void CheckPriorMap(const ScenarioSource& source) {

@@ -21,6 +21,7 @@ void AddSensorKeys(KeyList& keys);
 void AddOwnStateKeys(KeyList& keys);
 void AddPlanningKeys(KeyList& keys);
 void AddEgoKeys(KeyList& keys);
+void AddPidKeys(KeyList& keys);
 void AddTrialKeys(KeyList& keys);
 
 // Each maker takes an accessor `at`: Owner& -> member&, so that nested members need no pointers.

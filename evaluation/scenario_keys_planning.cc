@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of tracking, planning, solving and limits, and of the EGO-Planner baseline.
+// Keys of tracking, planning, solving and limits, and of the baselines.
 #include <cctype>
 
 #include "touchdown/evaluation/scenario_keys.h"
@@ -18,17 +18,18 @@ void AddPlanningKeys(KeyList& keys) {
                         "planned flies one plan to contact; the baselines, which make none, "
                         "have vertical unless it is given",
                         TOUCHDOWN_AT(descent)));
-  keys.push_back(
-      Choice("planner", {"landing", "ego", "ego-velocity"},
-             "landing: this project's; ego: the EGO-Planner baseline, at rest at the pad; "
-             "ego-velocity: the same with the pad's velocity at the end",
-             TOUCHDOWN_AT(planner)));
+  keys.push_back(Choice(
+      "planner", {"landing", "ego", "ego-velocity", "pid"},
+      "landing: this project's; ego: the EGO-Planner baseline, at rest at the pad; "
+      "ego-velocity: the same with the pad's velocity at the end; pid: a PID law that tracks "
+      "the pad, then descends, and knows no obstacles",
+      TOUCHDOWN_AT(planner)));
   keys.push_back(Number<Scenario>("planning.rate", Above(0, 100, "Hz"), "rate of replanning",
                                   TOUCHDOWN_AT(planning.rate)));
   const ValueRange latency = In(0, 1000, "ms");
   keys.push_back({"planning.latency", "number or word", "ms", latency.ToString() + " or measured",
                   "time from the question to the plan that is flown, no more than the period of "
-                  "planning.rate; measured: the wall clock's",
+                  "planning.rate; measured: the wall clock's, late plans are flown late",
                   [latency](Scenario& s, const YAML::Node& n, const Where& w) {
                     s.planning.latency.measured = n.IsScalar() && n.Scalar() == "measured";
                     if (s.planning.latency.measured) return;
@@ -55,6 +56,14 @@ void AddPlanningKeys(KeyList& keys) {
             "most ways around the first obstacle that a step of the landing planner tries; "
             "the cheapest plan wins",
             TOUCHDOWN_AT(planning.guides)));
+  keys.push_back(Choice("planning.endpoint_velocity", {"pad", "rest"},
+                        "planner landing: a plan ends with the pad's predicted velocity, or stands "
+                        "still (but for sinking) where the pad will be",
+                        TOUCHDOWN_AT(planning.endpoint_velocity)));
+  keys.push_back(Bool("planning.warm_start",
+                      "planner landing: a step's first solve begins at the rest of the committed "
+                      "plan, else at the curve between the ends alone",
+                      TOUCHDOWN_AT(planning.warm_start)));
   keys.push_back(Text("solver.backend", "a name of `touchdown list backends`",
                       "optimiser of planner landing; the baseline has lbfgs",
                       TOUCHDOWN_AT(solver.backend)));
@@ -102,6 +111,30 @@ void AddEgoKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("ego.emergency_time", In(0, 10, "s"),
                                   "planner ego: a collision sooner than this stops the vehicle",
                                   TOUCHDOWN_AT(ego.emergency_time)));
+}
+
+void AddPidKeys(KeyList& keys) {
+  keys.push_back(Number<Scenario>("pid.proportional", Above(0, 10, "1/s"),
+                                  "planner pid: velocity per horizontal position error",
+                                  TOUCHDOWN_AT(pid.proportional)));
+  keys.push_back(Number<Scenario>("pid.integral", In(0, 10, "1/s^2"),
+                                  "planner pid: velocity per integral of that error",
+                                  TOUCHDOWN_AT(pid.integral)));
+  keys.push_back(Number<Scenario>("pid.derivative", In(0, 10, ""),
+                                  "planner pid: velocity per velocity relative to the pad",
+                                  TOUCHDOWN_AT(pid.derivative)));
+  keys.push_back(Number<Scenario>("pid.integral_limit", In(0, 10, "m/s"),
+                                  "planner pid: most that the integral adds",
+                                  TOUCHDOWN_AT(pid.integral_limit)));
+  keys.push_back(Number<Scenario>("pid.integral_zone", In(0, 100, "m"),
+                                  "planner pid: farther from the pad the integral stands still",
+                                  TOUCHDOWN_AT(pid.integral_zone)));
+  keys.push_back(Number<Scenario>("pid.height", Above(0, 10, "1/s"),
+                                  "planner pid: vertical velocity per error of the height",
+                                  TOUCHDOWN_AT(pid.height)));
+  keys.push_back(Number<Scenario>("pid.response", In(0.05, 10, "s"),
+                                  "planner pid: time constant with which a velocity is taken up",
+                                  TOUCHDOWN_AT(pid.response)));
 }
 
 }  // namespace touchdown::evaluation::schema

@@ -20,6 +20,7 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
     schema::AddOwnStateKeys(list);
     schema::AddPlanningKeys(list);
     schema::AddEgoKeys(list);
+    schema::AddPidKeys(list);
     schema::AddTrialKeys(list);
     return list;
   }();

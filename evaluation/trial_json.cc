@@ -79,6 +79,12 @@ Json WallClockJson(const TrialTiming& timing) {
   return json;
 }
 
+// The baselines have a solver of their own, or none.
+std::string BackendOf(const Scenario& scenario) {
+  if (scenario.planner == PlannerKind::kLanding) return scenario.solver.backend;
+  return scenario.planner == PlannerKind::kPid ? "none" : "lbfgs";
+}
+
 }  // namespace
 
 Json QuantilesJson(const std::vector<double>& values) {
@@ -115,9 +121,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["estimator"] = EstimatorJson(result.estimator);
   json["own_state"] = OwnStateJson(result.own_state);
   json["planner"] = FindScenarioKey("planner")->get(scenario);
-  // The baseline has a solver of its own.
-  json["backend"] =
-      scenario.planner == PlannerKind::kLanding ? scenario.solver.backend : std::string("lbfgs");
+  json["backend"] = BackendOf(scenario);
   json["scenario"] = scenario.name;
   json["seed"] = result.seed;
   json["wall_clock"] = WallClockJson(result.timing);

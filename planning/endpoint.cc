@@ -17,10 +17,16 @@ EndState EndStateAt(const estimation::PadPrediction& pad, const EndpointTarget& 
   const Eigen::Vector3d offset_rate(0.0, 0.0, sinking ? -target.sink_rate : 0.0);
   const Eigen::Vector3d contact(0.0, 0.0, -target.arrival_sink);
 
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+
   EndState end;
   end.state = {at.p_WP + offset, at.v_WP + offset_rate + contact, at.a_WP};
   end.derivative = {at.v_WP + offset_rate, at.a_WP, at.j_WP};
-  end.second_derivative = {at.a_WP, at.j_WP, Eigen::Vector3d::Zero()};
+  end.second_derivative = {at.a_WP, at.j_WP, none};
+  if (target.at_rest) {  // it still has to be where the pad will be
+    end.state.v = offset_rate + contact;
+    end.state.a = end.derivative.v = end.derivative.a = end.second_derivative.v = none;
+  }
   return end;
 }
 

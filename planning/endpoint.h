@@ -17,6 +17,9 @@ struct EndpointTarget {
   double height_floor = 0.0;  ///< the height never goes below this [m]
   /// A plan that ends in contact sinks at arrival, whatever the height does until then: >= 0 [m/s].
   double arrival_sink = 0.0;
+  /// The end stands still, whatever velocity the pad has: w alone is its velocity. To show what the
+  /// moving end is worth.
+  bool at_rest = false;
 
   /// Whether the plan is to end in contact.
   bool touches() const { return arrival_sink > 0.0; }

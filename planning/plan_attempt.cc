@@ -151,7 +151,8 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   pairs_.clear();
   pressure_ = {};
   segments_ = request.segments;
-  ReplanReason reason = SolveWithoutPairs(request, request.previous, result);
+  const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
+  ReplanReason reason = SolveWithoutPairs(request, warm, result);
   if (reason == ReplanReason::kNone && ObstacleNear(request) && segments_ < request.near_segments) {
     first_curve_ = best_.curve;
     segments_ = request.near_segments;

@@ -30,6 +30,10 @@ class Planner {
   virtual const ReplanResult& Rest(const ReplanInput& input, double climb,
                                    const OccupancyMap& map) = 0;
 
+  /// The last answer came too late for its t_start: it takes over at t, and until then what it replaces
+  /// is flown on. No step is to be asked for before t.
+  virtual void TakeOverAt(double t) = 0;
+
   /// The committed reference at time t (yaw fields zero). Does not allocate.
   virtual FlatState Reference(double t) const = 0;
 };

@@ -37,6 +37,7 @@ struct ReplannerOptions {
   double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]
   double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
   int max_guides = 2;               ///< ways around the first obstacle that are tried
+  bool warm_start = true;           ///< a solve begins at the rest of the committed plan
   int max_rebinds = 3;              ///< solve / check / re-bind rounds per attempt
   int max_solves = 14;         ///< after so many no further arrival time is tried, but from rest
   int max_iterations = 50;     ///< solver iterations per solve
@@ -135,9 +136,9 @@ class PathList {
 struct ReplanResult {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
-  /// How the EGO-Planner baseline calls the outcome of its plan call; empty if it made none, and
-  /// with the landing planner.
+  /// How the EGO-Planner baseline calls the outcome of its plan call; empty with the others.
   std::string_view detail;
+  bool idle = false;           ///< the planner had nothing to do: there is no answer
   bool from_odometry = false;  ///< started at the vehicle, not at the old plan
   UniformBspline curve;        ///< what is flown from t_start on
   Certificate certificate;

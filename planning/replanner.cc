@@ -32,18 +32,6 @@ constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
 
-/// State on a curve; past its end it goes on at the end's velocity.
-FlatState StateOn(const UniformBspline& curve, double t) {
-  FlatState state = curve.Evaluate(t);
-  const double past = t - curve.t_end();
-  if (past > 0.0) {
-    state.p_WB += past * state.v_WB;
-    state.a_WB.setZero();
-    state.j_WB.setZero();
-  }
-  return state;
-}
-
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
 }  // namespace
@@ -65,10 +53,15 @@ class Replanner::Impl {
   void Commit(const UniformBspline& curve) {
     current_ = next_;
     next_ = curve;
+    takes_over_ = curve.t0();
+  }
+
+  void TakeOverAt(double t) {
+    if (result_.status != ReplanStatus::kKept) takes_over_ = std::max(takes_over_, t);
   }
 
   /// The curve that is flown at time t.
-  const UniformBspline& InForce(double t) const { return t < next_.t0() ? current_ : next_; }
+  const UniformBspline& InForce(double t) const { return t < takes_over_ ? current_ : next_; }
 
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
   const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
@@ -78,6 +71,7 @@ class Replanner::Impl {
 
   const ReplannerOptions options_;
   UniformBspline current_, next_;
+  double takes_over_ = 0.0;  // next_ does [s]
   ReplanLog* log_ = nullptr;
 
  private:
@@ -150,6 +144,7 @@ ReplannerState Replanner::Impl::State() const {
 void Replanner::Impl::Restore(const ReplannerState& state) {
   current_ = state.current;
   next_ = state.next;
+  takes_over_ = next_.t0();
   planned_before_ = state.planned;
   climbing_ = state.climb.value_or(-1.0);
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
@@ -185,10 +180,10 @@ const ReplanResult& Replanner::Impl::RefuseState() {
 
 /// The committed state when the answer takes over, or the vehicle's own where tracking is lost.
 SplineState Replanner::Impl::Start(const ReplanInput& input) {
-  const FlatState reference = StateOn(InForce(input.t_now), input.t_now);
+  const FlatState reference = InForce(input.t_now).EvaluateOnward(input.t_now);
   const double error = (reference.p_WB - input.vehicle.p_WB).norm();
   result_.from_odometry = error > options_.odometry_threshold;
-  if (!result_.from_odometry) return ToSpline(StateOn(InForce(input.t_start), input.t_start));
+  if (!result_.from_odometry) return ToSpline(InForce(input.t_start).EvaluateOnward(input.t_start));
   const double latency = input.t_start - input.t_now;
   return {input.vehicle.p_WB + latency * input.vehicle.v_WB, input.vehicle.v_WB,
           Eigen::Vector3d::Zero()};
@@ -196,7 +191,7 @@ SplineState Replanner::Impl::Start(const ReplanInput& input) {
 
 /// The last answer must have taken over before the next is asked for: only one is ever pending.
 bool Replanner::Impl::InTime(const ReplanInput& input) const {
-  return input.t_now >= next_.t0() - kClockRounding;
+  return input.t_now >= takes_over_ - kClockRounding;
 }
 
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
@@ -362,7 +357,9 @@ const ReplanResult& Replanner::Rest(const ReplanInput& input, double climb,
   return impl_->Rest(input, climb, map);
 }
 
-FlatState Replanner::Reference(double t) const { return StateOn(impl_->InForce(t), t); }
+void Replanner::TakeOverAt(double t) { impl_->TakeOverAt(t); }
+
+FlatState Replanner::Reference(double t) const { return impl_->InForce(t).EvaluateOnward(t); }
 
 const ReplannerOptions& Replanner::options() const { return impl_->options_; }
 

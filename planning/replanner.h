@@ -53,6 +53,8 @@ class Replanner : public Planner {
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
 
+  void TakeOverAt(double t) override;
+
   /// The committed reference at time t (yaw fields zero). The plan made by Replan takes over at its
   /// t_start; before that the older one is flown. Does not allocate.
   FlatState Reference(double t) const override;

@@ -37,6 +37,17 @@ void UniformBspline::Assign(const Eigen::Ref<const ControlPoints>& control_point
   t0_ = t0;
 }
 
+FlatState UniformBspline::EvaluateOnward(double t) const {
+  FlatState state = Evaluate(t);
+  const double past = t - t_end();
+  if (past > 0.0) {
+    state.p_WB += past * state.v_WB;
+    state.a_WB.setZero();
+    state.j_WB.setZero();
+  }
+  return state;
+}
+
 double UniformBspline::SquaredJerk() const {
   const auto& q = control_points();
   double sum = 0.0;  // of |j|^2 h^6

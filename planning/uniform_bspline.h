@@ -52,6 +52,9 @@ class UniformBspline {
   /// fields are left zero. Does not allocate.
   FlatState Evaluate(double t) const;
 
+  /// The same, but past the end it goes on at the end's velocity.
+  FlatState EvaluateOnward(double t) const;
+
   /// Integral of the squared norm of the jerk [m^2/s^5], which is constant on every segment. Does not
   /// allocate.
   double SquaredJerk() const;

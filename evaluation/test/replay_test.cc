@@ -75,7 +75,8 @@ TEST_F(Replayed, OtherPredictionsAndBackendsToo) {
   const std::vector<std::vector<std::string>> cases = {
       {"pad.prediction=oracle", "start.position_spread=[1, 1, 1]", "pad.phase_spread=2", "seed=7"},
       {"pad.prediction=paper", "estimator.pad=paper", "solver.arrival=free"},
-      {"solver.backend=nlopt-lbfgs", "gps.sigma=0.5"}};
+      {"solver.backend=nlopt-lbfgs", "gps.sigma=0.5"},
+      {"planning.endpoint_velocity=rest", "planning.warm_start=false"}};
   for (const auto& overrides : cases) {
     flown_ = {};
     std::vector<std::string> all = overrides;
@@ -100,7 +101,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 4");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 5");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");

@@ -118,6 +118,7 @@ EgoPlanner::EgoPlanner(const EgoPlannerOptions& options)
 
 void EgoPlanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
   current_ = next_ = Hover(p_W, 1.0, t);
+  takes_over_ = t;
   has_trajectory_ = has_goal_ = new_goal_ = false;
   may_stop_ = true;
   tries_ = 0;
@@ -131,6 +132,13 @@ FlatState EgoPlanner::Reference(double t) const {
   FlatState state = StateOn(InForce(t), t);
   state.j_WB.setZero();
   return state;
+}
+
+void EgoPlanner::TakeOverAt(double t) {
+  busy_until_ = std::max(busy_until_, t);
+  const bool committed =
+      result_.status == ReplanStatus::kPlanned || result_.status == ReplanStatus::kUnsafe;
+  if (committed) takes_over_ = std::max(takes_over_, t);
 }
 
 void EgoPlanner::SetGoal(const ReplanInput& input, const Eigen::Vector3d& goal,
@@ -164,6 +172,7 @@ const ReplanResult& EgoPlanner::Replan(const ReplanInput& input, const Occupancy
 /// Numbers that nothing can be done with: what is committed goes on, the goal is asked for again.
 const ReplanResult& EgoPlanner::Refuse(const ReplanInput& input) {
   Begin(input);
+  result_.idle = false;
   result_.reason = ReplanReason::kInvalidInput;
   result_.detail = ToString(EgoStatus::kInvalidInput);
   result_.curve = next_;
@@ -188,6 +197,7 @@ void EgoPlanner::Begin(const ReplanInput& input) {
   result_ = {};
   const bool flying = has_trajectory_ && input.t_now < next_.t_end();
   result_.status = flying ? ReplanStatus::kKept : ReplanStatus::kHolding;
+  result_.idle = true;
 }
 
 const ReplanResult& EgoPlanner::Step(const ReplanInput& input, const OccupancyMap& map) {
@@ -313,6 +323,7 @@ bool EgoPlanner::Call(const ReplanInput& input, const SplineState& start, EgoGue
     planned = plan_.Run(grid, request);
   }
   new_goal_ = false;
+  result_.idle = false;
   busy_until_ = input.t_start;
   if (planned.counts.exhausted_searches > 0) next_call_t_ = input.t_now + kSearchTime;
   ++result_.solves;
@@ -330,6 +341,7 @@ bool EgoPlanner::Call(const ReplanInput& input, const SplineState& start, EgoGue
   result_.status = ReplanStatus::kPlanned;
   current_ = next_;
   next_ = planned.curve;
+  takes_over_ = next_.t0();
   has_trajectory_ = true;
   return true;
 }
@@ -338,6 +350,8 @@ bool EgoPlanner::Call(const ReplanInput& input, const SplineState& start, EgoGue
 void EgoPlanner::Stop(const ReplanInput& input) {
   current_ = next_;
   next_ = Hover(input.vehicle.p_WB, NominalInterval(options_.plan), input.t_now);
+  takes_over_ = next_.t0();
+  result_.idle = false;
   result_.status = ReplanStatus::kUnsafe;
   result_.reason = ReplanReason::kCollisionRemains;
   result_.detail = "emergency_stop";

@@ -44,11 +44,12 @@ class EgoPlanner : public Planner {
   explicit EgoPlanner(const EgoPlannerOptions& options);
 
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
-  /// One step of the state machine. `detail` of the result is empty unless a plan call was made.
+  /// One step of the state machine: `idle` unless it made a plan call or stopped.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
   /// No new goal: the trajectory is flown to its end, where the vehicle stays; a climb is one goal.
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
+  void TakeOverAt(double t) override;
   /// Position, velocity and acceleration, as published: the jerk is zero. Past its end a trajectory's
   /// last point is held with zero velocity.
   FlatState Reference(double t) const override;
@@ -68,13 +69,14 @@ class EgoPlanner : public Planner {
   bool Call(const ReplanInput& input, const SplineState& start, EgoGuess guess,
             const EgoGrid& grid);
   void Stop(const ReplanInput& input);
-  const UniformBspline& InForce(double t) const { return t < next_.t0() ? current_ : next_; }
+  const UniformBspline& InForce(double t) const { return t < takes_over_ ? current_ : next_; }
 
   EgoPlannerOptions options_;
   EgoPlan plan_;
   EgoReference reference_;
   EgoMode mode_ = EgoMode::kWaitTarget;
   UniformBspline current_, next_;
+  double takes_over_ = 0.0;      // next_ does [s]
   bool has_trajectory_ = false;  // next_ is a plan, not a hover
   bool has_goal_ = false;
   bool new_goal_ = false;               // no plan call was made for it yet

@@ -41,12 +41,24 @@ TEST(Endpoint, ContactIsMetSinkingAtTheDeck) {
   EXPECT_FALSE((EndpointTarget{0.0, 1.5, 0.3, 0.2}.touches()));
 }
 
+TEST(Endpoint, AtRestItIsWhereThePadWillBeAndOnlySinks) {
+  const ArcPad pad({1, 2, 0.3}, 0.8, 0.4, 0.2);
+  EndpointTarget target{0.0, 0.2, 0.0, 0.2, 0.3};
+  target.at_rest = true;
+  const EndState end = EndStateAt(pad, target, 4.0);
+  EXPECT_EQ(end.state.p, pad.At(4.0).p_WP + Eigen::Vector3d(0.0, 0.0, 0.2));
+  EXPECT_EQ(end.state.v, Eigen::Vector3d(0.0, 0.0, -0.3));
+  EXPECT_EQ(end.state.a, Eigen::Vector3d::Zero());
+  EXPECT_EQ(end.derivative.p, pad.At(4.0).v_WP) << "a later arrival is elsewhere";
+}
+
 TEST(Endpoint, DerivativesMatchDifferences) {
   Draw draw(41);
   const double d = 1e-5;
   for (int trial = 0; trial < 50; ++trial) {
     const ArcPad pad = draw.Pad();
-    const EndpointTarget target{0.0, 2.0, 0.1, 0.2, trial % 2 == 0 ? 0.0 : 0.3};
+    EndpointTarget target{0.0, 2.0, 0.1, 0.2, trial % 2 == 0 ? 0.0 : 0.3};
+    target.at_rest = trial % 3 == 0;
     const double t = draw.Uniform(0.5, 8.0);
     const EndState at = EndStateAt(pad, target, t), plus = EndStateAt(pad, target, t + d),
                    minus = EndStateAt(pad, target, t - d);

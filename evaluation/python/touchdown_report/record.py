@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "4"
+SUPPORTED_VERSION = "5"
 
 
 class RecordError(Exception):
