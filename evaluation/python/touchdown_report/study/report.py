@@ -153,7 +153,7 @@ def _how(study, document):
             f"Study `{plan['study']}`{', the short form (--quick)' if plan['quick'] else ''}, seed {plan['seed']}: "
             "trial i has the same seed in every cell and with every method.",
             f"Set in every trial: {', '.join(f'`{k}={v}`' for k, v in plan['set'].items()) or 'nothing'}.",
-            f"Machine: {manifest['cpu']}, {manifest['cpus']} CPUs, {manifest['kernel']}.",
+            f"Machine: {manifest['cpu']}, {manifest['cpus']} CPUs.",
             f"Program: touchdown {manifest['touchdown_version']}, revision {manifest['revision']}, build "
             f"{manifest['build_type']} (`{manifest['compiler_flags'].strip()}`), compiler {manifest['compiler']}, MuJoCo "
             f"{manifest['mujoco']}; build hash `{manifest['build_hash']}`, plan hash `{manifest['plan_hash']}`.",
