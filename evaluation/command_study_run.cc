@@ -46,8 +46,8 @@ std::string SummaryText(const nlohmann::ordered_json& summary, const std::string
     cell = row.at("cell");
     const auto seconds = row.at("time_to_land_median_s");
     text += fmt::format(
-        "  {:<24} landed {} of {} [{:.1f}, {:.1f}] %{}\n", row.at("method").get<std::string>(),
-        row.at("landed").get<int>(), row.at("trials").get<int>(),
+        "  {:<24} succeeded {} of {} [{:.1f}, {:.1f}] %{}\n", row.at("method").get<std::string>(),
+        row.at("succeeded").get<int>(), row.at("trials").get<int>(),
         100.0 * row.at("rate_lo").get<double>(), 100.0 * row.at("rate_hi").get<double>(),
         seconds.is_null() ? std::string()
                           : fmt::format(", median {:.1f} s", seconds.get<double>()));

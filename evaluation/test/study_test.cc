@@ -67,7 +67,7 @@ TEST(PaperStudy, HasTheSampleSizesThatWereFixed) {
   EXPECT_EQ(cells.size(), 15U);  // Figure 4, two cases with three sigmas and four winds
   for (const std::string& cell : cells) {
     for (const char* method :
-         {"planned", "vertical", "oracle", "ego", "ego_2hz", "ego_10hz", "ego_velocity"}) {
+         {"planned", "vertical", "oracle", "ego", "ego_2hz", "ego_10hz", "ego_velocity", "pid"}) {
       EXPECT_EQ(counts.count({cell, method}), 1U) << cell << " " << method;
     }
   }

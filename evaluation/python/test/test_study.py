@@ -51,15 +51,15 @@ def test_the_folder_holds_everything(flown):
     for name in pictures:
         assert (out / "figures" / f"{name}.png").read_bytes()[:4] == b"\x89PNG"
         assert "<svg" in (out / "figures" / f"{name}.svg").read_text()
-    assert "Straight on\n  planned" in said and "landed 3 of 3" in said
+    assert "Straight on\n  planned" in said and "succeeded 3 of 3" in said
 
 
 def test_the_report_says_what_the_table_holds(flown):
     out = flown[0] / "out"
     study = Study(str(out))
     parts = tables.parts(study).set_index(["cell", "method"])
-    assert parts.loc[("figure_4", "planned"), "landed"] == 3
-    assert parts.loc[("figure_4", "vertical"), ["trials", "landed"]].tolist() == [2, 0]
+    assert parts.loc[("figure_4", "planned"), "succeeded"] == 3
+    assert parts.loc[("figure_4", "vertical"), ["trials", "succeeded"]].tolist() == [2, 0]
     assert parts.loc[("figure_4", "ego"), "half_landed_s"] == float("inf")
     with sqlite3.connect(out / "study.db") as db:
         times = [t for t, in db.execute("SELECT time_to_land_s FROM trial WHERE landed ORDER BY trial")]

@@ -26,12 +26,13 @@ def main(arguments):
     if missing:
         print(f"touchdown_report: install {' '.join(missing)} for this report", file=sys.stderr)
         return 2
+    from touchdown_report.record import RecordError
     from touchdown_report.study.data import Study, StudyError
     from touchdown_report.study.report import write_report
 
     try:
         write_report(Study(arguments[0]))
-    except (StudyError, OSError) as error:
+    except (StudyError, RecordError, OSError) as error:
         print(f"touchdown_report: {error}", file=sys.stderr)
         return 2
     return 0

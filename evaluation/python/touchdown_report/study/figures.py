@@ -32,7 +32,7 @@ def success(study, parts):
             if row.empty:
                 continue
             row = row.iloc[0]
-            share = row["landed"] / row["trials"]
+            share = row["succeeded"] / row["trials"]
             panel.errorbar(
                 100 * share,
                 place,

@@ -12,6 +12,7 @@ LOOKS = {
     "vertical": ("#0072B2", "vertical descent"),
     "planned": ("#D55E00", "planned descent"),
     "ego": ("#CC79A7", "EGO-Planner, 5 Hz"),
+    "pid": ("#009E73", "PID"),
 }
 PAD = "#2B2B2B"
 LAST = 5.0  # of a flight, "near the landing point" [s]
@@ -45,7 +46,14 @@ def _end_mark(axes, x, y, landed, colour):
     axes.plot(x, y, mark, ms=size, mfc=colour, mec="white", mew=0.8, zorder=6)
 
 
-def _plan_view(axes, found):
+def _limits(panels):
+    """Corners that hold every path of all panels: one scale for all."""
+    every = [flight for _, found in panels for flight in found.values()]
+    points = np.vstack([path[:, :2] for flight in every for path in (flight.vehicle, flight.pad)])
+    return points.min(axis=0) - 1.5, points.max(axis=0) + 1.5
+
+
+def _plan_view(axes, found, limits):
     longest = max(found.values(), key=lambda flight: flight.t[-1])
     draw_obstacles(axes, longest.obstacles, False)
     axes.plot(longest.pad[:, 0], longest.pad[:, 1], color=PAD, lw=1.3, ls=(0, (4, 2)), label="landing pad")
@@ -55,8 +63,7 @@ def _plan_view(axes, found):
         axes.plot(flight.vehicle[:, 0], flight.vehicle[:, 1], color=colour, lw=1.7, label=title, zorder=4)
         _end_mark(axes, *flight.vehicle[-1, :2], flight.landed, colour)
     axes.plot(*longest.vehicle[0, :2], "o", ms=5, mfc="white", mec="#333333", zorder=5)
-    everything = np.vstack([f.vehicle[:, :2] for f in found.values()] + [longest.pad[:, :2]])
-    lo, hi = everything.min(axis=0) - 1.5, everything.max(axis=0) + 1.5
+    lo, hi = limits
     axes.set_xlim(lo[0], hi[0])
     axes.set_ylim(lo[1], hi[1])
     axes.set_aspect("equal", adjustable="datalim")
@@ -84,7 +91,7 @@ def trajectories(panels):
         gridspec_kw={"height_ratios": [2.6, 1.0]},
     )
     for column, (title, found) in enumerate(panels):
-        _plan_view(axes[0, column], found)
+        _plan_view(axes[0, column], found, _limits(panels))
         _heights(axes[1, column], found)
         axes[0, column].set_title(title, fontsize=9)
     axes[0, 0].set_ylabel("y [m]")
@@ -179,7 +186,7 @@ def figures(study):
     """(name, caption, draw, arguments) of every figure whose flights are recorded."""
     both = ("vertical", "planned")
     note = "★ touchdown, ✕ not landed; dashed: the pad. First trial of each cell."
-    found = flights(study, "figure_4", ("ego", *both))
+    found = flights(study, "figure_4", ("ego", "pid", *both))
     if found:
         yield "figure_04", f"Figure 4. Behind a pad at 0.8 m/s along x. {note}", following, (found,)
     for case, first in (("1", 7), ("2", 10)):

@@ -9,7 +9,7 @@ from touchdown_report.study.statistics import Estimate
 from touchdown_report.study.style import Gallery
 from touchdown_report.study.texts import duration, interval, number, of, p_value
 
-MOST_FAILURES = 40  # in the report; all of them are in csv/failures.csv
+MOST_FAILURES = 8  # of a method in the report; all of them are in csv/failures.csv
 OWN_CHAPTERS = {"paper": paper.write, "solvers": solvers.write, "ablation": ablation.write}
 
 
@@ -18,7 +18,7 @@ def _estimate(row, name):
 
 
 def _rate(row):
-    return of(row["landed"], Estimate(0.0, row["rate_lo"], row["rate_hi"], row["trials"]))
+    return of(row["succeeded"], Estimate(0.0, row["rate_lo"], row["rate_hi"], row["trials"]))
 
 
 def _success(study, document, gallery, parts):
@@ -64,7 +64,7 @@ def _times(study, document, gallery, parts):
             [
                 study.cell_title(row["cell"]),
                 study.method_title(row["method"]),
-                f"{row['landed']} of {row['trials']}",
+                f"{row['succeeded']} of {row['trials']}",
                 interval(half, 1),
                 interval(_estimate(row, "time_to_land_median_s"), 1),
                 number(row["time_ratio_median"], 2),
@@ -78,7 +78,7 @@ def _times(study, document, gallery, parts):
         [
             "cell",
             "method",
-            "landed",
+            "succeeded",
             "half landed [s]",
             "time to land, of the landed [s]",
             "over T*",
@@ -100,7 +100,8 @@ def _comparisons(study, document, comparisons):
         "With few pairs no difference can be shown: five pairs reach p = 0.0625 at best."
     )
     rows = []
-    for _, row in comparisons.iterrows():
+    pooled_first = comparisons.sort_values("cell", key=lambda cell: cell != tables.ALL_CELLS, kind="stable")
+    for _, row in pooled_first.iterrows():
         pooled = row["cell"] == tables.ALL_CELLS
         rows.append(
             [
@@ -127,16 +128,16 @@ def _failures(study, document, failures):
         f"{len(failures)} trials, all in `csv/failures.csv`. The command for any trial, failed or not, stands in "
         "`csv/trials.csv`; add `--record F.db --plot F.png` to look at it."
     )
-    reference_first = failures.sort_values(
+    by_method = failures.sort_values(
         "method", key=lambda names: names.map(study.methods().index), kind="stable"
     )
     rows = [
         [study.cell_title(r.cell), study.method_title(r.method), r.outcome, f"`{r.command}`"]
-        for r in reference_first.head(MOST_FAILURES).itertuples()
+        for r in by_method.groupby("method", sort=False).head(MOST_FAILURES).itertuples()
     ]
     document.table(["cell", "method", "outcome", "command"], rows)
-    if len(failures) > MOST_FAILURES:
-        document.text(f"The first {MOST_FAILURES} by method; the others are in `csv/failures.csv`.")
+    if len(rows) < len(failures):
+        document.text(f"Of each method the first {MOST_FAILURES}; the others are in `csv/failures.csv`.")
 
 
 def _how(study, document):
@@ -152,7 +153,7 @@ def _how(study, document):
             f"Study `{plan['study']}`{', the short form (--quick)' if plan['quick'] else ''}, seed {plan['seed']}: "
             "trial i has the same seed in every cell and with every method.",
             f"Set in every trial: {', '.join(f'`{k}={v}`' for k, v in plan['set'].items()) or 'nothing'}.",
-            f"Machine: {manifest['cpu']}, {manifest['cpus']} CPUs, {manifest['kernel']}.",
+            f"Machine: {manifest['cpu']}, {manifest['cpus']} CPUs.",
             f"Program: touchdown {manifest['touchdown_version']}, revision {manifest['revision']}, build "
             f"{manifest['build_type']} (`{manifest['compiler_flags'].strip()}`), compiler {manifest['compiler']}, MuJoCo "
             f"{manifest['mujoco']}; build hash `{manifest['build_hash']}`, plan hash `{manifest['plan_hash']}`.",
@@ -179,17 +180,17 @@ def _how(study, document):
 
 def _headline(study, document, parts):
     rows = parts[parts["method"] == study.reference]
-    landed, trials = int(rows["landed"].sum()), int(rows["trials"].sum())
-    worst = rows["trials"] - rows["landed"]
+    good, trials = int(rows["succeeded"].sum()), int(rows["trials"].sum())
+    worst = rows["trials"] - rows["succeeded"]
     document.text(
         f"{len(study.trials)} trials, {len(study.cells())} cells, {len(study.methods())} methods. "
-        f"{study.method_title(study.reference)}: {landed} of {trials} succeed, at most {int(worst.max())} failures in a cell."
+        f"{study.method_title(study.reference)}: {good} of {trials} succeed, at most {int(worst.max())} failures in a cell."
         + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
     )
 
 
 def _summary(study, parts):
-    keys = ["cell", "method", "trials", "landed", "rate_lo", "rate_hi", "time_to_land_median_s",
+    keys = ["cell", "method", "trials", "succeeded", "rate_lo", "rate_hi", "time_to_land_median_s",
             "touchdown_error_median_m"]  # fmt: skip
     rows = [
         {

@@ -37,7 +37,7 @@ def parts(study):
             "method": method,
             **study.labels(cell),
             "trials": len(trials),
-            "landed": good,
+            "succeeded": good,
             "rate_lo": rate.lo,
             "rate_hi": rate.hi,
         }
