@@ -88,13 +88,15 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   flight.db = arguments.db;
   flight.shard = Shard::Parse(arguments.shard);
   flight.trial_limit_s = arguments.trial_limit_s;
+  if (flight.shard.number > options.trials) {
+    throw BadInput(
+        fmt::format("--shard {}: it has no trials, of {}.", arguments.shard, options.trials));
+  }
   const Campaign campaign = SweepCampaign(options, registries);
   CheckOutputs(arguments);
   const CampaignResult result = RunCampaign(campaign, flight, registries, CampaignProgress());
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, arguments.db);
-  if (result.rows.empty())
-    throw BadInput(fmt::format("--shard {}: it has no trials.", arguments.shard));
   if (arguments.json) {
     std::cout << SweepJson(campaign, result.rows).dump(2) << std::endl;
   } else {

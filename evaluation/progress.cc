@@ -10,9 +10,7 @@ namespace touchdown::evaluation {
 
 std::string ProgressLine(const ProgressText& text, int done, int all, double elapsed_s) {
   const std::string begin = text.of.empty() ? "" : text.of + ": ";
-  const std::string rate =
-      text.with_rate ? fmt::format("{:.2f} {}/s, ", done / elapsed_s, text.things) : "";
-  return fmt::format("{}{} of {} {}, {}{:.0f} s left", begin, done, all, text.things, rate,
+  return fmt::format("{}{} of {} {}, {:.0f} s left", begin, done, all, text.things,
                      elapsed_s / done * (all - done));
 }
 

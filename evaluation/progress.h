@@ -9,9 +9,8 @@ namespace touchdown::evaluation {
 
 /// What is counted, in the words of the line that says how far it is.
 struct ProgressText {
-  std::string things;      ///< "flights"
-  std::string of = {};     ///< what they belong to ("kind C"); it then begins the line
-  bool with_rate = false;  ///< also says how many a second
+  std::string things;   ///< "flights"
+  std::string of = {};  ///< what they belong to ("kind C"); it then begins the line
 };
 
 /// "kind C: 3 of 20 flights, 12 s left": the time left at the rate so far.

@@ -65,14 +65,14 @@ void Fill(SqliteDb& db, const Campaign& campaign, const Shard& shard, const Cell
 
 void Create(const std::string& path, const Campaign& campaign, const Shard& shard,
             const CellPlan& cells) {
+  // The log of a file that was removed without it would be taken for this one's.
+  for (const char* of_log : {"-wal", "-shm", "-journal"}) std::filesystem::remove(path + of_log);
   AtomicFile file(path);
   {
     SqliteDb db(file.working_path(), SqliteDb::Mode::kCreate);
     db.Execute("PRAGMA journal_mode=OFF");
     Fill(db, campaign, shard, cells);
   }
-  // The log of a file that was removed without it would be taken for this one's.
-  for (const char* of_log : {"-wal", "-shm", "-journal"}) std::filesystem::remove(path + of_log);
   file.CommitNew();  // or another process was faster: then that one's file is looked at
 }
 
@@ -116,9 +116,9 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
 TrialStore::~TrialStore() {
   if (!db_) return;
   try {
-    db_->Execute("PRAGMA journal_mode=DELETE");  // one file again, which can be copied
+    // One file again, which can be copied, unless somebody is just reading it: it is as good with its log.
+    db_->Execute("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
   } catch (const SqliteError&) {
-    // Somebody reads it: it is as good with its log.
   }
 }
 

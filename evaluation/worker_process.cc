@@ -100,7 +100,8 @@ bool ReadUntil(int from, Clock::time_point deadline, std::string* text) {
   }
 }
 
-[[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) {
+// noexcept: what is thrown ends this process and does not get to whoever would catch it in its maker.
+[[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) noexcept {
   const std::string text = work(item);
   // Not exit(): nothing of what the maker has open or would write at its end is this process's.
   _exit(WriteAll(to, text.data(), text.size()) ? 0 : 1);
@@ -137,7 +138,7 @@ WorkerReply Do(const WorkerProcess::Work& work, int item, double limit_s) {
   return reply;
 }
 
-[[noreturn]] void Serve(const WorkerProcess::Work& work, double limit_s, int socket) {
+[[noreturn]] void Serve(const WorkerProcess::Work& work, double limit_s, int socket) noexcept {
   std::int32_t item = 0;
   while (ReadAll(socket, &item, sizeof(item))) {
     const WorkerReply reply = Do(work, item, limit_s);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sweeps that are interrupted, killed, split and spread over ranks: the same tables in the end."""
+import contextlib
 import json
 import os
 import random
@@ -16,9 +17,13 @@ SHORT = ("--set", "timeout=1.5", "--vary", "controller=geometric,paper", "--vary
 TABLES = ("planned", "variation", "varied_key", "trial", "cell", "cell_value")
 
 
+def reading(path):
+    return contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True))
+
+
 def tables(path):
     """Everything that does not depend on the clock, in the order in which it is stored."""
-    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+    with reading(path) as db:
         assert db.execute("PRAGMA integrity_check").fetchone() == ("ok",)
         return {name: db.execute(f"SELECT * FROM {name} ORDER BY rowid").fetchall() for name in TABLES}
 
@@ -27,7 +32,8 @@ def flown(path):
     """How many trials a reader finds; None before there is a file."""
     if not path.exists():
         return None
-    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
+    with reading(path) as db:
+        db.execute("BEGIN")  # what follows is of one moment
         trials = db.execute("SELECT count(*) FROM trial").fetchone()[0]
         assert db.execute("SELECT count(*) FROM timing").fetchone() == (trials,)
         assert db.execute("SELECT sum(trials) FROM cell").fetchone() == (trials,)
@@ -84,15 +90,15 @@ def test_a_sweep_that_is_killed_goes_on_where_it_was(program, run, tmp_path):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_sweep_says_how_to_go_on(program, run, tmp_path, number):
     path = tmp_path / "a.db"
-    process = begun(program, tmp_path, *sweep(2000, "a.db", "--jobs", "2"))
+    process = begun(program, tmp_path, *sweep(100, "a.db", "--jobs", "2"))
     while not flown(path):  # and is read while it grows
         assert process.poll() is None
     process.send_signal(number)
     out, err = process.communicate()
     assert process.returncode == 128 + number and out == ""
-    assert "of 2000 trials: they are in a.db, and the same command goes on" in err.splitlines()[-1]
+    assert "of 100 trials: they are in a.db, and the same command goes on" in err.splitlines()[-1]
     assert [p.name for p in tmp_path.iterdir()] == ["a.db"]
-    assert 0 < flown(path) < 2000
+    assert 0 < flown(path) < 100
 
 
 def test_what_is_resumed_is_told(run, tmp_path):

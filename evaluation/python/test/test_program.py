@@ -16,9 +16,9 @@ def one_sentence(text):
 def test_help_lists_what_is_built(run):
     done = run("--help")
     assert done.returncode == 0
-    for command in ("land", "plan", "profile", "compare", "sweep", "list"):
+    for command in ("land", "plan", "profile", "compare", "sweep", "merge", "list"):
         assert command in done.stdout
-    for command in ("land", "plan", "profile", "compare", "sweep", "list"):
+    for command in ("land", "plan", "profile", "compare", "sweep", "merge", "list"):
         assert run(command, "--help").returncode == 0
 
 
@@ -44,6 +44,11 @@ def test_help_lists_what_is_built(run):
         (("land", "--planner", "rrt"), ["planner", "landing"]),
         (("sweep",), ["SCENARIO"]),
         (("sweep", "open", "--trials", "0"), ["--trials"]),
+        (("sweep", "open", "--shard", "3/2"), ["--shard 3/2"]),
+        (("sweep", "open", "--trials", "2", "--shard", "3/3"), ["--shard 3/3", "no trials"]),
+        (("sweep", "open", "--trial-limit", "0"), ["--trial-limit"]),
+        (("merge", "out.db"), ["SHARD"]),
+        (("merge", "out.db", "none.db"), ["none.db"]),
         (("sweep", "open", "--seed", "-4"), ["--seed", "9007199254740992"]),
         (("sweep", "open", "--vary", "pad.sped=1..2"), ["pad.sped"]),
         (("sweep", "open", "--vary", "gps.sigma=1..6"), ["--vary gps.sigma=1..6", "[0, 5] m"]),
@@ -242,7 +247,7 @@ def test_a_landing_is_status_0_and_drawn(run, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["landing.png"]
 
 
-def test_a_sweep_writes_its_table_once(run, tmp_path):
+def test_a_sweep_flies_into_its_file_once(run, tmp_path):
     arguments = ("sweep", "open", "--trials", "3", "--db", "t.db", "--vary", "pad.speed=0.2,0.4")
     done = run(*arguments, *SHORT, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -255,7 +260,11 @@ def test_a_sweep_writes_its_table_once(run, tmp_path):
         manifest = dict(db.execute("SELECT key, value FROM manifest"))
         assert {"scenario_yaml", "sweep_seed", "compiler", "cpu", "build_hash"} <= set(manifest)
     again = run(*arguments, *SHORT, cwd=tmp_path)
-    assert again.returncode == 2 and "never overwritten" in again.stderr
+    assert again.returncode == 0 and again.stdout == done.stdout
+    assert "all 3 trials were flown before" in again.stderr
+    run("land", "open", "--record", "record.db", *SHORT, cwd=tmp_path)
+    other = run(*arguments[:-4], "--db", "record.db", *SHORT, cwd=tmp_path)
+    assert other.returncode == 2 and "record.db: it is no file of trials" in other.stderr
 
 
 def rows_of(path):

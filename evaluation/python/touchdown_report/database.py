@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Result files: SQLite, read only, with a version that the reader knows."""
+import contextlib
 import os
 import sqlite3
 
@@ -12,7 +13,7 @@ def read(path, what, table, version, error, use):
     if not os.path.isfile(path):
         raise error(f"{path}: there is no such file.")
     try:
-        with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as database:
+        with contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
             facts = dict(database.execute(f"SELECT key, value FROM {table}"))
             if facts.get("version") != version:
                 raise error(
