@@ -134,6 +134,11 @@ std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                registries.backends);
 }
 
+std::string BackendName(const Scenario& scenario) {
+  if (scenario.planner == PlannerKind::kLanding) return scenario.solver.backend;
+  return scenario.planner == PlannerKind::kPid ? "none" : "lbfgs";
+}
+
 double PlannerRate(const Scenario& scenario) {
   switch (scenario.planner) {
     case PlannerKind::kLanding:

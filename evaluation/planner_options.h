@@ -26,6 +26,9 @@ std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                const estimation::VehicleModel& model,
                                                const Registries& registries);
 
+/// The solver of that planner: the baselines have one of their own, or "none".
+std::string BackendName(const Scenario& scenario);
+
 /// How often it is to be called [Hz]: the landing planner at planning.rate, the baselines at the
 /// rates of their state machine and law.
 double PlannerRate(const Scenario& scenario);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/trial_json.h"
 
@@ -65,7 +66,7 @@ std::string ProfileText(const Profile& profile) {
   const ProfileSummary summary = Summarise(profile);
   std::string text = fmt::format("{}, planner {}, backend {}: {}\n", profile.scenario.name,
                                  FindScenarioKey("planner")->get(profile.scenario),
-                                 profile.scenario.solver.backend, Source(profile));
+                                 BackendName(profile.scenario), Source(profile));
   text += fmt::format("  {:<12}{:>8}{:>36}   {:>36}   {:>15}\n", "", "", "thread CPU time [ms]",
                       "wall time [ms]", "allocations");
   text += fmt::format("  {:<12}{:>8}{:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>7}{:>8}\n",
@@ -94,7 +95,7 @@ Json ProfileJson(const Profile& profile, const MachineState& machine) {
   Json json;
   json["scenario"] = profile.scenario.name;
   json["planner"] = FindScenarioKey("planner")->get(profile.scenario);
-  json["backend"] = profile.scenario.solver.backend;
+  json["backend"] = BackendName(profile.scenario);
   json["record"] = profile.record.empty() ? Json() : Json(profile.record);
   Json seeds = Json::array();
   for (const ProfileRun& run : profile.runs) seeds.push_back(run.seed);

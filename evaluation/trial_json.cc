@@ -2,6 +2,7 @@
 // The machine-readable result of one trial. Fields that do not apply are null, never left out.
 #include "touchdown/evaluation/trial_json.h"
 
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/statistics.h"
 
@@ -79,12 +80,6 @@ Json WallClockJson(const TrialTiming& timing) {
   return json;
 }
 
-// The baselines have a solver of their own, or none.
-std::string BackendOf(const Scenario& scenario) {
-  if (scenario.planner == PlannerKind::kLanding) return scenario.solver.backend;
-  return scenario.planner == PlannerKind::kPid ? "none" : "lbfgs";
-}
-
 }  // namespace
 
 Json QuantilesJson(const std::vector<double>& values) {
@@ -121,7 +116,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["estimator"] = EstimatorJson(result.estimator);
   json["own_state"] = OwnStateJson(result.own_state);
   json["planner"] = FindScenarioKey("planner")->get(scenario);
-  json["backend"] = BackendOf(scenario);
+  json["backend"] = BackendName(scenario);
   json["scenario"] = scenario.name;
   json["seed"] = result.seed;
   json["wall_clock"] = WallClockJson(result.timing);

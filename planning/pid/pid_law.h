@@ -10,7 +10,7 @@ namespace touchdown::planning {
 /// Gains of the track-then-descend baseline, from a position error to a velocity. Where the defaults come
 /// from: docs/pid.md.
 struct PidGains {
-  double proportional = 1.5;    ///< horizontal, of the position error [1/s]
+  double proportional = 2.0;    ///< horizontal, of the position error [1/s]
   double integral = 0.2;        ///< of its integral [1/s^2]
   double derivative = 0.1;      ///< of its rate [-]
   double integral_limit = 0.5;  ///< the integral adds no more than this [m/s]
