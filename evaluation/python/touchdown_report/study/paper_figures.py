@@ -12,6 +12,7 @@ LOOKS = {
     "vertical": ("#0072B2", "vertical descent"),
     "planned": ("#D55E00", "planned descent"),
     "ego": ("#CC79A7", "EGO-Planner, 5 Hz"),
+    "ego_2hz": ("#E69F00", "EGO-Planner, 2 Hz"),
     "pid": ("#009E73", "PID"),
 }
 PAD = "#2B2B2B"
@@ -186,7 +187,7 @@ def figures(study):
     """(name, caption, draw, arguments) of every figure whose flights are recorded."""
     both = ("vertical", "planned")
     note = "★ touchdown, ✕ not landed; dashed: the pad. First trial of each cell."
-    found = flights(study, "figure_4", ("ego", "pid", *both))
+    found = flights(study, "figure_4", ("ego_2hz", "ego", "pid", *both))
     if found:
         yield "figure_04", f"Figure 4. Behind a pad at 0.8 m/s along x. {note}", following, (found,)
     for case, first in (("1", 7), ("2", 10)):

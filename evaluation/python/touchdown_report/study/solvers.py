@@ -36,11 +36,12 @@ def latency(study):
 
 def trial_costs(study, cells):
     """Median CPU time of a replanning step in each trial: rows are worlds (cell and seed), columns
-    backends; infinite where the trial did not land."""
+    backends; infinite where the trial did not land. Worlds that not all flew are left out."""
     medians = study.replans.groupby("trial")["cpu_ms"].median().rename("cost")
     trials = study.trials[study.trials["cell"].isin(cells)].join(medians, on="trial")
     cost = trials["cost"].where(trials["landed"], np.inf).fillna(np.inf)
-    return trials.assign(cost=cost).pivot(index=["cell", "seed"], columns="method", values="cost")
+    costs = trials.assign(cost=cost).pivot(index=["cell", "seed"], columns="method", values="cost")
+    return costs.dropna()
 
 
 def _common_cells(study):
