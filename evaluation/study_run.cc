@@ -2,9 +2,12 @@
 // A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
 #include "touchdown/evaluation/study_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -12,9 +15,9 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/on_threads.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/work_sharing.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -23,6 +26,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
+constexpr double kRecordLimit = 1800.0;  // of wall time, for one recorded flight [s]
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -63,16 +67,35 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     if (!plan.Records(part) || part.trials == 0 || fs::exists(path)) continue;
     flights.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), path});
   }
-  RunOnThreads(
-      static_cast<int>(flights.size()), jobs,
-      [&](int i) {
-        const Flight& flight = flights[static_cast<std::size_t>(i)];
-        TrialRecord record;
-        const Scenario& scenario = flight.trial->scenario;
-        const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
-        WriteRecord(flight.path, scenario, result, record);
-      },
-      Progress({.things = "recorded flights"}));
+  const auto fly = [&](int i) -> std::string {
+    const Flight& flight = flights[static_cast<std::size_t>(i)];
+    try {
+      TrialRecord record;
+      const Scenario& scenario = flight.trial->scenario;
+      const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
+      WriteRecord(flight.path, scenario, result, record);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const int all = static_cast<int>(flights.size());
+  std::vector<WorkerProcess> workers;
+  for (int job = 0; job < std::min(jobs, all); ++job) workers.emplace_back(fly, kRecordLimit);
+  std::vector<int> items(flights.size());
+  std::iota(items.begin(), items.end(), 0);
+  Progress progress({.things = "recorded flights"});
+  int done = 0;
+  const auto take = [&](const WorkerReply& reply) {
+    const bool written = reply.end == WorkerReply::End::kDone && reply.text.empty();
+    if (!written) {
+      throw std::runtime_error(
+          fmt::format("{} was not recorded: {}", flights[static_cast<std::size_t>(reply.item)].path,
+                      reply.text.empty() ? "the flight did not end" : reply.text));
+    }
+    progress(++done, all);
+  };
+  ShareWork(workers, items, take, [] { return false; });
 }
 
 }  // namespace
