@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
+constexpr char kWritten[] = "written";
 constexpr double kRecordLimit = 1800.0;  // of wall time, for one recorded flight [s]
 
 void MakeFolder(const std::string& folder) {
@@ -77,7 +78,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     } catch (const std::exception& error) {
       return error.what();
     }
-    return {};
+    return kWritten;
   };
   const int all = static_cast<int>(flights.size());
   std::vector<WorkerProcess> workers;
@@ -87,7 +88,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
   Progress progress({.things = "recorded flights"});
   int done = 0;
   const auto take = [&](const WorkerReply& reply) {
-    const bool written = reply.end == WorkerReply::End::kDone && reply.text.empty();
+    const bool written = reply.end == WorkerReply::End::kDone && reply.text == kWritten;
     if (!written) {
       throw std::runtime_error(
           fmt::format("{} was not recorded: {}", flights[static_cast<std::size_t>(reply.item)].path,
