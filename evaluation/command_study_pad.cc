@@ -62,7 +62,7 @@ void AddPadStudyCommand(Command study, const Registries& registries, CommandRun*
   command.Add("--set", options.overrides, "Change a key of the scenarios")
       .TypeName("KEY=VALUE")
       .OneWord();
-  command.Add("--jobs", options.jobs, "Threads").Check(Range(1, 1024)).ShowDefault();
+  command.Add("--jobs", options.jobs, "Flights at a time").Check(Range(1, 1024)).ShowDefault();
   command.Add("--seed", options.seed, "Seed of the study; trial seeds follow from it")
       .Check(Range(std::uint64_t{0}, std::uint64_t{1} << 53))
       .ShowDefault();

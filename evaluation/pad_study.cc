@@ -9,8 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,10 +23,11 @@
 #include "touchdown/estimation/pad_predictor.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/on_threads.h"
 #include "touchdown/evaluation/perception.h"
+#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/evaluation/sweep.h"
+#include "touchdown/evaluation/work_sharing.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -112,6 +117,70 @@ std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t sce
   return trials;
 }
 
+// What a flight leaves.
+struct Flown {
+  Outcome outcome = Outcome::kError;
+  std::vector<PadStudyRow> rows;
+};
+
+constexpr char kFlown = 'f', kRefused = 'r', kFailed = 'e';
+
+// The rows are numbers alone, and the process that reads them is of the same program.
+std::string Packed(const Flown& flown) {
+  static_assert(std::is_trivially_copyable_v<PadStudyRow>);
+  std::string bytes(1, kFlown);
+  bytes.append(reinterpret_cast<const char*>(&flown.outcome), sizeof(flown.outcome));
+  bytes.append(reinterpret_cast<const char*>(flown.rows.data()),
+               flown.rows.size() * sizeof(PadStudyRow));
+  return bytes;
+}
+
+Flown Unpacked(const std::string& bytes) {
+  Flown flown;
+  std::memcpy(&flown.outcome, bytes.data() + 1, sizeof(flown.outcome));
+  const char* rows = bytes.data() + 1 + sizeof(flown.outcome);
+  const auto size = static_cast<std::size_t>(bytes.data() + bytes.size() - rows);
+  flown.rows.resize(size / sizeof(PadStudyRow));
+  if (size > 0) std::memcpy(flown.rows.data(), rows, size);
+  return flown;
+}
+
+// `fly` for every number, each in a process of its own, and `take` here for what it leaves. @throws what `fly`
+// throws, and std::runtime_error for one that dies or hangs: a mean over flights needs them all.
+void FlyAll(int count, int jobs, const std::function<Flown(int)>& fly,
+            const std::function<void(int, Flown)>& take,
+            const std::function<void(int done, int all)>& progress) {
+  constexpr double kLimit = 1800.0;  // [s]
+  const auto work = [&](int i) {
+    try {
+      return Packed(fly(i));
+    } catch (const BadInput& error) {
+      return kRefused + std::string(error.what());
+    } catch (const std::exception& error) {
+      return kFailed + std::string(error.what());
+    }
+  };
+  std::vector<WorkerProcess> workers;
+  for (int job = 0; job < std::min(jobs, count); ++job) workers.emplace_back(work, kLimit);
+  std::vector<int> flights(static_cast<std::size_t>(count));
+  std::iota(flights.begin(), flights.end(), 0);
+  int done = 0;
+  const auto receive = [&](const WorkerReply& reply) {
+    if (reply.end == WorkerReply::End::kDied) {
+      throw std::runtime_error(fmt::format("flight {} ended by {}", reply.item, reply.text));
+    }
+    if (reply.end == WorkerReply::End::kTimedOut) {
+      throw std::runtime_error(
+          fmt::format("flight {} had not ended after {} s", reply.item, kLimit));
+    }
+    if (reply.text[0] == kRefused) throw BadInput(reply.text.substr(1));
+    if (reply.text[0] == kFailed) throw std::runtime_error(reply.text.substr(1));
+    take(reply.item, Unpacked(reply.text));
+    progress(++done, count);
+  };
+  ShareWork(workers, flights, receive, [] { return false; });
+}
+
 }  // namespace
 
 const char* ToString(PadCourse course) {
@@ -188,18 +257,29 @@ PadStudy RunPadStudy(const PadStudyOptions& options, const Registries& registrie
       }
     }
   }
-  const int all = static_cast<int>(study.flights.size());
-  std::vector<std::vector<PadStudyRow>> rows_of(study.flights.size());
+  const bool rendered = std::any_of(scenario_of.begin(), scenario_of.end(), [](const Scenario& s) {
+    return s.sensing == SensingKind::kRendered;
+  });
+  if (rendered) RequireRendering("sensing: rendered");
   const auto fly = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     TrialSamples samples;
-    study.flights[at].outcome =
+    Flown flown;
+    flown.outcome =
         RunTrial(scenario_of[at], study.flights[at].seed, registries, nullptr, nullptr, &samples)
             .outcome;
-    rows_of[at] = ReplayPadLog(samples.pad, PadFilterOptionsOf(scenario_of[at]));
-    for (PadStudyRow& row : rows_of[at]) row.flight = i;
+    flown.rows = ReplayPadLog(samples.pad, PadFilterOptionsOf(scenario_of[at]));
+    for (PadStudyRow& row : flown.rows) row.flight = i;
+    return flown;
   };
-  RunOnThreads(all, options.jobs, fly, progress);
+  std::vector<std::vector<PadStudyRow>> rows_of(study.flights.size());
+  FlyAll(
+      static_cast<int>(study.flights.size()), options.jobs, fly,
+      [&](int i, Flown flown) {
+        study.flights[static_cast<std::size_t>(i)].outcome = flown.outcome;
+        rows_of[static_cast<std::size_t>(i)] = std::move(flown.rows);
+      },
+      progress);
   for (const auto& some : rows_of) study.rows.insert(study.rows.end(), some.begin(), some.end());
   return study;
 }

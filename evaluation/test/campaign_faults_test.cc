@@ -84,15 +84,16 @@ TEST(CampaignFaults, ATrialThatDiesIsARowAndNotTheEnd) {
 
 TEST(CampaignFaults, ATrialThatNeverEndsIsARowAndNotTheEnd) {
   const Registries registries = Faulty();
-  const Campaign campaign = WithBackends("hangs,aborts", 2, registries);
+  const Campaign campaign = WithBackends("hangs", 2, registries);
   CampaignOptions options;
   options.trial_limit_s = 0.5;
   const CampaignResult result =
       RunCampaign(campaign, options, registries, [](const CampaignState&) {});
   ASSERT_EQ(result.rows.size(), 2U);
-  EXPECT_EQ(result.rows[0].result.outcome, Outcome::kHung);
-  EXPECT_EQ(result.rows[0].result.detail, "It had not ended after 0.5 s.");
-  EXPECT_EQ(result.rows[1].result.outcome, Outcome::kCrashed);
+  for (const SweepRow& row : result.rows) {
+    EXPECT_EQ(row.result.outcome, Outcome::kHung);
+    EXPECT_EQ(row.result.detail, "It had not ended after 0.5 s.");
+  }
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ TEST(PadStudy, RefusesWhatItWouldOverwriteAndAFilterInAnotherFrame) {
   EXPECT_NE(refusal("own_state=estimated").find("own_state"), std::string::npos);
 }
 
-TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnThreads) {
+TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnJobs) {
   PadStudyOptions options;
   options.scenarios = {"open"};
   options.sigmas = {0.05};
