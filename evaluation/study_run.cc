@@ -2,19 +2,23 @@
 // A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
 #include "touchdown/evaluation/study_run.h"
 
+#include <algorithm>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/on_threads.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/work_sharing.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -23,6 +27,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
+constexpr double kRecordLimit = 600.0;  // wall time of a flight [s]
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -63,16 +68,36 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     if (!plan.Records(part) || part.trials == 0 || fs::exists(path)) continue;
     flights.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), path});
   }
-  RunOnThreads(
-      static_cast<int>(flights.size()), jobs,
-      [&](int i) {
-        const Flight& flight = flights[static_cast<std::size_t>(i)];
-        TrialRecord record;
-        const Scenario& scenario = flight.trial->scenario;
-        const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
-        WriteRecord(flight.path, scenario, result, record);
-      },
-      Progress({.things = "recorded flights"}));
+  const auto fly = [&](int i) -> std::string {
+    const Flight& flight = flights[static_cast<std::size_t>(i)];
+    try {
+      TrialRecord record;
+      const Scenario& scenario = flight.trial->scenario;
+      const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
+      WriteRecord(flight.path, scenario, result, record);
+      return {};
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+  };
+  std::vector<WorkerProcess> workers;
+  std::vector<int> items(flights.size());
+  std::iota(items.begin(), items.end(), 0);
+  const int count = static_cast<int>(flights.size());
+  for (int job = 0; job < std::min(jobs, count); ++job) workers.emplace_back(fly, kRecordLimit);
+  Progress progress({.things = "recorded flights"});
+  int done = 0;
+  const auto take = [&](const WorkerReply& reply) {
+    // The study itself is complete: without this record only its picture is missing.
+    const Flight& flight = flights[static_cast<std::size_t>(reply.item)];
+    if (reply.end == WorkerReply::End::kTimedOut) {
+      spdlog::warn("{}: not recorded within {} s", flight.path, kRecordLimit);
+    } else if (!reply.text.empty()) {
+      spdlog::warn("{}: not recorded: {}", flight.path, reply.text);
+    }
+    progress(++done, count);
+  };
+  ShareWork(workers, items, take, [] { return false; });
 }
 
 }  // namespace
