@@ -280,6 +280,21 @@ TEST(PlannedDescent, FeetThatTouchAreNotPulledOffAgain) {
   EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
 }
 
+// However high it was given up, or low: the pad's surface is no place to climb from below.
+TEST(PlannedDescent, AClimbBeginsBetweenDeckAndFollowHeight) {
+  for (const double height : {-0.2, 2.5}) {
+    Approach mission;
+    mission.FlyTo(0.9);
+    mission.Run(0.02, [&](MissionInputs& in) {
+      in.height = height;
+      in.horizontal_distance = 0.1;
+    });
+    ASSERT_EQ(ModeOf(mission), MissionMode::kLanding);
+    EXPECT_GE(mission.outputs.foot_height, 0.0);
+    EXPECT_LE(mission.outputs.foot_height, mission.parameters.follow_height);
+  }
+}
+
 TEST(PlannedDescent, OtherStylesDoNotLeadToContactWhileTracking) {
   for (const DescentStyle style : {DescentStyle::kNone, DescentStyle::kVertical}) {
     Mission mission;

@@ -51,6 +51,8 @@ TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
     planning::FlatState reference = Sinking();
     Disturbance disturbance = Wind();
     settling.Apply(&state, &reference, &disturbance);
+    EXPECT_EQ(disturbance.moment_B.norm(), 0.0) << "the deck's moments are no disturbance";
+    EXPECT_EQ(reference.j_WB.norm(), 0.0);
     const ControlOutput output = MakeController(law, model)->Update(state, reference, disturbance);
     EXPECT_GT(output.R_WB_desired(2, 2), 1.0 - 1e-9) << law;
     EXPECT_GT(output.wrench.moment_B.y(), 0.5) << law;  // levels it
