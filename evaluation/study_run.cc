@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
+constexpr char kRecorded[] = "recorded";
 constexpr double kRecordLimit = 600.0;  // wall time of a flight [s]
 
 void MakeFolder(const std::string& folder) {
@@ -75,7 +76,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
       const Scenario& scenario = flight.trial->scenario;
       const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
       WriteRecord(flight.path, scenario, result, record);
-      return {};
+      return kRecorded;
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -92,7 +93,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     const Flight& flight = flights[static_cast<std::size_t>(reply.item)];
     if (reply.end == WorkerReply::End::kTimedOut) {
       spdlog::warn("{}: not recorded within {} s", flight.path, kRecordLimit);
-    } else if (!reply.text.empty()) {
+    } else if (reply.text != kRecorded) {
       spdlog::warn("{}: not recorded: {}", flight.path, reply.text);
     }
     progress(++done, count);
