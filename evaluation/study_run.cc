@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
+constexpr char kRecorded[] = "recorded";
 constexpr double kRecordLimit = 600.0;  // wall time of a flight [s]
-constexpr char kWritten[] = "written";  // a process that answers nothing has died
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -76,7 +76,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
       const Scenario& scenario = flight.trial->scenario;
       const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
       WriteRecord(flight.path, scenario, result, record);
-      return kWritten;
+      return kRecorded;
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -93,7 +93,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     const Flight& flight = flights[static_cast<std::size_t>(reply.item)];
     if (reply.end == WorkerReply::End::kTimedOut) {
       spdlog::warn("{}: not recorded within {} s", flight.path, kRecordLimit);
-    } else if (reply.text != kWritten) {
+    } else if (reply.text != kRecorded) {
       spdlog::warn("{}: not recorded: {}", flight.path, reply.text);
     }
     progress(++done, count);
