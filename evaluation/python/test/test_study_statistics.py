@@ -30,16 +30,19 @@ def test_the_bootstrap_of_a_median():
 
 
 def test_the_bootstrap_without_spread_or_values():
-    assert statistics.bootstrap([2.0] * 5) == statistics.Estimate(2.0, 2.0, 2.0, 5)
-    few = statistics.bootstrap([1.0, 2.0, np.nan])
-    assert few.value == 1.5 and few.n == 2 and np.isnan(few.lo)
+    assert statistics.bootstrap([2.0] * 6) == statistics.Estimate(2.0, 2.0, 2.0, 6)
+    for few in ([1.0, 2.0, np.nan], [1.0, 1.0, 2.0, 2.0, 9.0]):  # too few for 95 %
+        median = statistics.bootstrap(few)
+        assert median.value == np.nanmedian(few) and median.n == np.isfinite(few).sum()
+        assert np.isnan(median.lo) and np.isnan(median.hi)
+    assert np.isfinite(statistics.bootstrap([1.0, 1.0, 2.0, 2.0, 9.0, 9.0]).lo)
     assert np.isnan(statistics.bootstrap([]).value)
 
 
 def test_paired_differences_take_common_seeds_alone():
-    first = pd.Series([3.0, 4.0, 5.0, 9.0], index=[1, 2, 3, 4])
-    second = pd.Series([1.0, 2.0, 3.0, np.nan, 7.0], index=[1, 2, 3, 4, 5])
-    assert statistics.paired_difference(first, second) == statistics.Estimate(2.0, 2.0, 2.0, 3)
+    first = pd.Series([3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], index=[1, 2, 3, 4, 5, 6, 7])
+    second = pd.Series([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, np.nan, 7.0], index=[1, 2, 3, 4, 5, 6, 7, 8])
+    assert statistics.paired_difference(first, second) == statistics.Estimate(2.0, 2.0, 2.0, 6)
 
 
 def test_mcnemar_is_the_binomial_test_of_the_discordant_pairs():

@@ -12,6 +12,7 @@ from statsmodels.stats.multitest import multipletests
 from statsmodels.stats.proportion import proportion_confint
 
 LEVEL = 0.95
+LEAST = 6  # values that an interval of a median asks for: 1 - 2 / 2^6 > 0.95
 RESAMPLES = 9999
 SEED = 20221  # of the bootstrap: a report that is made again has the same intervals
 
@@ -47,14 +48,15 @@ def rate(successes, trials):
 
 
 def bootstrap(values, statistic=np.median):
-    """`statistic` of a sample with its bias-corrected accelerated bootstrap interval. Fewer than three
-    values have no interval; values that are all alike have one of no width."""
+    """`statistic` of a sample with its bias-corrected accelerated bootstrap interval. Fewer than
+    six values have no interval: resampling never leaves the sample's range, which holds the median of what was
+    sampled with less than 95 % then. Values that are all alike have one of no width."""
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
     if values.size == 0:
         return Estimate(np.nan, np.nan, np.nan, 0)
     figure = float(statistic(values))
-    if values.size < 3:
+    if values.size < LEAST:
         return Estimate(figure, np.nan, np.nan, values.size)
     if np.ptp(values) == 0.0:
         return Estimate(figure, figure, figure, values.size)
