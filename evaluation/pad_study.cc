@@ -12,7 +12,6 @@
 #include <cstring>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -160,10 +159,6 @@ void FlyAll(int count, int jobs, const std::function<Flown(int)>& fly,
       return kFailed + std::string(error.what());
     }
   };
-  std::vector<WorkerProcess> workers;
-  for (int job = 0; job < std::min(jobs, count); ++job) workers.emplace_back(work, kLimit);
-  std::vector<int> flights(static_cast<std::size_t>(count));
-  std::iota(flights.begin(), flights.end(), 0);
   int done = 0;
   const auto receive = [&](const WorkerReply& reply) {
     if (reply.end == WorkerReply::End::kDied) {
@@ -178,7 +173,7 @@ void FlyAll(int count, int jobs, const std::function<Flown(int)>& fly,
     take(reply.item, Unpacked(reply.text));
     progress(++done, count);
   };
-  ShareWork(workers, flights, receive, [] { return false; });
+  ShareAll(count, jobs, work, kLimit, receive);
 }
 
 }  // namespace

@@ -2,12 +2,10 @@
 // A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
 #include "touchdown/evaluation/study_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -81,11 +79,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
       return error.what();
     }
   };
-  std::vector<WorkerProcess> workers;
-  std::vector<int> items(flights.size());
-  std::iota(items.begin(), items.end(), 0);
   const int count = static_cast<int>(flights.size());
-  for (int job = 0; job < std::min(jobs, count); ++job) workers.emplace_back(fly, kRecordLimit);
   Progress progress({.things = "recorded flights"});
   int done = 0;
   const auto take = [&](const WorkerReply& reply) {
@@ -98,7 +92,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     }
     progress(++done, count);
   };
-  ShareWork(workers, items, take, [] { return false; });
+  ShareAll(count, jobs, fly, kRecordLimit, take);
 }
 
 }  // namespace

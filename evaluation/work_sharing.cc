@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/work_sharing.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include <poll.h>
 
 namespace touchdown::evaluation {
@@ -25,6 +28,15 @@ void ShareWork(std::vector<WorkerProcess>& workers, const std::vector<int>& item
       if (waits[i].revents != 0) take(busy[i]->Receive());
     }
   }
+}
+
+void ShareAll(int count, int jobs, const WorkerProcess::Work& work, double limit_s,
+              const std::function<void(const WorkerReply&)>& take) {
+  std::vector<WorkerProcess> workers;
+  for (int job = 0; job < std::min(jobs, count); ++job) workers.emplace_back(work, limit_s);
+  std::vector<int> items(static_cast<std::size_t>(count));
+  std::iota(items.begin(), items.end(), 0);
+  ShareWork(workers, items, take, [] { return false; });
 }
 
 }  // namespace touchdown::evaluation

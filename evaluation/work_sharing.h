@@ -15,4 +15,9 @@ void ShareWork(std::vector<WorkerProcess>& workers, const std::vector<int>& item
                const std::function<void(const WorkerReply&)>& take,
                const std::function<bool()>& stop);
 
+/// Has the items 0, 1, ... count - 1 done by up to `jobs` workers, each item for at most `limit_s` of wall
+/// time [s]; `take` gets each reply. @throws what `take` and WorkerProcess throw
+void ShareAll(int count, int jobs, const WorkerProcess::Work& work, double limit_s,
+              const std::function<void(const WorkerReply&)>& take);
+
 }  // namespace touchdown::evaluation
