@@ -71,15 +71,10 @@ TrialResult ResultFrom(const WorkerReply& reply, const SweepTrial& trial, double
 }
 
 // What no trial could mend is said once, before the first. @throws BadInput
-void CheckTrials(const Campaign& campaign, int at_a_time) {
-  bool rendered = false;
-  for (const SweepTrial& trial : campaign.trials) {
-    rendered |= trial.scenario.sensing == SensingKind::kRendered;
-    if (at_a_time > 1 && trial.scenario.planning.latency.measured) {
-      throw BadInput(
-          "--jobs must be 1 with planning.latency=measured: trials would slow each other.");
-    }
-  }
+void CheckTrials(const Campaign& campaign) {
+  const bool rendered = std::any_of(
+      campaign.trials.begin(), campaign.trials.end(),
+      [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
   if (rendered) RequireRendering("sensing: rendered");
 }
 
@@ -99,14 +94,20 @@ class Flight {
     for (const SweepTrial& trial : campaign.trials) {
       if (!options.shard.Takes(trial.index)) continue;
       ++state_.all;
-      if (!store_.Holds(trial.index)) missing_.push_back(trial.index);
+      if (store_.Holds(trial.index)) {
+        ++state_.flown;
+      } else {
+        (trial.FliesAlone() ? alone_ : together_).push_back(trial.index);
+      }
     }
-    state_.resumed = state_.flown = state_.all - static_cast<int>(missing_.size());
+    state_.resumed = state_.flown;
     state_.succeeded = store_.succeeded();
     progress_(state_);
   }
 
-  const std::vector<int>& missing() const { return missing_; }
+  /// What the file lacks, but for what flies alone.
+  const std::vector<int>& together() const { return together_; }
+  const std::vector<int>& alone() const { return alone_; }
 
   void Take(const WorkerReply& reply) {
     const TrialResult result = ResultFrom(reply, TrialOf(campaign_, reply.item), limit_s_);
@@ -132,7 +133,8 @@ class Flight {
   const std::function<void(const CampaignState&)>& progress_;
   TrialStore store_;
   CampaignState state_;
-  std::vector<int> missing_;
+  std::vector<int> together_;
+  std::vector<int> alone_;
 };
 
 int Number(const std::string& text) {
@@ -143,23 +145,21 @@ int Number(const std::string& text) {
 
 }  // namespace
 
-SweepTrial MakeTrial(int index, std::uint64_t seed, const std::string& scenario_path,
-                     const std::vector<std::string>& overrides,
-                     std::vector<std::pair<std::string, std::string>> varied,
+SweepTrial MakeTrial(const std::string& scenario_path, const std::vector<std::string>& overrides,
                      const Registries& registries) {
   SweepTrial trial;
-  trial.index = index;
-  trial.seed = seed;
-  trial.varied = std::move(varied);
   trial.scenario = LoadScenario(scenario_path, overrides, registries);
-  trial.replay =
+  trial.command =
       fmt::format("touchdown land {}", Quoted(ScenarioWord(scenario_path, trial.scenario.name)));
   for (const std::string& text : overrides) {
-    if (text.rfind("seed=", 0) != 0) trial.replay += " --set " + Quoted(text);
+    if (text.rfind("seed=", 0) != 0) trial.command += " --set " + Quoted(text);
   }
-  trial.replay += fmt::format(" --seed {}", seed);
   return trial;
 }
+
+std::string SweepTrial::Replay() const { return fmt::format("{} --seed {}", command, seed); }
+
+bool SweepTrial::FliesAlone() const { return scenario.planning.latency.measured; }
 
 Shard Shard::Parse(const std::string& text) {
   const std::size_t slash = text.find('/');
@@ -181,7 +181,7 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
                            const Registries& registries,
                            const std::function<void(const CampaignState&)>& progress) {
   const bool ranked = LaunchedAsOneOfSeveral();
-  CheckTrials(campaign, ranked ? 2 : options.jobs);
+  CheckTrials(campaign);
   const InterruptWatch watch;
   const auto fly = [&](int i) { return PackResult(Fly(TrialOf(campaign, i), registries)); };
   std::vector<WorkerProcess> workers;
@@ -207,10 +207,11 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
   const auto take = [&](const WorkerReply& reply) { flight.Take(reply); };
   const auto stop = [&] { return watch.signal() != 0; };
   if (ranks) {
-    ranks->Lead(workers.front(), flight.missing(), take, stop);
+    ranks->Lead(workers.front(), flight.together(), take, stop);
   } else {
-    ShareWork(workers, flight.missing(), take, stop);
+    ShareWork(workers, options.jobs, flight.together(), take, stop);
   }
+  ShareWork(workers, 1, flight.alone(), take, stop);
   return flight.Result(watch.signal());
 }
 

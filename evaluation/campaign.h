@@ -19,7 +19,12 @@ struct SweepTrial {
   std::uint64_t seed = 0;                                   ///< at most 2^53
   std::vector<std::pair<std::string, std::string>> varied;  ///< label and its value
   Scenario scenario;
-  std::string replay;  ///< the command that flies it alone
+  std::string command;  ///< `touchdown land SCENARIO --set ...`, without the seed
+
+  /// The command that flies it alone.
+  std::string Replay() const;
+  /// Its plans take as long as the clock says: beside others it would be another flight.
+  bool FliesAlone() const;
 };
 
 /// A trial that was flown.
@@ -28,11 +33,9 @@ struct SweepRow {
   TrialResult result;
 };
 
-/// A trial made as `touchdown land SCENARIO --set ... --seed S` makes it. `scenario_path` as
-/// FindScenario gives it; `varied` are the trial's labels. @throws BadInput as LoadScenario does
-SweepTrial MakeTrial(int index, std::uint64_t seed, const std::string& scenario_path,
-                     const std::vector<std::string>& overrides,
-                     std::vector<std::pair<std::string, std::string>> varied,
+/// The scenario of a trial, as `touchdown land SCENARIO --set ...` makes it, and that command; its place, seed
+/// and labels are the caller's. `scenario_path` as FindScenario gives it. @throws BadInput as LoadScenario does
+SweepTrial MakeTrial(const std::string& scenario_path, const std::vector<std::string>& overrides,
                      const Registries& registries);
 
 /// What a label of the trials is.
@@ -64,7 +67,8 @@ struct Shard {
 };
 
 struct CampaignOptions {
-  int jobs = 1;  ///< trials that are flown at a time; each rank of an MPI program flies one
+  /// Trials that are flown at a time, but for those that fly alone; each rank of an MPI program flies one.
+  int jobs = 1;
   std::string
       db;  ///< the file of the trials, which are added to one that is there; empty: none is kept
   Shard shard;
@@ -88,8 +92,8 @@ struct CampaignResult {
   bool reports = true;
 };
 
-/// Flies the trials that its file does not hold yet, each in a process of its own, and adds each to the file
-/// when it ends: one that dies or takes too long becomes a row with outcome `crashed` or `hung`. The rows
+/// Flies the trials that its file does not hold yet, each in a process of its own, those that fly alone after
+/// the others, and adds each to the file when it ends: one that dies or takes too long becomes a row with outcome `crashed` or `hung`. The rows
 /// do not depend on the number of jobs, ranks or shards, nor on interruptions. The calling process should
 /// have no other threads. `progress` is called once before the first trial and after each.
 /// @throws BadInput if the file is of another campaign, build or shard; SqliteError

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
@@ -63,6 +64,15 @@ int Interrupted(const CampaignResult& result, const std::string& table) {
   return 128 + result.interrupted_by;
 }
 
+// A study flies for minutes: enough to install what its report needs, for those who know.
+void WarnOfNoReport() {
+  try {
+    CheckStudyReport();
+  } catch (const std::runtime_error& missing) {
+    spdlog::warn("{}", missing.what());
+  }
+}
+
 int Report(const StudyRunArguments& arguments, const std::string& folder) {
   WriteStudyReport(folder);
   const nlohmann::ordered_json summary = ReadSummary(folder);
@@ -85,6 +95,7 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const Shard shard = Shard::Parse(arguments.shard);
   const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
   const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
+  if (shard.of == 1) WarnOfNoReport();
   const CampaignResult result = FlyStudy(plan, folder, arguments.jobs, shard, registries);
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));

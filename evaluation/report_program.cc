@@ -119,6 +119,10 @@ void DrawPlan(const std::string& document_path, const std::string& picture_path)
   Draw("touchdown_report.plan", "--picture", document_path, picture_path);
 }
 
+void CheckStudyReport() {
+  RunPython("touchdown_report.study", {"--check"}, "The report could not be written yet");
+}
+
 void WriteStudyReport(const std::string& folder) {
   RunPython("touchdown_report.study", {folder},
             fmt::format("{}: the report was not written", folder));

@@ -46,13 +46,11 @@ void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* pla
                                                              {"method", method.name}};
   labels.insert(labels.end(), cell.labels.begin(), cell.labels.end());
   // All of a part share the scenario: it is read and checked once.
-  SweepTrial trial = MakeTrial(part.first, TrialSeed(plan->campaign.seed, 0), scenario, overrides,
-                               labels, registries);
-  const std::string replay = trial.replay.substr(0, trial.replay.rfind(' ') + 1);
+  SweepTrial trial = MakeTrial(scenario, overrides, registries);
+  trial.varied = labels;
   for (int i = 0; i < part.trials; ++i) {
     trial.index = part.first + i;
     trial.seed = TrialSeed(plan->campaign.seed, i);
-    trial.replay = replay + std::to_string(trial.seed);
     plan->campaign.trials.push_back(trial);
   }
 }
@@ -89,12 +87,6 @@ bool StudyPlan::Records(const StudyPart& part) const {
   const StudyMethod& method = MethodOf(part);
   const auto& cells = method.record_in;
   return method.record || std::find(cells.begin(), cells.end(), CellOf(part).name) != cells.end();
-}
-
-bool StudyPlan::MustFlyAlone() const {
-  return std::any_of(campaign.trials.begin(), campaign.trials.end(), [](const SweepTrial& trial) {
-    return trial.scenario.planning.latency.measured;
-  });
 }
 
 StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,

@@ -32,8 +32,6 @@ struct StudyPlan {
   const StudyMethod& MethodOf(const StudyPart& part) const;
   /// Its first trial is to be recorded.
   bool Records(const StudyPart& part) const;
-  /// Some plans take as long as the clock says: trials would slow each other.
-  bool MustFlyAlone() const;
 };
 
 /// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i): common random numbers.

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
-constexpr char kRecorded[] = "recorded";
 constexpr double kRecordLimit = 600.0;  // wall time of a flight [s]
 
 void MakeFolder(const std::string& folder) {
@@ -67,6 +66,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     if (!plan.Records(part) || part.trials == 0 || fs::exists(path)) continue;
     flights.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), path});
   }
+  // Why there is no record; empty: there is one.
   const auto fly = [&](int i) -> std::string {
     const Flight& flight = flights[static_cast<std::size_t>(i)];
     try {
@@ -74,7 +74,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
       const Scenario& scenario = flight.trial->scenario;
       const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
       WriteRecord(flight.path, scenario, result, record);
-      return kRecorded;
+      return "";
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -87,7 +87,7 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     const Flight& flight = flights[static_cast<std::size_t>(reply.item)];
     if (reply.end == WorkerReply::End::kTimedOut) {
       spdlog::warn("{}: not recorded within {} s", flight.path, kRecordLimit);
-    } else if (reply.text != kRecorded) {
+    } else if (!reply.text.empty()) {
       spdlog::warn("{}: not recorded: {}", flight.path, reply.text);
     }
     progress(++done, count);
@@ -106,7 +106,7 @@ CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, int jo
                         const Shard& shard, const Registries& registries) {
   MakeFolder(folder);
   CampaignOptions options;
-  options.jobs = plan.MustFlyAlone() ? 1 : jobs;
+  options.jobs = jobs;
   options.db = StudyTablePath(folder, shard);
   options.shard = shard;
   const auto begin = std::chrono::steady_clock::now();

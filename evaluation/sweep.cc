@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -108,6 +109,8 @@ std::uint64_t TrialSeed(std::uint64_t sweep_seed, int index) {
 
 std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries& registries) {
   CheckKeys(options);
+  // Few scenarios are different ones, unless a range is drawn from: each is read and checked once.
+  std::map<std::vector<std::string>, SweepTrial> loaded;
   std::vector<SweepTrial> trials;
   for (int i = 0; i < options.trials; ++i) {
     const std::uint64_t seed = TrialSeed(options.seed, i);
@@ -126,8 +129,15 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
       varied.emplace_back(variation.key, value);
       overrides.push_back(variation.key + "=" + value);
     }
-    trials.push_back(
-        MakeTrial(i, seed, options.scenario_path, overrides, std::move(varied), registries));
+    auto same = loaded.find(overrides);
+    if (same == loaded.end()) {
+      same =
+          loaded.emplace(overrides, MakeTrial(options.scenario_path, overrides, registries)).first;
+    }
+    SweepTrial& trial = trials.emplace_back(same->second);
+    trial.index = i;
+    trial.seed = seed;
+    trial.varied = std::move(varied);
   }
   return trials;
 }

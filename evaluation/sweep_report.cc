@@ -139,7 +139,7 @@ Json TrialJson(const SweepRow& row) {
   Json json = LandJson(row.trial.scenario, row.result);
   json.erase("wall_clock");
   json["trial"] = row.trial.index;
-  json["replay"] = row.trial.replay;
+  json["replay"] = row.trial.Replay();
   json["varied"] = Json::object();
   for (const auto& [key, value] : row.trial.varied) json["varied"][key] = value;
   return json;
@@ -175,7 +175,7 @@ std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& row
                         Explain(failed.front()->result.outcome));
     for (const SweepRow* row : failed) {
       text += fmt::format("    trial {} at {:.2f} s. {}\n      {}\n", row->trial.index,
-                          row->result.simulated_s, row->result.detail, row->trial.replay);
+                          row->result.simulated_s, row->result.detail, row->trial.Replay());
     }
   }
   return text;

@@ -53,7 +53,7 @@ void WritePlan(SqliteDb& db, const Campaign& campaign, const CellPlan& cells) {
   }
   for (const SweepTrial& trial : campaign.trials) {
     const int of_cell = cells.cell_of[static_cast<std::size_t>(trial.index)];
-    planned.Run(trial.index, of_cell, static_cast<std::int64_t>(trial.seed), trial.replay);
+    planned.Run(trial.index, of_cell, static_cast<std::int64_t>(trial.seed), trial.Replay());
     for (const auto& [name, of_trial] : trial.varied) variation.Run(trial.index, name, of_trial);
   }
 }

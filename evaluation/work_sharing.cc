@@ -8,15 +8,17 @@
 
 namespace touchdown::evaluation {
 
-void ShareWork(std::vector<WorkerProcess>& workers, const std::vector<int>& items,
+void ShareWork(std::vector<WorkerProcess>& workers, int at_a_time, const std::vector<int>& items,
                const std::function<void(const WorkerReply&)>& take,
                const std::function<bool()>& stop) {
   constexpr int kPatienceMs = 200;
+  const std::size_t most = std::min(workers.size(), static_cast<std::size_t>(at_a_time));
   std::size_t next = 0;
   while (!stop()) {
     std::vector<pollfd> waits;
     std::vector<WorkerProcess*> busy;
-    for (WorkerProcess& worker : workers) {
+    for (std::size_t w = 0; w < most; ++w) {
+      WorkerProcess& worker = workers[w];
       if (!worker.busy() && next < items.size()) worker.Start(items[next++]);
       if (!worker.busy()) continue;
       waits.push_back({worker.descriptor(), POLLIN, 0});
@@ -36,7 +38,7 @@ void ShareAll(int count, int jobs, const WorkerProcess::Work& work, double limit
   for (int job = 0; job < std::min(jobs, count); ++job) workers.emplace_back(work, limit_s);
   std::vector<int> items(static_cast<std::size_t>(count));
   std::iota(items.begin(), items.end(), 0);
-  ShareWork(workers, items, take, [] { return false; });
+  ShareWork(workers, jobs, items, take, [] { return false; });
 }
 
 }  // namespace touchdown::evaluation

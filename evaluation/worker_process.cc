@@ -100,11 +100,22 @@ bool ReadUntil(int from, Clock::time_point deadline, std::string* text) {
   }
 }
 
+// Takes the size off a child's answer; false if it is not whole.
+bool Unwrap(std::string* text) {
+  std::uint64_t size = 0;
+  if (text->size() < sizeof(size)) return false;
+  std::memcpy(&size, text->data(), sizeof(size));
+  text->erase(0, sizeof(size));
+  return text->size() == size;
+}
+
 // noexcept: what is thrown ends this process and does not get to whoever would catch it in its maker.
 [[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) noexcept {
   const std::string text = work(item);
+  const std::uint64_t size = text.size();
+  const bool told = WriteAll(to, &size, sizeof(size)) && WriteAll(to, text.data(), text.size());
   // Not exit(): nothing of what the maker has open or would write at its end is this process's.
-  _exit(WriteAll(to, text.data(), text.size()) ? 0 : 1);
+  _exit(told ? 0 : 1);
 }
 
 WorkerReply Do(const WorkerProcess::Work& work, int item, double limit_s) {
@@ -131,7 +142,7 @@ WorkerReply Do(const WorkerProcess::Work& work, int item, double limit_s) {
   if (!in_time) {
     reply.end = WorkerReply::End::kTimedOut;
     reply.text.clear();
-  } else if (status != 0 || reply.text.empty()) {
+  } else if (status != 0 || !Unwrap(&reply.text)) {
     reply.end = WorkerReply::End::kDied;
     reply.text = Words(status);
   }

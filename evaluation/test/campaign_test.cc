@@ -2,6 +2,7 @@
 #include "touchdown/evaluation/campaign.h"
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
@@ -263,11 +264,23 @@ TEST_F(CampaignFiles, ATrialThatThrowsIsARowAndNotTheEnd) {
   EXPECT_THAT(SweepText(campaign, result.rows), HasSubstr("1 x error"));
 }
 
-TEST_F(CampaignFiles, MeasuredLatencyIsForOneJob) {
-  Campaign campaign = Short(2);
-  campaign.trials[1].scenario.planning.latency.measured = true;
-  EXPECT_THROW(Fly(campaign, To(At("a.db"), 2)), BadInput);
-  EXPECT_FALSE(std::filesystem::exists(At("a.db")));
+TEST_F(CampaignFiles, TrialsOfMeasuredLatencyWaitUntilTheOthersAreFlown) {
+  Campaign campaign = Short(4);
+  for (const std::size_t i : {0U, 2U}) {
+    campaign.trials[i].scenario.planning.latency.measured = true;
+    EXPECT_TRUE(campaign.trials[i].FliesAlone());
+  }
+  const auto halfway = [](const CampaignState& state) {
+    if (state.flown == 2) throw std::runtime_error("far enough");
+  };
+  EXPECT_THROW(RunCampaign(campaign, To(At("a.db"), 2), kRegistries, halfway), std::runtime_error);
+  {
+    const TrialStore store(At("a.db"), campaign, {});
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(store.Holds(i), i % 2 == 1) << i;
+  }
+  const CampaignResult whole = Fly(campaign, To(At("a.db"), 2));
+  EXPECT_EQ(whole.state.resumed, 2);
+  EXPECT_EQ(whole.state.flown, 4);
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 #include <csignal>
 #include <cstdlib>
 #include <map>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -33,6 +35,12 @@ TEST(WorkerProcess, AnswersWithBytesOfAnyKindAndLength) {
   EXPECT_EQ(reply.end, End::kDone);
   EXPECT_EQ(reply.item, 7);
   EXPECT_EQ(reply.text, long_text + '\0' + "7");
+}
+
+TEST(WorkerProcess, AnEmptyAnswerIsAnAnswer) {
+  const auto reply = Ask([](int) { return std::string(); });
+  EXPECT_EQ(reply.end, End::kDone);
+  EXPECT_EQ(reply.text, "");
 }
 
 TEST(WorkerProcess, WorkCannotChangeItsMaker) {
@@ -96,11 +104,38 @@ TEST(ShareWork, DoesEveryItemOnceOnAllWorkers) {
   for (int i = 0; i < 40; ++i) items.push_back(i);
   std::map<int, std::string> done;
   ShareWork(
-      workers, items,
+      workers, 3, items,
       [&](const WorkerReply& r) { EXPECT_TRUE(done.emplace(r.item, r.text).second); },
       [] { return false; });
   ASSERT_EQ(done.size(), items.size());
   for (const auto& [item, text] : done) EXPECT_EQ(text, std::to_string(2 * item));
+}
+
+TEST(ShareWork, KeepsToSoManyAtATime) {
+  const auto now = [] { return std::chrono::steady_clock::now().time_since_epoch().count(); };
+  // When it began and ended: in one at a time, none begins before the last has ended.
+  const auto work = [&](int) {
+    const auto begin = now();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return std::to_string(begin) + " " + std::to_string(now());
+  };
+  std::vector<WorkerProcess> workers;
+  for (int i = 0; i < 3; ++i) workers.emplace_back(work, 60.0);
+  long last = 0;
+  int done = 0;
+  ShareWork(
+      workers, 1, {0, 1, 2, 3, 4, 5},
+      [&](const WorkerReply& reply) {
+        std::istringstream times(reply.text);
+        long begin = 0, end = 0;
+        times >> begin >> end;
+        EXPECT_GT(begin, last);
+        EXPECT_GT(end, begin);
+        last = end;
+        ++done;
+      },
+      [] { return false; });
+  EXPECT_EQ(done, 6);
 }
 
 TEST(ShareWork, StopsWhenAsked) {
@@ -108,7 +143,8 @@ TEST(ShareWork, StopsWhenAsked) {
   workers.emplace_back([](int) { return std::string("x"); }, 60.0);
   int done = 0;
   ShareWork(
-      workers, {0, 1, 2, 3, 4, 5}, [&](const WorkerReply&) { ++done; }, [&] { return done == 2; });
+      workers, 1, {0, 1, 2, 3, 4, 5}, [&](const WorkerReply&) { ++done; },
+      [&] { return done == 2; });
   EXPECT_EQ(done, 2);
 }
 

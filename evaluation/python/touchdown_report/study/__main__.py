@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Command line of the report: python3 -m touchdown_report.study FOLDER."""
+"""Command line of the report: python3 -m touchdown_report.study FOLDER, or --check: can it be written?"""
 import importlib.util
 import sys
 
@@ -20,12 +20,14 @@ def missing_packages():
 def main(arguments):
     """Command line; returns the exit status."""
     if len(arguments) != 1:
-        print("usage: python3 -m touchdown_report.study FOLDER", file=sys.stderr)
+        print("usage: python3 -m touchdown_report.study FOLDER|--check", file=sys.stderr)
         return 2
     missing = missing_packages()
     if missing:
         print(f"touchdown_report: install {' '.join(missing)} for this report", file=sys.stderr)
         return 2
+    if arguments[0] == "--check":
+        return 0
     from touchdown_report.record import RecordError
     from touchdown_report.study.data import Study, StudyError
     from touchdown_report.study.report import write_report
