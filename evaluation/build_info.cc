@@ -53,6 +53,13 @@ std::string HashOf(const std::string& bytes) {
   return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::x500dn())(bytes));
 }
 
+std::string BuildHash() {
+  const Pairs facts = BuildManifest();
+  return std::find_if(facts.begin(), facts.end(),
+                      [](const auto& fact) { return fact.first == "build_hash"; })
+      ->second;
+}
+
 Pairs BuildManifest() {
   Pairs facts = {
       {"touchdown_version", TOUCHDOWN_VERSION},

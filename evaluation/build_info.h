@@ -12,6 +12,9 @@ namespace touchdown::evaluation {
 /// everything that bits depend on: only results that agree in it may be merged.
 std::vector<std::pair<std::string, std::string>> BuildManifest();
 
+/// The `build_hash` alone.
+std::string BuildHash();
+
 /// SHA-1 of any bytes, in the shape of a version 5 UUID.
 std::string HashOf(const std::string& bytes);
 

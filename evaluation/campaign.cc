@@ -90,7 +90,8 @@ class Flight {
       : campaign_(campaign),
         limit_s_(options.trial_limit_s),
         progress_(progress),
-        store_(options.db, campaign, options.shard) {
+        store_(options.db, campaign, options.shard,
+               options.retry ? TrialStore::Again::kLost : TrialStore::Again::kNone) {
     for (const SweepTrial& trial : campaign.trials) {
       if (!options.shard.Takes(trial.index)) continue;
       ++state_.all;
@@ -192,6 +193,12 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
   std::unique_ptr<Ranks> ranks;
   if (ranked) {
     ranks = std::make_unique<Ranks>();
+    if (ranks->size() == 1) {
+      throw BadInput(
+          "The launcher says that it started several, MPI that this one is alone: the launcher is "
+          "of "
+          "another MPI than the program.");
+    }
     const bool alike = ranks->Agree(CampaignHash(campaign));
     if (!ranks->leads()) {
       ranks->Follow(workers.front());
@@ -206,13 +213,17 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
   Flight flight(campaign, options, progress);
   const auto take = [&](const WorkerReply& reply) { flight.Take(reply); };
   const auto stop = [&] { return watch.signal() != 0; };
+  const int at_a_time = ranks ? ranks->size() : static_cast<int>(workers.size());
   if (ranks) {
     ranks->Lead(workers.front(), flight.together(), take, stop);
+    ranks.reset();  // the others' looking for messages would disturb what flies alone
   } else {
     ShareWork(workers, options.jobs, flight.together(), take, stop);
   }
   ShareWork(workers, 1, flight.alone(), take, stop);
-  return flight.Result(watch.signal());
+  CampaignResult result = flight.Result(watch.signal());
+  result.at_a_time = at_a_time;
+  return result;
 }
 
 }  // namespace touchdown::evaluation

@@ -73,6 +73,8 @@ struct CampaignOptions {
       db;  ///< the file of the trials, which are added to one that is there; empty: none is kept
   Shard shard;
   double trial_limit_s = 1800.0;  ///< wall time after which a trial is given up, as `hung` [s]
+  bool retry =
+      false;  ///< trials in the file that crashed, hung or ended in an error are flown again
 };
 
 /// How far a campaign is.
@@ -86,17 +88,19 @@ struct CampaignState {
 struct CampaignResult {
   std::vector<SweepRow> rows;  ///< the flown trials of the shard by index, as the file holds them
   CampaignState state;
+  int at_a_time = 1;  ///< trials that were flown at a time: jobs, or ranks
   /// Ended by SIGINT or SIGTERM before all were flown; what was flown is in the file.
   int interrupted_by = 0;
   /// False on ranks of an MPI program that only fly: rank 0 has the rows and reports.
   bool reports = true;
 };
 
-/// Flies the trials that its file does not hold yet, each in a process of its own, those that fly alone after
-/// the others, and adds each to the file when it ends: one that dies or takes too long becomes a row with outcome `crashed` or `hung`. The rows
-/// do not depend on the number of jobs, ranks or shards, nor on interruptions. The calling process should
-/// have no other threads. `progress` is called once before the first trial and after each.
-/// @throws BadInput if the file is of another campaign, build or shard; SqliteError
+/// Flies the trials that its file does not hold yet, each in a process of its own, those that fly
+/// alone after the others, and adds each to the file when it ends: one that dies or takes too long
+/// becomes a row with outcome `crashed` or `hung`. Which rows there are and what they say does not
+/// depend on the number of jobs, ranks or shards, nor on interruptions, but for trials that fly alone.
+/// The calling process should have no other threads. `progress` is called once before the first trial
+/// and after each. @throws BadInput if the file is of another campaign, build or shard; SqliteError
 CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& options,
                            const Registries& registries,
                            const std::function<void(const CampaignState&)>& progress);

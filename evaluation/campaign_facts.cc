@@ -109,12 +109,7 @@ ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard) {
   return facts;
 }
 
-std::string CampaignHash(const Campaign& campaign) {
-  const auto build = BuildManifest();
-  const auto hash = std::find_if(build.begin(), build.end(),
-                                 [](const auto& fact) { return fact.first == "build_hash"; });
-  return HashOfPlan(campaign) + hash->second;
-}
+std::string CampaignHash(const Campaign& campaign) { return HashOfPlan(campaign) + BuildHash(); }
 
 Manifest ReadManifest(SqliteDb& db, const std::string& path) {
   Manifest manifest;

@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/launch.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/evaluation/study_run.h"
 
@@ -29,6 +30,7 @@ struct StudyRunArguments {
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::string seed;
   std::string shard = "1/1";
+  bool retry = false;
   bool json = false;
 };
 
@@ -95,8 +97,12 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const Shard shard = Shard::Parse(arguments.shard);
   const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
   const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
-  if (shard.of == 1) WarnOfNoReport();
-  const CampaignResult result = FlyStudy(plan, folder, arguments.jobs, shard, registries);
+  if (shard.of == 1 && !LaunchedAsOneOfSeveral()) WarnOfNoReport();
+  CampaignOptions options;
+  options.jobs = arguments.jobs;
+  options.shard = shard;
+  options.retry = arguments.retry;
+  const CampaignResult result = FlyStudy(plan, folder, options, registries);
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));
   if (shard.of == 1) return Report(arguments, folder);
@@ -120,6 +126,8 @@ void AddOptions(Command command, const std::shared_ptr<StudyRunArguments>& argum
   command.Add("--shard", arguments->shard, "Fly only the K-th of N parts, into a file of its own")
       .TypeName("K/N")
       .ShowDefault();
+  command.AddFlag("--retry", arguments->retry,
+                  "Fly again what crashed, hung or ended in an error, of the trials in the folder");
   command.AddFlag("--report-only", arguments->report_only,
                   "Write the report of what the folder holds, without flying");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");

@@ -28,6 +28,7 @@ struct SweepArguments {
   std::uint64_t seed = 1;
   std::string shard = "1/1";
   double trial_limit_s = CampaignOptions().trial_limit_s;
+  bool retry = false;
   std::string db;
   std::string picture;
   bool json = false;
@@ -60,6 +61,9 @@ void CheckOutputs(const SweepArguments& arguments) {
   if (!arguments.db.empty() && arguments.db == arguments.picture) {
     throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
   }
+  if (arguments.retry && arguments.db.empty()) {
+    throw BadInput("--retry has no effect without --db.");
+  }
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
 }
@@ -88,6 +92,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   flight.db = arguments.db;
   flight.shard = Shard::Parse(arguments.shard);
   flight.trial_limit_s = arguments.trial_limit_s;
+  flight.retry = arguments.retry;
   if (flight.shard.number > options.trials) {
     throw BadInput(
         fmt::format("--shard {}: it has no trials, of {}.", arguments.shard, options.trials));
@@ -140,6 +145,8 @@ void AddSweepCommand(Command app, const Registries& registries, CommandRun* run)
                   "F.db");
   command.AddFile("--picture", &arguments->picture, "Draw success and time to land over --vary",
                   "F.png");
+  command.AddFlag("--retry", arguments->retry,
+                  "Fly again what crashed, hung or ended in an error, of the trials in --db");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
   command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return Sweep(*arguments, registries); };

@@ -20,6 +20,7 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
 
   bool leads() const { return rank_ == 0; }
+  int size() const { return size_; }
   /// Whether all ranks give the same text. To be called by all.
   bool Agree(const std::string& text) const;
 

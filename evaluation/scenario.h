@@ -46,7 +46,7 @@ struct CylinderObstacle {
 
 /// Time from the question to the plan that is flown.
 struct PlanningLatency {
-  bool measured = false;  ///< the wall clock's own figure: one job only, does not repeat bit by bit
+  bool measured = false;  ///< the wall clock's own figure: flies alone, does not repeat bit by bit
   double ms = 20.0;       ///< otherwise this
 };
 

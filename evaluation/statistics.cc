@@ -27,9 +27,13 @@ Interval ClopperPearson(int successes, int trials, double confidence) {
 }
 
 std::optional<double> Quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return QuantileOfSorted(values, q);
+}
+
+std::optional<double> QuantileOfSorted(const std::vector<double>& values, double q) {
   if (!(q >= 0.0 && q <= 1.0)) throw std::invalid_argument("Quantile needs q in [0, 1]");
   if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
   const double rank = q * static_cast<double>(values.size() - 1);
   const auto below = static_cast<std::size_t>(std::floor(rank));
   const std::size_t above = std::min(below + 1, values.size() - 1);

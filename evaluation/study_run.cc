@@ -6,16 +6,19 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/record_reader.h"
 #include "touchdown/evaluation/work_sharing.h"
 
 namespace touchdown::evaluation {
@@ -33,15 +36,18 @@ void MakeFolder(const std::string& folder) {
   if (error) throw BadInput(fmt::format("--out {}: {}.", folder, error.message()));
 }
 
-// The plan, with a line for this flight after those of the flights before it.
-void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& flight) {
-  const std::string path = folder + "/study.json";
-  Json flights = Json::array();
-  if (std::ifstream stream(path); stream) {
-    const Json before = Json::parse(stream, nullptr, false);
-    if (before.is_object() && before.contains(kFlights)) flights = before[kFlights];
-  }
-  if (flight.at("trials") > 0) flights.push_back(flight);
+std::string PlanPath(const std::string& folder) { return folder + "/study.json"; }
+
+// How the trials that are there were flown.
+Json FlightsBefore(const std::string& folder) {
+  std::ifstream stream(PlanPath(folder));
+  if (!stream) return Json::array();
+  const Json before = Json::parse(stream, nullptr, false);
+  return before.is_object() && before.contains(kFlights) ? before[kFlights] : Json::array();
+}
+
+void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& flights) {
+  const std::string path = PlanPath(folder);
   Json document = StudyJson(plan);
   document[kFlights] = flights;
   AtomicFile file(path);
@@ -50,6 +56,20 @@ void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& fli
   stream.close();
   if (!stream) throw BadInput(fmt::format("{}: it cannot be written.", path));
   file.Commit();
+}
+
+// Whether the file is a record of this trial, flown by this build.
+bool IsRecordOf(const std::string& path, const SweepTrial& trial, const Registries& registries) {
+  if (!fs::exists(path)) return false;
+  Scenario scenario = trial.scenario;
+  scenario.seed = trial.seed;
+  try {
+    const RecordedFlight there = ReadRecord(path, {}, registries);
+    return there.build_hash == BuildHash() &&
+           DumpScenario(there.scenario) == DumpScenario(scenario);
+  } catch (const BadInput&) {
+    return false;
+  }
 }
 
 // Every trial can be flown again from its scenario and seed: so are those that are to be drawn.
@@ -63,8 +83,11 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
   for (const StudyPart& part : plan.parts) {
     const std::string path = fmt::format("{}/records/{}-{}.db", folder, plan.CellOf(part).name,
                                          plan.MethodOf(part).name);
-    if (!plan.Records(part) || part.trials == 0 || fs::exists(path)) continue;
-    flights.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), path});
+    if (!plan.Records(part) || part.trials == 0) continue;
+    const SweepTrial& first = plan.campaign.trials.at(static_cast<std::size_t>(part.first));
+    if (IsRecordOf(path, first, registries)) continue;
+    fs::remove(path);
+    flights.push_back({&first, path});
   }
   // Why there is no record; empty: there is one.
   const auto fly = [&](int i) -> std::string {
@@ -102,22 +125,33 @@ std::string StudyTablePath(const std::string& folder, const Shard& shard) {
   return fmt::format("{}/shard_{}_of_{}.db", folder, shard.number, shard.of);
 }
 
-CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
-                        const Shard& shard, const Registries& registries) {
+CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, CampaignOptions options,
+                        const Registries& registries) {
   MakeFolder(folder);
-  CampaignOptions options;
-  options.jobs = jobs;
-  options.db = StudyTablePath(folder, shard);
-  options.shard = shard;
+  options.db = StudyTablePath(folder, options.shard);
+  const bool whole = options.shard.of == 1;
+  Json flights = Json::array();
+  // The plan stands there from the first trial on, for reports of what is there by then. It is first told of
+  // progress when the file of the trials is known to be this study's, and in one process of several.
+  const auto progress = [&, begun = false,
+                         tell = CampaignProgress()](const CampaignState& state) mutable {
+    if (!std::exchange(begun, true) && whole) {
+      if (state.resumed > 0) flights = FlightsBefore(folder);
+      WritePlan(plan, folder, flights);
+    }
+    tell(state);
+  };
   const auto begin = std::chrono::steady_clock::now();
-  const CampaignResult result = RunCampaign(plan.campaign, options, registries, CampaignProgress());
+  const CampaignResult result = RunCampaign(plan.campaign, options, registries, progress);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  if (!result.reports || shard.of > 1) return result;
-  const CampaignState& state = result.state;
-  WritePlan(
-      plan, folder,
-      {{"trials", state.flown - state.resumed}, {"jobs", options.jobs}, {"wall_s", taken.count()}});
-  if (state.flown == state.all) RecordFirstTrials(plan, folder, jobs, registries);
+  if (!result.reports || !whole) return result;
+  if (const int flown = result.state.flown - result.state.resumed; flown > 0) {
+    flights.push_back({{"trials", flown}, {"jobs", result.at_a_time}, {"wall_s", taken.count()}});
+    WritePlan(plan, folder, flights);
+  }
+  if (result.state.flown == result.state.all) {
+    RecordFirstTrials(plan, folder, options.jobs, registries);
+  }
   return result;
 }
 

@@ -10,9 +10,9 @@ namespace touchdown::evaluation {
 /// Flies a planned study into a folder, which is made where it is missing: `study.db` (every trial, see
 /// campaign.h), `study.json` (the plan and how it was flown), `records/CELL-METHOD.db` (of parts that are
 /// to be recorded the first trial). Trials that are there already are kept. A shard goes to a file of its own,
-/// StudyTablePath, and brings nothing else. @throws as RunCampaign does
-CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, int jobs,
-                        const Shard& shard, const Registries& registries);
+/// StudyTablePath, and brings nothing else; `options.db` is set here. @throws as RunCampaign does
+CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, CampaignOptions options,
+                        const Registries& registries);
 
 /// Where the trials of a study are.
 std::string StudyTablePath(const std::string& folder, const Shard& shard = {});

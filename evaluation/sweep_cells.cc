@@ -2,9 +2,18 @@
 // Rates and medians by combination of listed values: what is asked of a sweep that varies a key.
 #include "touchdown/evaluation/sweep_cells.h"
 
+#include <algorithm>
 #include <map>
 
 namespace touchdown::evaluation {
+namespace {
+
+// In order from the start: a median is asked for after every trial, of which there may be very many.
+void Insert(double value, std::vector<double>* sorted) {
+  sorted->insert(std::upper_bound(sorted->begin(), sorted->end(), value), value);
+}
+
+}  // namespace
 
 CellPlan PlanCells(const Campaign& campaign) {
   CellPlan plan;
@@ -27,8 +36,8 @@ void CellTally::Add(const TrialResult& result) {
   ++trials_;
   succeeded_ += result.succeeded() ? 1 : 0;
   if (!result.landed()) return;
-  times_.push_back(result.touchdown->t);
-  errors_.push_back(result.touchdown->error_m);
+  Insert(result.touchdown->t, &times_);
+  Insert(result.touchdown->error_m, &errors_);
 }
 
 CellFigures CellTally::Figures() const {
@@ -36,8 +45,8 @@ CellFigures CellTally::Figures() const {
   figures.trials = trials_;
   figures.succeeded = succeeded_;
   if (trials_ > 0) figures.rate = ClopperPearson(succeeded_, trials_);
-  figures.time_to_land_median_s = Quantile(times_, 0.5);
-  figures.touchdown_error_median_m = Quantile(errors_, 0.5);
+  figures.time_to_land_median_s = QuantileOfSorted(times_, 0.5);
+  figures.touchdown_error_median_m = QuantileOfSorted(errors_, 0.5);
   return figures;
 }
 

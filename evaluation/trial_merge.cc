@@ -33,6 +33,8 @@ std::vector<Input> Open(const std::vector<std::string>& files) {
     } catch (const SqliteError& error) {
       throw BadInput(fmt::format("{}.", error.what()));
     }
+    input.db->Execute(
+        "BEGIN");  // all that is read of a file is of one moment, even if it still grows
     input.manifest = ReadManifest(*input.db, path);
     inputs.push_back(std::move(input));
     const std::string other = Difference(inputs.back().manifest, inputs.front().manifest);
@@ -86,18 +88,6 @@ void CopyRows(SqliteDb& from, const std::string& table, SqliteDb& to) {
 void MakeTables(SqliteDb& like, SqliteDb& db) {
   SqliteStatement tables = like.Prepare("SELECT sql FROM sqlite_master WHERE type = 'table'");
   while (tables.Step()) db.Execute(tables.Text(0));
-}
-
-void WriteCells(SqliteDb& db) {
-  std::map<int, CellTally> tallies;
-  const std::map<int, TrialResult> results = ReadTrials(db, false);
-  SqliteStatement planned = db.Prepare("SELECT trial, cell FROM planned");
-  while (planned.Step()) {
-    const auto result = results.find(static_cast<int>(planned.Integer(0)));
-    if (result == results.end()) continue;
-    tallies[static_cast<int>(planned.Integer(1))].Add(result->second);
-  }
-  for (const auto& [cell, tally] : tallies) WriteCell(db, cell, tally.Figures());
 }
 
 }  // namespace

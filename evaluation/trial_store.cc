@@ -6,6 +6,10 @@
 #include "touchdown/evaluation/trial_store.h"
 
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -58,6 +62,16 @@ void WritePlan(SqliteDb& db, const Campaign& campaign, const CellPlan& cells) {
   }
 }
 
+void WriteCell(SqliteDb& db, int cell, const CellFigures& f) {
+  std::optional<double> lo, hi;
+  if (f.rate) std::tie(lo, hi) = std::pair(f.rate->lo, f.rate->hi);
+  db.Prepare(
+        "UPDATE cell SET trials = ?, succeeded = ?, rate_lo = ?, rate_hi = ?, "
+        "time_to_land_median_s = ?, touchdown_error_median_m = ? WHERE cell = ?")
+      .Run(f.trials, f.succeeded, lo, hi, f.time_to_land_median_s, f.touchdown_error_median_m,
+           cell);
+}
+
 void Fill(SqliteDb& db, const Campaign& campaign, const Shard& shard, const CellPlan& cells) {
   FillResultFile(db, kTrialFormat, Schema().c_str(), FactsOf(campaign, shard),
                  [&](SqliteDb&) { WritePlan(db, campaign, cells); });
@@ -98,7 +112,8 @@ SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t colum
       fmt::format("INSERT INTO {} VALUES({})", table, Marks(static_cast<int>(columns))));
 }
 
-TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard)
+TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard,
+                       Again again)
     : cells_(PlanCells(campaign)), tallies_(cells_.cells.size()) {
   if (path.empty()) {
     db_ = std::make_unique<SqliteDb>(":memory:", SqliteDb::Mode::kCreate);
@@ -110,6 +125,7 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
   db_ = std::make_unique<SqliteDb>(path, SqliteDb::Mode::kReadWrite);
   CheckIsThis(*db_, path, campaign, shard);
   db_->Execute("PRAGMA journal_mode=WAL; PRAGMA synchronous=NORMAL");
+  if (again == Again::kLost) ForgetLost();
   for (const auto& [trial, result] : ReadTrials(*db_, false)) Count(trial, result);
 }
 
@@ -122,6 +138,18 @@ TrialStore::~TrialStore() {
   }
 }
 
+void TrialStore::ForgetLost() {
+  const std::string lost =
+      fmt::format("trial IN (SELECT trial FROM trial WHERE outcome IN ('{}', '{}', '{}'))",
+                  ToString(Outcome::kError), ToString(Outcome::kCrashed), ToString(Outcome::kHung));
+  SqliteTransaction transaction(*db_);
+  for (const char* table : {"replan_time", "timing", "trial"}) {
+    db_->Execute(fmt::format("DELETE FROM {} WHERE {}", table, lost));
+  }
+  WriteCells(*db_);
+  transaction.Commit();
+}
+
 void TrialStore::Count(int trial, const TrialResult& result) {
   flown_.insert(trial);
   succeeded_ += result.succeeded() ? 1 : 0;
@@ -129,12 +157,16 @@ void TrialStore::Count(int trial, const TrialResult& result) {
   tallies_[static_cast<std::size_t>(cell)].Add(result);
 }
 
-void WriteCell(SqliteDb& db, int cell, const CellFigures& f) {
-  db.Prepare(
-        "UPDATE cell SET trials = ?, succeeded = ?, rate_lo = ?, rate_hi = ?, "
-        "time_to_land_median_s = ?, touchdown_error_median_m = ? WHERE cell = ?")
-      .Run(f.trials, f.succeeded, f.rate->lo, f.rate->hi, f.time_to_land_median_s,
-           f.touchdown_error_median_m, cell);
+void WriteCells(SqliteDb& db) {
+  std::map<int, CellTally> tallies;
+  const std::map<int, TrialResult> results = ReadTrials(db, false);
+  SqliteStatement planned = db.Prepare("SELECT trial, cell FROM planned");
+  while (planned.Step()) {
+    CellTally& tally = tallies[static_cast<int>(planned.Integer(1))];
+    const auto result = results.find(static_cast<int>(planned.Integer(0)));
+    if (result != results.end()) tally.Add(result->second);
+  }
+  for (const auto& [cell, tally] : tallies) WriteCell(db, cell, tally.Figures());
 }
 
 void TrialStore::Add(int trial, const TrialResult& result) {
@@ -157,7 +189,10 @@ std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times) {
   std::map<int, TrialResult> results;
   SqliteStatement trial = db.Prepare("SELECT * FROM trial ORDER BY trial");
   SqliteStatement timing = db.Prepare("SELECT * FROM timing ORDER BY trial");
-  while (trial.Step() && timing.Step()) {
+  while (trial.Step()) {
+    if (!timing.Step() || timing.Integer(0) != trial.Integer(0)) {
+      throw SqliteError(fmt::format("trial {} has no timing", trial.Integer(0)));
+    }
     results[static_cast<int>(trial.Integer(0))] = ResultOf({trial.Row(1), timing.Row(1)});
   }
   if (!with_replan_times) return results;

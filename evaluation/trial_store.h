@@ -23,10 +23,15 @@ std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times);
 /// happens to the process later. Others may read meanwhile.
 class TrialStore {
  public:
+  /// What of a file that is there is flown again: nothing, or what says more of the machine than of the
+  /// trial, which is what crashed, hung or ended in an error.
+  enum class Again { kNone, kLost };
+
   /// Makes the file, or goes on with the one that is there. `path` empty: in memory.
   /// @throws BadInput if the file there is none of this campaign, shard and build, or is being written by
   /// another process; SqliteError, std::filesystem::filesystem_error
-  TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard);
+  TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard,
+             Again again = Again::kNone);
   ~TrialStore();
   TrialStore(const TrialStore&) = delete;
   TrialStore& operator=(const TrialStore&) = delete;
@@ -39,6 +44,7 @@ class TrialStore {
   std::map<int, TrialResult> Results() { return ReadTrials(*db_, true); }
 
  private:
+  void ForgetLost();
   void Count(int trial, const TrialResult& result);
 
   CellPlan cells_;
@@ -52,8 +58,8 @@ class TrialStore {
 /// A statement that inserts rows with this many columns.
 SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t columns);
 
-/// Writes the figures of a cell, of which trials were flown.
-void WriteCell(SqliteDb& db, int cell, const CellFigures& figures);
+/// Makes the figures of all cells anew, from the trials that the file holds. @throws SqliteError
+void WriteCells(SqliteDb& db);
 
 /// Writes a file of rows that were flown. @throws as TrialStore does
 void WriteTrials(const std::string& path, const Campaign& campaign,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A landing by one plan to contact: when it is decided, when it is given up, and what leads it.
+#include <ostream>
+
 #include "touchdown/control/test/mission_fixture.h"
 
 namespace touchdown::control {
@@ -197,6 +199,8 @@ struct Loss {
   Mission::Change change;
   TransitionReason reason;
 };
+
+void PrintTo(const Loss& loss, std::ostream* stream) { *stream << loss.name; }
 
 class LostLanding : public testing::TestWithParam<Loss> {};
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trials whose process dies or never ends, through backends that are made for it.
+// Trials whose process dies or never ends, and trials that fly alone, through backends that are made for it.
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,6 +37,13 @@ class FaultySolver : public solvers::SolverBackend {
   void (*fault_)();
 };
 
+// Where the backend `tells` writes which process solves.
+std::string SolvesPath() {
+  static const std::string path =
+      testing::TempDir() + "touchdown_solves_" + std::to_string(getpid());
+  return path;
+}
+
 Registries Faulty() {
   Registries registries = StandardRegistries();
   const auto add = [&](const char* name, void (*fault)()) {
@@ -40,6 +53,10 @@ Registries Faulty() {
   add("aborts", [] { std::abort(); });
   add("leaves", [] { _exit(0); });
   add("throws", [] { throw 1; });
+  add("tells", [] {
+    std::ofstream(SolvesPath(), std::ios::app) << getpid() << std::endl;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
   add("hangs", [] {
     for (;;) pause();
   });
@@ -80,6 +97,25 @@ TEST(CampaignFaults, ATrialThatDiesIsARowAndNotTheEnd) {
                     HasSubstr("touchdown land open --set timeout=2 --set solver.backend=aborts "
                               "--seed " +
                               std::to_string(TrialSeed(1, 1)))));
+}
+
+// Each trial is a process. Alone, all that one solves stands together.
+TEST(CampaignFaults, TrialsOfMeasuredLatencyAreFlownOneAtATime) {
+  const std::string path = SolvesPath();  // the same in all processes that are forked from this one
+  std::filesystem::remove(path);
+  const Registries registries = Faulty();
+  Campaign campaign = WithBackends("tells", 4, registries);
+  for (SweepTrial& trial : campaign.trials) trial.scenario.planning.latency.measured = true;
+  CampaignOptions options;
+  options.jobs = 3;
+  RunCampaign(campaign, options, registries, [](const CampaignState&) {});
+  std::ifstream solves(path);
+  std::vector<std::string> order;
+  for (std::string process; std::getline(solves, process);) {
+    if (order.empty() || order.back() != process) order.push_back(process);
+  }
+  EXPECT_EQ(order.size(), 4U);
+  std::filesystem::remove(path);
 }
 
 TEST(CampaignFaults, ATrialThatNeverEndsIsARowAndNotTheEnd) {

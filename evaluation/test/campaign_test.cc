@@ -253,6 +253,32 @@ TEST_F(CampaignFiles, AMergeIsRefusedWhereTrialsDoNotFit) {
   EXPECT_EQ(Tables(At("out.db")), Tables(At("whole.db")));
 }
 
+TEST_F(CampaignFiles, LostTrialsAreFlownAgainOnlyWhenAsked) {
+  const Campaign campaign = Short(4);
+  Campaign faulty = Short(4);
+  faulty.trials[1].scenario.solver.backend = "none";
+  const CampaignResult first = Fly(faulty, To(""));
+  ASSERT_EQ(first.rows[1].result.outcome, Outcome::kError);
+  WriteTrials(At("a.db"), campaign, first.rows);
+  EXPECT_EQ(Fly(campaign, To(At("a.db"))).state.resumed, 4);
+  CampaignOptions again = To(At("a.db"));
+  again.retry = true;
+  const CampaignResult mended = Fly(campaign, again);
+  EXPECT_EQ(mended.state.resumed, 3);
+  EXPECT_NE(mended.rows[1].result.outcome, Outcome::kError);
+  Fly(campaign, To(At("whole.db")));
+  EXPECT_EQ(Tables(At("a.db")), Tables(At("whole.db")));
+}
+
+// What a merge reads of a file is of one moment; were it not, this is what it could have written.
+TEST_F(CampaignFiles, ATrialWithoutItsTimingIsNoResult) {
+  Fly(Short(2), To(At("a.db")));
+  SqliteDb db(At("a.db"), SqliteDb::Mode::kReadWrite);
+  db.Execute("DELETE FROM timing WHERE trial = 0");
+  EXPECT_THAT([&] { ReadTrials(db, false); },
+              ThrowsMessage<SqliteError>(HasSubstr("trial 0 has no timing")));
+}
+
 TEST_F(CampaignFiles, ATrialThatThrowsIsARowAndNotTheEnd) {
   Campaign campaign = Short(3);
   campaign.trials[1].scenario.solver.backend = "none";

@@ -67,7 +67,8 @@ TEST(PaperStudy, HasTheSampleSizesThatWereFixed) {
   EXPECT_EQ(cells.size(), 15U);  // Figure 4, two cases with three sigmas and four winds
   for (const std::string& cell : cells) {
     for (const char* method :
-         {"planned", "vertical", "oracle", "ego", "ego_2hz", "ego_10hz", "ego_velocity", "pid"}) {
+         {"planned", "vertical", "vertical_2mps", "oracle", "ego", "ego_2hz", "ego_10hz",
+          "ego_3mps", "ego_velocity", "ego_velocity_10hz", "pid"}) {
       EXPECT_EQ(counts.count({cell, method}), 1U) << cell << " " << method;
     }
   }
@@ -80,6 +81,11 @@ TEST(PaperStudy, FliesThePapersConditions) {
     scenarios.emplace(trial.varied.at(0).second, &trial.scenario);
     EXPECT_EQ(trial.scenario.pad.speed, 0.8);
     EXPECT_EQ(trial.scenario.start.position_spread, Eigen::Vector3d::Ones());
+    const std::string& method = trial.varied.at(1).second;
+    if (method.rfind("ego", 0) == 0 && method != "ego_3mps") {  // as published
+      EXPECT_EQ(trial.scenario.limits.speed, 2.0);
+      EXPECT_EQ(trial.scenario.limits.acceleration, 3.0);
+    }
   }
   EXPECT_EQ(scenarios.at("case_2_sigma_0.5")->gps.sigma, 0.5);
   EXPECT_EQ(scenarios.at("case_2_sigma_0.5")->pad.turn_rate, 0.15);

@@ -134,16 +134,31 @@ def test_the_command_beside_a_trial_flies_it_again_bit_for_bit(run, tmp_path):
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun")
 def test_two_ranks_give_the_same_tables(program, run, tmp_path):
     assert run(*sweep(5, "one.db", "--jobs", "1"), cwd=tmp_path).returncode == 0
+    ranks = in_two_ranks(program, tmp_path, *sweep(5, "two.db"))
+    assert ranks.returncode == 0, ranks.stderr
+    assert ranks.stdout.count("of 5 landed") == 1
+    assert tables(tmp_path / "two.db") == tables(tmp_path / "one.db")
+
+
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun")
+def test_what_flies_alone_is_flown_by_the_first_rank_when_the_others_are_gone(program, tmp_path):
+    latency = ("--vary", "planning.latency=20,measured")
+    ranks = in_two_ranks(program, tmp_path, *SWEEP, "--set", "timeout=1.5", *latency, "--trials", "6", "--db", "a.db")
+    assert ranks.returncode == 0, ranks.stderr
+    with reading(tmp_path / "a.db") as db:
+        rows = "SELECT value, count(*) FROM trial JOIN variation USING(trial) GROUP BY value ORDER BY value"
+        assert db.execute(rows).fetchall() == [("20", 3), ("measured", 3)]
+
+
+def in_two_ranks(program, folder, *arguments):
     ranks = subprocess.run(
-        ["mpirun", "--oversubscribe", "-n", "2", program, *sweep(5, "two.db")],
+        ["mpirun", "--oversubscribe", "-n", "2", program, *arguments],
         capture_output=True,
         text=True,
-        cwd=tmp_path,
+        cwd=folder,
         check=False,
         env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"},
     )
     if "built without MPI" in ranks.stderr:
         pytest.skip("the program is built without MPI")
-    assert ranks.returncode == 0, ranks.stderr
-    assert ranks.stdout.count("of 5 landed") == 1
-    assert tables(tmp_path / "two.db") == tables(tmp_path / "one.db")
+    return ranks

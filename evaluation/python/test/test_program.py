@@ -52,7 +52,7 @@ def test_help_lists_what_is_built(run):
         (("sweep", "open", "--seed", "-4"), ["--seed", "9007199254740992"]),
         (("sweep", "open", "--vary", "pad.sped=1..2"), ["pad.sped"]),
         (("sweep", "open", "--vary", "gps.sigma=1..6"), ["--vary gps.sigma=1..6", "[0, 5] m"]),
-        (("sweep", "open", "--jobs", "2", "--set", "planning.latency=measured"), ["--jobs"]),
+        (("sweep", "open", "--jobs", "two"), ["--jobs"]),
         (("sweep", "open", "--vary", "gps.sigma=1,1"), ["--vary gps.sigma=1,1", "twice"]),
         (
             ("sweep", "open", "--vary", "gps.sigma=1,2", "--vary", "gps.sigma=0..1"),

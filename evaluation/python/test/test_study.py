@@ -2,7 +2,9 @@
 """A small real study from end to end: flown, reported, gone on with, reported again without flying."""
 import json
 import re
+import shutil
 import sqlite3
+import subprocess
 
 import pytest
 
@@ -119,13 +121,48 @@ def test_another_form_of_the_study_is_refused(flown, run):
     assert done.returncode == 2 and "study.db" in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_a_report_of_half_a_study(flown, tmp_path):
+@pytest.mark.parametrize("report", ["paper", "solvers", "ablation", "plain"])
+@pytest.mark.parametrize("there", ["trial < 1", "trial = 3", "trial < 4", "trial IN (0, 3)", "trial > 8"])
+def test_a_report_of_half_a_study(flown, tmp_path, report, there):
     for name in ("study.db", "study.json"):
         (tmp_path / name).write_bytes((flown[0] / "out" / name).read_bytes())
+    plan = json.loads((tmp_path / "study.json").read_text())
+    (tmp_path / "study.json").write_text(json.dumps({**plan, "report": report}))
     with sqlite3.connect(tmp_path / "study.db") as db:
-        db.execute("DELETE FROM trial WHERE trial >= 4")
+        for table in ("trial", "timing", "replan_time"):
+            db.execute(f"DELETE FROM {table} WHERE NOT ({there})")
+        (count,) = db.execute("SELECT count(*) FROM trial").fetchone()
     write_report(Study(str(tmp_path)))
-    assert "4 trials" in (tmp_path / "report.md").read_text()
+    assert f"{count} trials, " in (tmp_path / "report.md").read_text()
+
+
+def test_a_study_can_be_reported_while_it_flies(program, run, tmp_path):
+    (tmp_path / "tiny.yaml").write_text(TINY)
+    process = subprocess.Popen([program, "study", "run", "tiny.yaml", "--out", "out", "--jobs", "1"], cwd=tmp_path)
+    try:
+        while True:
+            assert process.poll() is None
+            done = run("study", "run", "tiny.yaml", "--out", "out", "--report-only", cwd=tmp_path)
+            if done.returncode == 0:
+                break
+            assert done.returncode == 2 and ("study.db" in done.stderr or "holds no trial" in done.stderr)
+    finally:
+        process.kill()
+        process.wait()
+    assert "succeeded" in done.stdout
+
+
+def test_records_of_another_flight_are_flown_again(flown, run, tmp_path):
+    shutil.copytree(flown[0] / "out", tmp_path / "out")
+    shutil.copy(flown[0] / "tiny.yaml", tmp_path)
+    record = tmp_path / "out" / "records" / "figure_4-planned.db"
+    own = record.read_bytes()
+    shutil.copy(tmp_path / "out" / "records" / "case_1_wind_4-planned.db", record)
+    assert record.read_bytes() != own
+    assert run("study", "run", "tiny.yaml", "--out", "out", cwd=tmp_path).returncode == 0
+    with sqlite3.connect(record) as db:
+        (scenario,) = db.execute("SELECT value FROM meta WHERE key = 'scenario_yaml'").fetchone()
+    assert "motion: line" in scenario
 
 
 def test_what_is_no_study_is_refused_in_a_sentence(flown, run, tmp_path):

@@ -54,6 +54,37 @@ def test_mcnemar_is_the_binomial_test_of_the_discordant_pairs():
     assert statistics.paired_success(first, first).p == 1.0
 
 
+def test_cells_that_share_their_seeds_say_no_more_than_one():
+    seeds = range(12)
+    first = pd.Series([True] * 11 + [False], index=seeds)
+    second = pd.Series([True] * 7 + [False] * 5, index=seeds)
+    alone = statistics.paired_success(first, second)
+    assert alone.p == 0.125 and (alone.first_only, alone.second_only) == (4, 0)
+    pooled = statistics.pooled_success([(first, second)] * 8)
+    assert (pooled.pairs, pooled.first_only, pooled.second_only) == (96, 32, 0)
+    assert pooled.p == pytest.approx(alone.p)  # exact: all 2^12 swaps; McNemar's of 32 to 0 is 5e-10
+    assert statistics.pooled_success([(first, first)]).p == 1.0
+
+    rng = np.random.default_rng(3)
+    times = pd.Series(rng.normal(size=30))
+    zero = pd.Series(np.zeros(30))
+    once = statistics.paired_difference(times, zero)
+    often = statistics.pooled_difference([(times, zero)] * 8)
+    assert often.n == 240 and often.value == once.value
+    assert often.hi - often.lo == pytest.approx(once.hi - once.lo, rel=0.25)
+    # Cells that have nothing to do with each other do say more.
+    apart = [(pd.Series(rng.normal(size=30)), zero) for _ in range(8)]
+    apart = statistics.pooled_difference(apart)
+    assert apart.hi - apart.lo < 0.6 * (once.hi - once.lo)
+
+
+def test_seeds_that_only_some_cells_have_count_where_they_are():
+    first = pd.Series([3.0, np.nan, 5.0], index=[1, 2, 3])
+    second = pd.Series([1.0, 1.0, 1.0], index=[1, 2, 3])
+    pooled = statistics.pooled_difference([(first, second), (first[:1] + 1, second)])
+    assert (pooled.value, pooled.n) == (3.0, 3) and np.isnan(pooled.lo)  # of 2, 4 and 3
+
+
 def test_holm():
     assert statistics.holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
     assert statistics.holm([]) == []
@@ -65,15 +96,29 @@ def test_kaplan_meier_censors_what_did_not_land():
     assert curve.time[-1] == 10.0 and curve.landed[-1] == pytest.approx(0.8)
     at = dict(zip(curve.time, curve.landed))
     assert [at[t] for t in (1.0, 2.0, 3.0, 4.0)] == pytest.approx([0.2, 0.4, 0.6, 0.8])
-    # Greenwood at the first step: sqrt(S^2 d / (n (n - d))).
-    first = list(curve.time).index(1.0)
-    assert curve.hi[first] - curve.landed[first] == pytest.approx(1.95996 * np.sqrt(0.64 / 20), rel=1e-4)
+    # Nothing is censored before the end, so that each step is a proportion.
+    third = list(curve.time).index(3.0)
+    three_of_five = statistics.rate(3, 5)
+    assert (curve.lo[third], curve.hi[third]) == (three_of_five.lo, three_of_five.hi)
 
 
 def test_half_that_never_lands_has_an_infinite_median():
     assert statistics.time_to_land([1.0, 0, 0], [True, False, False], [10.0] * 3).median.value == np.inf
     never = statistics.time_to_land([np.nan] * 3, [False] * 3, [10.0] * 3)
     assert never.median.value == np.inf and never.landed[-1] == 0.0
+    assert never.hi[-1] == statistics.rate(0, 3).hi  # none of three is not never
+
+
+def test_half_of_all_is_half():
+    times = np.arange(1.0, 101.0)
+    curve = statistics.time_to_land(times, times <= 50, np.full(100, 200.0))
+    assert curve.median.value == 50.0 and curve.landed[-1] == 0.5
+    # The bounds of the median are where those of the share cross one half: k of 100 has 50 % within it from 40 to 60.
+    assert curve.median.lo == 40.0 and curve.median.hi == np.inf
+    whole = statistics.time_to_land(times, times > 0, np.full(100, 200.0))
+    assert (whole.median.value, whole.median.lo, whole.median.hi) == (50.0, 40.0, 61.0)
+    few = statistics.time_to_land([1.0, 2.0, 3.0], [True] * 3, [9.0] * 3)
+    assert few.median.value == 2.0 and np.isnan(few.median.lo) and np.isnan(few.median.hi)
 
 
 def test_performance_profiles_count_failures_as_infinite():

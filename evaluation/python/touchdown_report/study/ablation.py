@@ -35,8 +35,9 @@ def write(study, document, gallery, parts, comparisons):
     document.heading(2, "What each part contributes")
     document.text(
         "Each change against the default on the same seeds, over all cells. Only default: pairs in which the "
-        "default alone landed; p: exact McNemar, after Holm. Differences: the median over pairs in which "
-        "both landed, the changed one less the default, with its 95 % bootstrap interval. An interval that holds 0 shows no difference."
+        "default alone landed; p: permutations by seed, after Holm. Differences: the median over pairs in which "
+        "both landed, the changed one less the default, with its 95 % bootstrap interval, which resamples seeds: the cells share "
+        "them. An interval that holds 0 shows no difference."
     )
     document.table(
         [

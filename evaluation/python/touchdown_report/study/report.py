@@ -95,9 +95,10 @@ def _comparisons(study, document, comparisons):
     reference = study.method_title(study.reference)
     document.heading(2, f"Against {reference}, on the same seeds")
     document.text(
-        "Exact McNemar test of the success of paired trials: the same seed is the same world, start, wind and "
-        "noise for every method. The p-values after Holm are adjusted over all cells, those over all cells apart from them. "
-        "With few pairs no difference can be shown: five pairs reach p = 0.0625 at best."
+        "Exact McNemar test of the success of paired trials in a cell: the same seed is the same world, start, wind and "
+        "noise for every method. Over all cells: a permutation test that swaps the two methods in all cells of a seed at "
+        "once, for the cells share their seeds and are not independent. The p-values after Holm are adjusted over the cells, "
+        "and apart from them over the methods. With few seeds no difference can be shown: five reach p = 0.0625 at best."
     )
     rows = []
     pooled_first = comparisons.sort_values("cell", key=lambda cell: cell != tables.ALL_CELLS, kind="stable")
@@ -107,7 +108,7 @@ def _comparisons(study, document, comparisons):
             [
                 "**all cells**" if pooled else study.cell_title(row["cell"]),
                 study.method_title(row["method"]),
-                str(row["pairs"]),
+                f"{row['pairs']} ({row['seeds']} seeds)" if pooled else str(row["pairs"]),
                 str(row["reference_only"]),
                 str(row["method_only"]),
                 p_value(row["p"]),
@@ -149,7 +150,8 @@ def _how(study, document):
     document.points(
         [
             f"{len(study.trials)} trials in simulation, {study.trials['simulated_s'].sum() / 3600:.1f} h of flight, "
-            f"{study.trials['cpu_s'].sum() / 60:.1f} min of CPU time; {duration(seconds)} of wall time with {jobs} jobs.",
+            f"{study.trials['cpu_s'].sum() / 60:.1f} min of CPU time; {duration(seconds)} of wall time with {jobs} jobs, "
+            "of the runs that ended by themselves, recording and reporting not in it.",
             f"Study `{plan['study']}`{', the short form (--quick)' if plan['quick'] else ''}, seed {plan['seed']}: "
             "trial i has the same seed in every cell and with every method.",
             f"Set in every trial: {', '.join(f'`{k}={v}`' for k, v in plan['set'].items()) or 'nothing'}.",
@@ -179,14 +181,19 @@ def _how(study, document):
 
 
 def _headline(study, document, parts):
-    rows = parts[parts["method"] == study.reference]
-    good, trials = int(rows["succeeded"].sum()), int(rows["trials"].sum())
-    worst = rows["trials"] - rows["succeeded"]
     document.text(
-        f"{len(study.trials)} trials, {len(study.cells())} cells, {len(study.methods())} methods. "
-        f"{study.method_title(study.reference)}: {good} of {trials} succeed, at most {int(worst.max())} failures in a cell."
+        f"{len(study.trials)} trials, {len(study.cells())} cells, {len(study.methods())} methods."
         + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
     )
+    points = []
+    for method in study.methods():
+        rows = parts[parts["method"] == method]
+        worst = rows.loc[(rows["succeeded"] / rows["trials"]).idxmin()]
+        points.append(
+            f"{study.method_title(method)}: {rows['succeeded'].sum()} of {rows['trials'].sum()} over all cells; "
+            f"in the worst of them, {study.cell_title(worst['cell'])}, {_rate(worst)}"
+        )
+    document.points(points)
 
 
 def _summary(study, parts):

@@ -47,42 +47,76 @@ def rate(successes, trials):
     return Estimate(successes / trials, lo, hi, trials)
 
 
-def bootstrap(values, statistic=np.median):
-    """`statistic` of a sample with its bias-corrected accelerated bootstrap interval. Fewer than
+def _resampled(sample, statistic, **options):
+    """Interval of `statistic` under resampling of `sample`."""
+    for method in ("BCa", "percentile"):  # BCa is not defined where the jackknife does not vary
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = stats.bootstrap(
+                (sample,),
+                statistic,
+                n_resamples=RESAMPLES,
+                confidence_level=LEVEL,
+                method=method,
+                random_state=SEED,
+                **options,
+            )
+        interval = result.confidence_interval
+        if np.isfinite(interval.low) and np.isfinite(interval.high):
+            break
+    return float(interval.low), float(interval.high)
+
+
+def bootstrap(values):
+    """Median of a sample with its bias-corrected accelerated bootstrap interval. Fewer than
     six values have no interval: resampling never leaves the sample's range, which holds the median of what was
     sampled with less than 95 % then. Values that are all alike have one of no width."""
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
     if values.size == 0:
         return Estimate(np.nan, np.nan, np.nan, 0)
-    figure = float(statistic(values))
+    figure = float(np.median(values))
     if values.size < LEAST:
         return Estimate(figure, np.nan, np.nan, values.size)
     if np.ptp(values) == 0.0:
         return Estimate(figure, figure, figure, values.size)
-    interval = None
-    for method in ("BCa", "percentile"):  # BCa is not defined where the jackknife does not vary
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            result = stats.bootstrap(
-                (values,),
-                statistic,
-                n_resamples=RESAMPLES,
-                confidence_level=LEVEL,
-                method=method,
-                vectorized=True,
-                random_state=SEED,
-            )
-        interval = result.confidence_interval
-        if np.isfinite(interval.low) and np.isfinite(interval.high):
-            break
-    return Estimate(figure, float(interval.low), float(interval.high), values.size)
+    return Estimate(figure, *_resampled(values, np.median, vectorized=True), values.size)
+
+
+def clustered_bootstrap(values):
+    """Median of all values of a table of seeds (rows) by cells, NaN where there is none, with an interval under
+    resampling of whole seeds: the same seed is nearly the same trial in several cells, so that values of one
+    row say less than as many of different rows. `n` counts the values."""
+    table = np.asarray(values, dtype=float)
+    table = table[np.isfinite(table).any(axis=1)]
+    count = int(np.isfinite(table).sum())
+    if count == 0:
+        return Estimate(np.nan, np.nan, np.nan, 0)
+    figure = float(np.nanmedian(table))
+    if len(table) < LEAST:
+        return Estimate(figure, np.nan, np.nan, count)
+    if np.nanmax(table) == np.nanmin(table):
+        return Estimate(figure, figure, figure, count)
+
+    def median(rows):
+        return np.nanmedian(table[np.asarray(rows, dtype=int)])
+
+    return Estimate(figure, *_resampled(np.arange(len(table)), median, vectorized=False), count)
+
+
+def _differences(first, second):
+    both = pd.concat([first, second], axis=1, join="inner").dropna()
+    return both.iloc[:, 0] - both.iloc[:, 1]
 
 
 def paired_difference(first, second):
     """Median of `first` - `second` over the seeds that have both (pandas Series by seed)."""
-    both = pd.concat([first, second], axis=1, join="inner").dropna()
-    return bootstrap((both.iloc[:, 0] - both.iloc[:, 1]).to_numpy())
+    return bootstrap(_differences(first, second).to_numpy())
+
+
+def pooled_difference(pairs):
+    """The same over all cells: `pairs` are (first, second) of each."""
+    return clustered_bootstrap(pd.concat([_differences(a, b) for a, b in pairs], axis=1).to_numpy())
 
 
 def paired_success(first, second):
@@ -94,6 +128,29 @@ def paired_success(first, second):
     return Discordance(len(both), table[0][1], table[1][0], min(p, 1.0))
 
 
+def pooled_success(pairs):
+    """Two methods on the same seeds in several cells ((first, second) of each: boolean Series by seed): a
+    permutation test of the sum of the differences in success, which swaps the methods in all cells of a seed at
+    once. Pairs of one seed are not independent; pairs of different seeds are. Exact for few seeds, by
+    9999 permutations for many, of which p is at least 0.0001 then."""
+    cells = [paired_success(first, second) for first, second in pairs]
+    net = pd.concat([a.astype(float) - b.astype(float) for a, b in pairs], axis=1).sum(axis=1).to_numpy()
+    p = 1.0 if len(net) else np.nan
+    if len(net) > 1:
+        result = stats.permutation_test(
+            (net, np.zeros_like(net)),
+            lambda x, y, axis: np.sum(x - y, axis=axis),
+            permutation_type="samples",
+            vectorized=True,
+            n_resamples=RESAMPLES,
+            random_state=SEED,
+        )
+        p = min(float(result.pvalue), 1.0)
+    return Discordance(
+        sum(c.pairs for c in cells), sum(c.first_only for c in cells), sum(c.second_only for c in cells), p
+    )
+
+
 def holm(p_values):
     """Holm's adjusted p-values, in the same order."""
     if len(p_values) == 0:
@@ -103,7 +160,7 @@ def holm(p_values):
 
 @dataclass
 class Survival:
-    """Share that has landed over time (Kaplan-Meier), as a step function that begins at (0, 0), with
+    """Share that has landed over time (Kaplan-Meier), as a step function that begins at t = 0, with
     pointwise 95 % bounds, and the time by which half has landed (infinite: less than half ever does)."""
 
     time: np.ndarray
@@ -115,32 +172,32 @@ class Survival:
 
 def time_to_land(times, landed, horizon):
     """Kaplan-Meier estimate. What did not land is censored at the end of its time, `horizon`, whenever
-    it ended: a crash does not land later."""
+    it ended: a crash does not land later. Nothing is censored earlier, so that the share at each time is a
+    proportion and has the bounds of Clopper and Pearson; Greenwood's would have no width at 0 and 1."""
     landed = np.asarray(landed, dtype=bool)
     times = np.where(landed, np.asarray(times, dtype=float), np.asarray(horizon, dtype=float))
-    flat = np.zeros(2)
-    if not landed.any():
-        never = Estimate(np.inf, np.nan, np.nan, len(times))
-        return Survival(np.array([0.0, times.max()]), flat, flat, flat, never)
-    function = SurvfuncRight(times, landed.astype(int))
-    error = stats.norm.ppf(0.5 + 0.5 * LEVEL) * np.nan_to_num(function.surv_prob_se)
-    share = 1.0 - function.surv_prob
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        lo, hi = function.quantile_ci(0.5, alpha=1.0 - LEVEL)
-    half = float(function.quantile(0.5))
-    half = half if np.isfinite(half) else np.inf  # less than half ever land
-    end = float(np.max(times))
+    count = len(times)
+    at, share = np.zeros(1), np.zeros(1)
+    if landed.any():
+        function = SurvfuncRight(times, landed.astype(int))
+        at = np.append(at, function.surv_times)
+        # The product of the estimate rounds; k of n is exact.
+        share = np.append(share, np.round((1.0 - function.surv_prob) * count) / count)
+    bounds = [rate(round(s * count), count) for s in share]
+    lo, hi = np.array([b.lo for b in bounds]), np.array([b.hi for b in bounds])
 
-    def steps(values):
-        return np.concatenate([[0.0], values, [values[-1]]])
+    def first(reaches):
+        return float(at[np.argmax(reaches)]) if reaches.any() else np.inf
+
+    half = Estimate(first(share >= 0.5), np.nan, np.nan, count)
+    if count >= LEAST:
+        half.lo, half.hi = first(hi >= 0.5), first(lo >= 0.5)
+
+    def to_the_end(values):
+        return np.append(values, values[-1])
 
     return Survival(
-        np.concatenate([[0.0], function.surv_times, [end]]),
-        steps(share),
-        steps(np.clip(share - error, 0.0, 1.0)),
-        steps(np.clip(share + error, 0.0, 1.0)),
-        Estimate(half, float(lo), float(hi), len(times)),
+        np.append(at, times.max()), to_the_end(share), to_the_end(lo), to_the_end(hi), half
     )
 
 

@@ -23,6 +23,11 @@ OUTCOME_COLOURS = {
     "tilted_touchdown": "#F0E442",
     "lost_pad": "#56B4E9",
     "infeasible": "#0072B2",
+    "off_pad": "#B2DF8A",
+    "unstable": "#6A3D9A",
+    "disarmed_in_air": "#CAB2D6",
+    "hung": "#777777",
+    "crashed": "#444444",
     "error": "#000000",
 }
 PAGE = 11.0  # width of a figure [inch]
@@ -37,7 +42,7 @@ def looks(names):
 
 
 def outcome_colour(name):
-    return OUTCOME_COLOURS.get(name, "#6A3D9A")
+    return OUTCOME_COLOURS[name]
 
 
 def legend_above(figure, handles, labels, most=6):

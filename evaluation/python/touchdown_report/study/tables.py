@@ -53,7 +53,7 @@ def parts(study):
             "half_landed_lo_s": survival.median.lo,
             "half_landed_hi_s": survival.median.hi,
         }
-        following = statistics.bootstrap(trials["following_mean_error_m"])
+        following = statistics.bootstrap(trials.loc[succeeded(trials), "following_mean_error_m"])
         row |= {
             "following_error_median_m": following.value,
             "following_error_lo_m": following.lo,
@@ -70,21 +70,27 @@ def outcomes(study):
     return counts.reindex(pd.MultiIndex.from_tuples(study.parts(), names=["cell", "method"]))
 
 
-def _compare(study, cell, method, first, second):
-    success = statistics.paired_success(succeeded(second), succeeded(first))
+def _compare(study, cell, method, pairs):
+    """One row. `pairs` are (trials of the method, of the reference), by seed, of one cell or of each of them all."""
+    successes = [(succeeded(reference), succeeded(own)) for own, reference in pairs]
+    alone = cell != ALL_CELLS
+    success = statistics.paired_success(*successes[0]) if alone else statistics.pooled_success(successes)
     row = {
         "cell": cell,
         "method": method,
         "reference": study.reference,
+        "seeds": len(set().union(*(own.index.intersection(reference.index) for own, reference in pairs))),
         "pairs": success.pairs,
         "reference_only": success.first_only,
         "method_only": success.second_only,
         "p": success.p,
     }
     for column in PAIRED:
-        estimate = statistics.paired_difference(
-            first.loc[first["landed"], column], second.loc[second["landed"], column]
-        )
+        figures = [
+            (own.loc[own["landed"], column], reference.loc[reference["landed"], column])
+            for own, reference in pairs
+        ]
+        estimate = statistics.paired_difference(*figures[0]) if alone else statistics.pooled_difference(figures)
         row |= {
             f"difference_{column}": estimate.value,
             f"difference_{column}_lo": estimate.lo,
@@ -96,20 +102,19 @@ def _compare(study, cell, method, first, second):
 
 def comparisons(study):
     """Each method against the reference on the same seeds: in each cell, and over all cells that both
-    flew in (`cell` = all). `p_holm` is adjusted over the cells, and apart from them over the methods."""
+    flew in (`cell` = all), where seeds, not pairs, are what is drawn independently. `p_holm` is adjusted over the
+    cells, and apart from them over the methods."""
     rows = []
     pooled = {}
     for cell, method in study.parts():
         if method == study.reference or study.reference not in study.methods(cell):
             continue
-        first, second = study.part(cell, method), study.part(cell, study.reference)
-        rows.append(_compare(study, cell, method, first, second))
-        pairs = pooled.setdefault(method, ([], []))
-        for side, trials in zip(pairs, (first, second)):
-            side.append(trials.set_axis([f"{cell} {seed}" for seed in trials.index]))
+        pair = study.part(cell, method), study.part(cell, study.reference)
+        rows.append(_compare(study, cell, method, [pair]))
+        pooled.setdefault(method, []).append(pair)
     in_cells = len(rows)
-    for method, (firsts, seconds) in pooled.items():
-        rows.append(_compare(study, ALL_CELLS, method, pd.concat(firsts), pd.concat(seconds)))
+    for method, pairs in pooled.items():
+        rows.append(_compare(study, ALL_CELLS, method, pairs))
     table = pd.DataFrame(rows)
     if not table.empty:
         adjusted = statistics.holm(table["p"][:in_cells]) + statistics.holm(table["p"][in_cells:])
