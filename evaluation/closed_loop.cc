@@ -279,6 +279,10 @@ class Trial {
     result_.simulated_s = world_.time();
     if (!result_.succeeded()) {
       result_.detail = Explain(result_.outcome);
+      if (const auto& touchdown = judge_.touchdown()) {
+        const std::string broken = Broken(LandingRule(), *touchdown);
+        if (!broken.empty()) result_.detail += " At first contact: " + broken + ".";
+      }
       if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
       if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
       result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));

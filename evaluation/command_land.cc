@@ -9,6 +9,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/commands.h"
+#include "touchdown/evaluation/degrees.h"
 #include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/record.h"
@@ -18,8 +19,6 @@
 
 namespace touchdown::evaluation {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 
 struct LandArguments {
   ScenarioArguments scenario;
@@ -71,7 +70,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
     text += fmt::format(" ({} {})", count, reason);
   }
   if (const auto median = Quantile(r.timing.replan_wall_ms, 0.5)) {
-    text += fmt::format("\n  replanning             median {:.1f} ms, p95 {:.1f} ms", *median,
+    text += fmt::format("\n  replanning             median {:.2f} ms, p95 {:.2f} ms", *median,
                         *Quantile(r.timing.replan_wall_ms, 0.95));
   }
   text += fmt::format(

@@ -144,7 +144,7 @@ void PrintTerms(const Json& list) {
     std::cout << fmt::format(
         "{}  [{}]  {}, {}, {}; {}\n  {}\n", entry["name"].get<std::string>(),
         entry["unit"].get<std::string>(), entry["convex"].get<bool>() ? "convex" : "not convex",
-        weight > 0.0 ? fmt::format("weight {:g}", weight) : "off by default",
+        weight > 0.0 ? fmt::format("weight {:g}", weight) : "off unless it is asked for",
         entry["can_be_hard"].get<bool>() ? "cost or rows" : "cost only",
         entry["source"].get<std::string>(), entry["formula"].get<std::string>());
     for (const Json& parameter : entry["parameters"]) {

@@ -7,6 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/degrees.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -108,6 +113,21 @@ std::optional<Outcome> OutcomeNamed(std::string_view name) {
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB) {
   const Eigen::Vector3d p_PB = p_WB - pad.p_WP;
   return pad.v_WP + pad.yaw_rate * Eigen::Vector3d(-p_PB.y(), p_PB.x(), 0.0);
+}
+
+std::string Broken(const LandingRule& rule, const Touchdown& d) {
+  std::vector<std::string> words;
+  const auto compare = [&words](double value, double most, const char* format) {
+    if (value > most) words.push_back(fmt::format(fmt::runtime(format), value, most));
+  };
+  compare(d.relative_velocity.head<2>().norm(), rule.horizontal_speed,
+          "{:.2f} m/s horizontally, {:g} allowed");
+  compare(std::abs(d.relative_velocity.z()), rule.vertical_speed,
+          "{:.2f} m/s vertically, {:g} allowed");
+  compare(d.tilt_over_equilibrium * kDegPerRad, rule.tilt_over_equilibrium * kDegPerRad,
+          "{:.1f} deg from the equilibrium's tilt, {:g} allowed");
+  compare(d.tilt * kDegPerRad, rule.tilt * kDegPerRad, "{:.1f} deg of tilt, {:g} allowed");
+  return fmt::format("{}", fmt::join(words, "; "));
 }
 
 LandingJudge::LandingJudge(const LandingRule& rule, double timeout, bool follow)

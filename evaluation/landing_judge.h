@@ -88,6 +88,9 @@ struct Touchdown {
   double tilt_over_equilibrium = 0.0;  ///< [rad]
 };
 
+/// What of a touchdown the rule does not allow, with the limits, in words; empty: nothing.
+std::string Broken(const LandingRule& rule, const Touchdown& touchdown);
+
 /// Velocity of the deck's material point below p_WB, in W [m/s].
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB);
 

@@ -2,12 +2,15 @@
 #include "touchdown/evaluation/profile.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/replay.h"
+#include "touchdown/evaluation/statistics.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::evaluation {
@@ -73,6 +76,30 @@ Span Other(const planning::StageTimes& times) {
   other.wall = std::max(0.0, other.wall);
   other.cpu = std::max(0.0, other.cpu);
   return other;
+}
+
+std::vector<ProfileSummary::SlowStep> SlowestSteps(const Profile& profile) {
+  constexpr std::size_t kMost = 3;
+  using SlowStep = ProfileSummary::SlowStep;
+  // Of a replay every run is a pass over the same steps; flights have their own.
+  std::map<std::pair<std::uint64_t, int>, std::vector<double>> times;
+  std::map<std::pair<std::uint64_t, int>, int> solves;
+  for (const ProfileRun& run : profile.runs) {
+    int step = 0;
+    for (const ReplanSample& replan : run.samples.replans) {
+      const std::pair of(run.seed, step++);
+      times[of].push_back(1e3 * replan.times.total.cpu);
+      solves[of] = replan.solves;
+    }
+  }
+  std::vector<SlowStep> steps;
+  for (const auto& [of, own] : times) {
+    steps.push_back({of.second, of.first, *Quantile(own, 0.5), solves[of]});
+  }
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const SlowStep& a, const SlowStep& b) { return a.cpu_ms > b.cpu_ms; });
+  steps.resize(std::min(steps.size(), kMost));
+  return steps;
 }
 
 }  // namespace
@@ -163,6 +190,7 @@ ProfileSummary Summarise(const Profile& profile) {
   }
   for (StageColumn& stage : stages) summary.stages.push_back(stage.Summary(counted));
   summary.total = total.Summary(counted);
+  summary.slowest = SlowestSteps(profile);
   return summary;
 }
 

@@ -73,6 +73,14 @@ struct ProfileSummary {
   std::vector<StageSummary> stages;
   StageSummary total;
   int deadline_misses = 0;  ///< steps whose wall time exceeded the deadline
+  /// The steps that took longest, slowest first: of a replay by the median of its passes.
+  struct SlowStep {
+    int step = 0;
+    std::uint64_t seed = 0;  ///< of the flight
+    double cpu_ms = 0.0;     ///< thread CPU time
+    int solves = 0;
+  };
+  std::vector<SlowStep> slowest;
 };
 ProfileSummary Summarise(const Profile& profile);
 

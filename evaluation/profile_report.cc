@@ -60,6 +60,23 @@ std::string Source(const Profile& profile) {
                      landed, profile.runs.size());
 }
 
+// What one looks at next.
+std::string SlowestText(const Profile& profile, const ProfileSummary& summary) {
+  const bool several = profile.record.empty() && profile.runs.size() > 1;
+  std::vector<std::string> steps;
+  for (const ProfileSummary::SlowStep& slow : summary.slowest) {
+    steps.push_back(fmt::format("{}{} ({:.2f} ms, {} solves)", slow.step,
+                                several ? fmt::format(" with seed {}", slow.seed) : "", slow.cpu_ms,
+                                slow.solves));
+  }
+  std::string text = fmt::format("  slowest steps: {}\n", fmt::join(steps, ", "));
+  if (!profile.record.empty()) {
+    text += fmt::format("    touchdown plan --from {}:{}\n", profile.record,
+                        summary.slowest.front().step);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string ProfileText(const Profile& profile) {
@@ -77,6 +94,7 @@ std::string ProfileText(const Profile& profile) {
   const int steps = summary.total.samples;
   text += fmt::format("  {} of {} replanning steps took longer than {:g} ms of wall time\n",
                       summary.deadline_misses, steps, profile.deadline_ms);
+  text += SlowestText(profile, summary);
   if (!profile.allocations_counted) {
     text += "  allocations are not counted: a sanitizer or another program owns the heap\n";
   }
@@ -104,6 +122,13 @@ Json ProfileJson(const Profile& profile, const MachineState& machine) {
   json["stages"] = Json::object();
   for (const StageSummary& stage : summary.stages) json["stages"][stage.stage] = StageJson(stage);
   json["total"] = StageJson(summary.total);
+  json["slowest"] = Json::array();
+  for (const ProfileSummary::SlowStep& slow : summary.slowest) {
+    json["slowest"].push_back({{"step", slow.step},
+                               {"seed", slow.seed},
+                               {"cpu_ms", slow.cpu_ms},
+                               {"solves", slow.solves}});
+  }
   json["deadline_ms"] = profile.deadline_ms;
   json["deadline_misses"] = summary.deadline_misses;
   json["allocations_per_replan"] = OrNull(summary.total.allocations.median);

@@ -236,6 +236,7 @@ YAML::Node LoadYaml(const std::string& path) {
 StudyFile LoadStudyFile(const std::string& path, const Registries& registries) {
   StudyFile study;
   study.name = std::filesystem::path(path).stem().string();
+  study.folder = std::filesystem::path(path).parent_path().string();
   MapReader reader(path, "a study");
   reader.Text("title", true, &study.title)
       .Text("reference", true, &study.reference)

@@ -39,7 +39,8 @@ struct StudyMethod {
 
 /// A study as its file says (docs/evaluation_protocol.md): every method in every cell, paired seeds.
 struct StudyFile {
-  std::string name;  ///< stem of the file
+  std::string name;    ///< stem of the file
+  std::string folder;  ///< where it is: its own scenario files are looked for there first
   std::string title;
   std::string report;     ///< which report: "plain", "paper", "solvers" or "ablation"
   std::string reference;  ///< the method that the others are compared with

@@ -3,6 +3,7 @@
 #include "touchdown/evaluation/study_plan.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -32,6 +33,14 @@ std::vector<std::string> Overrides(const std::vector<const StudyPairs*>& layers)
   return overrides;
 }
 
+// A file beside the study's, or as everywhere: a path, or a shipped scenario.
+std::string FindScenarioOf(const StudyFile& file, const StudyCell& cell) {
+  const std::filesystem::path beside = std::filesystem::path(file.folder) / cell.scenario;
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(beside, ignored) ? beside.string()
+                                                           : FindScenario(cell.scenario);
+}
+
 bool Flies(const StudyCell& cell, const StudyMethod& method) {
   return cell.methods.empty() ||
          std::find(cell.methods.begin(), cell.methods.end(), method.name) != cell.methods.end();
@@ -40,7 +49,7 @@ bool Flies(const StudyCell& cell, const StudyMethod& method) {
 void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* plan) {
   const StudyCell& cell = plan->CellOf(part);
   const StudyMethod& method = plan->MethodOf(part);
-  const std::string scenario = FindScenario(cell.scenario);
+  const std::string scenario = FindScenarioOf(plan->file, cell);
   const auto overrides = Overrides({&plan->file.set, &cell.set, &method.set});
   std::vector<std::pair<std::string, std::string>> labels = {{"cell", cell.name},
                                                              {"method", method.name}};

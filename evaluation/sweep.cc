@@ -63,6 +63,20 @@ std::size_t Combinations(const std::vector<Variation>& variations) {
   return count;
 }
 
+// What is refused may be so because of what is varied: the sentence says what that was.
+SweepTrial MakeVaried(const SweepOptions& options, const std::vector<std::string>& overrides,
+                      const std::vector<std::pair<std::string, std::string>>& varied,
+                      const Registries& registries) {
+  try {
+    return MakeTrial(options.scenario_path, overrides, registries);
+  } catch (const BadInput& refusal) {
+    if (varied.empty()) throw;
+    std::string words;
+    for (const auto& [key, value] : varied) words += fmt::format(" --vary {}={}", key, value);
+    throw BadInput(fmt::format("With{}: {}", words, refusal.what()));
+  }
+}
+
 }  // namespace
 
 Variation Variation::Parse(const std::string& text) {
@@ -131,8 +145,7 @@ std::vector<SweepTrial> PlanSweep(const SweepOptions& options, const Registries&
     }
     auto same = loaded.find(overrides);
     if (same == loaded.end()) {
-      same =
-          loaded.emplace(overrides, MakeTrial(options.scenario_path, overrides, registries)).first;
+      same = loaded.emplace(overrides, MakeVaried(options, overrides, varied, registries)).first;
     }
     SweepTrial& trial = trials.emplace_back(same->second);
     trial.index = i;

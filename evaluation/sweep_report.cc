@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/degrees.h"
 #include "touchdown/evaluation/statistics.h"
 #include "touchdown/evaluation/trial_json.h"
 
@@ -16,8 +17,6 @@ namespace touchdown::evaluation {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 
 // A figure of a trial, where it has one, that is summed up over trials.
 struct Figure {
@@ -89,7 +88,7 @@ const Figure kFigures[] = {
                                            : std::nullopt;
      }},
     {"t_star_s", "T*, bound on time to land", "s", [](const TrialResult& r) { return r.t_star_s; }},
-    {"t_star_gap", "its upper over its lower - 1", "", Gap},
+    {"t_star_gap", "T*, upper bound over lower - 1", "", Gap},
     {"time_ratio", "time to land over T*", "", [](const TrialResult& r) { return r.time_ratio(); }},
 };
 
@@ -155,16 +154,24 @@ std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& row
       fmt::format("{}: {} of {} {}, 95 % Clopper-Pearson [{:.1f} %, {:.1f} %], sweep seed {}\n",
                   rows.front().trial.scenario.name, k, n, SuccessWord(rows), 100.0 * interval.lo,
                   100.0 * interval.hi, campaign.seed);
-  text += fmt::format("  {:<28}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "", "median", "p95", "min", "max",
+  text += fmt::format("  {:<33}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "", "median", "p95", "min", "max",
                       "n");
   for (const Column& column : Columns(rows)) {
     if (column.values.empty()) continue;
     const std::string label =
         column.unit[0] == '\0' ? column.label : fmt::format("{} [{}]", column.label, column.unit);
-    text += fmt::format("  {:<28}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>6}\n", label,
+    text += fmt::format("  {:<33}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>6}\n", label,
                         *Quantile(column.values, 0.5), *Quantile(column.values, 0.95),
                         *Quantile(column.values, 0.0), *Quantile(column.values, 1.0),
                         column.values.size());
+  }
+  const auto without = std::count_if(rows.begin(), rows.end(), [](const SweepRow& row) {
+    return row.result.landed() && row.result.t_star_s && !row.result.time_ratio();
+  });
+  if (without > 0) {
+    text += fmt::format(
+        "  {} landed without a ratio to T*: they once exceeded a limit that T* keeps to\n",
+        without);
   }
   std::map<std::string, std::vector<const SweepRow*>> failures;
   for (const SweepRow& row : rows) {
@@ -177,6 +184,10 @@ std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& row
       text += fmt::format("    trial {} at {:.2f} s. {}\n      {}\n", row->trial.index,
                           row->result.simulated_s, row->result.detail, row->trial.Replay());
     }
+  }
+  if (failures.empty()) {
+    const SweepTrial& first = rows.front().trial;
+    text += fmt::format("  trial {} again, alone:\n      {}\n", first.index, first.Replay());
   }
   return text;
 }

@@ -2,6 +2,7 @@
 // The machine-readable result of one trial. Fields that do not apply are null, never left out.
 #include "touchdown/evaluation/trial_json.h"
 
+#include "touchdown/evaluation/degrees.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/statistics.h"
@@ -10,8 +11,6 @@ namespace touchdown::evaluation {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegPerRad = 180.0 / 3.14159265358979323846;
 
 Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 

@@ -95,13 +95,15 @@ TEST_F(LandingJudgeTest, SpeedLimitsAreRelativeToTheDeckPointBelow) {
   Touch();
   EXPECT_FALSE(judge_.outcome());
   EXPECT_NEAR(judge_.touchdown()->relative_velocity.y(), 0.59, 1e-12);
+  EXPECT_EQ(Broken({}, *judge_.touchdown()), "");
 }
 
 TEST_F(LandingJudgeTest, TooFastSidewaysIsHard) {
   sample_.vehicle.v_WB = {0.8 + 0.61, 0.0, -0.1};
   Touch();
   EXPECT_EQ(judge_.outcome(), Outcome::kHardTouchdown);
-  EXPECT_TRUE(judge_.touchdown().has_value());
+  ASSERT_TRUE(judge_.touchdown().has_value());
+  EXPECT_EQ(Broken({}, *judge_.touchdown()), "0.61 m/s horizontally, 0.6 allowed");
 }
 
 TEST_F(LandingJudgeTest, TooFastDownIsHard) {
@@ -117,6 +119,14 @@ TEST_F(LandingJudgeTest, TiltIsMeasuredFromTheEquilibrium) {
   EXPECT_FALSE(judge_.outcome());
   EXPECT_NEAR(judge_.touchdown()->tilt_over_equilibrium, 10.0 * kDeg, 1e-9);
   EXPECT_NEAR(judge_.touchdown()->tilt, 30.0 * kDeg, 1e-9);
+}
+
+TEST_F(LandingJudgeTest, AllThatIsBrokenIsNamed) {
+  Touchdown touchdown;
+  touchdown.relative_velocity = {0.3, 0.4, -0.75};
+  touchdown.tilt_over_equilibrium = 15.5 * kDeg;
+  EXPECT_EQ(Broken({}, touchdown),
+            "0.75 m/s vertically, 0.5 allowed; 15.5 deg from the equilibrium's tilt, 15 allowed");
 }
 
 TEST_F(LandingJudgeTest, TooFarFromTheEquilibriumIsTilted) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
@@ -145,6 +146,17 @@ TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
   EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 7.0);
   EXPECT_EQ(plan.campaign.trials.at(2).scenario.timeout, 8.0);
   EXPECT_EQ(plan.campaign.trials.at(2).scenario.descent, DescentKind::kNone);
+}
+
+TEST_F(WrittenStudy, ScenarioFilesBesideTheStudyAreFound) {
+  const std::string beside = testing::TempDir() + "beside_the_study.yaml";
+  std::ofstream(beside) << "timeout: 17\n";
+  const std::string rest =
+      "cells: [{name: c, scenario: beside_the_study.yaml}]\nmethods: [{name: a}]\n";
+  const StudyPlan plan = PlanStudy(Load(kHead + rest), true, 1, kRegistries);
+  EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 17.0);
+  EXPECT_THAT(plan.campaign.trials.at(0).command, testing::HasSubstr(beside));
+  std::filesystem::remove(beside);
 }
 
 TEST_F(WrittenStudy, MistakesAreNamed) {

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
@@ -73,6 +74,19 @@ TEST(PlanSweep, AKeyIsVariedOnceAndNotSetBeside) {
   EXPECT_NO_THROW(PlanSweep(options, kRegistries));
   options.variations.push_back(Variation::Parse("pad.speed=0.2,0.4"));
   EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
+}
+
+TEST(PlanSweep, ARefusalSaysWhatWasVaried) {
+  SweepOptions options;
+  options.scenario_path = FindScenario("open");
+  options.variations = {Variation::Parse("planning.latency=20,80")};
+  try {
+    PlanSweep(options, kRegistries);
+    ADD_FAILURE() << "80 ms are more than a period";
+  } catch (const BadInput& refusal) {
+    EXPECT_THAT(refusal.what(), testing::StartsWith("With --vary planning.latency=80: "));
+    EXPECT_THAT(refusal.what(), testing::HasSubstr("planning.latency must be in [0, 50] ms"));
+  }
 }
 
 TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {

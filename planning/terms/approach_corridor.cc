@@ -61,7 +61,7 @@ TermEntry ApproachCorridorTerm() {
   TermEntry entry;
   entry.info = {"approach_corridor",
                 "w sum hinge(sqrt(|p_xy - P_xy|^2 + eps^2) - r0 - tan(angle) (p_z - P_z))", "m",
-                "docs/formulation.md", true};
+                "docs/formulation.md; descent: planned asks for it", true};
   entry.parameters = {HingeWidth(0.3, "m"),
                       {"radius", 0.3, 0.05, 10.0, "r0, of the cone at the deck [m]"},
                       {"angle_deg", 45.0, 5.0, 85.0, "between the cone's side and its axis [deg]"},

@@ -56,6 +56,9 @@ def test_a_flight_is_profiled(run, tmp_path):
     assert document["total"]["median_ms"] > 0.0 and document["stages"]["solve"]["median_ms"] > 0.0
     assert document["deadline_ms"] == 20.0 and document["deadline_misses"] >= 0
     assert document["seeds"] == [1, 2] and document["replans"] > 20
+    slowest = [step["cpu_ms"] for step in document["slowest"]]
+    assert len(slowest) == 3 and slowest[0] == document["total"]["max_ms"]
+    assert slowest == sorted(slowest, reverse=True)
     allocations = document["allocations_per_replan"]
     assert allocations is None or allocations <= document["allocations_per_replan_max"]
     assert document["build"]["cpu"] and "load_before" in document["machine"]

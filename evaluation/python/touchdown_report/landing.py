@@ -218,6 +218,10 @@ def legend_entries(record, contact):
         handles.append(
             Line2D([], [], marker="*", ls="", ms=12, mfc="#009E73", mec="white", label="touchdown")
         )
+    else:
+        handles.append(
+            Line2D([], [], marker="X", ls="", ms=9, mfc="#CC0000", mec="white", label="end, not landed")
+        )
     return handles
 
 

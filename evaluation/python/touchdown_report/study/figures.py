@@ -85,6 +85,7 @@ def landing_times(study):
     figure, panels = _grid(max(1, len(cells)), min(4, max(1, len(cells))), 2.0, sharex=True, sharey=True)
     look = looks(methods)
     drawn = {}
+    last = study.trials.loc[study.trials["landed"], "time_to_land_s"].max()
     for panel, cell in zip(panels, cells):
         for method in study.methods(cell):
             trials = study.part(cell, method)
@@ -99,7 +100,7 @@ def landing_times(study):
             drawn[method] = line
         panel.set_title(study.cell_title(cell), fontsize=9)
         panel.set_ylim(-0.03, 1.03)
-        panel.set_xlim(left=0.0)
+        panel.set_xlim(0.0, 1.05 * last if np.isfinite(last) else None)
     names = [m for m in methods if m in drawn]
     if names:
         legend_above(figure, [drawn[m] for m in names], [study.method_title(m) for m in names], 4)
