@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`touchdown profile` and `touchdown plan` as a user meets them."""
 import json
+import re
 import sqlite3
 
 import numpy as np
@@ -99,6 +100,8 @@ def test_a_record_is_replayed_bit_for_bit(run, record_path, tmp_path):
     table = run(*arguments, "--deadline-ms", "0.001").stdout
     assert f"{steps} of {steps} answers are the recorded ones bit for bit" in table
     assert f"{2 * steps} of {2 * steps} replanning steps took longer than 0.001 ms" in table
+    slowest = re.search(r"slowest steps: (\d+) \(", table)[1]
+    assert f"touchdown plan --from {record_path}:{slowest}" in table
     for word in (*STAGES, "total", "median", "p99", "allocations"):
         assert word in table
 
