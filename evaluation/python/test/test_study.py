@@ -77,6 +77,16 @@ def test_the_report_says_what_the_table_holds(flown):
     assert html.count("data:image/png;base64,") == html.count("<img") >= 4 and "http" not in html
 
 
+def test_what_only_follows_counts_as_no_landing(flown, tmp_path):
+    for name in ("study.db", "study.json"):
+        (tmp_path / name).write_bytes((flown[0] / "out" / name).read_bytes())
+    plan = json.loads((tmp_path / "study.json").read_text())
+    plan["cells"][0]["set"]["descent"] = "none"
+    (tmp_path / "study.json").write_text(json.dumps(plan))
+    write_report(Study(str(tmp_path)))
+    assert "- planned: 3 of 3 landed over all cells" in (tmp_path / "report.md").read_text()
+
+
 def test_seeds_are_paired(flown):
     study = Study(str(flown[0] / "out"))
     first, second = study.part("figure_4", "planned"), study.part("case_1_wind_4", "planned")

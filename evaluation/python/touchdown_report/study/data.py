@@ -84,6 +84,11 @@ class Study:
     def labels(self, cell):
         return next(entry["labels"] for entry in self.plan["cells"] if entry["name"] == cell)
 
+    def asks_to_land(self, cell):
+        """False where the flights of a cell only follow the pad."""
+        own = next(entry["set"] for entry in self.plan["cells"] if entry["name"] == cell)
+        return {**self.plan["set"], **own}.get("descent") != "none"
+
     @property
     def reference(self):
         return self.plan["reference"]

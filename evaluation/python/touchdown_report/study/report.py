@@ -198,11 +198,14 @@ def _headline(study, document, parts):
         + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
     )
     points = []
+    landings = parts[parts["cell"].map(study.asks_to_land)]
     for method in study.methods():
-        rows = parts[parts["method"] == method]
+        rows = landings[landings["method"] == method]
+        if rows.empty:
+            continue
         worst = rows.loc[(rows["succeeded"] / rows["trials"]).idxmin()]
         points.append(
-            f"{study.method_title(method)}: {rows['succeeded'].sum()} of {rows['trials'].sum()} over all cells; "
+            f"{study.method_title(method)}: {rows['succeeded'].sum()} of {rows['trials'].sum()} landed over all cells; "
             f"nowhere less than {_rate(worst)} ({study.cell_title(worst['cell'])})"
         )
     document.points(points)

@@ -132,7 +132,7 @@ def pooled_success(pairs):
     """Two methods on the same seeds in several cells ((first, second) of each: boolean Series by seed): a
     permutation test of the sum of the differences in success, which swaps the methods in all cells of a seed at
     once. Pairs of one seed are not independent; pairs of different seeds are. Exact for few seeds, by
-    9999 permutations for many, of which p is at least 0.0001 then."""
+    9999 permutations for many, where p is at least 0.0002."""
     cells = [paired_success(first, second) for first, second in pairs]
     net = pd.concat([a.astype(float) - b.astype(float) for a, b in pairs], axis=1).sum(axis=1).to_numpy()
     p = 1.0 if len(net) else np.nan
