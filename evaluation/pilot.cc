@@ -32,9 +32,8 @@ constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's se
 constexpr double kUpright = 0.07;                // ... until it is less than that
 constexpr double kFlareHeight = 0.15;            // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
-constexpr double kTouchForce = 0.2;  // on the feet: something holds them [N]
-constexpr double kLevelTime = 0.15;  // between a plan's end and contact: the tilt dies away [s]
-constexpr double kLevelTimeInPull = 0.2;  // ... and errors in wind [s per m/s^2 of its force]
+constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
+constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
@@ -86,6 +85,14 @@ std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
 }
 
 }  // namespace
+
+planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, double touchdown_rate,
+                                       double level_time) {
+  planning::EndpointTarget target;
+  target.height = target.height_floor = model.foot_depth + touchdown_rate * level_time;
+  target.arrival_sink = touchdown_rate;
+  return target;
+}
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
              const sim::PadMotion& truth, const Registries& registries,
@@ -343,13 +350,12 @@ double Pilot::DesiredHeading() {
 }
 
 planning::EndpointTarget Pilot::Endpoint(double t) const {
+  const bool contact = mission_.guidance == control::Guidance::kTouchDown;
   planning::EndpointTarget target;
+  if (contact) target = ContactTarget(model_, parameters_.touchdown_rate, level_time_);
   target.t_reference = t;
   target.at_rest = scenario_.planning.endpoint_velocity == EndpointVelocityKind::kRest;
-  if (mission_.guidance == control::Guidance::kTouchDown) {
-    target.height = target.height_floor =
-        model_.foot_depth + parameters_.touchdown_rate * level_time_;
-    target.arrival_sink = parameters_.touchdown_rate;
+  if (contact) {
     if (!Levelled(t)) return target;
     target.t_reference = plan_end_t_;
     target.sink_rate = std::exchange(target.arrival_sink, 0.0);

@@ -29,6 +29,12 @@ struct PilotReplan {
   double latency_s = 0.0;    ///< with which the plan is flown
 };
 
+/// A plan that is to end in contact: `level_time` before it [s], level, sinking with `touchdown_rate` [m/s].
+planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, double touchdown_rate,
+                                       double level_time);
+/// Between a plan's end and contact in still air, in which the tilt dies away [s].
+inline constexpr double kLevelTime = 0.15;
+
 /// The vehicle's own software: mission, replanning, heading, tracking. Knows only estimates; the
 /// oracle prediction is the one exception, on request of the scenario.
 class Pilot {

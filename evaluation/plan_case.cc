@@ -10,6 +10,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/field_map.h"
 #include "touchdown/evaluation/perception.h"
+#include "touchdown/evaluation/pilot.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/sim/vehicle_file.h"
@@ -19,10 +20,15 @@ namespace {
 
 constexpr double kDrawnAround = 3.0;  // occupied cells this near to what was planned [m]
 
-planning::EndpointTarget FollowAbovePad(const estimation::VehicleModel& model) {
+// What the first step of a flight asks for, in still air: contact, or to follow above the pad.
+planning::EndpointTarget FirstTarget(const Scenario& scenario,
+                                     const estimation::VehicleModel& model) {
+  const control::MissionParameters mission;
+  if (scenario.descent == DescentKind::kPlanned) {
+    return ContactTarget(model, mission.touchdown_rate, kLevelTime);
+  }
   planning::EndpointTarget target;
-  target.height = control::MissionParameters{}.follow_height + model.foot_depth;
-  target.height_floor = target.height;
+  target.height = target.height_floor = mission.follow_height + model.foot_depth;
   return target;
 }
 
@@ -89,7 +95,7 @@ RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registr
                                                        : 1e-3 * scenario.planning.latency.ms;
     input.vehicle.p_WB = draw.p_WB;
     input.vehicle.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
-    input.endpoint = FollowAbovePad(model);
+    input.endpoint = FirstTarget(scenario, model);
     plan.request.prediction.source = PredictionSource::kOracle;
     return flight;
   } catch (const std::invalid_argument& error) {

@@ -134,9 +134,8 @@ std::string PlanText(const SolvedStep& solved) {
   text += TimesText(solved.times);
   if (solved.same) {
     text += *solved.same ? "  the recorded answer, bit for bit\n"
-                         : fmt::format("  not the recorded answer: that was {} ({}), cost {:.6g}\n",
+                         : fmt::format("  not the recorded answer, which was: {}, cost {:.6g}\n",
                                        planning::ToString(solved.recorded.result.status),
-                                       planning::ToString(solved.recorded.result.reason),
                                        solved.recorded.result.cost);
   }
   return text;
