@@ -195,9 +195,8 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
     ranks = std::make_unique<Ranks>();
     if (ranks->size() == 1) {
       throw BadInput(
-          "The launcher says that it started several, MPI that this one is alone: the launcher is "
-          "of "
-          "another MPI than the program.");
+          "The launcher says that it started several, MPI that this one is alone: the launcher "
+          "is of another MPI than the program.");
     }
     const bool alike = ranks->Agree(CampaignHash(campaign));
     if (!ranks->leads()) {
@@ -213,7 +212,9 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
   Flight flight(campaign, options, progress);
   const auto take = [&](const WorkerReply& reply) { flight.Take(reply); };
   const auto stop = [&] { return watch.signal() != 0; };
-  const int at_a_time = ranks ? ranks->size() : static_cast<int>(workers.size());
+  const int at_a_time = flight.together().empty() ? 1
+                        : ranks                   ? ranks->size()
+                                                  : static_cast<int>(workers.size());
   if (ranks) {
     ranks->Lead(workers.front(), flight.together(), take, stop);
     ranks.reset();  // the others' looking for messages would disturb what flies alone

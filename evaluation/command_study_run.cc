@@ -90,6 +90,7 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const StudyFile file = LoadStudyFile(FindStudyFile(arguments.file), registries);
   const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
   if (arguments.report_only) {
+    if (arguments.retry) throw BadInput("--retry has no effect with --report-only.");
     if (std::filesystem::exists(StudyTablePath(folder))) return Report(arguments, folder);
     throw BadInput(fmt::format("--report-only: {} is missing; the study must be flown first.",
                                StudyTablePath(folder)));

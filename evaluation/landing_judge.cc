@@ -117,16 +117,15 @@ Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::
 
 std::string Broken(const LandingRule& rule, const Touchdown& d) {
   std::vector<std::string> words;
-  const auto compare = [&words](double value, double most, const char* format) {
-    if (value > most) words.push_back(fmt::format(fmt::runtime(format), value, most));
+  const auto compare = [&words](double value, double most, double scale, const char* unit) {
+    if (value <= most) return;
+    words.push_back(fmt::format("{:.3f} {}, {:g} allowed", scale * value, unit, scale * most));
   };
-  compare(d.relative_velocity.head<2>().norm(), rule.horizontal_speed,
-          "{:.2f} m/s horizontally, {:g} allowed");
-  compare(std::abs(d.relative_velocity.z()), rule.vertical_speed,
-          "{:.2f} m/s vertically, {:g} allowed");
-  compare(d.tilt_over_equilibrium * kDegPerRad, rule.tilt_over_equilibrium * kDegPerRad,
-          "{:.1f} deg from the equilibrium's tilt, {:g} allowed");
-  compare(d.tilt * kDegPerRad, rule.tilt * kDegPerRad, "{:.1f} deg of tilt, {:g} allowed");
+  compare(d.relative_velocity.head<2>().norm(), rule.horizontal_speed, 1.0, "m/s horizontally");
+  compare(std::abs(d.relative_velocity.z()), rule.vertical_speed, 1.0, "m/s vertically");
+  compare(d.tilt_over_equilibrium, rule.tilt_over_equilibrium, kDegPerRad,
+          "deg from the equilibrium's tilt");
+  compare(d.tilt, rule.tilt, kDegPerRad, "deg of tilt");
   return fmt::format("{}", fmt::join(words, "; "));
 }
 

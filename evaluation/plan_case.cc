@@ -24,11 +24,13 @@ constexpr double kDrawnAround = 3.0;  // occupied cells this near to what was pl
 planning::EndpointTarget FirstTarget(const Scenario& scenario,
                                      const estimation::VehicleModel& model) {
   const control::MissionParameters mission;
-  if (scenario.descent == DescentKind::kPlanned) {
-    return ContactTarget(model, mission.touchdown_rate, kLevelTime);
-  }
   planning::EndpointTarget target;
-  target.height = target.height_floor = mission.follow_height + model.foot_depth;
+  if (scenario.descent == DescentKind::kPlanned) {
+    target = ContactTarget(model, mission.touchdown_rate, kLevelTime);
+  } else {
+    target.height = target.height_floor = mission.follow_height + model.foot_depth;
+  }
+  target.at_rest = scenario.planning.endpoint_velocity == EndpointVelocityKind::kRest;
   return target;
 }
 

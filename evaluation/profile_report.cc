@@ -62,6 +62,7 @@ std::string Source(const Profile& profile) {
 
 // What one looks at next.
 std::string SlowestText(const Profile& profile, const ProfileSummary& summary) {
+  if (summary.slowest.empty()) return {};
   const bool several = profile.record.empty() && profile.runs.size() > 1;
   std::vector<std::string> steps;
   for (const ProfileSummary::SlowStep& slow : summary.slowest) {

@@ -2,11 +2,14 @@
 // A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
 #include "touchdown/evaluation/study_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -14,11 +17,12 @@
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/campaign_facts.h"
 #include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/record.h"
-#include "touchdown/evaluation/record_reader.h"
+#include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/work_sharing.h"
 
 namespace touchdown::evaluation {
@@ -59,15 +63,16 @@ void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& fli
 }
 
 // Whether the file is a record of this trial, flown by this build.
-bool IsRecordOf(const std::string& path, const SweepTrial& trial, const Registries& registries) {
+bool IsRecordOf(const std::string& path, const SweepTrial& trial) {
   if (!fs::exists(path)) return false;
-  Scenario scenario = trial.scenario;
-  scenario.seed = trial.seed;
   try {
-    const RecordedFlight there = ReadRecord(path, {}, registries);
-    return there.build_hash == BuildHash() &&
-           DumpScenario(there.scenario) == DumpScenario(scenario);
-  } catch (const BadInput&) {
+    SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+    SqliteStatement rows = db.Prepare("SELECT key, value FROM meta");
+    Manifest meta;
+    while (rows.Step()) meta[rows.Text(0)] = rows.Text(1);
+    return meta["build_hash"] == BuildHash() && meta["seed"] == std::to_string(trial.seed) &&
+           meta["scenario_yaml"] == DumpScenario(trial.scenario);
+  } catch (const SqliteError&) {
     return false;
   }
 }
@@ -79,16 +84,17 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     const SweepTrial* trial;
     std::string path;
   };
-  std::vector<Flight> flights;
+  std::vector<Flight> flights, alone;
   for (const StudyPart& part : plan.parts) {
     const std::string path = fmt::format("{}/records/{}-{}.db", folder, plan.CellOf(part).name,
                                          plan.MethodOf(part).name);
     if (!plan.Records(part) || part.trials == 0) continue;
     const SweepTrial& first = plan.campaign.trials.at(static_cast<std::size_t>(part.first));
-    if (IsRecordOf(path, first, registries)) continue;
-    fs::remove(path);
-    flights.push_back({&first, path});
+    if (IsRecordOf(path, first)) continue;
+    (first.FliesAlone() ? alone : flights).push_back({&first, path});
   }
+  const int together = static_cast<int>(flights.size());
+  flights.insert(flights.end(), alone.begin(), alone.end());
   // Why there is no record; empty: there is one.
   const auto fly = [&](int i) -> std::string {
     const Flight& flight = flights[static_cast<std::size_t>(i)];
@@ -115,7 +121,13 @@ void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int job
     }
     progress(++done, count);
   };
-  ShareAll(count, jobs, fly, kRecordLimit, take);
+  std::vector<WorkerProcess> workers;
+  for (int i = 0; i < std::min(jobs, count); ++i) workers.emplace_back(fly, kRecordLimit);
+  std::vector<int> items(flights.size());
+  std::iota(items.begin(), items.end(), 0);
+  const auto never = [] { return false; };
+  ShareWork(workers, jobs, {items.begin(), items.begin() + together}, take, never);
+  ShareWork(workers, 1, {items.begin() + together, items.end()}, take, never);
 }
 
 }  // namespace

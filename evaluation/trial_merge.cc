@@ -33,8 +33,8 @@ std::vector<Input> Open(const std::vector<std::string>& files) {
     } catch (const SqliteError& error) {
       throw BadInput(fmt::format("{}.", error.what()));
     }
-    input.db->Execute(
-        "BEGIN");  // all that is read of a file is of one moment, even if it still grows
+    // All that is read of a file is of one moment, even if it still grows.
+    input.db->Execute("BEGIN");
     input.manifest = ReadManifest(*input.db, path);
     inputs.push_back(std::move(input));
     const std::string other = Difference(inputs.back().manifest, inputs.front().manifest);

@@ -103,7 +103,7 @@ TEST_F(LandingJudgeTest, TooFastSidewaysIsHard) {
   Touch();
   EXPECT_EQ(judge_.outcome(), Outcome::kHardTouchdown);
   ASSERT_TRUE(judge_.touchdown().has_value());
-  EXPECT_EQ(Broken({}, *judge_.touchdown()), "0.61 m/s horizontally, 0.6 allowed");
+  EXPECT_EQ(Broken({}, *judge_.touchdown()), "0.610 m/s horizontally, 0.6 allowed");
 }
 
 TEST_F(LandingJudgeTest, TooFastDownIsHard) {
@@ -125,8 +125,9 @@ TEST_F(LandingJudgeTest, AllThatIsBrokenIsNamed) {
   Touchdown touchdown;
   touchdown.relative_velocity = {0.3, 0.4, -0.75};
   touchdown.tilt_over_equilibrium = 15.5 * kDeg;
-  EXPECT_EQ(Broken({}, touchdown),
-            "0.75 m/s vertically, 0.5 allowed; 15.5 deg from the equilibrium's tilt, 15 allowed");
+  EXPECT_EQ(
+      Broken({}, touchdown),
+      "0.750 m/s vertically, 0.5 allowed; 15.500 deg from the equilibrium's tilt, 15 allowed");
 }
 
 TEST_F(LandingJudgeTest, TooFarFromTheEquilibriumIsTilted) {

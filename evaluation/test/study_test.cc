@@ -105,6 +105,10 @@ TEST(SolversStudy, HasEveryBackendOrSaysWhyNot) {
     EXPECT_NE(part.trials > 0, !part.refusal.empty()) << name;
     if (part.trials > 0) hard.insert(name);
   }
+  for (const SweepTrial& trial : plan.campaign.trials) {
+    const std::string& cell = trial.varied.at(0).second;
+    EXPECT_EQ(trial.FliesAlone(), cell.find("measured") != std::string::npos) << cell;
+  }
   EXPECT_EQ(soft.size(), kRegistries.backends.size());
   EXPECT_EQ(hard.count("banded"), 1U);
   EXPECT_EQ(hard.count("lbfgs"), 0U);

@@ -141,7 +141,7 @@ def test_two_ranks_give_the_same_tables(program, run, tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun")
-def test_what_flies_alone_is_flown_by_the_first_rank_when_the_others_are_gone(program, tmp_path):
+def test_what_flies_alone_is_flown_with_two_ranks_too(program, tmp_path):
     latency = ("--vary", "planning.latency=20,measured")
     ranks = in_two_ranks(program, tmp_path, *SWEEP, "--set", "timeout=1.5", *latency, "--trials", "6", "--db", "a.db")
     assert ranks.returncode == 0, ranks.stderr

@@ -9,9 +9,11 @@ import subprocess
 import pytest
 
 pytest.importorskip("statsmodels")
+np = pytest.importorskip("numpy")
 pd = pytest.importorskip("pandas")
 
-from touchdown_report.study import tables  # noqa: E402
+from touchdown_report.study import paper as paper_chapter  # noqa: E402
+from touchdown_report.study import statistics, tables  # noqa: E402
 from touchdown_report.study.data import Study, StudyError  # noqa: E402
 from touchdown_report.study.report import write_report  # noqa: E402
 
@@ -80,11 +82,38 @@ def test_the_report_says_what_the_table_holds(flown):
 def test_what_only_follows_counts_as_no_landing(flown, tmp_path):
     for name in ("study.db", "study.json"):
         (tmp_path / name).write_bytes((flown[0] / "out" / name).read_bytes())
-    plan = json.loads((tmp_path / "study.json").read_text())
-    plan["cells"][0]["set"]["descent"] = "none"
-    (tmp_path / "study.json").write_text(json.dumps(plan))
+    with sqlite3.connect(tmp_path / "study.db") as db:
+        first = "(SELECT trial FROM variation WHERE key = 'cell' AND value = 'figure_4')"
+        db.execute(f"UPDATE trial SET following_mean_error_m = 0.1 WHERE trial IN {first}")
     write_report(Study(str(tmp_path)))
-    assert "- planned: 3 of 3 landed over all cells" in (tmp_path / "report.md").read_text()
+    text = (tmp_path / "report.md").read_text()
+    assert "- planned: 3 of 3 landed over all cells" in text and "- EGO" not in text
+
+
+@pytest.mark.parametrize(
+    "landed, paper, verdict",
+    [
+        (100, 62.0, "better"),
+        (100, 45.0, "not shown"),
+        (100, 20.0, "worse"),
+        (55, 90.0, "not shown"),  # half have landed, the interval has no end
+        (55, 20.0, "worse"),
+        (45, 90.0, "not shown"),  # half never have
+        (0, 60.0, "worse"),
+    ],
+)
+def test_verdicts_are_about_all_flights(landed, paper, verdict):
+    times = np.arange(1.0, 101.0)
+    half = statistics.time_to_land(times, times <= landed, np.full(100, 200.0)).median
+    assert paper_chapter._below(half, paper) == verdict
+
+
+def test_landing_is_reproduced_where_the_interval_says_so():
+    def verdict(good, of):
+        return paper_chapter._lands(pd.DataFrame({"landed": [True] * good + [False] * (of - good)}))
+
+    assert verdict(100, 100) == verdict(70, 100) == "reproduced"
+    assert verdict(5, 5) == verdict(51, 100) == "not shown" and verdict(20, 100) == "not reproduced"
 
 
 def test_seeds_are_paired(flown):
@@ -151,7 +180,6 @@ def test_a_study_can_be_reported_while_it_flies(program, run, tmp_path):
     process = subprocess.Popen([program, "study", "run", "tiny.yaml", "--out", "out", "--jobs", "1"], cwd=tmp_path)
     try:
         while True:
-            assert process.poll() is None
             done = run("study", "run", "tiny.yaml", "--out", "out", "--report-only", cwd=tmp_path)
             if done.returncode == 0:
                 break

@@ -84,10 +84,9 @@ class Study:
     def labels(self, cell):
         return next(entry["labels"] for entry in self.plan["cells"] if entry["name"] == cell)
 
-    def asks_to_land(self, cell):
-        """False where the flights of a cell only follow the pad."""
-        own = next(entry["set"] for entry in self.plan["cells"] if entry["name"] == cell)
-        return {**self.plan["set"], **own}.get("descent") != "none"
+    def asks_to_land(self, cell, method):
+        """False where flights only follow the pad, which is when that is measured."""
+        return bool(self.part(cell, method)["following_mean_error_m"].isna().all())
 
     @property
     def reference(self):

@@ -163,7 +163,7 @@ def _how(study, document):
         [
             f"{len(study.trials)} trials in simulation, {study.trials['simulated_s'].sum() / 3600:.1f} h of flight, "
             f"{study.trials['cpu_s'].sum() / 60:.1f} min of CPU time; {duration(seconds)} of wall time with {jobs} jobs, "
-            "of the runs that ended by themselves, recording and reporting not in it.",
+            "of the runs that were not killed, recording and reporting not in it.",
             f"Study `{plan['study']}`{', the short form (--quick)' if plan['quick'] else ''}, seed {plan['seed']}: "
             "trial i has the same seed in every cell and with every method.",
             f"Set in every trial: {', '.join(f'`{k}={v}`' for k, v in plan['set'].items()) or 'nothing'}.",
@@ -198,7 +198,7 @@ def _headline(study, document, parts):
         + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
     )
     points = []
-    landings = parts[parts["cell"].map(study.asks_to_land)]
+    landings = parts[[study.asks_to_land(row.cell, row.method) for row in parts.itertuples()]]
     for method in study.methods():
         rows = landings[landings["method"] == method]
         if rows.empty:

@@ -136,6 +136,7 @@ def pooled_success(pairs):
     cells = [paired_success(first, second) for first, second in pairs]
     net = pd.concat([a.astype(float) - b.astype(float) for a, b in pairs], axis=1).sum(axis=1).to_numpy()
     p = 1.0 if len(net) else np.nan
+    net = net[net != 0]  # what is the same either way decides nothing
     if len(net) > 1:
         result = stats.permutation_test(
             (net, np.zeros_like(net)),
@@ -152,10 +153,12 @@ def pooled_success(pairs):
 
 
 def holm(p_values):
-    """Holm's adjusted p-values, in the same order."""
-    if len(p_values) == 0:
-        return []
-    return list(multipletests(p_values, alpha=1.0 - LEVEL, method="holm")[1])
+    """Holm's adjusted p-values, in the same order. What has no p-value is no test."""
+    adjusted = np.array(p_values, dtype=float)
+    tests = np.isfinite(adjusted)
+    if tests.any():
+        adjusted[tests] = multipletests(adjusted[tests], alpha=1.0 - LEVEL, method="holm")[1]
+    return list(adjusted)
 
 
 @dataclass

@@ -24,6 +24,11 @@ def succeeded(trials):
     return trials["landed"] | (trials["outcome"] == "followed")
 
 
+def not_cut_short(trials):
+    """Of flights that only follow, those that did so until their time was up, however far behind."""
+    return trials["outcome"].isin(["followed", "timeout", "lost_pad", "infeasible"])
+
+
 def parts(study):
     """One row for each method in each cell: rates, medians with intervals, time to land with what did not
     land censored."""
@@ -53,7 +58,7 @@ def parts(study):
             "half_landed_lo_s": survival.median.lo,
             "half_landed_hi_s": survival.median.hi,
         }
-        following = statistics.bootstrap(trials.loc[succeeded(trials), "following_mean_error_m"])
+        following = statistics.bootstrap(trials.loc[not_cut_short(trials), "following_mean_error_m"])
         row |= {
             "following_error_median_m": following.value,
             "following_error_lo_m": following.lo,
