@@ -59,6 +59,8 @@ def _times(study, document, gallery, parts):
     document.picture(path, "Share that has landed over time; bands (10 trials or more): 95 %, pointwise.")
     rows = []
     for _, row in parts.iterrows():
+        if not study.asks_to_land(row["cell"], row["method"]):
+            continue
         half = Estimate(row["half_landed_s"], row["half_landed_lo_s"], row["half_landed_hi_s"], 0)
         rows.append(
             [
