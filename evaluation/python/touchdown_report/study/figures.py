@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figures that any study has: success, outcomes, time to land, differences to the reference."""
 import math
+import textwrap
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -67,7 +68,7 @@ def outcomes(study, counts):
                 width = 100.0 * row[name] / row.sum()
                 panel.barh(place, width, left=left, color=outcome_colour(name), height=0.75)
                 left += width
-        panel.set_title(study.method_title(method), fontsize=9)
+        panel.set_title(textwrap.fill(study.method_title(method), 30), fontsize=9)
         panel.set_yticks(range(len(cells)), [study.cell_title(c) for c in reversed(cells)], fontsize=8)
         panel.set_xlim(0, 100)
         panel.grid(False)
