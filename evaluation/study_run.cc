@@ -2,12 +2,10 @@
 // A study's folder: the trials are a campaign's, beside them stands what the report needs to know.
 #include "touchdown/evaluation/study_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -62,72 +60,73 @@ void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& fli
   file.Commit();
 }
 
-// Whether the file is a record of this trial, flown by this build.
-bool IsRecordOf(const std::string& path, const SweepTrial& trial) {
+// Whether the file is a record of this trial, flown by the build of this hash.
+bool IsRecordOf(const std::string& path, const SweepTrial& trial, const std::string& build_hash) {
   if (!fs::exists(path)) return false;
   try {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
     SqliteStatement rows = db.Prepare("SELECT key, value FROM meta");
     Manifest meta;
     while (rows.Step()) meta[rows.Text(0)] = rows.Text(1);
-    return meta["build_hash"] == BuildHash() && meta["seed"] == std::to_string(trial.seed) &&
+    return meta["build_hash"] == build_hash && meta["seed"] == std::to_string(trial.seed) &&
            meta["scenario_yaml"] == DumpScenario(trial.scenario);
   } catch (const SqliteError&) {
     return false;
   }
 }
 
+struct RecordedTrial {
+  const SweepTrial* trial;
+  std::string path;
+};
+
+// Why there is no record; empty: there is one.
+std::string Record(const RecordedTrial& flight, const Registries& registries) {
+  try {
+    TrialRecord record;
+    const Scenario& scenario = flight.trial->scenario;
+    const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
+    WriteRecord(flight.path, scenario, result, record);
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 // Every trial can be flown again from its scenario and seed: so are those that are to be drawn.
 void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int jobs,
                        const Registries& registries) {
-  struct Flight {
-    const SweepTrial* trial;
-    std::string path;
-  };
-  std::vector<Flight> flights, alone;
+  std::vector<RecordedTrial> together, alone;
+  const std::string build_hash = BuildHash();
   for (const StudyPart& part : plan.parts) {
     const std::string path = fmt::format("{}/records/{}-{}.db", folder, plan.CellOf(part).name,
                                          plan.MethodOf(part).name);
     if (!plan.Records(part) || part.trials == 0) continue;
     const SweepTrial& first = plan.campaign.trials.at(static_cast<std::size_t>(part.first));
-    if (IsRecordOf(path, first)) continue;
-    (first.FliesAlone() ? alone : flights).push_back({&first, path});
+    if (IsRecordOf(path, first, build_hash)) continue;
+    (first.FliesAlone() ? alone : together).push_back({&first, path});
   }
-  const int together = static_cast<int>(flights.size());
-  flights.insert(flights.end(), alone.begin(), alone.end());
-  // Why there is no record; empty: there is one.
-  const auto fly = [&](int i) -> std::string {
-    const Flight& flight = flights[static_cast<std::size_t>(i)];
-    try {
-      TrialRecord record;
-      const Scenario& scenario = flight.trial->scenario;
-      const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
-      WriteRecord(flight.path, scenario, result, record);
-      return "";
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-  };
-  const int count = static_cast<int>(flights.size());
   Progress progress({.things = "recorded flights"});
+  const int all = static_cast<int>(together.size() + alone.size());
   int done = 0;
-  const auto take = [&](const WorkerReply& reply) {
-    // The study itself is complete: without this record only its picture is missing.
-    const Flight& flight = flights[static_cast<std::size_t>(reply.item)];
-    if (reply.end == WorkerReply::End::kTimedOut) {
-      spdlog::warn("{}: not recorded within {} s", flight.path, kRecordLimit);
-    } else if (!reply.text.empty()) {
-      spdlog::warn("{}: not recorded: {}", flight.path, reply.text);
-    }
-    progress(++done, count);
+  const auto record = [&](const std::vector<RecordedTrial>& flights, int at_a_time) {
+    const auto fly = [&](int i) {
+      return Record(flights[static_cast<std::size_t>(i)], registries);
+    };
+    const auto take = [&](const WorkerReply& reply) {
+      // The study itself is complete: without this record only its picture is missing.
+      const std::string& path = flights[static_cast<std::size_t>(reply.item)].path;
+      if (reply.end == WorkerReply::End::kTimedOut) {
+        spdlog::warn("{}: not recorded within {} s", path, kRecordLimit);
+      } else if (!reply.text.empty()) {
+        spdlog::warn("{}: not recorded: {}", path, reply.text);
+      }
+      progress(++done, all);
+    };
+    ShareAll(static_cast<int>(flights.size()), at_a_time, fly, kRecordLimit, take);
   };
-  std::vector<WorkerProcess> workers;
-  for (int i = 0; i < std::min(jobs, count); ++i) workers.emplace_back(fly, kRecordLimit);
-  std::vector<int> items(flights.size());
-  std::iota(items.begin(), items.end(), 0);
-  const auto never = [] { return false; };
-  ShareWork(workers, jobs, {items.begin(), items.begin() + together}, take, never);
-  ShareWork(workers, 1, {items.begin() + together, items.end()}, take, never);
+  record(together, jobs);
+  record(alone, 1);
 }
 
 }  // namespace
