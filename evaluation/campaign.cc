@@ -70,14 +70,6 @@ TrialResult ResultFrom(const WorkerReply& reply, const SweepTrial& trial, double
   return lost;
 }
 
-// What no trial could mend is said once, before the first. @throws BadInput
-void CheckTrials(const Campaign& campaign) {
-  const bool rendered = std::any_of(
-      campaign.trials.begin(), campaign.trials.end(),
-      [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
-  if (rendered) RequireRendering("sensing: rendered");
-}
-
 const SweepTrial& TrialOf(const Campaign& campaign, int index) {
   return campaign.trials.at(static_cast<std::size_t>(index));
 }
@@ -161,6 +153,13 @@ SweepTrial MakeTrial(const std::string& scenario_path, const std::vector<std::st
 std::string SweepTrial::Replay() const { return fmt::format("{} --seed {}", command, seed); }
 
 bool SweepTrial::FliesAlone() const { return scenario.planning.latency.measured; }
+
+void CheckTrials(const Campaign& campaign) {
+  const bool rendered = std::any_of(
+      campaign.trials.begin(), campaign.trials.end(),
+      [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
+  if (rendered) RequireRendering("sensing: rendered");
+}
 
 Shard Shard::Parse(const std::string& text) {
   const std::size_t slash = text.find('/');

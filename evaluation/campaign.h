@@ -95,6 +95,10 @@ struct CampaignResult {
   bool reports = true;
 };
 
+/// Whether this machine can fly the trials: what none of them could mend is said once, before the first.
+/// @throws BadInput
+void CheckTrials(const Campaign& campaign);
+
 /// Flies the trials that its file does not hold yet, each in a process of its own, those that fly
 /// alone after the others, and adds each to the file when it ends: one that dies or takes too long
 /// becomes a row with outcome `crashed` or `hung`. Which rows there are and what they say does not

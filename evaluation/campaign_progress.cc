@@ -36,4 +36,13 @@ void CampaignProgress::operator()(const CampaignState& state) {
   spdlog::info("{}", CampaignLine(state, std::chrono::duration<double>(now - begin_).count()));
 }
 
+int Interrupted(const CampaignResult& result, const std::string& db) {
+  const CampaignState& state = result.state;
+  spdlog::warn("interrupted after {} of {} trials: {}", state.flown, state.all,
+               db.empty()
+                   ? "nothing is kept without --db"
+                   : fmt::format("they are in {}, and the same command goes on from there", db));
+  return 128 + result.interrupted_by;
+}
+
 }  // namespace touchdown::evaluation

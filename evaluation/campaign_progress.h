@@ -24,4 +24,8 @@ class CampaignProgress {
   bool begun_ = false;
 };
 
+/// Tells the log how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere.
+/// The exit status for it: 128 and the signal's number, as a shell has it.
+int Interrupted(const CampaignResult& result, const std::string& db);
+
 }  // namespace touchdown::evaluation

@@ -15,6 +15,7 @@
 #include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/launch.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/evaluation/study_run.h"
@@ -56,14 +57,6 @@ std::string SummaryText(const nlohmann::ordered_json& summary, const std::string
                           : fmt::format(", median {:.1f} s", seconds.get<double>()));
   }
   return text + fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
-}
-
-// 128 + the signal's number, as a shell has it. What was flown is in the folder.
-int Interrupted(const CampaignResult& result, const std::string& table) {
-  spdlog::warn(
-      "interrupted after {} of {} trials: they are in {}, and the same command goes on from there",
-      result.state.flown, result.state.all, table);
-  return 128 + result.interrupted_by;
 }
 
 // A study flies for minutes: enough to install what its report needs, for those who know.

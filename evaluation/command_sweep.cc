@@ -6,7 +6,6 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/campaign_progress.h"
@@ -66,16 +65,6 @@ void CheckOutputs(const SweepArguments& arguments) {
   }
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
-}
-
-// 128 + the signal's number, as a shell has it.
-int Interrupted(const CampaignResult& result, const std::string& db) {
-  const CampaignState& state = result.state;
-  spdlog::warn("interrupted after {} of {} trials: {}", state.flown, state.all,
-               db.empty()
-                   ? "nothing is kept without --db"
-                   : fmt::format("they are in {}, and the same command goes on from there", db));
-  return 128 + result.interrupted_by;
 }
 
 int Sweep(const SweepArguments& arguments, const Registries& registries) {

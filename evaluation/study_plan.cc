@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/sweep.h"
 
 namespace touchdown::evaluation {
@@ -118,10 +117,7 @@ StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,
       PlanPart(std::move(part), registries, &plan);
     }
   }
-  const bool rendered = std::any_of(
-      plan.campaign.trials.begin(), plan.campaign.trials.end(),
-      [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
-  if (rendered) RequireRendering("sensing: rendered");
+  CheckTrials(plan.campaign);
   return plan;
 }
 
