@@ -41,6 +41,7 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
   task.deck_half_size = world.config().pad.deck_half_size;
   task.deck_thickness = world.config().pad.deck_thickness;
   task.foot_reach = world.model().foot_reach;
+  task.foot_radius = world.model().foot_radius;
   task.foot_depth = world.model().foot_depth;
   task.horizontal_speed = rule.horizontal_speed;
   task.vertical_speed = rule.vertical_speed;

@@ -23,6 +23,7 @@ struct LandingTimeTask {
   double deck_half_size = 0.75;    ///< half the side of the deck, a square in the pad's yaw [m]
   double deck_thickness = 0.03;    ///< [m]
   double foot_reach = 0.21;        ///< greatest distance of a point of the feet from B [m]
+  double foot_radius = 0.16;       ///< horizontal distance of a foot from B if it is level [m]
   double foot_depth = 0.12;        ///< lowest point of the feet below B if the vehicle is level [m]
   double horizontal_speed = 0.6;   ///< at contact, relative to the deck point below B [m/s]
   double vertical_speed = 0.5;     ///< the same [m/s]
@@ -49,9 +50,9 @@ struct LandingFlight {
 /// @throws std::invalid_argument if a limit or the horizon is not > 0.
 double LandingTimeLowerBound(const LandingTimeTask& task, const estimation::PadPrediction& pad);
 
-/// A flight that was found and checked: T* is not far below its time. It comes from above the deck
-/// and ends with B over the deck and the feet of the level vehicle on it, whatever errors of the pad
-/// the task allows. Empty if none was found within the horizon, as where the start is lower than
+/// A flight that was found and checked: T* is not far below its time. It comes from above the deck's
+/// plane and ends level with a foot on the deck at some heading, whatever errors of the pad the task
+/// allows. Empty if none was found within the horizon, as where the start is lower than
 /// that end. `lower_bound`: where to begin to look. Tens of milliseconds.
 std::optional<LandingFlight> LandingTimeUpperBound(const LandingTimeTask& task,
                                                    const estimation::PadPrediction& pad,

@@ -3,11 +3,12 @@
 // kSegments equal parts of [0, T]: the position is a uniform quadratic B-spline, and limits on the
 // norms of velocity (linear between knots) and acceleration hold everywhere if they hold at the
 // knots. At a fixed T both are convex, and so is the end set, which is of a vehicle that lands: level,
-// from above, over the deck (that of the lower bound is larger: there, what is necessary counts). What
-// is missed of it is minimised under these limits by the backend `banded`, from hovering, and the
+// from above, a foot on the deck (that of the lower bound is larger: there, what is necessary counts).
+// What is missed of it is minimised under these limits by the backend `banded`, from hovering, and the
 // answer is checked by itself. T is found by bisection. Any T found is a valid upper bound, whatever
 // the solver does.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -87,23 +88,33 @@ struct EndSet {
       : pad(pad_then),
         half_size(task.deck_half_size - task.pad_position_error -
                   task.deck_radius() * task.pad_yaw_error),
+        foot_radius(task.foot_radius),
         height(task.foot_depth),
         horizontal_speed(task.horizontal_speed - task.pad_velocity_error -
-                         task.deck_radius() * task.pad_yaw_rate_error -
+                         (task.deck_radius() + task.foot_radius) * task.pad_yaw_rate_error -
                          std::abs(pad_then.yaw_rate) * task.pad_position_error),
         vertical_speed(task.vertical_speed) {}
 
+  /// How far B is beyond the deck, per side: of the square in the pad's yaw [m].
+  template <class T>
+  std::array<T, 2> Beyond(const T& x, const T& y) const {
+    const auto beyond = [&](const T& s) {
+      return s > half_size ? T(s - half_size) : s < -half_size ? T(s + half_size) : T(0.0);
+    };
+    return {beyond(x), beyond(y)};
+  }
+
   estimation::PadState pad;
-  double half_size = 0.75;        ///< B is over the deck: of the square in the pad's yaw [m]
+  double half_size = 0.75;        ///< of that square [m]
+  double foot_radius = 0.16;      ///< B is no farther beyond it: a foot can be on it [m]
   double height = 0.12;           ///< of B above the deck [m]
   double horizontal_speed = 0.6;  ///< relative to the deck point below B [m/s]
   double vertical_speed = 0.5;    ///< [m/s]
 };
 
-/// The end set's bounds on the last two control points: along the deck's sides, horizontal and
-/// vertical speed.
+/// The end set's bounds on the last two control points: place, horizontal and vertical speed.
 struct EndBounds : EndSet {
-  static constexpr int kBlockSize = 3, kWindow = 2, kOutputs = 4;
+  static constexpr int kBlockSize = 3, kWindow = 2, kOutputs = 3;
   static constexpr bool kUsesInterval = true, kLinearInBlocks = false;
 
   int windows() const { return 1; }
@@ -120,10 +131,10 @@ struct EndBounds : EndSet {
     const T x = cos * p[0] + sin * p[1], y = cos * p[1] - sin * p[0];
     v[0] += pad.yaw_rate * p[1];
     v[1] -= pad.yaw_rate * p[0];
-    u[0] = over(x * x, half_size);
-    u[1] = over(y * y, half_size);
-    u[2] = over(v[0] * v[0] + v[1] * v[1], horizontal_speed);
-    u[3] = over(v[2] * v[2], vertical_speed);
+    const auto [beyond_x, beyond_y] = Beyond(x, y);
+    u[0] = over(beyond_x * beyond_x + beyond_y * beyond_y, foot_radius);
+    u[1] = over(v[0] * v[0] + v[1] * v[1], horizontal_speed);
+    u[2] = over(v[2] * v[2], vertical_speed);
   }
 };
 
@@ -262,7 +273,8 @@ class Attainable {
     const Eigen::Vector3d p = 0.5 * (q[kPoints - 2] + q[kPoints - 1]);
     const Eigen::Vector3d v = (q[kPoints - 1] - q[kPoints - 2]) / h - DeckPointVelocity(end.pad, p);
     const Eigen::Vector2d on_deck = Eigen::Rotation2Dd(-end.pad.yaw) * (p - end.pad.p_WP).head<2>();
-    return on_deck.cwiseAbs().maxCoeff() <= end.half_size &&
+    const auto [beyond_x, beyond_y] = end.Beyond(on_deck.x(), on_deck.y());
+    return std::hypot(beyond_x, beyond_y) <= end.foot_radius &&
            std::abs(p.z() - end_z) <= kHeightMargin && v.head<2>().norm() <= end.horizontal_speed &&
            std::abs(v.z()) <= end.vertical_speed;
   }
