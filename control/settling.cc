@@ -4,7 +4,9 @@
 // -(1 - share) g leaves the rotors that share of the weight, along the vertical. Velocities are taken out
 // of both sides, and with them the drag that is fed forward: friction holds the vehicle against the wind
 // of the drive and any other, and the attitude loop levels it about the feet that touch. Most of its damping
-// is left to them: rotors that answer to each knock of the deck lift the feet off it.
+// is left to them: rotors that answer to each knock of the deck lift the feet off it. The deck levels the
+// vehicle before its demand does, and what held it against the wind is gone then: on rotors that still
+// carry most of the weight it would slide, so the fade is short.
 
 #include "touchdown/control/settling.h"
 

@@ -7,7 +7,7 @@ namespace touchdown::control {
 
 /// How a vehicle comes to stand on the deck that its feet have touched.
 struct SettlingParameters {
-  double fade_time = 0.3;      ///< from flying to standing [s], > 0
+  double fade_time = 0.2;      ///< from flying to standing [s], > 0
   double return_time = 0.1;    ///< from standing to flying [s], > 0
   double thrust_share = 0.15;  ///< of the weight that the rotors carry then, in (0, 1) [-]
   double contact_gap = 0.2;    ///< a shorter loss of contact does not interrupt it [s], >= 0

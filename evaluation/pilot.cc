@@ -32,6 +32,7 @@ constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's se
 constexpr double kUpright = 0.07;                // ... until it is less than that
 constexpr double kFlareHeight = 0.15;            // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
+constexpr double kFlareFrequency = 2.2;   // of the position loop there, at most [rad/s]
 constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
@@ -68,10 +69,12 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   return options;
 }
 
-// Leaning farther, the hull's rim would touch the deck before the feet do.
+// Leaning farther, the hull's rim would touch the deck before the feet do. And in a gust at contact the
+// lean matters more than centimetres.
 control::ControllerOptions LowOptions(const Scenario& scenario,
                                       const estimation::VehicleModel& model) {
   control::ControllerOptions options = TrackingOptions(scenario);
+  options.position_frequency = std::min(options.position_frequency, kFlareFrequency);
   const double lean = control::FeetFirstTilt(model) - kFlareMargin;
   if (lean > 0.0) options.tilt_max = std::min(options.tilt_max, lean);
   return options;
