@@ -88,7 +88,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   best_.solved = false;
   best_.pairs = 0;
   best_.round = -1;
-  best_.reason = request.go_on ? GoOn(request, result) : Try(request, result);
+  best_.reason = Try(request, result);
   if (request.arrival == ArrivalMode::kFree && best_.solved) duration_ = best_.curve.duration();
   if (best_.solved) {
     result->curve = best_.curve;
@@ -146,7 +146,6 @@ bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
 }
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
-  bound_ = false;
   finder_.Begin(request.at_rest);
   pairs_.clear();
   pressure_ = {};
@@ -228,39 +227,20 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
   }
 }
 
-/// Binds pairs along the guide and solves again until the curve is clear, or no clearer than before.
+/// Binds pairs along the guide and solves again until the curve is clear, or no clearer than before. In
+/// the first round they lead along the guide, and later ones bind what is still blocked.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
   binder_.Begin(candidate->curve.segments() + 3);
-  bound_ = true;
   pressure_ = {};
-  return SolveUntilClear(request, candidate, 1, result);
-}
-
-/// The control points are bound as the last attempt left them.
-ReplanReason PlanAttempt::GoOn(const AttemptRequest& request, ReplanResult* result) {
-  finder_.Begin(request.at_rest);
-  const ReplanReason refused = SetEnds(request);
-  if (refused != ReplanReason::kNone) return refused;
-  now_->problem->WarmGuess(best_.curve, &now_->start.y);
-  pressure_ = {};
-  return SolveUntilClear(request, &best_, 0, result);
-}
-
-/// In round 0 the pairs are as they are, in the first of Follow they lead along its guide, and later ones
-/// bind what is still blocked.
-ReplanReason PlanAttempt::SolveUntilClear(const AttemptRequest& request, Candidate* candidate,
-                                          int first_round, ReplanResult* result) {
   double blocked = std::numeric_limits<double>::infinity();
-  for (int round = first_round; round <= options_.max_rebinds; ++round) {
-    if (round > 0) {
-      const bool guide_is_known = round == first_round;
-      const ReplanReason bound = Bind(request, candidate->curve, guide_is_known, result);
-      if (bound != ReplanReason::kNone) return bound;
-      if (!guide_is_known) pressure_.pairs *= kPressure;
-      ++result->rebinds;
-    }
-    ReplanReason reason = SolveAndCheck(request, candidate, result);
+  for (int round = 1; round <= options_.max_rebinds; ++round) {
+    const bool guide_is_known = round == 1;
+    ReplanReason reason = Bind(request, candidate->curve, guide_is_known, result);
+    if (reason != ReplanReason::kNone) return reason;
+    if (!guide_is_known) pressure_.pairs *= kPressure;
+    ++result->rebinds;
+    reason = SolveAndCheck(request, candidate, result);
     if (reason != ReplanReason::kNone) return reason;
     // A blocked start alone is for the certificate: it may be an escape.
     const bool only_start = runs_.size() == 1 && runs_.front().at_start;

@@ -31,7 +31,6 @@ struct AttemptRequest {
   const FreeSpace* space = nullptr;
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   bool at_rest = false;   ///< there is time to look for long ways round
-  bool go_on = false;  ///< on the way that the last attempt took, with as many segments; GoesOn()
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice
   AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };
@@ -61,14 +60,6 @@ class PlanAttempt {
   /// Of the plan that the last attempt tried [s]: as requested, or later where the way round took longer or
   /// the arrival was free.
   double duration() const { return duration_; }
-
-  /// The last attempt bound its control points to one way, and found no plan on it: with more time there
-  /// may be one, for a solve or two. Not with hard limits: where they leave the pairs no room, an interior
-  /// point takes longer than a fresh start.
-  bool GoesOn() const {
-    return bound_ && finder_.ways_closed() == 0 &&
-           options_.problem.limits_mode == LimitsMode::kSoft;
-  }
 
  private:
   /// A plan that was tried, and how it ended.
@@ -100,9 +91,6 @@ class PlanAttempt {
                           ReplanResult* result);
   void Postpone(const BlockedRun& span, AttemptRequest* request);
   ReplanReason Follow(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
-  ReplanReason GoOn(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason SolveUntilClear(const AttemptRequest& request, Candidate* candidate, int first_round,
-                               ReplanResult* result);
   ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool guide_is_known,
                     ReplanResult* result);
   ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
@@ -124,7 +112,6 @@ class PlanAttempt {
   Pressure pressure_;
   double duration_ = 0.0;
   FreeSpace later_space_;
-  bool bound_ = false;          // control points of best_, to one way
   UniformBspline first_curve_;  // before any pair
   std::vector<BlockedRun> runs_;
   Candidate best_, other_;

@@ -21,9 +21,9 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kMaxAttempts = 7;
-constexpr double kStretch = 1.3;        // of the duration after an attempt that failed
+constexpr double kStretch = 1.4;        // of the duration after an attempt that failed
 constexpr double kLaterArrival = 1.05;  // ... and while the pad's end is blocked
-constexpr double kFinest = 1.5;         // attempts after the first have so many times its segments
+constexpr double kFinest = 1.2;         // attempts after the first have so many times its segments
 constexpr int kRescueGuides = 2;        // ways around an obstacle that later attempts try
 constexpr int kGuidesAtRest = 4;        // ... and from rest
 constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter replaces the arrival
@@ -287,7 +287,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
     const double longest = std::min(T, kFinest * first);
-    request.segments = SegmentsFor(longest, limits_, i > 0);
+    request.segments = SegmentsFor(longest, limits_, false);
     request.near_segments = SegmentsFor(longest, limits_, true);
     request.space = &space;
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
@@ -302,14 +302,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
     const bool was_free = request.arrival == ArrivalMode::kFree;
-    const bool went_on = request.go_on && reason != ReplanReason::kGoalBlocked;
-    if (!slower_helps && !was_free && !went_on) return reason;
+    if (!slower_helps && !was_free) return reason;
     request.arrival = ArrivalMode::kFixed;
-    // A way that is known costs little to try with more time. If that is not enough, everything is decided
-    // anew for the same arrival.
-    request.go_on =
-        (i == 0 || request.go_on) && !went_on && slower_helps && !was_free && attempt_.GoesOn();
-    if (went_on || !slower_helps) continue;
+    if (!slower_helps) continue;
     // Free arrival traded a limit for time, or a way round took longer: fix a longer one.
     T = std::max(T, attempt_.duration());
     // A promise that cannot be kept binds no longer: the pad may have jumped.

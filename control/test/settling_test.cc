@@ -41,13 +41,14 @@ TEST(Settling, WithoutContactNothingChanges) {
 
 TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
   const SettlingParameters parameters;
+  const double standing_t = 1.0 + 1.1 * parameters.fade_time;
   estimation::VehicleModel model = TestVehicle();
   model.rotor_drag << 0.3, 0.3, 0.0;  // that a fast pad's wind would lean the vehicle against
   for (const char* law : {"geometric", "paper"}) {
     Settling settling;
     settling.Note(1.0, true, true);
-    settling.Note(1.0 + parameters.fade_time, true, true);
-    estimation::VehicleState state = Leaning(1.0 + parameters.fade_time);
+    settling.Note(standing_t, true, true);
+    estimation::VehicleState state = Leaning(standing_t);
     planning::FlatState reference = Sinking();
     Disturbance disturbance = Wind();
     settling.Apply(&state, &reference, &disturbance);
@@ -58,7 +59,7 @@ TEST(Settling, StandingTheLawWantsItUprightOnItsWeight) {
     EXPECT_GT(output.wrench.moment_B.y(), 0.5) << law;  // levels it
     // What the deck knocks is answered with less than half as much.
     const auto moment_x = [&](double rate) {
-      estimation::VehicleState told = Leaning(1.0 + parameters.fade_time);
+      estimation::VehicleState told = Leaning(standing_t);
       told.w_WB_B.x() = rate;
       planning::FlatState asked = Sinking();
       Disturbance taken = Wind();

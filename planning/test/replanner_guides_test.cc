@@ -117,10 +117,10 @@ TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {
   }
 }
 
-// The way is right and the arrival too early: the same control points stay bound and get more time.
-TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
+// Where the arrival is too early for the way round, later ones are tried: slower plans, hardly longer ones.
+TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
   Draw draw(17);
-  int went_on = 0;
+  int followed = 0, planned = 0;
   for (int trial = 0; trial < 40; ++trial) {
     OccupancyMap map = ObservedMap();
     for (int i = 0; i < 14; ++i) AddPillar(draw.Uniform(-3, 3), draw.Uniform(-2, 2), &map);
@@ -132,27 +132,18 @@ TEST(ReplannerGuides, AKnownWayGetsMoreTimeBeforeAllIsDecidedAnew) {
     FlyAlong(start, v_WB, &replanner);
     ReplanInput input = Input(start, pad, 0.0);
     input.vehicle.v_WB = v_WB;
-    replanner.Replan(input, map);
+    const ReplanStatus status = replanner.Replan(input, map).status;
     if (log.attempts.size() < 2 || log.attempts[0].rounds.size() < 2) continue;
     const AttemptLog &first = log.attempts[0], &second = log.attempts[1];
     if (second.rounds.empty()) continue;  // the pad is blocked then
-    ++went_on;
-    if (second.reason == ReplanReason::kNone) {
-      EXPECT_EQ(log.attempts.size(), 2u);
-    }
-    EXPECT_EQ(second.segments, first.segments);
-    EXPECT_GT(second.duration, first.duration);
-    // It begins with the pairs that the first ended with, not with a straight curve.
-    ASSERT_EQ(second.rounds.front().pairs.size(), first.rounds.back().pairs.size());
-    for (std::size_t i = 0; i < second.rounds.front().pairs.size(); ++i) {
-      EXPECT_EQ(second.rounds.front().pairs[i].p, first.rounds.back().pairs[i].p);
-    }
-    if (second.reason == ReplanReason::kNone || log.attempts.size() < 3) continue;
-    if (second.reason == ReplanReason::kGoalBlocked) continue;
-    EXPECT_EQ(log.attempts[2].duration, second.duration);
-    EXPECT_GT(log.attempts[2].segments, second.segments);
+    ++followed;
+    EXPECT_GE(second.duration, 1.4 * first.duration) << trial;
+    EXPECT_LE(second.segments, 2.0 * first.segments) << trial;
+    EXPECT_TRUE(second.rounds.front().pairs.empty()) << "everything is decided anew, " << trial;
+    planned += status == ReplanStatus::kPlanned;
   }
-  EXPECT_GT(went_on, 3);
+  EXPECT_GT(followed, 3);
+  EXPECT_GT(planned, followed / 2);
 }
 
 // Coarse segments leave the first half second to the start; an obstacle there is passed with fine ones.
