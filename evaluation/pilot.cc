@@ -32,7 +32,8 @@ constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's se
 constexpr double kUpright = 0.07;                // ... until it is less than that
 constexpr double kFlareHeight = 0.15;            // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
-constexpr double kFlareFrequency = 2.2;   // of the position loop there, at most [rad/s]
+constexpr double kFlareBegins = 0.2;      // from there on the position loop is softened ...
+constexpr double kFlareSoftness = 0.8;    // ... until its frequency is so many times the usual one
 constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
@@ -69,15 +70,24 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   return options;
 }
 
-// Leaning farther, the hull's rim would touch the deck before the feet do. And in a gust at contact the
-// lean matters more than centimetres.
+// Leaning farther, the hull's rim would touch the deck before the feet do.
 control::ControllerOptions LowOptions(const Scenario& scenario,
                                       const estimation::VehicleModel& model) {
   control::ControllerOptions options = TrackingOptions(scenario);
-  options.position_frequency = std::min(options.position_frequency, kFlareFrequency);
   const double lean = control::FeetFirstTilt(model) - kFlareMargin;
   if (lean > 0.0) options.tilt_max = std::min(options.tilt_max, lean);
   return options;
+}
+
+// In a gust at contact the lean matters more than centimetres. As if the position loop had another
+// frequency: its stiffness goes with the square of it, its damping with the first power.
+void Soften(double frequency_share, const estimation::VehicleState& vehicle,
+            planning::FlatState* reference) {
+  const auto shrink = [](double share, const Eigen::Vector3d& to, Eigen::Vector3d* from) {
+    from->head<2>() = to.head<2>() + share * (*from - to).head<2>();
+  };
+  shrink(frequency_share * frequency_share, vehicle.p_WB, &reference->p_WB);
+  shrink(frequency_share, vehicle.v_WB, &reference->v_WB);
 }
 
 std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
@@ -283,6 +293,11 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   const bool landing = mission_.mode == control::MissionMode::kLanding;
   const bool low = landing && foot_height_ < kFlareHeight;
   const control::Controller& law = low ? *low_controller_ : *controller_;
+  // Without an estimate of the wind the errors of position are what holds the vehicle against it.
+  if (landing && observer_) {
+    const double share = (kFlareBegins - foot_height_) / (kFlareBegins - kFlareHeight);
+    Soften(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told, &reference);
+  }
   settling_.Apply(&told, &reference, &compensated);
   const control::MixerOutput mix = mixer_.Mix(law.Update(told, reference, compensated).wrench);
   if (observer_) observer_->Command(mix.thrusts);

@@ -23,7 +23,7 @@ namespace {
 constexpr int kMaxAttempts = 7;
 constexpr double kStretch = 1.4;        // of the duration after an attempt that failed
 constexpr double kLaterArrival = 1.05;  // ... and while the pad's end is blocked
-constexpr double kFinest = 1.2;         // attempts after the first have so many times its segments
+constexpr double kLongestGrid = 1.2;    // segments are for so many times the first arrival at most
 constexpr int kRescueGuides = 2;        // ways around an obstacle that later attempts try
 constexpr int kGuidesAtRest = 4;        // ... and from rest
 constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter replaces the arrival
@@ -237,8 +237,8 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   return result_;
 }
 
-/// The first arrival from T on, and not much later, at which the plan's end is free, or T if there is none:
-/// a pad that passes an obstacle is met behind it.
+/// The first arrival from T on at which the plan's end is free, before the next attempt's would be, or T if
+/// there is none: a pad that passes an obstacle is met behind it.
 double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
                                          const OccupancyMap& map) const {
   const FreeSpace space = Space(map);
@@ -286,7 +286,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (i == 0 || request.at_rest) attempt_.RefillExpansions();
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
-    const double longest = std::min(T, kFinest * first);
+    const double longest = std::min(T, kLongestGrid * std::max(first, fresh));
     request.segments = SegmentsFor(longest, limits_, false);
     request.near_segments = SegmentsFor(longest, limits_, true);
     request.space = &space;
@@ -307,8 +307,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (!slower_helps) continue;
     // Free arrival traded a limit for time, or a way round took longer: fix a longer one.
     T = std::max(T, attempt_.duration());
+    if (T >= options_.max_duration) return reason;
     // A promise that cannot be kept binds no longer: the pad may have jumped.
-    T = std::max(kStretch * T, fresh);
+    T = std::min(std::max(kStretch * T, fresh), options_.max_duration);
   }
   return reason;
 }
