@@ -50,12 +50,6 @@ void CheckPicture(const std::string& picture, const std::vector<Variation>& vari
   }
 }
 
-// The trial came to an outcome, whichever.
-bool Flown(const SweepRow& row) {
-  const Outcome outcome = row.result.outcome;
-  return outcome != Outcome::kError && outcome != Outcome::kCrashed && outcome != Outcome::kHung;
-}
-
 void CheckOutputs(const SweepArguments& arguments) {
   if (!arguments.db.empty() && arguments.db == arguments.picture) {
     throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
@@ -98,7 +92,9 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   }
   const auto write = [&](const std::string& path) { WriteTrials(path, campaign, result.rows); };
   if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawSweep);
-  return std::all_of(result.rows.begin(), result.rows.end(), Flown) ? kDone : kFellShort;
+  const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
+                                [](const SweepRow& row) { return IsLost(row.result.outcome); });
+  return lost ? kFellShort : kDone;
 }
 
 }  // namespace

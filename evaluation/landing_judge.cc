@@ -103,6 +103,10 @@ const char* Explain(Outcome outcome) {
   return "The program failed in this trial.";
 }
 
+bool IsLost(Outcome outcome) {
+  return outcome == Outcome::kError || outcome == Outcome::kCrashed || outcome == Outcome::kHung;
+}
+
 std::optional<Outcome> OutcomeNamed(std::string_view name) {
   for (int i = 0; i <= static_cast<int>(kLastOutcome); ++i) {
     if (name == ToString(static_cast<Outcome>(i))) return static_cast<Outcome>(i);

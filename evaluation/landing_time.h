@@ -23,7 +23,7 @@ struct LandingTimeTask {
   double deck_half_size = 0.75;    ///< half the side of the deck, a square in the pad's yaw [m]
   double deck_thickness = 0.03;    ///< [m]
   double foot_reach = 0.21;        ///< greatest distance of a point of the feet from B [m]
-  double foot_radius = 0.16;       ///< horizontal distance of a foot from B if it is level [m]
+  double foot_radius = 0.16;       ///< horizontal distance of a foot from B if it is level [m], > 0
   double foot_depth = 0.12;        ///< lowest point of the feet below B if the vehicle is level [m]
   double horizontal_speed = 0.6;   ///< at contact, relative to the deck point below B [m/s]
   double vertical_speed = 0.5;     ///< the same [m/s]

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A landing that is possible, and how early (docs/t_star.md). The acceleration is constant on each of
+// A contact that is possible, and how early (docs/t_star.md). The acceleration is constant on each of
 // kSegments equal parts of [0, T]: the position is a uniform quadratic B-spline, and limits on the
 // norms of velocity (linear between knots) and acceleration hold everywhere if they hold at the
-// knots. At a fixed T both are convex, and so is the end set, which is of a vehicle that lands: level,
+// knots. At a fixed T both are convex, and so is the end set, which is of a vehicle as it flies: level,
 // from above, a foot on the deck (that of the lower bound is larger: there, what is necessary counts).
 // What is missed of it is minimised under these limits by the backend `banded`, from hovering, and the
 // answer is checked by itself. T is found by bisection. Any T found is a valid upper bound, whatever
@@ -217,7 +217,10 @@ class Attainable {
     end.half_size -= kEndMargin;
     end.horizontal_speed -= kEndMargin;
     end.vertical_speed -= kEndMargin;
-    if (std::min({end.half_size, end.horizontal_speed, end.vertical_speed}) <= 0.0) return false;
+    if (std::min({end.half_size, end.foot_radius, end.horizontal_speed, end.vertical_speed}) <=
+        0.0) {
+      return false;
+    }
     static_cast<EndSet&>(bounds_->inner()) = end;
     static_cast<EndSet&>(height_->inner()) = end;
     static_cast<EndSet&>(above_->inner()) = end;

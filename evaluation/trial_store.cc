@@ -139,9 +139,14 @@ TrialStore::~TrialStore() {
 }
 
 void TrialStore::ForgetLost() {
+  std::string names;
+  for (int i = 0; i <= static_cast<int>(kLastOutcome); ++i) {
+    const auto outcome = static_cast<Outcome>(i);
+    if (!IsLost(outcome)) continue;
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", ToString(outcome));
+  }
   const std::string lost =
-      fmt::format("trial IN (SELECT trial FROM trial WHERE outcome IN ('{}', '{}', '{}'))",
-                  ToString(Outcome::kError), ToString(Outcome::kCrashed), ToString(Outcome::kHung));
+      fmt::format("trial IN (SELECT trial FROM trial WHERE outcome IN ({}))", names);
   SqliteTransaction transaction(*db_);
   for (const char* table : {"replan_time", "timing", "trial"}) {
     db_->Execute(fmt::format("DELETE FROM {} WHERE {}", table, lost));

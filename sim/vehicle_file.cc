@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -24,6 +25,7 @@ namespace {
 using estimation::VehicleModel;
 
 constexpr double kTolerance = 1.0e-6;
+constexpr double kUnevenFeet = 1.0e-4;  // [m]
 
 [[noreturn]] void Refuse(const std::string& what) {
   throw std::invalid_argument("vehicle file: " + what);
@@ -64,6 +66,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
   model->hull_bottom = m.geom_size[3 * hull + 1] - pos[2];
 
   int feet = 0;
+  double shortest = std::numeric_limits<double>::infinity();
   model->foot_depth = 0.0;
   model->foot_radius = 0.0;
   model->foot_reach = 0.0;
@@ -77,12 +80,17 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
              "\" must be a sphere within the hull's radius");
     }
     model->foot_depth = std::max(model->foot_depth, radius - p[2]);
+    shortest = std::min(shortest, radius - p[2]);
     model->foot_radius = std::max(model->foot_radius, std::hypot(p[0], p[1]));
     model->foot_reach = std::max(model->foot_reach, mju_norm3(p) + radius);
     model->foot_azimuths.push_back(std::atan2(p[1], p[0]));
     ++feet;
   }
   if (feet < 3) Refuse("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");
+  if (model->foot_depth - shortest > kUnevenFeet) {
+    Refuse("the feet must reach down equally far, not " + std::to_string(shortest) + " to " +
+           std::to_string(model->foot_depth) + " m");
+  }
   if (model->foot_depth <= model->hull_bottom) Refuse("the feet must reach below geom \"hull\"");
 }
 

@@ -36,7 +36,7 @@ TEST(ClosedLoop, LandsInThePapersFirstCase) {
   EXPECT_LT(*result.mean_abs_error_y_m, 0.263);
   ASSERT_TRUE(result.t_star_s && result.t_star_upper_s);
   EXPECT_LE(*result.t_star_s, *result.t_star_upper_s);
-  EXPECT_LE(*result.t_star_upper_s, 1.045 * *result.t_star_s);  // docs/t_star.md
+  EXPECT_LE(*result.t_star_upper_s, 1.02 * *result.t_star_s);  // docs/t_star.md
   EXPECT_TRUE(result.within_limits);
   EXPECT_DOUBLE_EQ(*result.time_ratio(), result.touchdown->t / *result.t_star_s);
   EXPECT_GT(*result.time_ratio(), 1.0);

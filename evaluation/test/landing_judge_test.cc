@@ -301,6 +301,14 @@ TEST_F(LandingJudgeTest, TheFirstOutcomeStays) {
   EXPECT_EQ(judge_.Observe(sample_), Outcome::kCollision);
 }
 
+// What --retry flies again: never an outcome that the judge gave.
+TEST(Outcomes, OnlyWhatSaysNothingOfTheFlightIsLost) {
+  for (int i = 0; i <= static_cast<int>(kLastOutcome); ++i) {
+    const auto outcome = static_cast<Outcome>(i);
+    EXPECT_EQ(IsLost(outcome), outcome > Outcome::kUnstable) << ToString(outcome);
+  }
+}
+
 TEST(OutcomeText, EveryClassHasItsOwnNameAndSentence) {
   std::set<std::string> names;
   std::set<std::string> sentences;

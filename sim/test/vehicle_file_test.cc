@@ -82,6 +82,8 @@ TEST(VehicleFile, RefusesWhatIsMissingOrDifferent) {
               HasSubstr("thrust and three moments"));
   EXPECT_THAT(Refusal("\"body_drag_area\"", "\"drag_area\""), HasSubstr("body_drag_area"));
   EXPECT_THAT(Refusal("name=\"foot0\"", "name=\"toe0\""), ::testing::IsEmpty());
+  EXPECT_THAT(Refusal("0.113137  0.113137 -0.105", "0.113137  0.113137 -0.1"),
+              HasSubstr("feet must reach down equally far"));
   EXPECT_THAT(Refusal("mass=\"1.18\"", "mass=\"heavy\""), HasSubstr("MJCF"));
 }
 
