@@ -52,6 +52,15 @@ Eigen::Vector3d PositionLoop(const estimation::VehicleState& state,
                           kp.cwiseProduct(e_p) - kv.cwiseProduct(e_v));
 }
 
+void SoftenHorizontally(double frequency_share, const estimation::VehicleState& state,
+                        planning::FlatState* reference) {
+  const auto draw = [](double share, const Eigen::Vector3d& to, Eigen::Vector3d* from) {
+    from->head<2>() = to.head<2>() + share * (*from - to).head<2>();
+  };
+  draw(frequency_share * frequency_share, state.p_WB, &reference->p_WB);
+  draw(frequency_share, state.v_WB, &reference->v_WB);
+}
+
 Eigen::Vector3d AttitudeError(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& R_WB_desired) {
   const Eigen::Matrix3d difference = R_WB_desired.transpose() * R_WB;
   return 0.5 * Eigen::Vector3d(difference(2, 1) - difference(1, 2),

@@ -26,6 +26,12 @@ Eigen::Vector3d PositionLoop(const estimation::VehicleState& state,
                              const estimation::VehicleModel& model,
                              const ControllerOptions& options);
 
+/// Draws the reference towards the vehicle so far that the horizontal part of PositionLoop is as with
+/// `frequency_share` times its frequency: the stiffness goes with the square of it, the damping with the
+/// first power. In [0, 1], 1 changes nothing.
+void SoftenHorizontally(double frequency_share, const estimation::VehicleState& state,
+                        planning::FlatState* reference);
+
 /// 1/2 vee(Rd' R - R' Rd): the attitude error on SO(3), a rotation vector for small angles.
 Eigen::Vector3d AttitudeError(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& R_WB_desired);
 

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/control/lean.h"
+#include "touchdown/control/tracking_law.h"
 #include "touchdown/estimation/pad_predictor.h"
 #include "touchdown/evaluation/planner_options.h"
 
@@ -77,17 +78,6 @@ control::ControllerOptions LowOptions(const Scenario& scenario,
   const double lean = control::FeetFirstTilt(model) - kFlareMargin;
   if (lean > 0.0) options.tilt_max = std::min(options.tilt_max, lean);
   return options;
-}
-
-// In a gust at contact the lean matters more than centimetres. As if the position loop had another
-// frequency: its stiffness goes with the square of it, its damping with the first power.
-void Soften(double frequency_share, const estimation::VehicleState& vehicle,
-            planning::FlatState* reference) {
-  const auto shrink = [](double share, const Eigen::Vector3d& to, Eigen::Vector3d* from) {
-    from->head<2>() = to.head<2>() + share * (*from - to).head<2>();
-  };
-  shrink(frequency_share * frequency_share, vehicle.p_WB, &reference->p_WB);
-  shrink(frequency_share, vehicle.v_WB, &reference->v_WB);
 }
 
 std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
@@ -293,10 +283,12 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   const bool landing = mission_.mode == control::MissionMode::kLanding;
   const bool low = landing && foot_height_ < kFlareHeight;
   const control::Controller& law = low ? *low_controller_ : *controller_;
-  // Without an estimate of the wind the errors of position are what holds the vehicle against it.
+  // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
+  // errors of position are what holds the vehicle against it.
   if (landing && observer_) {
     const double share = (kFlareBegins - foot_height_) / (kFlareBegins - kFlareHeight);
-    Soften(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told, &reference);
+    control::SoftenHorizontally(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told,
+                                &reference);
   }
   settling_.Apply(&told, &reference, &compensated);
   const control::MixerOutput mix = mixer_.Mix(law.Update(told, reference, compensated).wrench);

@@ -278,7 +278,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.arrival = T < options_.min_duration ? ArrivalMode::kFixed : options_.arrival;
   request.at_rest = Fallback::Stays(next_, start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
-  for (int i = 0; i < kMaxAttempts && T <= options_.max_duration; ++i) {
+  for (int i = 0; i < kMaxAttempts; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
     if (request.arrival == ArrivalMode::kFixed) T = FirstFreeArrival(input, T, map);
     const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/control/test/flight_model.h"
+#include "touchdown/control/tracking_law.h"
 
 namespace touchdown::control {
 namespace {
@@ -142,6 +143,26 @@ TEST_P(BothLaws, SameInputsSameOutput) {
   const planning::FlatState flat = Circle(0.4, 2.0, 3.0);
   EXPECT_EQ(controller_->Update(state, flat).wrench.moment_B,
             controller_->Update(state, flat).wrench.moment_B);
+}
+
+TEST(PositionLoop, SoftenedItIsThatOfALowerFrequency) {
+  const estimation::VehicleModel model = TestVehicle();
+  estimation::VehicleState state;
+  state.p_WB << 0.3, -0.2, 1.4;
+  state.v_WB << 1.0, 0.4, -0.3;
+  planning::FlatState reference;
+  reference.p_WB << 0.1, 0.25, 1.2;
+  reference.v_WB << 1.3, 0.1, -0.2;
+  reference.a_WB << 0.5, -0.4, 0.1;
+  for (const double share : {0.0, 0.5, 0.8, 1.0}) {
+    planning::FlatState softened = reference;
+    SoftenHorizontally(share, state, &softened);
+    ControllerOptions usual, lower;
+    lower.position_frequency = share * usual.position_frequency;
+    const Eigen::Vector3d is = PositionLoop(state, softened, model, usual);
+    const Eigen::Vector3d wanted = PositionLoop(state, reference, model, lower);
+    EXPECT_LT((is - wanted).norm(), 1e-12) << share;
+  }
 }
 
 TEST(GeometricController, TracksFastReferencesWithinCentimetres) {
