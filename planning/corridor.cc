@@ -7,6 +7,7 @@
 #include "touchdown/planning/corridor.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -21,6 +22,30 @@ using Eigen::Vector3d;
 
 constexpr int kMostCells = 31;      // within reach along an axis: both sides fit into one word
 constexpr double kTouching = 1e-6;  // [m^2], no direction can be told
+constexpr double kRounding = 1e-9;  // of a cell's distance from a plane [m]
+
+/// Where the cells of one axis are nearest to a coordinate of the point.
+class NearestOnAxis {
+ public:
+  /// The cells [low, high), at most 2 kMostCells + 1.
+  NearestOnAxis(double point, double resolution, int low, int high) : low_(low) {
+    for (int cell = low; cell < high; ++cell) {
+      const double centre = (cell + 0.5) * resolution, half = 0.5 * resolution;
+      const double nearest = std::clamp(point, centre - half, centre + half);
+      places_[static_cast<std::size_t>(cell - low)] = {nearest,
+                                                       (nearest - point) * (nearest - point)};
+    }
+  }
+  struct Place {
+    double coordinate;
+    double distance2;
+  };
+  const Place& operator[](int cell) const { return places_[static_cast<std::size_t>(cell - low_)]; }
+
+ private:
+  int low_;
+  std::array<Place, 2 * kMostCells + 1> places_;
+};
 
 }  // namespace
 
@@ -34,32 +59,33 @@ Corridor::Corridor(double clearance, double margin) : beyond_(clearance - margin
 void Corridor::Collect(const Vector3d& point, const FreeSpace& space) {
   near_.clear();
   const OccupancyMap& map = *space.map;
-  const Vector3d half = Vector3d::Constant(0.5 * map.resolution());
   const int reach = std::min(kMostCells, static_cast<int>(std::ceil(kReach / map.resolution())));
   const CellIndex at = map.CellOf(point);
-  const auto offer = [&](const CellIndex& cell) {
-    const Vector3d centre = map.CentreOf(cell);
-    const Vector3d p = point.cwiseMax(centre - half).cwiseMin(centre + half);
-    const double distance2 = (p - point).squaredNorm();
-    if (distance2 < kReach * kReach) near_.push_back({p, distance2});
+  const CellIndex low = (at.array() - reach).max(map.origin().array());
+  const CellIndex high = (at.array() + reach + 1).min((map.origin() + map.size()).array());
+  if (low.x() > at.x() || high.x() <= at.x()) return;
+  const auto places = [&](int axis) {
+    return NearestOnAxis(point[axis], map.resolution(), low[axis], high[axis]);
   };
-  const auto gap = [&](int cells) { return std::max(0, std::abs(cells) - 1) * map.resolution(); };
-  const CellBox window = {map.origin(), map.origin() + map.size()};
-  const int from = std::max(at.x() - reach, window.low.x());
-  const int to = std::min(at.x() + reach + 1, window.high.x());
-  if (from > at.x() || to <= at.x()) return;
-  for (int z = std::max(at.z() - reach, window.low.z());
-       z < std::min(at.z() + reach + 1, window.high.z()); ++z) {
-    for (int y = std::max(at.y() - reach, window.low.y());
-         y < std::min(at.y() + reach + 1, window.high.y()); ++y) {
-      const double gap_y = gap(y - at.y()), gap_z = gap(z - at.z());
-      if (gap_y * gap_y + gap_z * gap_z >= kReach * kReach) continue;
-      const std::uint64_t row = map.BlockedRow({from, y, z}, to - from);
-      const std::uint64_t above = row >> (at.x() - from);  // from the point's own cell on
-      const std::uint64_t below = row ^ (above << (at.x() - from));
-      if (above != 0) offer({at.x() + std::countr_zero(above), y, z});
+  const NearestOnAxis x = places(0), y = places(1), z = places(2);
+  const int own = at.x() - low.x();
+  CellIndex row = low;
+  for (row.z() = low.z(); row.z() < high.z(); ++row.z()) {
+    for (row.y() = low.y(); row.y() < high.y(); ++row.y()) {
+      const double to_row2 = y[row.y()].distance2 + z[row.z()].distance2;
+      if (to_row2 >= kReach * kReach) continue;
+      const auto offer = [&](int cell) {
+        const double distance2 = x[cell].distance2 + to_row2;
+        if (distance2 >= kReach * kReach) return;
+        near_.push_back(
+            {{x[cell].coordinate, y[row.y()].coordinate, z[row.z()].coordinate}, distance2});
+      };
+      const std::uint64_t bits = map.BlockedRow(row, high.x() - low.x());
+      const std::uint64_t above = bits >> own;  // from the point's own cell on
+      const std::uint64_t below = bits ^ (above << own);
+      if (above != 0) offer(at.x() + std::countr_zero(above));
       if (below != 0 && (above & 1u) == 0) {
-        offer({from + static_cast<int>(std::bit_width(below)) - 1, y, z});
+        offer(low.x() + static_cast<int>(std::bit_width(below)) - 1);
       }
     }
   }
@@ -83,11 +109,12 @@ void Corridor::Bind(int control_point, const Vector3d& wanted, const FreeSpace& 
       near_.erase(at);
       continue;
     }
-    ++bound;
     const Vector3d v = (point - nearest.p).normalized();
     pairs->push_back({control_point, nearest.p, v});
+    if (++bound == most) break;
     // What lies beyond the plane is kept off by it.
-    std::erase_if(near_, [&](const Near& cell) { return (cell.p - nearest.p).dot(v) <= 1e-9; });
+    const double beyond = nearest.p.dot(v) + kRounding;
+    std::erase_if(near_, [&](const Near& cell) { return cell.p.dot(v) <= beyond; });
   }
   const double floor = space.FloorAt(point);
   if (point.z() - floor < kReach) {

@@ -296,17 +296,4 @@ void OccupancyMap::ClearRow(int y, int z, int x_begin, int x_end) {
   });
 }
 
-std::uint64_t OccupancyMap::BlockedRow(const CellIndex& first, int count) const {
-  const std::uint64_t* row = &blocked_[RowIndex(first.y(), first.z()) * words_per_row_];
-  std::uint64_t bits = 0;
-  int done = 0;
-  ForEachStretch(first.x(), first.x() + count, [&](int from, int n) {
-    const auto x = static_cast<std::size_t>(from);
-    const std::uint64_t all = ~std::uint64_t{0} >> (static_cast<int>(kWord) - n);
-    bits |= (row[x / kWord] >> (x % kWord) & all) << done;
-    done += n;
-  });
-  return bits;
-}
-
 }  // namespace touchdown::planning

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -134,7 +135,17 @@ class OccupancyMap {
   }
   bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
   /// Bit i: the cell i beyond `first` along x is blocked. `count` (at most 64) cells, all in the window.
-  std::uint64_t BlockedRow(const CellIndex& first, int count) const;
+  std::uint64_t BlockedRow(const CellIndex& first, int count) const {
+    const std::uint64_t* row = &blocked_[RowIndex(first.y(), first.z()) * words_per_row_];
+    const auto x = static_cast<std::size_t>(first.x() & mask_.x());
+    const std::size_t bit = x % kWord;
+    const std::size_t per_word = std::min(kWord, static_cast<std::size_t>(size_.x()));
+    std::uint64_t bits = row[x / kWord] >> bit;
+    if (bit + static_cast<std::size_t>(count) > per_word) {  // the row goes on, or wraps around
+      bits |= row[(x / kWord + 1) & (words_per_row_ - 1)] << (per_word - bit);
+    }
+    return bits & ~std::uint64_t{0} >> (static_cast<int>(kWord) - count);
+  }
   /// Occupied itself, without inflation.
   bool IsOccupied(const CellIndex& cell) const;
   /// Observed at least once, free or occupied.

@@ -177,6 +177,36 @@ TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
   }
 }
 
+// Rows are stored around the window's end, in words of 64 cells or in a part of one.
+TEST(OccupancyMap, ARowOfBitsSaysWhatItsCellsSay) {
+  Draw draw(17);
+  for (const int log2_x : {4, 5, 6, 7, 8}) {
+    OccupancyMapOptions options = SmallMap();
+    options.size_log2.x() = log2_x;
+    options.inflation_radius = 0.0;
+    OccupancyMap map(options);
+    map.MoveWindow({static_cast<int>(draw.Uniform(-300.0, 300.0)), -9, -5});
+    const int size = map.size().x();
+    CellIndex cell = map.origin() + CellIndex(0, 3, 2);
+    for (int i = 0; i < size; i += 1 + i % 3) {
+      map.SetOccupied(map.CentreOf(cell + CellIndex(i, 0, 0)));
+    }
+    int blocked = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+      const int count = static_cast<int>(draw.Uniform(1.0, std::min(64, size) + 0.99));
+      const int from = static_cast<int>(draw.Uniform(0.0, size - count + 0.99));
+      const CellIndex first = cell + CellIndex(from, 0, 0);
+      const std::uint64_t bits = map.BlockedRow(first, count);
+      for (int i = 0; i < 64; ++i) {
+        const bool wanted = i < count && map.IsBlocked(CellIndex(first + CellIndex(i, 0, 0)));
+        ASSERT_EQ((bits >> i & 1u) != 0, wanted) << size << " " << from << " " << count << " " << i;
+        blocked += wanted;
+      }
+    }
+    EXPECT_GT(blocked, 200);
+  }
+}
+
 TEST(OccupancyMap, InflationLeavesNothingBehind) {
   for (const double radius : {0.0, 0.3, 1.0}) {  // the last ball is wider than the window
     OccupancyMapOptions options = SmallMap();
