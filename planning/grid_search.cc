@@ -13,7 +13,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "touchdown/planning/cell_box.h"
 #include "touchdown/planning/voxel_traversal.h"
 
 namespace touchdown::planning {
@@ -37,6 +36,20 @@ constexpr std::size_t kUsualWay = 1024;
 constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
 constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
 constexpr std::uint32_t kAbove[] = {StepsTo(0, 1), StepsTo(1, 1), StepsTo(2, 1)};
+
+/// The cells at most n away from the centre along every axis, and n along one.
+template <class Visit>
+void ForEachOnShell(const CellIndex& centre, int n, Visit&& visit) {
+  CellIndex offset;
+  for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
+    for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
+      const bool face = std::abs(offset.z()) == n || std::abs(offset.y()) == n;
+      for (offset.x() = -n; offset.x() <= n; offset.x() += face ? 1 : 2 * n) {
+        visit(CellIndex(centre + offset));
+      }
+    }
+  }
+}
 
 /// In W [m]: the corner that its cells share. `block` counts from the window's lowest one.
 Eigen::Vector3d CentreOfBlock(const OccupancyMap& map, const CellIndex& block) {
@@ -104,22 +117,13 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
   bool found = false;
   // Cube by cube outwards; a cell of the next one is at least its half side away.
   for (int n = 1; n <= reach && n * n < best; ++n) {
-    CellIndex offset;
-    for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
-      for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
-        const bool face = std::abs(offset.z()) == n || std::abs(offset.y()) == n;
-        for (offset.x() = -n; offset.x() <= n; offset.x() += face ? 1 : 2 * n) {
-          const double distance2 = offset.squaredNorm();
-          const CellIndex candidate = centre + offset;
-          if (distance2 >= best || !space.map->InWindow(candidate) || space.Blocked(candidate)) {
-            continue;
-          }
-          best = distance2;
-          *cell = candidate;
-          found = true;
-        }
-      }
-    }
+    ForEachOnShell(centre, n, [&](const CellIndex& candidate) {
+      const double distance2 = (candidate - centre).squaredNorm();
+      if (distance2 >= best || !space.map->InWindow(candidate) || space.Blocked(candidate)) return;
+      best = distance2;
+      *cell = candidate;
+      found = true;
+    });
   }
   return found;
 }
@@ -163,19 +167,24 @@ bool GridSearch::BlockNear(const FreeSpace& space, const CellIndex& cell, CellIn
   const OccupancyMap& map = *space.map;
   const Eigen::Vector3d from = map.CentreOf(cell + map.origin());
   const CellIndex around = cell / kBlock;
-  const CellIndex low = (around.array() - kReach).max(0);
-  const CellIndex high = (around.array() + kReach + 1).min(blocked_.size(Lattice::kBlocks).array());
+  const CellIndex& size = blocked_.size(Lattice::kBlocks);
+  const auto is_free = [&](const CellIndex& c) { return !space.Blocked(c); };
   double best = std::numeric_limits<double>::infinity();
-  ForEachCell({low, high}, [&](const CellIndex& candidate) {
+  const auto offer = [&](const CellIndex& candidate) {
+    if ((candidate.array() < 0).any() || (candidate.array() >= size.array()).any()) return;
     if (blocked_.Blocked(Lattice::kBlocks, candidate)) return;
     const Eigen::Vector3d to = CentreOfBlock(map, candidate);
     const double distance2 = (to - from).squaredNorm();
-    if (distance2 >= best) return;
-    const auto is_free = [&](const CellIndex& c) { return !space.Blocked(c); };
-    if (!TraverseCells(from, to, map.resolution(), is_free)) return;
+    if (distance2 >= best || !TraverseCells(from, to, map.resolution(), is_free)) return;
     best = distance2;
     *block = candidate;
-  });
+  };
+  for (int n = 0; n <= kReach; ++n) {
+    // The cell is within its own block, so that blocks n away are at least so far.
+    const double nearest = (kBlock * n - 0.5 * (kBlock - 1)) * map.resolution();
+    if (nearest > 0.0 && nearest * nearest > best) break;
+    ForEachOnShell(around, n, offer);
+  }
   return std::isfinite(best);
 }
 
