@@ -20,7 +20,7 @@ template <class Visit>
 void ForEachChord(const UniformBspline& curve, double t_from, const FreeSpace& space,
                   Visit&& visit) {
   double t = std::clamp(t_from, curve.t0(), curve.t_end());
-  Eigen::Vector3d p = curve.Evaluate(t).p_WB;
+  Eigen::Vector3d p = curve.Position(t);
   const double h = curve.interval();
   int segment = std::min(static_cast<int>((t - curve.t0()) / h), curve.segments() - 1);
   for (; segment < curve.segments(); ++segment) {
@@ -32,7 +32,7 @@ void ForEachChord(const UniformBspline& curve, double t_from, const FreeSpace& s
     const double t_start = t;
     for (int i = 1; i <= chords; ++i) {
       const double t_next = t_start + (t_end - t_start) * i / chords;
-      const Eigen::Vector3d p_next = curve.Evaluate(t_next).p_WB;
+      const Eigen::Vector3d p_next = curve.Position(t_next);
       const bool clear = TraverseCells(p, p_next, space.map->resolution(),
                                        [&](const CellIndex& cell) { return !space.Blocked(cell); });
       if (!visit(t, t_next, !clear)) return;
@@ -51,7 +51,7 @@ void FindBlockedRuns(const UniformBspline& curve, double t_from, const FreeSpace
   const double t_first = std::clamp(t_from, curve.t0(), curve.t_end());
   ForEachChord(curve, t_from, space, [&](double t_a, double t_b, bool blocked) {
     if (blocked && !inside) {
-      const bool at_start = t_a == t_first && space.Blocked(curve.Evaluate(t_a).p_WB);
+      const bool at_start = t_a == t_first && space.Blocked(curve.Position(t_a));
       runs->push_back({t_a, t_b, at_start, false});
     }
     // A chord that only starts in a blocked cell still belongs to the run: its end is free.
@@ -59,7 +59,7 @@ void FindBlockedRuns(const UniformBspline& curve, double t_from, const FreeSpace
     inside = blocked;
     return true;
   });
-  if (inside && space.Blocked(curve.Evaluate(curve.t_end()).p_WB)) runs->back().at_end = true;
+  if (inside && space.Blocked(curve.Position(curve.t_end()))) runs->back().at_end = true;
 }
 
 double FirstBlockedTime(const UniformBspline& curve, double t_from, const FreeSpace& space) {

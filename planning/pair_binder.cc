@@ -105,7 +105,7 @@ void PairBinder::Begin(int control_points) {
 
 void PairBinder::Start(const UniformBspline& curve) {
   for (std::size_t i = 0; i < bound_.size(); ++i) {
-    reference_[i] = curve.Evaluate(TimeOf(curve, static_cast<int>(i))).p_WB;
+    reference_[i] = curve.Position(TimeOf(curve, static_cast<int>(i)));
   }
   corners_.clear();
 }
@@ -128,7 +128,7 @@ void PairBinder::Follow(const UniformBspline& curve, const BlockedRun& run, cons
 void PairBinder::AddCorner(const UniformBspline& curve, const BlockedRun& run,
                            const GuidePath& guide, const FreeSpace& space) {
   const double t = 0.5 * (run.t_in + run.t_out);
-  const Eigen::Vector3d p = BesideObstacle(space, PathWalk(guide).At(0.5), curve.Evaluate(t).p_WB);
+  const Eigen::Vector3d p = BesideObstacle(space, PathWalk(guide).At(0.5), curve.Position(t));
   corners_.push_back({static_cast<int>((t - curve.t0()) / curve.interval()) + 1, p});
 }
 

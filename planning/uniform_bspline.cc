@@ -57,21 +57,35 @@ double UniformBspline::SquaredJerk() const {
   return sum / std::pow(h_, 5);
 }
 
-FlatState UniformBspline::Evaluate(double t) const {
+UniformBspline::Place UniformBspline::PlaceOf(double t) const {
   const double s = std::clamp((t - t0_) / h_, 0.0, static_cast<double>(segments()));
   const int i = std::min(static_cast<int>(s), segments() - 1);
-  const double u = s - i;
+  return {i, s - i};
+}
+
+Eigen::Vector3d UniformBspline::PositionAt(const Place& place) const {
   const Eigen::Map<const ControlPoints> q = control_points();
-  const auto q0 = q.col(i);
-  const auto q1 = q.col(i + 1);
-  const auto q2 = q.col(i + 2);
-  const auto q3 = q.col(i + 3);
-  const double w = 1.0 - u;
+  const double u = place.u, w = 1.0 - u;
+  return (w * w * w * q.col(place.segment) +
+          (4.0 - 6.0 * u * u + 3.0 * u * u * u) * q.col(place.segment + 1) +
+          (1.0 + 3.0 * u + 3.0 * u * u - 3.0 * u * u * u) * q.col(place.segment + 2) +
+          u * u * u * q.col(place.segment + 3)) /
+         6.0;
+}
+
+Eigen::Vector3d UniformBspline::Position(double t) const { return PositionAt(PlaceOf(t)); }
+
+FlatState UniformBspline::Evaluate(double t) const {
+  const Place place = PlaceOf(t);
+  const double u = place.u, w = 1.0 - u;
+  const Eigen::Map<const ControlPoints> q = control_points();
+  const auto q0 = q.col(place.segment);
+  const auto q1 = q.col(place.segment + 1);
+  const auto q2 = q.col(place.segment + 2);
+  const auto q3 = q.col(place.segment + 3);
 
   FlatState out;
-  out.p_WB = (w * w * w * q0 + (4.0 - 6.0 * u * u + 3.0 * u * u * u) * q1 +
-              (1.0 + 3.0 * u + 3.0 * u * u - 3.0 * u * u * u) * q2 + u * u * u * q3) /
-             6.0;
+  out.p_WB = PositionAt(place);
   out.v_WB = (-w * w * q0 + (3.0 * u * u - 4.0 * u) * q1 + (1.0 + 2.0 * u - 3.0 * u * u) * q2 +
               u * u * q3) /
              (2.0 * h_);

@@ -52,6 +52,9 @@ class UniformBspline {
   /// fields are left zero. Does not allocate.
   FlatState Evaluate(double t) const;
 
+  /// The position alone, in W [m]: the same bits. Does not allocate.
+  Eigen::Vector3d Position(double t) const;
+
   /// The same, but past the end it goes on at the end's velocity.
   FlatState EvaluateOnward(double t) const;
 
@@ -63,6 +66,13 @@ class UniformBspline {
   SplineState AtKnot(int k) const;
 
  private:
+  struct Place {
+    int segment;
+    double u;  // in [0, 1], of the segment
+  };
+  Place PlaceOf(double t) const;
+  Eigen::Vector3d PositionAt(const Place& place) const;
+
   std::vector<double> numbers_;  // of the control points; a vector keeps its memory
   double h_ = 1.0;
   double t0_ = 0.0;

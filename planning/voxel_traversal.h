@@ -19,6 +19,9 @@ bool TraverseCells(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double re
   const Eigen::Vector3d along = (b - a) / resolution;
   Eigen::Vector3i cell = from.array().floor().matrix().cast<int>();
   const Eigen::Vector3i last = (b / resolution).array().floor().matrix().cast<int>();
+  // The number of faces between the two end cells bounds the walk, whatever rounding does.
+  const int faces = (last - cell).cwiseAbs().sum();
+  if (faces == 0) return visit(cell);
   Eigen::Vector3i step = Eigen::Vector3i::Zero();
   Eigen::Vector3d next, delta;  // ray parameter of the next face on each axis, and between faces
   for (int c = 0; c < 3; ++c) {
@@ -31,9 +34,7 @@ bool TraverseCells(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double re
     const double face = along[c] > 0.0 ? cell[c] + 1.0 : cell[c];
     next[c] = (face - from[c]) / along[c];
   }
-  // The number of faces between the two end cells bounds the walk, whatever rounding does.
-  const Eigen::Vector3i faces = (last - cell).cwiseAbs();
-  for (int remaining = faces.sum(); remaining >= 0; --remaining) {
+  for (int remaining = faces; remaining >= 0; --remaining) {
     if (!visit(cell)) return false;
     int axis;
     next.minCoeff(&axis);

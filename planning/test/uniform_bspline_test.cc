@@ -31,6 +31,15 @@ TEST(UniformBspline, IsAffineInvariant) {
   }
 }
 
+TEST(UniformBspline, ThePositionAloneIsTheSame) {
+  Draw draw(14);
+  const UniformBspline curve = RandomCurve(&draw, 9);
+  for (int i = 0; i < 200; ++i) {
+    const double t = draw.Uniform(curve.t0() - 0.5, curve.t_end() + 0.5);
+    EXPECT_EQ(curve.Position(t), curve.Evaluate(t).p_WB) << t;
+  }
+}
+
 TEST(UniformBspline, DerivativesMatchDifferences) {
   Draw draw(2);
   for (int trial = 0; trial < 50; ++trial) {
