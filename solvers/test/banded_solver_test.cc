@@ -57,6 +57,25 @@ class Ball {
   double radius_;
 };
 
+/// |q_(k+1) - q_k|^2 <= r^2: a limit of speed.
+class Pace {
+ public:
+  static constexpr int kBlockSize = 3, kWindow = 2, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  Pace(int blocks, double radius) : blocks_(blocks), radius_(radius) {}
+  int windows() const { return blocks_ - 1; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = T(-0.5 * radius_);
+    for (int c = 0; c < 3; ++c) u[0] += (q[3 + c] - q[c]) * (q[3 + c] - q[c]) * (0.5 / radius_);
+  }
+
+ private:
+  int blocks_;
+  double radius_;
+};
+
 /// x >= level for the first coordinate of every block.
 class Wall {
  public:
@@ -77,8 +96,8 @@ class Wall {
 
 constexpr int kBlocks = 12;
 
-Problem ChainProblem() {
-  std::mt19937_64 random(11);
+Problem ChainProblem(std::uint64_t seed = 11) {
+  std::mt19937_64 random(seed);
   Problem problem({.blocks = kBlocks, .block_size = 3});
   problem.AddTerm(
       std::make_shared<WindowTerm<Chain, SquareLoss>>(
@@ -156,6 +175,28 @@ TEST(BandedSolver, MeetsTheOptimalityConditions) {
     active += lambda[k] > 1e-3;
   }
   EXPECT_GT(active, 0);
+}
+
+// A merit function that took no step uphill would halve them over and over (N. Maratos 1978).
+TEST(BandedSolver, StepsOverCurvedRowsAreLong) {
+  int iterations = 0, evaluations = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Problem problem = ChainProblem(seed);
+    problem.AddTerm(
+        std::make_shared<WindowTerm<Wall, HingeLoss>>(
+            TermInfo{"wall", "", "", "", true}, Wall(kBlocks, 0.3), HingeLoss(1e4, 0.02), kBlocks),
+        Role::kCost);
+    AddRows(Pace(kBlocks, 0.05), &problem);
+    const View view(problem, AffineLift::Identity(kBlocks));
+    const SolverResult result = Solve(view, 1e-6);
+    EXPECT_EQ(result.status, SolveStatus::kConverged) << seed;
+    iterations += result.iterations;
+    evaluations += result.evaluations;
+  }
+  RecordProperty("iterations", iterations);
+  RecordProperty("evaluations", evaluations);
+  EXPECT_LT(iterations, 20 * 20);
+  EXPECT_LT(evaluations, iterations + 20 * 5);
 }
 
 TEST(BandedSolver, SaysInfeasibleAndGivesTheElasticCompromise) {
