@@ -20,10 +20,9 @@ namespace {
 
 constexpr double kNear = 1.5;           // segments until an obstacle
 constexpr double kPressure = 2.5;       // weight of the pairs grows by this every round
-constexpr double kProgress = 0.7;       // of the blocked time that a round leaves at most
+constexpr double kProgress = 0.5;       // of the blocked time that a round leaves at most
 constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded grows by this, ...
-constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit, ...
-constexpr double kTooFarBeyond = 1.3;   // and beyond this only more time helps
+constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit
 constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
 constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
@@ -270,7 +269,6 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, Candidate* c
     const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
     if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
     const double share = ShareOfLimits(*candidate->certificate, request.limits);
-    if (share > kTooFarBeyond) return reason;
     pressure_.limits *= share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
     const ReplanReason solved = SolveAndCheck(request, candidate, result);
     if (solved != ReplanReason::kNone) return solved;

@@ -61,6 +61,9 @@ class PlanAttempt {
   /// the arrival was free.
   double duration() const { return duration_; }
 
+  /// Of that plan: those asked for, or those for an obstacle that is near.
+  int segments() const { return segments_; }
+
  private:
   /// A plan that was tried, and how it ended.
   struct Candidate {
