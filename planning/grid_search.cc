@@ -37,7 +37,7 @@ constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
 constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
 constexpr std::uint32_t kAbove[] = {StepsTo(0, 1), StepsTo(1, 1), StepsTo(2, 1)};
 
-/// The cells at most n away from the centre along every axis, and n along one.
+/// The cells at most n away from the centre along every axis, and n along at least one.
 template <class Visit>
 void ForEachOnShell(const CellIndex& centre, int n, Visit&& visit) {
   CellIndex offset;

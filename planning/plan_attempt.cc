@@ -226,7 +226,7 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
   }
 }
 
-/// Binds pairs along the guide and solves again until the curve is clear, or no clearer than before. In
+/// Binds pairs along the guide and solves again until the curve is clear, or hardly clearer than before. In
 /// the first round they lead along the guide, and later ones bind what is still blocked.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
@@ -270,8 +270,8 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, Candidate* c
     if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
     const double share = ShareOfLimits(*candidate->certificate, request.limits);
     pressure_.limits *= share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
-    const ReplanReason solved = SolveAndCheck(request, candidate, result);
-    if (solved != ReplanReason::kNone) return solved;
+    // The last curve stands where the solver fails under the pressure.
+    if (SolveAndCheck(request, candidate, result) != ReplanReason::kNone) return reason;
   }
 }
 

@@ -61,9 +61,6 @@ class PlanAttempt {
   /// the arrival was free.
   double duration() const { return duration_; }
 
-  /// Of that plan: those asked for, or those for an obstacle that is near.
-  int segments() const { return segments_; }
-
  private:
   /// A plan that was tried, and how it ended.
   struct Candidate {

@@ -278,7 +278,6 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.arrival = T < options_.min_duration ? ArrivalMode::kFixed : options_.arrival;
   request.at_rest = Fallback::Stays(next_, start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
-  bool obstacle_near = false;
   for (int i = 0; i < kMaxAttempts; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
     if (request.arrival == ArrivalMode::kFixed) T = FirstFreeArrival(input, T, map);
@@ -288,7 +287,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
     const double longest = std::min(T, kLongestGrid * std::max(first, fresh));
-    request.segments = SegmentsFor(longest, limits_, obstacle_near);
+    request.segments = SegmentsFor(longest, limits_, false);
     request.near_segments = SegmentsFor(longest, limits_, true);
     request.space = &space;
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
@@ -296,7 +295,6 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
-    obstacle_near = obstacle_near || attempt_.segments() > request.segments;
     if (reason == ReplanReason::kNone) return reason;
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
       return reason;

@@ -52,11 +52,11 @@ class UniformBspline {
   /// fields are left zero. Does not allocate.
   FlatState Evaluate(double t) const;
 
-  /// The position alone, in W [m]: the same bits. Does not allocate.
-  Eigen::Vector3d Position(double t) const;
-
   /// The same, but past the end it goes on at the end's velocity.
   FlatState EvaluateOnward(double t) const;
+
+  /// The position alone, in W [m], as Evaluate gives it. Does not allocate.
+  Eigen::Vector3d Position(double t) const;
 
   /// Integral of the squared norm of the jerk [m^2/s^5], which is constant on every segment. Does not
   /// allocate.

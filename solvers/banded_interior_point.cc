@@ -29,9 +29,13 @@ namespace {
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
 constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
-/// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N. Maratos 1978),
-/// and there are not many of them before the careful ones take over.
+/// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N. Maratos,
+/// 1978); but so do steps that go round in circles: later ones may lose hardly anything.
 constexpr double kFastSlack = 1.0;
+constexpr double kLateSlack = 1e-4;
+constexpr double kCarefulSlack = 1e-12;  // rounding
+constexpr int kLateStep = 15;
+constexpr double kMuchCheaper = 1e-3;  // of the cost, less than a point that is converged
 constexpr double kShortestStep = 1e-8;
 /// So many steps in a row that hardly move: this mode leads nowhere.
 constexpr int kMostStalls = 3;
@@ -131,9 +135,12 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
         errors.primal <= Evaluator::kFeasible &&
         (errors.row <= tolerances.violation ||
          (mode.elastic && LargestMultiplier() > 0.5 * price_))) {
-      // An earlier point may cost less by what it violates within the tolerance.
-      if (errors.row <= Evaluator::kFeasible ||
-          evaluator->best_violation() > Evaluator::kFeasible) {
+      // An earlier point may cost less by what it violates within the tolerance. One that costs much less
+      // is of another valley, which steps uphill have left.
+      const double last = evaluator->last().full.value;
+      const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
+      const bool much_cheaper = evaluator->best_cost() < last - kMuchCheaper * std::abs(last);
+      if (!known_feasible || (errors.row <= Evaluator::kFeasible && !much_cheaper)) {
         evaluator->PreferLast();
       }
       return errors.row <= Evaluator::kFeasible ? SolveStatus::kConverged
@@ -143,7 +150,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
         kLeastTarget * tolerances.gap / std::max(errors.gap, 1e-300) * Complementarity({0.0, 0.0});
     const double target = mode.careful ? CarefulDirection(view, errors, least, &barrier, evaluator)
                                        : FastDirection(view, errors, least, evaluator);
-    const StepLengths length = LineSearch(target, LongestStep(errors.gap), evaluator);
+    const double slack = mode.careful ? kCarefulSlack : step < kLateStep ? kFastSlack : kLateSlack;
+    const StepLengths length = LineSearch(target, LongestStep(errors.gap), slack, evaluator);
     if (evaluator->must_stop()) break;
     if (length.primal < kShortestStep) {
       // Tolerances below rounding end here.
@@ -189,17 +197,18 @@ double BandedInteriorPoint::CarefulDirection(const View& view, const Errors& err
 /// Halves the primal step until the merit function takes it; trial_ and next_ are the point then,
 /// and the evaluator's last.
 BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, StepLengths length,
+                                                                 double slack,
                                                                  Evaluator* evaluator) {
   const double penalty = 2.0 * std::max(LargestMultiplier(), 1e-12);
   const double merit = Merit(evaluator->last().full.value, target, penalty, now_);
-  const double slack = (mode_.careful ? 1e-12 : kFastSlack) * std::abs(merit);
+  const double highest = merit + slack * std::abs(merit);
   for (; length.primal >= kShortestStep; length.primal *= 0.5) {
     Move(length);
     const bool ok = EvaluateAt(trial_.data(), next_, evaluator);
     if (evaluator->must_stop()) break;
     if (!ok) continue;
     ReadRows(evaluator->last());
-    if (Merit(evaluator->last().full.value, target, penalty, next_) <= merit + slack) break;
+    if (Merit(evaluator->last().full.value, target, penalty, next_) <= highest) break;
   }
   return length;
 }

@@ -62,7 +62,7 @@ class BandedInteriorPoint {
   double FastDirection(const View& view, const Errors& errors, double least, Evaluator* evaluator);
   double CarefulDirection(const View& view, const Errors& errors, double least, double* barrier,
                           Evaluator* evaluator);
-  StepLengths LineSearch(double target, StepLengths length, Evaluator* evaluator);
+  StepLengths LineSearch(double target, StepLengths length, double slack, Evaluator* evaluator);
   double LargestMultiplier() const;
   Errors MeasureErrors(const View& view, Evaluator* evaluator);
   void PlaceRows(const ViewEvaluation& at);

@@ -186,6 +186,7 @@ TEST(OccupancyMap, ARowOfBitsSaysWhatItsCellsSay) {
     options.inflation_radius = 0.0;
     OccupancyMap map(options);
     map.MoveWindow({static_cast<int>(draw.Uniform(-300.0, 300.0)), -9, -5});
+    ASSERT_NE(map.origin().x() % map.size().x(), 0) << "the window's rows do not wrap around";
     const int size = map.size().x();
     CellIndex cell = map.origin() + CellIndex(0, 3, 2);
     for (int i = 0; i < size; i += 1 + i % 3) {

@@ -190,6 +190,7 @@ TEST(BandedSolver, StepsOverCurvedRowsAreLong) {
     const View view(problem, AffineLift::Identity(kBlocks));
     const SolverResult result = Solve(view, 1e-6);
     EXPECT_EQ(result.status, SolveStatus::kConverged) << seed;
+    EXPECT_NEAR(result.cost, Solve(view, 1e-10).cost, 1e-5 * result.cost) << seed;
     iterations += result.iterations;
     evaluations += result.evaluations;
   }
