@@ -77,12 +77,12 @@ constexpr double kEscapeSlack = 0.02;
 /// free from there on. Fills `clearance` with the least distance on the way.
 bool Escapes(const UniformBspline& curve, double t_from, const FreeSpace& space,
              double* clearance) {
-  const Eigen::Vector3d start = curve.Evaluate(t_from).p_WB;
+  const Eigen::Vector3d start = curve.Position(t_from);
   double reached = DistanceToOccupied(*space.map, start);
   *clearance = reached;
   if (reached <= 0.0) return false;  // inside an obstacle: no way out can be proven
   for (double t = t_from; t <= std::min(t_from + kEscapeTime, curve.t_end()); t += kEscapeStep) {
-    const Eigen::Vector3d p = curve.Evaluate(t).p_WB;
+    const Eigen::Vector3d p = curve.Position(t);
     if (!space.Blocked(p) && !std::isfinite(FirstBlockedTime(curve, t, space))) return true;
     const double distance = DistanceToOccupied(*space.map, p);
     const bool sinks = p.z() < std::min(space.floor, start.z() - kEscapeSlack);
@@ -147,7 +147,7 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   c.clear = !std::isfinite(hit);
   c.first_hit_t = c.clear ? 0.0 : hit;
   c.clearance = space.map->options().inflation_radius;
-  if (!c.clear && space.Blocked(curve.Evaluate(t_from).p_WB)) {
+  if (!c.clear && space.Blocked(curve.Position(t_from))) {
     c.escaping = Escapes(curve, t_from, space, &c.clearance);
   }
   const double decided = std::min(t_from + reaction, curve.t_end());

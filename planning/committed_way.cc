@@ -32,13 +32,13 @@ int CommittedWay::Follow(const UniformBspline& curve, double t_from, const FreeS
   int spent = 0;
   double t = t_from;
   const auto add_curve_until = [&](double t_end) {
-    for (; t < t_end; t += kStep) places_.push_back({t, curve.Evaluate(t).p_WB});
+    for (; t < t_end; t += kStep) places_.push_back({t, curve.Position(t)});
     t = t_end;
   };
   for (const BlockedRun& run : runs_) {
     add_curve_until(run.t_in);
     const SearchStatus status =
-        search->Search(space, curve.Evaluate(run.t_in).p_WB, curve.Evaluate(run.t_out).p_WB,
+        search->Search(space, curve.Position(run.t_in), curve.Position(run.t_out),
                        max_expansions - spent, &detour_);
     spent += search->expansions();
     if (status != SearchStatus::kFound || !AddDetour(curve, run)) {
@@ -48,13 +48,13 @@ int CommittedWay::Follow(const UniformBspline& curve, double t_from, const FreeS
     t = run.t_out;
   }
   add_curve_until(curve.t_end());
-  places_.push_back({curve.t_end(), curve.Evaluate(curve.t_end()).p_WB});
+  places_.push_back({curve.t_end(), curve.Position(curve.t_end())});
   return spent;
 }
 
 /// At a constant speed through the run's time.
 bool CommittedWay::AddDetour(const UniformBspline& curve, const BlockedRun& run) {
-  const double straight = (curve.Evaluate(run.t_out).p_WB - curve.Evaluate(run.t_in).p_WB).norm();
+  const double straight = (curve.Position(run.t_out) - curve.Position(run.t_in)).norm();
   const double length = PathLength(detour_);
   if (length > kLongestDetour * straight + kDetourSlack) return false;
   double gone = 0.0;

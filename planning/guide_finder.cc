@@ -28,12 +28,12 @@ void SampleGuide(const UniformBspline& curve, double from, double to, GuidePath*
   guide->clear();
   const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kGuideStep)));
   for (int i = 0; i <= steps; ++i) {
-    guide->push_back(curve.Evaluate(from + (to - from) * i / steps).p_WB);
+    guide->push_back(curve.Position(from + (to - from) * i / steps));
   }
 }
 
 void EndInWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
-  const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Evaluate(t).p_WB)); };
+  const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Position(t))); };
   if (!in_window(run->t_in)) return;
   while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kGuideStep);
 }
@@ -62,7 +62,7 @@ void GuideFinder::EndBesideKept(const FreeSpace& space, const UniformBspline& cu
   const auto is_free = [&](const CellIndex& cell) { return !space.Blocked(cell); };
   const auto sees_way = [&](double t) {
     const Eigen::Vector3d way = committed_.At((t - curve.t0()) / curve.duration());
-    return TraverseCells(curve.Evaluate(t).p_WB, way, space.map->resolution(), is_free);
+    return TraverseCells(curve.Position(t), way, space.map->resolution(), is_free);
   };
   for (double t = run->t_out; t < curve.t_end(); t += kGuideStep) {
     if (!sees_way(t)) run->t_out = std::min(t + kBeside, curve.t_end());
@@ -82,9 +82,8 @@ SearchStatus GuideFinder::Find(const FreeSpace& space, const UniformBspline& cur
   int budget = expansions_left_;
   if (local) budget = std::min(budget, kLocalExpansions);
   if (!barriers_.empty()) budget = std::min(budget, other_way);
-  const SearchStatus status =
-      search_.Search(space, curve.Evaluate(run->t_in).p_WB, curve.Evaluate(run->t_out).p_WB, budget,
-                     guide, barriers_);
+  const SearchStatus status = search_.Search(space, curve.Position(run->t_in),
+                                             curve.Position(run->t_out), budget, guide, barriers_);
   expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
   if (status == SearchStatus::kEndsOutside) {
     // Out of the window only floor and ceiling block: between them leads the way.

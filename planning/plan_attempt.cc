@@ -37,9 +37,9 @@ double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
 double LengthOf(const UniformBspline& curve, double from, double to) {
   constexpr int kChords = 24;
   double length = 0.0;
-  Eigen::Vector3d last = curve.Evaluate(from).p_WB;
+  Eigen::Vector3d last = curve.Position(from);
   for (int i = 1; i <= kChords; ++i) {
-    const Eigen::Vector3d p = curve.Evaluate(from + i * (to - from) / kChords).p_WB;
+    const Eigen::Vector3d p = curve.Position(from + i * (to - from) / kChords);
     length += (p - last).norm();
     last = p;
   }
