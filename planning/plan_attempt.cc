@@ -144,6 +144,25 @@ bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
   return runs_.front().t_in - request.t0 < kNear * best_.curve.interval();
 }
 
+/// The same curve on shorter segments. Only where the arrival is fixed is it cheap, and worth while, to
+/// solve for its optimum there before it is led past what is in its way.
+ReplanReason PlanAttempt::Refine(const AttemptRequest& request, ReplanResult* result) {
+  first_curve_ = best_.curve;
+  segments_ = request.near_segments;
+  if (request.arrival == ArrivalMode::kFixed) {
+    const ReplanReason reason = SolveWithoutPairs(request, &first_curve_, result);
+    if (reason != ReplanReason::kSolverFailed) return reason;
+    segments_ = request.segments;  // the coarse ones will have to do
+    return SolveWithoutPairs(request, &first_curve_, result);
+  }
+  const ReplanReason refused = SetEnds(request);
+  now_->problem->SetDuration(first_curve_.duration());
+  now_->problem->WarmGuess(first_curve_, &now_->start.y);
+  now_->first_guess = now_->start.y;
+  now_->problem->Curve(now_->start.y, &best_.curve);
+  return refused;
+}
+
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
   finder_.Begin(request.at_rest);
   pairs_.clear();
@@ -152,13 +171,7 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
   ReplanReason reason = SolveWithoutPairs(request, warm, result);
   if (reason == ReplanReason::kNone && ObstacleNear(request) && segments_ < request.near_segments) {
-    first_curve_ = best_.curve;
-    segments_ = request.near_segments;
-    reason = SolveWithoutPairs(request, &first_curve_, result);
-    if (reason == ReplanReason::kSolverFailed) {  // the coarse ones will have to do
-      segments_ = request.segments;
-      reason = SolveWithoutPairs(request, &first_curve_, result);
-    }
+    reason = Refine(request, result);
   }
   if (reason != ReplanReason::kNone) return reason;
   if (!runs_.empty() && options_.max_rebinds > 0) return TryGuides(request, result);

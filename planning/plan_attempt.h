@@ -82,6 +82,7 @@ class PlanAttempt {
   ReplanReason SetEnds(const AttemptRequest& request);
   ReplanReason SolveWithoutPairs(const AttemptRequest& request, const UniformBspline* guess,
                                  ReplanResult* result);
+  ReplanReason Refine(const AttemptRequest& request, ReplanResult* result);
   bool ObstacleNear(const AttemptRequest& request) const;
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);

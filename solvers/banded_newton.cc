@@ -47,6 +47,7 @@ void BandedNewton::Prepare(const View& view) {
 SolveStatus BandedNewton::Run(const View& view, const double* start, const Tolerances& tolerances,
                               Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
+  shortened_ = false;
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return SolveStatus::kEvaluationFailed;
   while (!evaluator->must_stop()) {
     const ViewEvaluation& at = evaluator->last();
@@ -69,15 +70,20 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
 }
 
 /// Halves the step until it decreases the value enough; y_ becomes the accepted point, which is the
-/// evaluator's last. Returns the accepted share of the step, 0 if there is none.
+/// evaluator's last. Returns the accepted share of the step, 0 if there is none. Derivatives are evaluated
+/// along with the value of a full step, unless the step before was a shorter one.
 double BandedNewton::LineSearch(double value, double slope, Evaluator* evaluator) {
-  for (double t = 1.0; t > kShortestStep; t *= 0.5) {
+  bool derivatives = !shortened_;
+  for (double t = 1.0; t > kShortestStep; t *= 0.5, derivatives = false) {
     for (std::size_t i = 0; i < y_.size(); ++i) trial_[i] = y_[i] + t * step_[i];
-    const bool ok = evaluator->EvaluateLagrangian(trial_.data(), {});
+    const bool ok = derivatives ? evaluator->EvaluateLagrangian(trial_.data(), {})
+                                : evaluator->Evaluate(trial_.data(), {});
     const double decrease = value - evaluator->last().full.value;
     const double wanted = -kSufficientDecrease * t * slope - kRounding * std::abs(value);
     if (ok && decrease >= wanted) {
+      shortened_ = t < 1.0;
       y_.swap(trial_);
+      if (!derivatives && !evaluator->must_stop()) evaluator->EvaluateLagrangian(y_.data(), {});
       return t;
     }
     if (evaluator->must_stop()) return t;

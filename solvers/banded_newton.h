@@ -27,6 +27,7 @@ class BandedNewton {
 
   BorderedCholesky factor_;
   std::vector<double> y_, gradient_, step_, trial_;
+  bool shortened_ = false;  // the last step was not a full one
 };
 
 }  // namespace touchdown::solvers
