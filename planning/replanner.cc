@@ -196,7 +196,7 @@ bool Replanner::Impl::InTime(const ReplanInput& input) const {
 
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
   Begin(input);
-  StageTimer total(&result_.times.total);
+  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
   climbing_ = -1.0;
@@ -223,7 +223,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& map) {
   Begin(input);
-  StageTimer total(&result_.times.total);
+  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
   const FreeSpace space = SpaceWithoutPad(input, map);

@@ -202,7 +202,7 @@ void EgoPlanner::Begin(const ReplanInput& input) {
 
 const ReplanResult& EgoPlanner::Step(const ReplanInput& input, const OccupancyMap& map) {
   Begin(input);
-  StageTimer total(&result_.times.total);
+  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
   if (input.t_now >= busy_until_ - kClockSlack) {
     FreeSpace space;
     space.map = &map;

@@ -166,6 +166,11 @@ TEST(Replanner, SpansAreLoggedWhereSomebodyListens) {
   replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
   const ReplanInput input = Input({-4.0, 0.0, 1.5}, pad, 0.0);
   const ReplannerState before = replanner.state();
+  const StageTimes unlogged = replanner.Replan(input, map).times;
+  EXPECT_GT(unlogged.total.cpu, 0.0);
+  EXPECT_GT(unlogged.solve.wall, 0.0);
+  EXPECT_TRUE(std::isnan(unlogged.solve.cpu));
+  replanner.Restore(before);
   SpanLog log, full;
   log.Reserve(1000);
   full.Reserve(1);
