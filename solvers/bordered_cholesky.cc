@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <Eigen/Core>
+
 namespace touchdown::solvers {
 
 namespace {
@@ -33,7 +35,7 @@ struct Panels {
   }
 
   static void Load(const BorderedBandMatrix& A, double shift, double* band) {
-    const int size = A.block_size();  // d, or any for a band of scalars
+    const int size = d == 1 ? A.block_size() : d;  // any for a band of scalars
     const int n = A.blocks();
     for (int j = 0; j < n; ++j) {
       const int last = std::min(A.half_bandwidth(), n - 1 - j);
@@ -52,49 +54,58 @@ struct Panels {
     }
   }
 
+  template <int rows>
+  using Run = Eigen::Array<double, rows, 1>;
+
+  /// out -= sum_m factor[m] panel_m, of `rows` rows of the panel's d columns.
+  template <int rows>
+  static void SubtractColumns(const double* panel, const double* factor, double* out) {
+    Eigen::Map<Run<rows>> of(out);
+    Run<rows> rest = of;
+    for (int m = 0; m < d; ++m) {
+      rest -= factor[m] * Eigen::Map<const Run<rows>>(panel + m * kStride);
+    }
+    of = rest;
+  }
+
+  /// Takes panel D^-1 panel^T from what is right of the panel.
   template <int b>
-  static void UpdateTrailing(double* band, int j) {
+  static void UpdateTrailing(double* band, int j, const double* inverse) {
     if constexpr (b <= half) {
-      constexpr int lanes = RoundUp(kRows - b * d);
+      const double* panel = Column(band, j, 0) + b * d;
       for (int c = 0; c < d; ++c) {
-        double* __restrict out = Column(band, j + b, c);
-        const double* __restrict panel = Column(band, j, 0) + b * d;
         double factor[d];
-        for (int m = 0; m < d; ++m) factor[m] = panel[m * kStride + c];
-#pragma GCC ivdep
-        for (int r = 0; r < lanes; ++r) {
-          double sum = out[r];
-          for (int m = 0; m < d; ++m) sum -= factor[m] * panel[m * kStride + r];
-          out[r] = sum;
-        }
+        for (int m = 0; m < d; ++m) factor[m] = panel[m * kStride + c] * inverse[m];
+        SubtractColumns<RoundUp(kRows - b * d)>(panel, factor, Column(band, j + b, c));
       }
-      UpdateTrailing<b + 1>(band, j);
+      UpdateTrailing<b + 1>(band, j, inverse);
     }
   }
 
-  /// False where a pivot is not positive.
+  /// False where a pivot is not positive. The updates go by L D L^T, so that each pivot waits for one
+  /// division after the one before, and not for its square root.
   static bool Factor(int n, double* band) {
+    using Whole = Run<RoundUp(kRows)>;
     for (int j = 0; j < n; ++j) {
+      double inverse[d];  // of the pivots
       for (int c = 0; c < d; ++c) {
-        double* __restrict column = Column(band, j, c);
+        Eigen::Map<Whole> column(Column(band, j, c));
         for (int m = 0; m < c; ++m) {
-          const double* __restrict earlier = Column(band, j, m);
-          const double factor = earlier[c];
-#pragma GCC ivdep
-          for (int r = 0; r < kStride - 4; ++r) column[r] -= factor * earlier[r];
+          const Eigen::Map<const Whole> earlier(Column(band, j, m));
+          column -= earlier[c] * inverse[m] * earlier;
         }
-        const double pivot = column[c];
-        if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
-        const double inverse = 1.0 / std::sqrt(pivot);
-#pragma GCC ivdep
-        for (int r = 0; r < kStride - 4; ++r) column[r] *= inverse;
-        column[c] = inverse;
+        if (!(column[c] > 0.0) || !std::isfinite(column[c])) return false;
+        inverse[c] = 1.0 / column[c];
       }
-      // Rows above the diagonal hold what the loads and updates left there: not part of L.
-      for (int c = 1; c < d; ++c) {
-        for (int r = 0; r < c; ++r) Column(band, j, c)[r] = 0.0;
+      UpdateTrailing<1>(band, j, inverse);
+      for (int c = 0; c < d; ++c) {
+        Eigen::Map<Whole> column(Column(band, j, c));
+        const double scale = std::sqrt(inverse[c]);
+        column *= scale;
+        column[c] = scale;
+        // Rows above the diagonal hold what the loads and updates left there: not part of L.
+        for (int r = 0; r < c; ++r) column[r] = 0.0;
       }
-      UpdateTrailing<1>(band, j);
     }
     return true;
   }
@@ -113,6 +124,7 @@ struct Panels {
     }
   }
 
+  /// The sums begin with what has been known for longest: the next block waits for the last terms alone.
   static void SolveUpper(int n, const double* band, double* __restrict x) {
     for (int j = n - 1; j >= 0; --j) {
       double* at = x + j * d;
@@ -120,7 +132,7 @@ struct Panels {
       for (int c = 0; c < d; ++c) {
         const double* __restrict column = Column(band, j, c);
         double sum = 0.0;
-        for (int r = d; r < kRows; ++r) sum += column[r] * at[r];
+        for (int r = kRows - 1; r >= d; --r) sum += column[r] * at[r];
         sums[c] = sum;
       }
       for (int c = d - 1; c >= 0; --c) {
