@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <boost/heap/d_ary_heap.hpp>
+
 #include "touchdown/planning/voxel_traversal.h"
 
 namespace touchdown::planning {
@@ -30,7 +32,7 @@ constexpr std::uint32_t StepsTo(int axis, int side) {
 }
 
 // Room at first; a search that needs more makes more.
-constexpr std::size_t kUsualHeap = 1 << 16;
+constexpr std::size_t kUsualQueue = 1 << 16;
 constexpr std::size_t kUsualWay = 1024;
 
 constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
@@ -59,6 +61,37 @@ Eigen::Vector3d CentreOfBlock(const OccupancyMap& map, const CellIndex& block) {
 
 }  // namespace
 
+// Addresses, the least f first, and of these the one that came first.
+class GridSearch::Queue {
+ public:
+  void Reserve(std::size_t size) { nodes_.reserve(size); }
+  void Clear() {
+    nodes_.clear();
+    order_ = 0;
+  }
+  bool empty() const { return nodes_.empty(); }
+  void Push(float f, std::uint32_t address) {
+    // The bits of positive floats are ordered as they are.
+    const auto upper = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(f)) << 32;
+    nodes_.push({upper | order_++, address});
+  }
+  std::uint32_t Pop() {
+    const std::uint32_t address = nodes_.top().address;
+    nodes_.pop();
+    return address;
+  }
+
+ private:
+  struct Node {
+    std::uint64_t key;  // f, then the order of insertion
+    std::uint32_t address;
+    bool operator<(const Node& other) const { return key > other.key; }  // the last one is the top
+  };
+  // With four children a node: half the levels of a binary heap, and these are next to each other.
+  boost::heap::d_ary_heap<Node, boost::heap::arity<4>> nodes_;
+  std::uint32_t order_ = 0;
+};
+
 double PathLength(const GuidePath& path) {
   double length = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
@@ -71,7 +104,8 @@ GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost, bo
       cubic_(std::sqrt(2.0f + vertical_cost_ * vertical_cost_)),
       greed_(static_cast<float>(greed)),
       tight_cost_(static_cast<float>(tight_cost)),
-      blocks_first_(blocks_first) {
+      blocks_first_(blocks_first),
+      queue_(std::make_unique<Queue>()) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
                                 ", it must be >= 1");
@@ -95,6 +129,10 @@ GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost, bo
     }
   }
 }
+
+GridSearch::~GridSearch() = default;
+GridSearch::GridSearch(GridSearch&&) noexcept = default;
+GridSearch& GridSearch::operator=(GridSearch&&) noexcept = default;
 
 /// Length of the shortest path between two cells of an empty lattice: the longest diagonals first.
 float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const {
@@ -130,7 +168,7 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
 
 void GridSearch::Reserve(const OccupancyMap& map) {
   blocked_.Reserve(map);
-  heap_.reserve(kUsualHeap);
+  queue_->Reserve(kUsualQueue);
   way_.reserve(kUsualWay);
   const auto cells = static_cast<std::size_t>(map.size().cast<std::int64_t>().prod());
   if (cells_.size() == cells) return;
@@ -157,7 +195,7 @@ void GridSearch::Begin(Lattice lattice) {
     std::fill(cells_.begin(), cells_.end(), Cell());
     search_ = 1;
   }
-  heap_.clear();
+  queue_->Clear();
   way_.clear();
 }
 
@@ -231,23 +269,14 @@ SearchStatus GridSearch::SearchOn(Lattice lattice, const CellIndex& start, const
     const int i = static_cast<int>(a);
     return CellIndex(i % size_.x(), i / size_.x() % size_.y(), i / (size_.x() * size_.y()));
   };
-  const auto later = [](const Node& a, const Node& b) { return a.key > b.key; };
   const auto estimate = [&](const CellIndex& cell) { return greed_ * LatticeDistance(cell, goal); };
-  std::uint32_t order = 0;
-  const auto push = [&](float f, std::uint32_t at) {
-    const auto key = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(f)) << 32 | order++;
-    heap_.push_back({key, at});
-    std::push_heap(heap_.begin(), heap_.end(), later);
-  };
   const std::uint32_t goal_address = address(goal);
   const std::uint32_t start_address = address(start);
   cells_[start_address] = Cell(0.0f, search_, kSelf, false);
-  push(estimate(start), start_address);
+  queue_->Push(estimate(start), start_address);
 
-  while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end(), later);
-    const std::uint32_t here = heap_.back().address;
-    heap_.pop_back();
+  while (!queue_->empty()) {
+    const std::uint32_t here = queue_->Pop();
     if (cells_[here].closed) continue;  // an older, longer entry of the same cell
     cells_[here].closed = true;
     if (here == goal_address) {
@@ -275,7 +304,7 @@ SearchStatus GridSearch::SearchOn(Lattice lattice, const CellIndex& start, const
       const float g = g_here + factor * step.length;
       if (there.search == search_ && (there.closed || g >= there.g)) continue;
       there = Cell(g, search_, s, false);
-      push(g + estimate(cell + step.offset), next);
+      queue_->Push(g + estimate(cell + step.offset), next);
     }
   }
   return SearchStatus::kNoPath;

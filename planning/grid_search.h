@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,9 @@ class GridSearch {
   /// times as much: wide passages are preferred. Throws std::invalid_argument unless all are >= 1.
   explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0,
                       bool blocks_first = false);
+  ~GridSearch();
+  GridSearch(GridSearch&&) noexcept;
+  GridSearch& operator=(GridSearch&&) noexcept;
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
@@ -64,12 +68,7 @@ class GridSearch {
   int expansions() const { return expansions_; }
 
  private:
-  // The upper half of the key is f: the bits of positive floats are ordered as they are. The lower half is
-  // the order of insertion.
-  struct Node {
-    std::uint64_t key;
-    std::uint32_t address;
-  };
+  class Queue;  // of the cells to be expanded
 
   static constexpr std::uint32_t kMostSearches = (1u << 26) - 1;
   static constexpr std::uint32_t kSelf = 13;  // the middle of 27 steps: no step at all
@@ -107,7 +106,7 @@ class GridSearch {
   BlockedBits blocked_;
   CellIndex size_ = CellIndex::Zero();  // of the lattice that is searched
   std::vector<Cell> cells_;
-  std::vector<Node> heap_;
+  std::unique_ptr<Queue> queue_;
   std::vector<CellIndex> way_;  // what a search found, of its lattice
   std::uint32_t search_ = 0;
   int expansions_ = 0;
