@@ -45,7 +45,7 @@ void DepthEye::Look(const estimation::VehicleState& vehicle, const estimation::P
   DepthGlimpse glimpse = std::move(spare_);
   glimpse.sense = planning::StageTimes::Span{"sense"};
   {
-    const planning::StageTimer timer(&glimpse.sense, planning::StageTimer::Cpu::kAlways);
+    const planning::StageTimer timer(&glimpse.sense);
     Capture(vehicle, pad, &glimpse.frame);
   }
   glimpse.vehicle = vehicle;

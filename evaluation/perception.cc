@@ -103,7 +103,7 @@ void Perception::Sense(const sim::World& world) {
     frame_times_ = {};
     frame_times_.sense = glimpse->sense;
     {
-      const planning::StageTimer timer(&frame_times_.map, planning::StageTimer::Cpu::kAlways);
+      const planning::StageTimer timer(&frame_times_.map);
       if (own_.estimated()) {
         PlaceFrame(glimpse->vehicle, own_.At(glimpse->vehicle), &glimpse->frame);
       }

@@ -109,8 +109,9 @@ std::string SqliteStatement::Text(int column) const {
 }
 
 SqliteDb::SqliteDb(const std::string& path, Mode mode) {
+  // A reader must be able to recover what a killed writer left: it opens for writing, where the file lets
+  // it, and is kept from doing so below.
   int flags = SQLITE_OPEN_READWRITE;
-  if (mode == Mode::kReadOnly) flags = SQLITE_OPEN_READONLY;
   if (mode == Mode::kCreate) flags |= SQLITE_OPEN_CREATE;
   const int code = sqlite3_open_v2(path.c_str(), &db_, flags, nullptr);
   if (code != SQLITE_OK) {
@@ -119,6 +120,7 @@ SqliteDb::SqliteDb(const std::string& path, Mode mode) {
     throw SqliteError(path + ": " + words);
   }
   sqlite3_busy_timeout(db_, 10000);
+  if (mode == Mode::kReadOnly) Execute("PRAGMA query_only=ON");
 }
 
 SqliteDb::~SqliteDb() { sqlite3_close(db_); }

@@ -64,7 +64,7 @@ bool Fallback::KeepsCommitted(const UniformBspline& committed, double t0, const 
 bool Fallback::TryRest(double t0, const SplineState& start, const Eigen::Vector3d& shift,
                        const FreeSpace& space, ReplanResult* result) const {
   MakeRestTrajectory(start, t0, shift, limits_, &result->curve);
-  StageTimer timer(&result->times.certificate);
+  StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
   result->certificate = Certify(result->curve, t0, nullptr, nullptr, limits_, reaction_, space);
   return result->certificate.passed();
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -85,10 +86,11 @@ class GridSearch::Queue {
   struct Node {
     std::uint64_t key;  // f, then the order of insertion
     std::uint32_t address;
-    bool operator<(const Node& other) const { return key > other.key; }  // the last one is the top
+    bool operator>(const Node& other) const { return key > other.key; }
   };
   // With four children a node: half the levels of a binary heap, and these are next to each other.
-  boost::heap::d_ary_heap<Node, boost::heap::arity<4>> nodes_;
+  boost::heap::d_ary_heap<Node, boost::heap::arity<4>, boost::heap::compare<std::greater<Node>>>
+      nodes_;
   std::uint32_t order_ = 0;
 };
 

@@ -48,6 +48,7 @@ class GridSearch {
   explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0,
                       bool blocks_first = false);
   ~GridSearch();
+  /// What was moved from may only be assigned to or destroyed.
   GridSearch(GridSearch&&) noexcept;
   GridSearch& operator=(GridSearch&&) noexcept;
 

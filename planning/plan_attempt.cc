@@ -144,23 +144,28 @@ bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
   return runs_.front().t_in - request.t0 < kNear * best_.curve.interval();
 }
 
-/// The same curve on shorter segments. Only where the arrival is fixed is it cheap, and worth while, to
-/// solve for its optimum there before it is led past what is in its way.
+/// The curve on shorter segments, before it is led past what is in its way. Where the arrival is fixed its
+/// optimum there is cheap, and a better start. Where it is free the solve would cost more than the rounds
+/// after it gain: there the curve is only interpolated, to within millimetres, so that the blocked runs
+/// stand. If no round can be solved then, the next attempt fixes the arrival.
 ReplanReason PlanAttempt::Refine(const AttemptRequest& request, ReplanResult* result) {
   first_curve_ = best_.curve;
   segments_ = request.near_segments;
-  if (request.arrival == ArrivalMode::kFixed) {
+  const bool interpolates = request.arrival == ArrivalMode::kFree && options_.max_rebinds > 0 &&
+                            options_.problem.endpoint == EndpointMode::kEliminated;
+  if (!interpolates) {
     const ReplanReason reason = SolveWithoutPairs(request, &first_curve_, result);
     if (reason != ReplanReason::kSolverFailed) return reason;
     segments_ = request.segments;  // the coarse ones will have to do
     return SolveWithoutPairs(request, &first_curve_, result);
   }
-  const ReplanReason refused = SetEnds(request);
-  now_->problem->SetDuration(first_curve_.duration());
-  now_->problem->WarmGuess(first_curve_, &now_->start.y);
+  SetEnds(request);  // refused by the coarse problem, if at all
+  LandingProblem& problem = *now_->problem;
+  problem.SetDuration(first_curve_.duration());
+  problem.WarmGuess(first_curve_, &now_->start.y);
   now_->first_guess = now_->start.y;
-  now_->problem->Curve(now_->start.y, &best_.curve);
-  return refused;
+  problem.Curve(now_->start.y, &best_.curve);
+  return ReplanReason::kNone;
 }
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
@@ -186,7 +191,7 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* r
   const BlockedRun first = runs_.front();
   if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
   if (request.previous && request.previous->t_end() > request.t0) {
-    StageTimer timer(&result->times.search);
+    StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
     finder_.Keep(*request.previous, request.t0, *request.space);
   }
   // One path past everything that is in the way, so that one detour does not lead into the next.
@@ -298,7 +303,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   stop.max_iterations = options_.max_iterations;
   stop.trace = request.log != nullptr;
   {
-    StageTimer timer(&result->times.solve);
+    StageTimer timer(&result->times.solve, StageTimer::kWhileLogged);
     now_->backend->Solve(problem.view(), now_->start, stop, &now_->solver);
   }
   ++result->solves;
@@ -315,7 +320,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   problem.Curve(now_->start.y, &candidate->curve);
   candidate->solved = true;
   {
-    StageTimer timer(&result->times.check);
+    StageTimer timer(&result->times.check, StageTimer::kWhileLogged);
     FindBlockedRuns(candidate->curve, request.t0, *request.space, &runs_);
   }
   if (request.log) {
@@ -328,7 +333,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
 /// Certifies a candidate that has been solved for the last time.
 ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
-  StageTimer timer(&result->times.certificate);
+  StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
   const UniformBspline& curve = candidate->curve;
   const SplineState wanted = EndStateAt(*request.pad, request.target, curve.t_end()).state;
   Certificate& certificate =
@@ -365,14 +370,14 @@ ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspli
     }
     binder_.Follow(curve, run, guide_, *request.space);
   }
-  StageTimer timer(&result->times.pairs);
+  StageTimer timer(&result->times.pairs, StageTimer::kWhileLogged);
   binder_.Bind(*request.space, &pairs_);
   return ReplanReason::kNone;
 }
 
 ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
                                     bool local, BlockedRun* run, ReplanResult* result) {
-  StageTimer timer(&result->times.search);
+  StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
   const bool searches = !finder_.Keeps(*run);
   const SearchStatus status = finder_.Find(*request.space, curve, local, run, &guide_);
   // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.

@@ -95,7 +95,7 @@ struct StageTimes {
   struct Span {
     const char* stage = "";
     double wall = 0.0;     ///< [s]
-    double cpu = 0.0;      ///< of the thread [s]; NaN: not measured, as no SpanLog listened
+    double cpu = 0.0;      ///< of the thread [s]; NaN: entered, but no SpanLog listened
     long allocations = 0;  ///< on the heap, where they are counted (solvers/allocation_count.h)
   };
   Span predict{"predict"}, search{"search"}, pairs{"pairs"}, solve{"solve"}, check{"check"},

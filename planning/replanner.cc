@@ -196,7 +196,7 @@ bool Replanner::Impl::InTime(const ReplanInput& input) const {
 
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
   Begin(input);
-  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
+  StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
   climbing_ = -1.0;
@@ -223,7 +223,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& map) {
   Begin(input);
-  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
+  StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState();
   const SplineState start = Start(input);
   const FreeSpace space = SpaceWithoutPad(input, map);
@@ -254,7 +254,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
                                    const OccupancyMap& map) {
   double fresh;
   {
-    StageTimer timer(&result_.times.predict);
+    StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
     fresh = GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, 1.0);
   }
   if (!(fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
@@ -305,8 +305,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (!slower_helps && !was_free) return reason;
     request.arrival = ArrivalMode::kFixed;
     if (!slower_helps) continue;
-    // Free arrival traded a limit for time, or a way round took longer: fix a longer one.
-    T = std::max(T, attempt_.duration());
+    // Free arrival traded a limit for time: fix a longer one. Where a collision remains it only fled from
+    // the pressure of what it hit.
+    if (reason == ReplanReason::kLimitsExceeded) T = std::max(T, attempt_.duration());
     if (T >= options_.max_duration) return reason;
     // A promise that cannot be kept binds no longer: the pad may have jumped.
     T = std::min(std::max(kStretch * T, fresh), options_.max_duration);

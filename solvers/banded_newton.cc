@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Newton's method on an arrowhead Hessian. Full steps almost always: value, gradient and Hessian of
-// a trial point come out of one pass, so that an accepted step needs no second evaluation. Where the
+// a full step come out of one pass, so that it needs no second one if it is accepted; of a shorter step, and
+// of the one after it, the value comes first. Where the
 // Hessian is indefinite (a nonconvex term, a free interval) it is shifted until it is not; a border
 // that alone is indefinite takes its absolute value, which keeps the fast directions as they are.
 // Source: J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., sections 3.4 and 3.5.
@@ -47,7 +48,7 @@ void BandedNewton::Prepare(const View& view) {
 SolveStatus BandedNewton::Run(const View& view, const double* start, const Tolerances& tolerances,
                               Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
-  shortened_ = false;
+  bool full_step = true;
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return SolveStatus::kEvaluationFailed;
   while (!evaluator->must_stop()) {
     const ViewEvaluation& at = evaluator->last();
@@ -58,7 +59,8 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     const double slope = Dot(gradient_, step_);
     const double scale = std::max(std::abs(value), kSmallestCost);
     if (-0.5 * slope <= tolerances.gap * scale) return SolveStatus::kConverged;
-    const double length = LineSearch(value, slope, evaluator);
+    const double length = LineSearch(value, slope, full_step, evaluator);
+    full_step = length == 1.0;
     if (length == 0.0) {
       // Nothing along a descent direction is lower: what is left is rounding, or the step is wrong.
       return -slope <= 1e-9 * scale ? SolveStatus::kConverged : SolveStatus::kNumericalFailure;
@@ -70,23 +72,27 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
 }
 
 /// Halves the step until it decreases the value enough; y_ becomes the accepted point, which is the
-/// evaluator's last. Returns the accepted share of the step, 0 if there is none. Derivatives are evaluated
-/// along with the value of a full step, unless the step before was a shorter one.
-double BandedNewton::LineSearch(double value, double slope, Evaluator* evaluator) {
-  bool derivatives = !shortened_;
-  for (double t = 1.0; t > kShortestStep; t *= 0.5, derivatives = false) {
+/// evaluator's last. Returns the accepted share of the step, 0 if there is none. The first trial point is
+/// evaluated with `derivatives`, or like the others without, and then again if it is accepted.
+double BandedNewton::LineSearch(double value, double slope, bool derivatives,
+                                Evaluator* evaluator) {
+  for (double t = 1.0; t > kShortestStep; t *= 0.5) {
     for (std::size_t i = 0; i < y_.size(); ++i) trial_[i] = y_[i] + t * step_[i];
-    const bool ok = derivatives ? evaluator->EvaluateLagrangian(trial_.data(), {})
-                                : evaluator->Evaluate(trial_.data(), {});
+    bool ok = derivatives ? evaluator->EvaluateLagrangian(trial_.data(), {})
+                          : evaluator->Evaluate(trial_.data(), {});
     const double decrease = value - evaluator->last().full.value;
     const double wanted = -kSufficientDecrease * t * slope - kRounding * std::abs(value);
-    if (ok && decrease >= wanted) {
-      shortened_ = t < 1.0;
+    ok = ok && decrease >= wanted;
+    // A term may have a value where it has no derivatives.
+    if (ok && !derivatives && !evaluator->must_stop()) {
+      ok = evaluator->EvaluateLagrangian(trial_.data(), {});
+    }
+    if (ok) {
       y_.swap(trial_);
-      if (!derivatives && !evaluator->must_stop()) evaluator->EvaluateLagrangian(y_.data(), {});
       return t;
     }
     if (evaluator->must_stop()) return t;
+    derivatives = false;
   }
   return 0.0;
 }

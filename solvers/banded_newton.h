@@ -23,11 +23,10 @@ class BandedNewton {
                   Evaluator* evaluator);
 
  private:
-  double LineSearch(double value, double slope, Evaluator* evaluator);
+  double LineSearch(double value, double slope, bool derivatives, Evaluator* evaluator);
 
   BorderedCholesky factor_;
   std::vector<double> y_, gradient_, step_, trial_;
-  bool shortened_ = false;  // the last step was not a full one
 };
 
 }  // namespace touchdown::solvers

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Right-looking Cholesky of a block band, then the border by one triangular solve. The factor is
+// Right-looking Cholesky of a block band, by L D L^T with L scaled in the end, then the border by one
+// triangular solve. The factor is
 // stored column by column as panels: scalar column c of block column j holds the rows of blocks
 // j .. j + half one after another, padded with zeros, so that every update of the trailing matrix is
 // a run of whole vector registers and needs no tail. Diagonal elements are stored inverted.
@@ -94,8 +95,8 @@ struct Panels {
           const Eigen::Map<const Whole> earlier(Column(band, j, m));
           column -= earlier[c] * inverse[m] * earlier;
         }
-        if (!(column[c] > 0.0) || !std::isfinite(column[c])) return false;
         inverse[c] = 1.0 / column[c];
+        if (!(inverse[c] > 0.0) || !std::isfinite(inverse[c])) return false;
       }
       UpdateTrailing<1>(band, j, inverse);
       for (int c = 0; c < d; ++c) {

@@ -141,7 +141,7 @@ TEST(ResultDocs, OtherColumnsAreAnotherVersion) {
   const std::map<std::string, std::string> known = {
       {"record", "5 2001625518"},       {"trials", "4 2249577977"},
       {"comparison", "2 851369565"},    {"profile", "1 945522990"},
-      {"replan study", "2 1129062132"}, {"forest flights", "1 1622777177"},
+      {"replan study", "3 2033652182"}, {"forest flights", "1 1622777177"},
       {"pad study", "2 3143308301"},    {"tag study", "1 1906377180"}};
   const std::string path = ::testing::TempDir() + "touchdown_result_versions.db";
   for (const ResultFile& result : ResultFiles()) {

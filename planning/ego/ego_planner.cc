@@ -202,7 +202,7 @@ void EgoPlanner::Begin(const ReplanInput& input) {
 
 const ReplanResult& EgoPlanner::Step(const ReplanInput& input, const OccupancyMap& map) {
   Begin(input);
-  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
+  StageTimer total(&result_.times.total);
   if (input.t_now >= busy_until_ - kClockSlack) {
     FreeSpace space;
     space.map = &map;
@@ -319,7 +319,7 @@ bool EgoPlanner::Call(const ReplanInput& input, const SplineState& start, EgoGue
   request.t0 = input.t_start;
   EgoPlanResult planned;
   {
-    StageTimer timer(&result_.times.solve);
+    StageTimer timer(&result_.times.solve, StageTimer::kWhileLogged);
     planned = plan_.Run(grid, request);
   }
   new_goal_ = false;

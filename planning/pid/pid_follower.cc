@@ -97,7 +97,7 @@ void PidFollower::Commit(const SplineState& start, const Eigen::Vector3d& a, dou
 
 const ReplanResult& PidFollower::Replan(const ReplanInput& input, const OccupancyMap& /*map*/) {
   if (!Begin(input)) return result_;
-  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
+  StageTimer total(&result_.times.total);
   if (!TargetValid(input)) {
     result_.reason = ReplanReason::kInvalidInput;
     return result_;
@@ -119,7 +119,7 @@ const ReplanResult& PidFollower::Replan(const ReplanInput& input, const Occupanc
 const ReplanResult& PidFollower::Rest(const ReplanInput& input, double climb,
                                       const OccupancyMap& /*map*/) {
   if (!Begin(input)) return result_;
-  StageTimer total(&result_.times.total, StageTimer::Cpu::kAlways);
+  StageTimer total(&result_.times.total);
   const SplineState start = Start(input);
   law_.Reset();
   if (climb_ != climb) {

@@ -224,6 +224,23 @@ TEST(GridSearch, ASearchThatCannotBeginExpandsNothing) {
   EXPECT_EQ(search.expansions(), 0);
 }
 
+TEST(GridSearch, FindsTheSamePathAgainAndAfterAMove) {
+  OccupancyMap map(SmallMap(0.0));
+  for (double z = -1.55; z < 1.6; z += 0.1) map.SetOccupied({0.05, 0.05, z});
+  const FreeSpace space = SpaceOf(map);
+  GridSearch search(kUp);
+  GuidePath first, again, moved;
+  const auto find = [&](GridSearch* by, GuidePath* path) {
+    return by->Search(space, {-1.05, 0.05, 0.05}, {1.05, 0.05, 0.05}, 100000, path);
+  };
+  ASSERT_EQ(find(&search, &first), SearchStatus::kFound);
+  ASSERT_EQ(find(&search, &again), SearchStatus::kFound);
+  GridSearch other = std::move(search);
+  ASSERT_EQ(find(&other, &moved), SearchStatus::kFound);
+  EXPECT_EQ(again, first);
+  EXPECT_EQ(moved, first);
+}
+
 TEST(GridSearch, RefusesFactorsBelowOne) {
   EXPECT_THROW(GridSearch(0.9), std::invalid_argument);
   EXPECT_THROW(GridSearch(1.0, 0.9), std::invalid_argument);

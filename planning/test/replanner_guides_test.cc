@@ -156,14 +156,23 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
   EXPECT_GT(planned, 3);
 }
 
-// Coarse segments leave the first half second to the start; an obstacle there is passed with fine ones.
+// Coarse segments leave the first half second to the start; an obstacle there is passed with fine ones. Only
+// a fixed arrival's curve is solved for once more on these before it is led around.
 TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
+  struct Case {
+    bool near;
+    ArrivalMode arrival;
+    bool solves_fine;
+  };
   const ArcPad pad({5.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
   const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.2, 0.0, 0.0);
-  for (const bool near : {true, false}) {
+  for (const Case& c : {Case{true, ArrivalMode::kFixed, true},
+                        Case{true, ArrivalMode::kFree, false},
+                        Case{false, ArrivalMode::kFixed, false},
+                        Case{false, ArrivalMode::kFree, false}}) {
     OccupancyMap map = ObservedMap();
-    AddPillar(near ? -4.0 : 0.0, 0.05, &map);
-    Replanner replanner(WithGuides(1), solvers::StandardBackends());
+    AddPillar(c.near ? -4.0 : 0.0, 0.05, &map);
+    Replanner replanner(Options(c.arrival), solvers::StandardBackends());
     ReplanLog log;
     replanner.set_log(&log);
     FlyAlong(start, v_WB, &replanner);
@@ -173,8 +182,10 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
     ASSERT_FALSE(log.attempts.empty());
     const AttemptLog& first = log.attempts.front();
     const bool fine = first.rounds.back().curve.segments() > first.rounds.front().curve.segments();
-    EXPECT_EQ(fine, near);
+    EXPECT_EQ(fine, c.near);
     EXPECT_EQ(first.segments, first.rounds.back().curve.segments());
+    EXPECT_TRUE(first.rounds[0].pairs.empty());
+    EXPECT_EQ(first.rounds[1].pairs.empty(), c.solves_fine);
   }
 }
 

@@ -7,9 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
+#include <type_traits>
 
 #include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/test/test_terms.h"
 #include "touchdown/solvers/window_term.h"
 
 namespace touchdown::solvers {
@@ -128,6 +131,29 @@ TEST(BandedSolver, SolvesAQuadraticInOneStep) {
   const SolverResult result = Solve(view);
   EXPECT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_EQ(result.iterations, 1);
+}
+
+// Shorter steps are tried by their value alone; one that has no derivatives must not be taken.
+TEST(BandedSolver, StepsOverWhereATermHasNoDerivatives) {
+  const auto root = [](const auto* q, auto* u) {
+    using std::sqrt;
+    using T = std::decay_t<decltype(*u)>;
+    u[0] = sqrt(sqrt(T(1.0) + q[0] * q[0]));  // from 2 Newton's step leads to -8, a quarter to -0.5
+    if (!std::is_same_v<T, double> && q[0] < T(-0.1) && q[0] > T(-1.0)) u[0] *= std::nan("");
+  };
+  Problem problem({.blocks = 1, .block_size = 1});
+  problem.AddTerm(SumOfSquares<1, 1>("root", root, true), Role::kCost);
+  const View view(problem, AffineLift::Identity(1));
+  auto solver = MakeBandedSolver();
+  solver->Prepare(view);
+  SolverResult result;
+  Stop stop;
+  stop.trace = true;
+  solver->Solve(view, WarmStart(Eigen::VectorXd::Constant(1, 2.0)), stop, &result);
+  EXPECT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_NEAR(result.x[0], 0.0, 1e-3);
+  ASSERT_FALSE(result.trace.empty());
+  EXPECT_NEAR(result.trace.front().step_norm, 1.25, 1e-9);  // an eighth of Newton's
 }
 
 TEST(BandedSolver, ConvergesWhereTheCostIsZero) {

@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 
 namespace touchdown::solvers {
@@ -53,7 +56,8 @@ TEST(BorderedCholesky, MatchesTheDenseFactor) {
   for (const Shape shape :
        {Shape{15, 3, 3, false}, Shape{15, 3, 3, true}, Shape{2, 3, 3, true}, Shape{9, 3, 1, false},
         Shape{9, 3, 2, true}, Shape{9, 3, 5, true}, Shape{6, 1, 3, false}, Shape{8, 2, 4, true},
-        Shape{7, 4, 3, true}, Shape{1, 1, 0, true}, Shape{5, 5, 5, false}}) {
+        Shape{7, 4, 3, true}, Shape{1, 1, 0, true}, Shape{5, 5, 5, false}, Shape{12, 1, 7, true},
+        Shape{20, 1, 15, false}, Shape{40, 1, 31, true}}) {
     const BorderedBandMatrix A = RandomDefinite(shape, &random);
     const Eigen::MatrixXd dense = Dense(A);
     BorderedCholesky factor;
@@ -97,6 +101,27 @@ TEST(BorderedCholesky, SaysWhatIsIndefinite) {
   EXPECT_EQ(factor.Factor(A), BorderedCholesky::Status::kIndefinite);
   A.block(4, 0)[4] = std::nan("");
   EXPECT_EQ(factor.Factor(A), BorderedCholesky::Status::kIndefinite);
+}
+
+// What was left half done, or full of NaN, is not seen in the next factor.
+TEST(BorderedCholesky, StartsAnewAfterAFailure) {
+  std::mt19937_64 random(5);
+  const BorderedBandMatrix good = RandomDefinite({6, 3, 3, true}, &random);
+  BorderedCholesky fresh, used;
+  fresh.Prepare(good);
+  used.Prepare(good);
+  ASSERT_EQ(fresh.Factor(good), BorderedCholesky::Status::kDefinite);
+  for (const double bad : {-100.0, 0.0, std::nan(""), std::numeric_limits<double>::denorm_min(),
+                           std::numeric_limits<double>::infinity()}) {
+    BorderedBandMatrix broken = good;
+    for (int k = 0; k <= 3; ++k) std::fill_n(broken.block(2, k), 9, k == 0 ? bad : 0.0);
+    EXPECT_EQ(used.Factor(broken), BorderedCholesky::Status::kIndefinite) << bad;
+    ASSERT_EQ(used.Factor(good), BorderedCholesky::Status::kDefinite);
+    std::vector<double> x(static_cast<std::size_t>(good.size()), 1.0), expected = x;
+    used.Solve(x.data());
+    fresh.Solve(expected.data());
+    EXPECT_EQ(x, expected);
+  }
 }
 
 TEST(BorderedCholesky, RefusesABandItHasNoKernelFor) {

@@ -18,7 +18,8 @@ TABLES = ("planned", "variation", "varied_key", "trial", "cell", "cell_value")
 
 
 def reading(path):
-    return contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True))
+    """Not read only: what a killed writer left must be recovered."""
+    return contextlib.closing(sqlite3.connect(f"file:{path}?mode=rw", uri=True))
 
 
 def tables(path):

@@ -9,11 +9,13 @@ def read(path, what, table, version, error, use):
     """use(database, {key: value}) of a file that holds `what`, whose `table` tells its version.
 
     Raises `error` with one sentence for a file that is missing, is no such file or has another version.
+    Opens it for writing, where the file lets it, so that what a killed writer left can be recovered.
     """
     if not os.path.isfile(path):
         raise error(f"{path}: there is no such file.")
     try:
-        with contextlib.closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
+        with contextlib.closing(sqlite3.connect(f"file:{path}?mode=rw", uri=True)) as database:
+            database.execute("PRAGMA query_only=ON")
             facts = dict(database.execute(f"SELECT key, value FROM {table}"))
             if facts.get("version") != version:
                 raise error(

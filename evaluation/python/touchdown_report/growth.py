@@ -15,7 +15,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-SUPPORTED_VERSION = "2"
+SUPPORTED_VERSION = "3"
 STAGES = ["predict", "check", "search", "pairs", "solve", "certificate"]
 COLOURS = ["#999999", "#56B4E9", "#E69F00", "#CC79A7", "#0072B2", "#009E73"]
 # Column of table `part`, label of the axis.
@@ -42,7 +42,7 @@ class Growth:
 
     def _read(self, db, manifest):
         self.manifest = manifest
-        columns = ", ".join(f"{stage}_ms" for stage in STAGES + ["total"])
+        columns = ", ".join(f"{stage}_wall_ms" for stage in STAGES + ["total"])
         self.times = {}
         pairs = []
         for name in VARIED:
@@ -96,7 +96,7 @@ def draw_axes(axes, classes, labels):
         )
     axes.set_xticks(places, labels=labels)
     axes.set_ylim(0.0, None)
-    axes.set_ylabel("thread CPU time [ms]")
+    axes.set_ylabel("wall time [ms]")
 
 
 def draw(growth, path):
