@@ -305,9 +305,10 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (!slower_helps && !was_free) return reason;
     request.arrival = ArrivalMode::kFixed;
     if (!slower_helps) continue;
-    // Free arrival traded a limit for time: fix a longer one. Where a collision remains it only fled from
-    // the pressure of what it hit.
-    if (reason == ReplanReason::kLimitsExceeded) T = std::max(T, attempt_.duration());
+    // Free arrival traded a limit for time, or a way round took longer: fix a longer one. A free arrival
+    // that still collides only fled from the pressure of what it hit.
+    const bool fled = was_free && reason != ReplanReason::kLimitsExceeded;
+    if (!fled) T = std::max(T, attempt_.duration());
     if (T >= options_.max_duration) return reason;
     // A promise that cannot be kept binds no longer: the pad may have jumped.
     T = std::min(std::max(kStretch * T, fresh), options_.max_duration);

@@ -166,10 +166,9 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
   };
   const ArcPad pad({5.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
   const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.2, 0.0, 0.0);
-  for (const Case& c : {Case{true, ArrivalMode::kFixed, true},
-                        Case{true, ArrivalMode::kFree, false},
-                        Case{false, ArrivalMode::kFixed, false},
-                        Case{false, ArrivalMode::kFree, false}}) {
+  for (const Case& c :
+       {Case{true, ArrivalMode::kFixed, true}, Case{true, ArrivalMode::kFree, false},
+        Case{false, ArrivalMode::kFixed, false}, Case{false, ArrivalMode::kFree, false}}) {
     OccupancyMap map = ObservedMap();
     AddPillar(c.near ? -4.0 : 0.0, 0.05, &map);
     Replanner replanner(Options(c.arrival), solvers::StandardBackends());
