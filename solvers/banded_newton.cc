@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Newton's method on an arrowhead Hessian. Full steps almost always: value, gradient and Hessian of
 // a full step come out of one pass, so that it needs no second one if it is accepted; of a shorter step, and
-// of the one after it, the value comes first. Where the
-// Hessian is indefinite (a nonconvex term, a free interval) it is shifted until it is not; a border
+// of the one after it, the value comes first. Where the Hessian is indefinite (a nonconvex term, a free interval) it is shifted until it is not; a border
 // that alone is indefinite takes its absolute value, which keeps the fast directions as they are.
 // Source: J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., sections 3.4 and 3.5.
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Right-looking Cholesky of a block band, by L D L^T with L scaled in the end, then the border by one
-// triangular solve. The factor is
-// stored column by column as panels: scalar column c of block column j holds the rows of blocks
+// triangular solve. The factor is stored column by column as panels: scalar column c of block column j holds the rows of blocks
 // j .. j + half one after another, padded with zeros, so that every update of the trailing matrix is
 // a run of whole vector registers and needs no tail. Diagonal elements are stored inverted.
 
