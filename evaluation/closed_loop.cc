@@ -22,6 +22,7 @@
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/stand_watch.h"
 #include "touchdown/sim/true_clearance.h"
 #include "touchdown/solvers/thread_clock.h"
 
@@ -87,6 +88,7 @@ class Trial {
         limits_(scenario.limits),
         landing_time_(LandingTimeTaskOf(scenario, world_)),
         judge_(LandingRule{}, scenario.timeout, follow_),
+        stand_watch_(scenario.stand_limit),
         mission_clock_(kMissionRate),
         replan_clock_(PlannerRate(scenario)),
         close_clock_(ClosePlannerRate(scenario)),
@@ -112,6 +114,7 @@ class Trial {
 
   void Step() {
     perception_.Sense(world_);
+    if (perception_.image_taken()) stand_watch_.Image();
     if (samples_ != nullptr && perception_.image_taken()) {
       samples_->frames.push_back({world_.time(), perception_.frame_times()});
     }
@@ -165,10 +168,13 @@ class Trial {
     if (plan == nullptr) return;
     ++result_.replans;
     ++result_.replans_by_status[planning::ToString(plan->status)];
+    no_plan_reason_.clear();
     if (plan->reason != planning::ReplanReason::kNone) {
       const std::string reason(plan->detail);
-      ++result_.replans_by_reason[reason.empty() ? planning::ToString(plan->reason) : reason];
+      no_plan_reason_ = reason.empty() ? planning::ToString(plan->reason) : reason;
+      ++result_.replans_by_reason[no_plan_reason_];
     }
+    if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
     const planning::StageTimes::Span& total = plan->times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
@@ -197,6 +203,7 @@ class Trial {
     sample.armed = pilot_.mission().motors_armed;
     sample.pad_known = perception_.pad_filter().Converged(vehicle.t);
     sample.plan_valid = pilot_.plan_valid(vehicle.t);
+    sample.stood = stand_watch_.Stands(vehicle.t, vehicle.p_WB);
 
     const bool in_flight = !judge_.touchdown();
     if (sample_clock_.Due(vehicle.t)) {
@@ -286,6 +293,13 @@ class Trial {
       }
       if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
       if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
+      result_.cause = touched_;
+      if (result_.outcome == Outcome::kStood) {
+        if (!no_plan_reason_.empty()) result_.detail += " Reason: " + no_plan_reason_ + ".";
+        result_.cause = no_plan_reason_.empty()
+                            ? std::string(control::ToString(pilot_.mission().mode))
+                            : no_plan_reason_;
+      }
       result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
     }
     metrics_.Fill(&result_);
@@ -317,6 +331,7 @@ class Trial {
   Scenario::Limits limits_;
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;
+  StandWatch stand_watch_;
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   SlidingMean through_air_;
@@ -329,6 +344,7 @@ class Trial {
   TrialSamples* samples_;
   TrialResult result_;
   std::string touched_;
+  std::string no_plan_reason_;   ///< of the last replanning step; empty: it made a plan
   std::string physics_failure_;  ///< empty while the physics works
 };
 

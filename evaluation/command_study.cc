@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown study: the standing studies. `replan`: the replanner's latency, success and safety in
 // random forests, and how faithful its baseline is. The others: command_study_run.cc,
-// command_study_pad.cc and command_study_tags.cc.
+// command_study_hostile.cc, command_study_pad.cc and command_study_tags.cc.
 #include <algorithm>
 #include <iostream>
 #include <memory>
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/command_study_hostile.h"
 #include "touchdown/evaluation/command_study_pad.h"
 #include "touchdown/evaluation/command_study_run.h"
 #include "touchdown/evaluation/command_study_tags.h"
@@ -216,6 +217,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
 void AddStudyCommand(Command app, const Registries& registries, CommandRun* run) {
   const Command study = app.AddCommand("study", "The standing studies");
   study.RequireCommand();
+  AddHostileStudyCommand(study, registries, run);
   AddPadStudyCommand(study, registries, run);
   AddStudyRunCommands(study, registries, run);
   AddTagStudyCommand(study, run);

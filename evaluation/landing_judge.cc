@@ -53,6 +53,8 @@ const char* ToString(Outcome outcome) {
       return "followed";
     case Outcome::kTimeout:
       return "timeout";
+    case Outcome::kStood:
+      return "stood";
     case Outcome::kUnstable:
       return "unstable";
     case Outcome::kError:
@@ -91,6 +93,8 @@ const char* Explain(Outcome outcome) {
       return "The vehicle stayed above the pad until the time was up.";
     case Outcome::kTimeout:
       return "Time ran out before the vehicle had landed.";
+    case Outcome::kStood:
+      return "The vehicle stood, saw, and found no plan.";
     case Outcome::kUnstable:
       return "The simulated physics failed.";
     case Outcome::kError:
@@ -154,6 +158,7 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
     outcome_ = touchdown_ ? OnThePad(sample) : InTheAir(sample);
   }
   if (!outcome_ && sample.t >= timeout_) outcome_ = TimeoutClass();
+  if (!outcome_ && !touchdown_ && sample.stood) outcome_ = Outcome::kStood;
   return outcome_;
 }
 

@@ -26,6 +26,7 @@ enum class Outcome {
   kInfeasible,       ///< time ran out while no certified plan to the pad existed
   kFollowed,  ///< time ran out as it should: nothing more was asked than to stay above the pad
   kTimeout,   ///< time ran out otherwise
+  kStood,     ///< it stood for as long as the trial allows, saw, and made no new plan
   kUnstable,  ///< the simulated physics failed
   // Never set by the judge:
   kError,    ///< the program failed in this trial, and said why
@@ -78,6 +79,7 @@ struct JudgeSample {
   Eigen::Vector3d equilibrium_axis = Eigen::Vector3d::UnitZ();
   bool pad_known = true;   ///< the vehicle's own estimate of the pad is valid
   bool plan_valid = true;  ///< a certified plan to the pad is being flown
+  bool stood = false;      ///< for longer than the trial allows (stand_watch.h)
 };
 
 /// What happened at first contact of a foot with the pad.

@@ -218,7 +218,8 @@ struct Scenario {
     Eigen::Vector3d hull = Eigen::Vector3d::Zero();  ///< radius, bottom, top; 0: from the geoms [m]
     Eigen::Vector2d feet = Eigen::Vector2d::Zero();  ///< radius, depth; 0: from the hull [m]
   } airframe;
-  double timeout = 60.0;  ///< [s]
+  double timeout = 60.0;     ///< [s]
+  double stand_limit = 0.0;  ///< a flight that stands for so long is over [s]; 0: never
   std::uint64_t seed = 1;
 
   std::vector<BoxObstacle> boxes;

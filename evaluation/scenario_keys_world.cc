@@ -115,6 +115,11 @@ void AddTrialKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("timeout", In(1, 600, "s"), "a trial ends here at the latest",
                                   TOUCHDOWN_AT(timeout)));
   keys.push_back(
+      Number<Scenario>("stand_limit", In(0, 600, "s"),
+                       "a flight ends as stood when for so long it stayed within 0.5 m, a depth "
+                       "image came and no new plan was made; 0: never",
+                       TOUCHDOWN_AT(stand_limit)));
+  keys.push_back(
       {"seed", "whole number", "", "[0, 2^53]", "seed of every random stream",
        [](Scenario& s, const YAML::Node& n, const Where& w) { s.seed = ReadSeed(n, w, "seed"); },
        [](const Scenario& s) { return std::to_string(s.seed); }});

@@ -156,6 +156,7 @@ void WalkTrial(Walk& walk, TrialResult& r) {
   walk.Derived("landed", r.landed());
   walk("outcome", r.outcome);
   walk("detail", r.detail);
+  walk("cause", r.cause);
   walk.Group(r.touchdown, [&](Touchdown& t) {
     walk("time_to_land_s", t.t);
     walk("touchdown_error_m", t.error_m);

@@ -62,7 +62,10 @@ struct TrialTiming {
 struct TrialResult {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kError;
-  std::string detail;                        ///< what went wrong in words; empty when landed
+  std::string detail;  ///< what went wrong in words; empty when landed
+  /// What ended it: the last thing touched but by a foot on the deck ("obstacle 3", "hull-deck"), of a
+  /// flight that stood the last reason for no new plan, else the mode. Otherwise empty.
+  std::string cause;
   std::optional<Touchdown> touchdown;        ///< first contact of a foot with the pad
   std::optional<double> mean_abs_error_x_m;  ///< last 5 s before first contact, world axes
   std::optional<double> mean_abs_error_y_m;
@@ -84,6 +87,8 @@ struct TrialResult {
   std::optional<double> t_star_upper_s;
   /// max_speed_mps and max_acceleration_mps2 are within the scenario's limits, as T* supposes.
   bool within_limits = false;
+  // The figures of a safety rule belong here, as an optional group of their own with a Group in WalkTrial
+  // (trial_columns.cc): events by kind, the share of falsely free cells.
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }

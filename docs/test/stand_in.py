@@ -21,15 +21,16 @@ BUILD = Path(os.environ.get("TOUCHDOWN_BUILD", ""))
 SHORT = {"--trials": 1, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1}
 # ... which these sub-commands are given where the document leaves them to their default.
 GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"], "study replan": ["--scenes"],
-         "study pad": ["--trials"], "study tags": ["--poses"]}  # fmt: skip
+         "study pad": ["--trials"], "study hostile": ["--flights"], "study tags": ["--poses"]}  # fmt: skip
 # Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
 # pad` draws nothing of shorter ones.
-SECONDS = {"land": 15, "profile": 15, "sweep": 1, "study pad": 6}
+SECONDS = {"land": 15, "profile": 15, "sweep": 1, "study pad": 6, "study hostile": 3}
 # These fly the first trial of their quick form.
 STUDIES = ("study paper", "study solvers", "study ablation", "study run")
 # A command that needs more than this in its short form needs a rule here.
 CPU_SECONDS = int(os.environ.get("TOUCHDOWN_CPU_SECONDS", "20"))
-OUTPUTS = ("--record", "--plot", "--save-map", "--db", "--picture", "--trace", "--frames", "--out")
+OUTPUTS = ("--record", "--plot", "--save-map", "--db", "--picture", "--trace", "--frames", "--out",
+           "--html")  # fmt: skip
 
 
 class Wrong(Exception):

@@ -76,6 +76,19 @@ TEST_F(LandingJudgeTest, RestStartsAgainAfterALossOfContact) {
   EXPECT_EQ(judge_.outcome(), Outcome::kLanded);
 }
 
+TEST_F(LandingJudgeTest, AFlightThatStandsIsOverUnlessItTouchesThePad) {
+  Run(1.0);
+  sample_.stood = true;
+  Run(kDt);
+  EXPECT_EQ(judge_.outcome(), Outcome::kStood);
+  judge_ = LandingJudge(LandingRule{}, 20.0);
+  sample_.stood = false;
+  Touch();
+  sample_.stood = true;
+  Run(0.1);
+  EXPECT_FALSE(judge_.outcome());
+}
+
 TEST_F(LandingJudgeTest, AShortGapInContactDoesNotInterruptTheRest) {
   Touch();
   sample_.armed = false;

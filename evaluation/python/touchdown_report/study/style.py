@@ -16,6 +16,7 @@ OUTCOME_COLOURS = {
     "landed": "#009E73",
     "followed": "#7FCDB4",
     "timeout": "#BBBBBB",
+    "stood": "#999933",
     "collision": "#D55E00",
     "tip_over": "#CC79A7",
     "bounced_off": "#E69F00",

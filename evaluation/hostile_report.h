@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "touchdown/evaluation/campaign.h"
+#include "touchdown/evaluation/hostile_study.h"
+
+namespace touchdown::evaluation {
+
+/// What `touchdown study hostile` prints: two tables by family, within and beyond the assumptions, then
+/// every collision with the command that flies it again, other contacts, and why flights stood.
+std::string HostileText(const HostileOptions& options, const std::vector<SweepRow>& rows);
+
+/// The same as JSON. Nothing in it depends on who flew the flights.
+nlohmann::ordered_json HostileJson(const HostileOptions& options,
+                                   const std::vector<SweepRow>& rows);
+
+/// The same as one HTML page, with a top view of one world of each family.
+std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows);
+
+/// Where a way exists, by family, of flights that are not flown.
+std::string HostileWaysText(const std::vector<HostileFlight>& flights);
+
+/// "3 of 120 [0.5, 7.1] %", with the 95 % Clopper-Pearson interval; "0 of 0" without any.
+std::string RateText(int count, int of);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/hostile_tally.h"
+
+#include <numeric>
+#include <stdexcept>
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kSeeingRate = 1.0;  // [Hz]
+
+bool Begins(const std::string& text, const char* with) { return text.rfind(with, 0) == 0; }
+
+int Sum(const std::map<std::string, int>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), 0,
+                         [](int sum, const auto& entry) { return sum + entry.second; });
+}
+
+}  // namespace
+
+const std::string& LabelOf(const SweepTrial& trial, const std::string& key) {
+  for (const auto& [name, value] : trial.varied) {
+    if (name == key) return value;
+  }
+  throw std::out_of_range("a trial has no label " + key);
+}
+
+bool HitWhatStands(const TrialResult& result) {
+  return result.outcome == Outcome::kCollision &&
+         (Begins(result.cause, "obstacle") || Begins(result.cause, "ground"));
+}
+
+bool WrongContact(const TrialResult& result) {
+  switch (result.outcome) {
+    case Outcome::kCollision:
+      return !HitWhatStands(result);
+    case Outcome::kOffPad:
+    case Outcome::kHardTouchdown:
+    case Outcome::kTiltedTouchdown:
+    case Outcome::kBouncedOff:
+    case Outcome::kTipOver:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string ContactKind(const TrialResult& result) {
+  if (result.outcome != Outcome::kCollision) return ToString(result.outcome);
+  return result.cause.substr(0, result.cause.find(' '));
+}
+
+void HostileTally::Add(const SweepRow& row) {
+  const TrialResult& result = row.result;
+  const bool way = LabelOf(row.trial, "way") == "yes";
+  const Scenario::Depth& depth = row.trial.scenario.depth;
+  const bool sees = way && row.trial.scenario.depth_rate * (1.0 - depth.drop) >= kSeeingRate;
+  ++flights;
+  ways += way ? 1 : 0;
+  seeing += sees ? 1 : 0;
+  if (result.landed()) {
+    ++landed;
+    seeing_landed += sees ? 1 : 0;
+  } else if (HitWhatStands(result)) {
+    ++collisions;
+  } else if (WrongContact(result)) {
+    ++contacts[ContactKind(result)];
+  } else if (result.outcome == Outcome::kStood) {
+    ++stood[result.cause];
+  } else if (IsLost(result.outcome)) {
+    ++lost;
+  } else if (result.outcome == Outcome::kTimeout || result.outcome == Outcome::kLostPad ||
+             result.outcome == Outcome::kInfeasible || result.outcome == Outcome::kFollowed) {
+    ++timeouts;
+  } else {
+    ++other;
+  }
+}
+
+int HostileTally::all_contacts() const { return Sum(contacts); }
+int HostileTally::all_stood() const { return Sum(stood); }
+
+HostileTally TallyOf(const std::vector<SweepRow>& rows, const std::string& family, bool within) {
+  HostileTally tally;
+  for (const SweepRow& row : rows) {
+    if (!family.empty() && LabelOf(row.trial, "family") != family) continue;
+    if ((LabelOf(row.trial, "assumptions") == "within") == within) tally.Add(row);
+  }
+  return tally;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/campaign.h"
+
+namespace touchdown::evaluation {
+
+/// The label of a flight by its name. @throws std::out_of_range
+const std::string& LabelOf(const SweepTrial& trial, const std::string& key);
+
+/// It touched something that stands: an obstacle, or the ground far from the pad.
+bool HitWhatStands(const TrialResult& result);
+/// It touched the pad outside of the landing rule, or came down beside it.
+bool WrongContact(const TrialResult& result);
+/// Its kind in one word: the outcome, of a collision what was touched.
+std::string ContactKind(const TrialResult& result);
+
+/// What a number of flights came to. Figures of the safety rule (events by kind, the share of falsely free
+/// cells) belong here as well.
+struct HostileTally {
+  int flights = 0;
+  int ways = 0;                         ///< flights in which a way exists
+  int collisions = 0;                   ///< with what stands
+  std::map<std::string, int> contacts;  ///< other contacts, by kind
+  int landed = 0;
+  int seeing = 0;         ///< a way exists and depth.rate x (1 - depth.drop) is at least 1 Hz
+  int seeing_landed = 0;  ///< of those
+  std::map<std::string, int> stood;  ///< by reason
+  int timeouts = 0;                  ///< time ran out, for whatever reason
+  int lost = 0;                      ///< error, crashed, hung
+  int other = 0;                     ///< unstable, disarmed in the air, ...
+
+  void Add(const SweepRow& row);
+  int all_contacts() const;
+  int all_stood() const;
+};
+
+/// The rows of one family, and of all; within or beyond.
+HostileTally TallyOf(const std::vector<SweepRow>& rows, const std::string& family, bool within);
+
+}  // namespace touchdown::evaluation
