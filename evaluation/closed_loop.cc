@@ -21,6 +21,7 @@
 #include "touchdown/evaluation/pilot.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/rendering_check.h"
+#include "touchdown/evaluation/safety_watch.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/stand_watch.h"
 #include "touchdown/sim/true_clearance.h"
@@ -30,6 +31,7 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kMissionRate = 100.0;       // [Hz]
+constexpr double kMapLookRate = 1.0;         // of the safety figures [Hz]
 constexpr double kSampleRate = kPadLogRate;  // of metrics, record and pad log [Hz]
 
 // What T* is asked: the trial's world without its obstacles, in still air.
@@ -54,6 +56,11 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
   task.pad_yaw_error = lag.yaw;
   task.pad_yaw_rate_error = lag.yaw_rate;
   return task;
+}
+
+std::optional<SafetyWatch> SafetyWatchOf(const Scenario& scenario, const sim::World& world) {
+  if (scenario.planner != PlannerKind::kLanding) return std::nullopt;
+  return SafetyWatch(world.config().obstacles, planning::ReplannerOptions{}.margin);
 }
 
 class Trial {
@@ -89,6 +96,8 @@ class Trial {
         landing_time_(LandingTimeTaskOf(scenario, world_)),
         judge_(LandingRule{}, scenario.timeout, follow_),
         stand_watch_(scenario.stand_limit),
+        safety_watch_(SafetyWatchOf(scenario, world_)),
+        map_look_clock_(kMapLookRate),
         mission_clock_(kMissionRate),
         replan_clock_(PlannerRate(scenario)),
         close_clock_(ClosePlannerRate(scenario)),
@@ -175,6 +184,7 @@ class Trial {
       ++result_.replans_by_reason[no_plan_reason_];
     }
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
+    if (safety_watch_ && !judge_.touchdown()) safety_watch_->Step(*plan);
     const planning::StageTimes::Span& total = plan->times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
@@ -215,6 +225,7 @@ class Trial {
       if (record_ != nullptr) RecordState(vehicle, pad);
       if (samples_ != nullptr) samples_->pad.truth.push_back({vehicle.t, in_flight, pad});
     }
+    if (in_flight && safety_watch_) WatchSafety(vehicle);
     if (in_flight) {
       metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
       if (perception_.pad_measured() && perception_.pad_filter().Converged(vehicle.t)) {
@@ -227,6 +238,13 @@ class Trial {
     }
     judge_.Observe(sample);
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
+  }
+
+  void WatchSafety(const estimation::VehicleState& vehicle) {
+    const Eigen::Vector3d believed = perception_.own().now().p_WB;
+    safety_watch_->Tracked(believed, pilot_.Reference(vehicle.t).p_WB);
+    if (!map_look_clock_.Due(vehicle.t)) return;
+    safety_watch_->LookAt(perception_.map(), believed, believed - vehicle.p_WB);
   }
 
   void TakeContact(const sim::Contact& contact, JudgeSample* sample) {
@@ -307,6 +325,7 @@ class Trial {
                             result_.max_acceleration_mps2 <= limits_.acceleration;
     if (!follow_) Timed(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
     if (follow_) result_.following = metrics_.LastFollowing();
+    if (safety_watch_) result_.safety = safety_watch_->figures();
     result_.timing.simulated_s = world_.time();
     result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
     result_.timing.sensing_stages = perception_.sensing_times();
@@ -332,6 +351,8 @@ class Trial {
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;
   StandWatch stand_watch_;
+  std::optional<SafetyWatch> safety_watch_;  ///< of the landing planner
+  sim::SampleClock map_look_clock_;
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   SlidingMean through_air_;

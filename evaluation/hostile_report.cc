@@ -55,6 +55,13 @@ std::string TableText(const std::vector<SweepRow>& rows, bool within) {
                       RateText(all.ways, all.flights), RateText(all.seeing_landed, all.seeing));
   text +=
       fmt::format("  contacts: {}; stood: {}\n", CountsText(all.contacts), CountsText(all.stood));
+  const SafetyFigures& s = all.safety;
+  text += fmt::format("  steps without a proven pair {}; flights that escaped {}\n",
+                      s.uncertified_steps, RateText(all.escaping_flights, all.flights));
+  text += fmt::format(
+      "  stops flown {}; map errors {}; tracking beyond its margin {} times, at most {:.2f} m\n",
+      s.stops_flown, s.map_errors, s.tracking_events, s.tracking_max_m);
+  text += fmt::format("  falsely free {} of {} cells\n", s.falsely_free_cells, s.free_cells);
   return text + "\n";
 }
 
@@ -94,7 +101,16 @@ Json TallyJson(const HostileTally& t) {
           {"stood", t.stood},
           {"timeouts", t.timeouts},
           {"lost", t.lost},
-          {"other", t.other}};
+          {"other", t.other},
+          {"uncertified_steps", t.safety.uncertified_steps},
+          {"escaping_steps", t.safety.escaping_steps},
+          {"escaping_flights", t.escaping_flights},
+          {"stops_flown", t.safety.stops_flown},
+          {"map_errors", t.safety.map_errors},
+          {"tracking_events", t.safety.tracking_events},
+          {"tracking_max_m", t.safety.tracking_max_m},
+          {"free_cells", t.safety.free_cells},
+          {"falsely_free_cells", t.safety.falsely_free_cells}};
 }
 
 Json FlightJson(const SweepRow& row) {

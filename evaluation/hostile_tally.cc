@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/hostile_tally.h"
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -58,6 +59,7 @@ void HostileTally::Add(const SweepRow& row) {
   ++flights;
   ways += way ? 1 : 0;
   seeing += sees ? 1 : 0;
+  if (result.safety) AddSafety(*result.safety);
   if (result.landed()) {
     ++landed;
     seeing_landed += sees ? 1 : 0;
@@ -75,6 +77,18 @@ void HostileTally::Add(const SweepRow& row) {
   } else {
     ++other;
   }
+}
+
+void HostileTally::AddSafety(const SafetyFigures& figures) {
+  safety.uncertified_steps += figures.uncertified_steps;
+  safety.escaping_steps += figures.escaping_steps;
+  safety.stops_flown += figures.stops_flown;
+  safety.map_errors += figures.map_errors;
+  safety.tracking_events += figures.tracking_events;
+  safety.tracking_max_m = std::max(safety.tracking_max_m, figures.tracking_max_m);
+  safety.free_cells += figures.free_cells;
+  safety.falsely_free_cells += figures.falsely_free_cells;
+  escaping_flights += figures.escaping_steps > 0 ? 1 : 0;
 }
 
 int HostileTally::all_contacts() const { return Sum(contacts); }

@@ -19,8 +19,7 @@ bool WrongContact(const TrialResult& result);
 /// Its kind in one word: the outcome, of a collision what was touched.
 std::string ContactKind(const TrialResult& result);
 
-/// What a number of flights came to. Figures of the safety rule (events by kind, the share of falsely free
-/// cells) belong here as well.
+/// What a number of flights came to.
 struct HostileTally {
   int flights = 0;
   int ways = 0;                         ///< flights in which a way exists
@@ -33,8 +32,11 @@ struct HostileTally {
   int timeouts = 0;                  ///< time ran out, for whatever reason
   int lost = 0;                      ///< error, crashed, hung
   int other = 0;                     ///< unstable, disarmed in the air, ...
+  SafetyFigures safety;              ///< sums over the flights; of tracking_max_m the largest
+  int escaping_flights = 0;          ///< with a step that escapes
 
   void Add(const SweepRow& row);
+  void AddSafety(const SafetyFigures& figures);
   int all_contacts() const;
   int all_stood() const;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sensors at their own rates feed the pad filter and the map. The pad vehicle is left out of the
-// map by a cylinder about its estimated position that grows with the estimate's doubt: else the
-// goal of the flight would be an obstacle.
+// Sensors at their own rates feed the pad filter and the map. Returns from the pad vehicle are no
+// obstacles, or the goal of the flight would be one; those that may be from it are kept in doubt until
+// the tags tell where it was (planning/pad_outline.h).
 // Map and pad filter live in the frame of the vehicle's own estimate: where it takes W to be. In it
 // a sighting is good to the tags' accuracy, but the frame wanders as the estimate does, which the
 // pad filter takes for a motion of the pad; and the pad's GPS is off by the estimate's whole error.
@@ -21,13 +21,9 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kVolumeMargin = 0.3;    // around and above the deck [m]
-constexpr double kVolumeSigmas = 2.0;    // of the estimate, added to the radius
-constexpr double kVolumeSigmaMax = 1.0;  // no more doubt than this is covered [m]
-
-// Taken as free around the vehicle at least: the depth camera sees no nearer, and a small vehicle
-// could not leave what was never seen [m].
-constexpr double kOwnVolume = 0.3;
+// Given free around the start, where the camera has not looked: the hull and its margins are seen by it
+// at the edge of its field of view only from so far ahead [m].
+constexpr double kStartFree = 0.8;
 constexpr double kPriorShare = 0.5;  // of the vehicle's speed limit: 1 sigma of the pad's velocity
 
 // With an estimated own state; docs/own_state.md says what they are read off.
@@ -68,6 +64,7 @@ estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
   planning::OccupancyMapOptions options;
   options.inflation_radius = scenario.planning.clearance;
+  options.range_noise = scenario.depth.noise;
   return options;
 }
 
@@ -79,12 +76,12 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       pad_filter_(PadFilterOptionsOf(scenario)),
       map_(MapOptions(scenario)),
       persistent_map_(map_.options()),
-      deck_half_diagonal_(scenario.pad.deck_size * std::sqrt(0.5)),
-      deck_height_(scenario.pad.deck_height) {
-  if (scenario.map_prior == "none") return;
-  ReadMapFile(scenario.map_prior, &persistent_map_);
+      deck_half_size_(0.5 * scenario.pad.deck_size) {
+  const bool prior = scenario.map_prior != "none";
+  if (prior) ReadMapFile(scenario.map_prior, &persistent_map_);
   map_.Recentre(own_.now().p_WB);
-  persistent_map_.Refill(&map_);
+  if (prior) persistent_map_.Refill(&map_);
+  map_.MarkFree(own_.now().p_WB, kStartFree);
 }
 
 void Perception::Sense(const sim::World& world) {
@@ -107,7 +104,7 @@ void Perception::Sense(const sim::World& world) {
       if (own_.estimated()) {
         PlaceFrame(glimpse->vehicle, own_.At(glimpse->vehicle), &glimpse->frame);
       }
-      UpdateMap(t, world.model().hull_radius, glimpse->frame);
+      UpdateMap(t, glimpse->frame);
     }
     depth_eye_->Recycle(std::move(*glimpse));
   }
@@ -148,24 +145,21 @@ void Perception::SensePad(const estimation::VehicleState& vehicle,
   }
 }
 
-void Perception::UpdateMap(double t, double hull_radius, const estimation::DepthFrame& frame) {
-  const Eigen::Vector3d p_WB = own_.now().p_WB;
-  persistent_map_.Recentre(p_WB, &map_);
-  const planning::ExcludedVolume volume = PadVolume(t, frame.t);
-  map_.MarkOwnVolume(p_WB, std::max(hull_radius, kOwnVolume));
-  map_.Clear(volume);
-  map_.Integrate(frame, volume);
+void Perception::UpdateMap(double t, const estimation::DepthFrame& frame) {
+  persistent_map_.Recentre(own_.now().p_WB, &map_);
+  map_.Integrate(frame, Outline(t, frame.t));
+  const planning::PadOutline now = Outline(t, t);
+  if (pad_filter_.initialized() && now.Known()) {
+    map_.ExplainDoubts([&](double at) { return Outline(t, at); });
+  }
 }
 
-// Where the pad was when the image was taken, with today's doubt.
-planning::ExcludedVolume Perception::PadVolume(double t, double stamp) const {
-  planning::ExcludedVolume volume;
-  if (!pad_filter_.initialized()) return volume;
-  volume.centre = pad_filter_.Estimate(stamp).p_WP.head<2>();
-  volume.radius = deck_half_diagonal_ + kVolumeMargin +
-                  kVolumeSigmas * std::min(pad_filter_.PositionSigma(t), kVolumeSigmaMax);
-  volume.top = deck_height_ + kVolumeMargin;
-  return volume;
+// Where the pad was at `stamp`, with the doubt of then and of today.
+planning::PadOutline Perception::Outline(double t, double stamp) const {
+  if (!pad_filter_.initialized()) return {};
+  planning::PadOutline outline = planning::OutlineOf(pad_filter_.Estimate(stamp), deck_half_size_);
+  outline.sigma = std::max(outline.sigma, pad_filter_.PositionSigma(t));
+  return outline;
 }
 
 planning::PersistentMap Perception::TakePersistentMap() {

@@ -72,8 +72,8 @@ class Perception {
   void SenseOwn(const estimation::VehicleState& vehicle);
   void SensePad(const estimation::VehicleState& vehicle, const estimation::PadState& pad);
   bool TagsGuide(double t) const;
-  void UpdateMap(double t, double hull_radius, const estimation::DepthFrame& frame);
-  planning::ExcludedVolume PadVolume(double t, double stamp) const;
+  void UpdateMap(double t, const estimation::DepthFrame& frame);
+  planning::PadOutline Outline(double t, double stamp) const;
 
   OwnEstimate own_;
   sim::PadGps gps_;
@@ -82,8 +82,7 @@ class Perception {
   estimation::PadFilter pad_filter_;
   planning::OccupancyMap map_;
   planning::PersistentMap persistent_map_;
-  double deck_half_diagonal_;
-  double deck_height_;
+  double deck_half_size_;
   std::vector<PadArrival>* pad_log_ = nullptr;
   bool pad_measured_ = false;
   bool image_taken_ = false;

@@ -23,8 +23,10 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-constexpr double kLookAhead = 0.8;        // the heading is where the vehicle will be then [s]
-constexpr double kLookDistance = 0.3;     // nearer than this the way ahead says nothing [m]
+constexpr double kLookAhead = 0.8;              // the heading is where the vehicle will be then [s]
+constexpr double kLookDistance = 0.3;           // nearer than this the way ahead says nothing [m]
+constexpr double kInSight = 30.0 * kRadPerDeg;  // what is to be seen is no farther off the heading
+constexpr double kNearest = 0.1;          // of what is to be seen, from the vehicle's axis [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
@@ -209,6 +211,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const auto begin = std::chrono::steady_clock::now();
   const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
   if (result.idle) return nullptr;
+  look_W_ = result.unseen_W;
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   DeliverLate(vehicle.t);
@@ -335,12 +338,24 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
                            const estimation::PadFilter& filter) const {
   const Eigen::Vector3d ahead =
       planner_->Reference(vehicle.t + kLookAhead).p_WB - planner_->Reference(vehicle.t).p_WB;
-  if (ahead.head<2>().norm() > kLookDistance) return std::atan2(ahead.y(), ahead.x());
+  if (ahead.head<2>().norm() > kLookDistance) {
+    return Seeing(std::atan2(ahead.y(), ahead.x()), vehicle.p_WB);
+  }
+  if (look_W_) return Seeing(heading_ahead_, vehicle.p_WB);
   if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
     return heading_ahead_;
   }
   const Eigen::Vector3d p_BP = filter.Estimate(vehicle.t).p_WP - vehicle.p_WB;
   return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_ahead_;
+}
+
+// The heading nearest to the given one at which the camera sees what the next stops need.
+double Pilot::Seeing(double heading, const Eigen::Vector3d& p_WB) const {
+  if (!look_W_) return heading;
+  const Eigen::Vector3d to = *look_W_ - p_WB;
+  if (to.head<2>().norm() < kNearest) return heading;
+  const double off = estimation::WrapAngle(std::atan2(to.y(), to.x()) - heading);
+  return estimation::WrapAngle(heading + off - std::clamp(off, -kInSight, kInSight));
 }
 
 // Where the camera sees the way ahead, but over the deck in wind a foot to the side that comes first: the

@@ -76,6 +76,7 @@ class Pilot {
  private:
   double HeadingAhead(const estimation::VehicleState& vehicle,
                       const estimation::PadFilter& filter) const;
+  double Seeing(double heading, const Eigen::Vector3d& p_WB) const;
   double DesiredHeading();
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
@@ -102,12 +103,13 @@ class Pilot {
   control::MissionState mission_state_;
   control::MissionOutputs mission_;
   control::YawState yaw_;
-  double yaw_t_ = 0.0;          ///< time of yaw_
-  double foot_force_ = 0.0;     ///< as it was last told [N]
-  double foot_height_ = 0.0;    ///< of the feet above the deck, as last estimated [m]
-  double heading_ahead_ = 0.0;  ///< of the way that is flown [rad]
-  double heading_ = 0.0;        ///< that is steered for [rad]
-  bool leans_ = false;          ///< the heading is chosen by the wind
+  double yaw_t_ = 0.0;                     ///< time of yaw_
+  double foot_force_ = 0.0;                ///< as it was last told [N]
+  double foot_height_ = 0.0;               ///< of the feet above the deck, as last estimated [m]
+  double heading_ahead_ = 0.0;             ///< of the way that is flown [rad]
+  std::optional<Eigen::Vector3d> look_W_;  ///< what the next stops need to have seen
+  double heading_ = 0.0;                   ///< that is steered for [rad]
+  bool leans_ = false;                     ///< the heading is chosen by the wind
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;

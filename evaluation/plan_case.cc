@@ -57,7 +57,7 @@ std::vector<planning::CellIndex> CellsNear(const SolvedStep& solved,
     for (int i = 0; i < curve.control_points().cols(); ++i) hold(curve.control_points().col(i));
   };
   hold_curve(solved.outcome.curve);
-  hold_curve(solved.recorded.before.next);
+  hold_curve(solved.recorded.before.next.curve);
   for (const auto& path : solved.outcome.guide_paths) {
     for (const Eigen::Vector3d& p : path) hold(p);
   }

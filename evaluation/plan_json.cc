@@ -121,7 +121,7 @@ Json InputJson(const SolvedStep& solved) {
     pad.push_back({{"t", t}, {"p_WP", VectorJson(state.p_WP)}, {"v_WP", VectorJson(state.v_WP)}});
     t += SolvedStep::kPadStep;
   }
-  json["committed"] = CurveJson(solved.recorded.before.next);
+  json["committed"] = CurveJson(solved.recorded.before.next.curve);
   json["limits"] = {{"speed_mps", solved.limits.speed},
                     {"acceleration_mps2", solved.limits.acceleration}};
   return json;

@@ -37,7 +37,8 @@ std::string QuestionText(const SolvedStep& solved) {
   }
   text += fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s\n",
                       asked.before.planned ? "a plan to the pad" : "a curve to rest",
-                      asked.before.next.duration(), asked.before.next.t_end());
+                      asked.before.next.curve.duration(),
+                      asked.before.next.curve.t_end());
   return text;
 }
 

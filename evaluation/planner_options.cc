@@ -17,6 +17,7 @@ constexpr double kFeetAboveGround = 0.3;   // away from the pad [m]
 constexpr double kCorridorWeight = 300.0;  // of a planned descent, unless the scenario says so ...
 constexpr double kHurry = 100.0;           // ... and of the arrival time in it
 constexpr double kCloseRate = 20.0;        // [Hz]
+constexpr double kClockSteps = 2.0;        // that a step may come late on the simulation's clock
 
 // Where the scenario gives the term no weight of its own.
 void SetWeight(const Scenario& scenario, const char* term, double weight,
@@ -91,12 +92,15 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.ceiling_height = scenario.planning.ceiling;
   options.max_guides = scenario.planning.guides;
   options.warm_start = scenario.planning.warm_start;
-  // The plan made at t is flown from t + latency until the next one is: a period and a latency on.
+  // A plan is flown until the next one takes over, a period later; with a measured latency that may
+  // come with the longest after one with the shortest.
   const double period = 1.0 / scenario.planning.rate;
-  options.reaction =
-      period + (scenario.planning.latency.measured ? period : 1e-3 * scenario.planning.latency.ms);
+  options.reaction = kClockSteps * sim::WorldConfig{}.timestep + period +
+                     (scenario.planning.latency.measured ? LongestLatency(scenario) : 0.0);
   options.floor_height = LowestPlan(model);
   options.contact_height = model.foot_depth;
+  options.hull_radius = std::hypot(model.hull_radius, model.foot_depth);
+  options.deck_half_size = 0.5 * scenario.pad.deck_size;
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include "touchdown/evaluation/record.h"
 
 #include <fmt/format.h>
+#include <cmath>
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/build_info.h"
@@ -52,7 +53,8 @@ CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, co
   cov4 REAL, PRIMARY KEY(plan, i));
 CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
-  current_t0 REAL, current_h REAL, next_t0 REAL, next_h REAL);
+  current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
+  next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL, next_t_stop REAL);
 CREATE TABLE state_point(plan INTEGER, curve TEXT, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL, radius REAL);
@@ -144,6 +146,10 @@ void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
              input.pull_W.z());
 }
 
+std::optional<double> FiniteOrNone(double x) {
+  return std::isfinite(x) ? std::optional<double>(x) : std::nullopt;
+}
+
 void WritePoints(SqliteStatement& insert, int id, const char* curve,
                  const planning::ControlPoints& q) {
   for (int i = 0; i < q.cols(); ++i) insert.Run(id, curve, i, q(0, i), q(1, i), q(2, i));
@@ -158,8 +164,9 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement prediction =
       db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
-  SqliteStatement state =
-      db.Prepare("INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement state = db.Prepare(
+      "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const RecordPlan& row : plans) {
@@ -174,10 +181,14 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
     }
     const planning::ReplannerState& s = row.before;
     state.Run(id, s.planned, s.climb, s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(),
-              s.strip_to.y(), s.strip_floor, s.current.t0(), s.current.interval(), s.next.t0(),
-              s.next.interval());
-    WritePoints(point, id, "current", s.current.control_points());
-    WritePoints(point, id, "next", s.next.control_points());
+              s.strip_to.y(), s.strip_floor, s.current.curve.t0(), s.current.curve.interval(),
+              s.current.stop.t0(), s.current.stop.interval(), s.next.curve.t0(),
+              s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
+              FiniteOrNone(s.current.t_stop), FiniteOrNone(s.next.t_stop));
+    WritePoints(point, id, "current", s.current.curve.control_points());
+    WritePoints(point, id, "current_stop", s.current.stop.control_points());
+    WritePoints(point, id, "next", s.next.curve.control_points());
+    WritePoints(point, id, "next_stop", s.next.stop.control_points());
     ++id;
   }
 }

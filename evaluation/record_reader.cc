@@ -3,6 +3,7 @@
 #include "touchdown/evaluation/record_reader.h"
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -180,7 +181,9 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   std::vector<std::map<std::string, Knots>> knots(plans->size());
   ReadEach(TableRows(db, "replanner_state",
                      "plan, planned, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
-                     "strip_to_y, strip_floor, current_t0, current_h, next_t0, next_h",
+                     "strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
+                     "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
+                     "current_t_stop, next_t_stop",
                      "plan"),
            plans, [&](TableRows& row, RecordPlan* plan) {
              planning::ReplannerState& s = plan->before;
@@ -191,9 +194,12 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
              s.strip_to = row.Vector2();
              s.strip_floor = row.Number();
              auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
-             for (const char* curve : {"current", "next"}) {
+             for (const char* curve : {"current", "current_stop", "next", "next_stop"}) {
                curves[curve].t0 = row.Number();
                curves[curve].h = row.Number();
+             }
+             for (planning::FlightPair* pair : {&s.current, &s.next}) {
+               pair->t_stop = row.Optional().value_or(std::numeric_limits<double>::infinity());
              }
            });
   ReadMany(TableRows(db, "state_point", "plan, curve, i, x, y, z", "plan, curve, i"), plans,
@@ -204,8 +210,11 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
              curve->second.Add(row);
            });
   for (std::size_t i = 0; i < plans->size(); ++i) {
-    (*plans)[i].before.current = knots[i].at("current").Curve();
-    (*plans)[i].before.next = knots[i].at("next").Curve();
+    planning::ReplannerState& s = (*plans)[i].before;
+    s.current.curve = knots[i].at("current").Curve();
+    s.current.stop = knots[i].at("current_stop").Curve();
+    s.next.curve = knots[i].at("next").Curve();
+    s.next.stop = knots[i].at("next_stop").Curve();
   }
 }
 

@@ -111,7 +111,8 @@ planning::ReplannerOptions SceneReplannerOptions(const SceneOptions& options,
   base.limits = options.kind.limits;
   base.floor_height = kForestFloor;
   base.ceiling_height = kForestCeiling;
-  base.pad_radius = 0.0;  // there is no vehicle under the end
+  base.pad_radius = 0.0;   // there is no vehicle under the end
+  base.hull_radius = 0.0;  // a point flies
   return base;
 }
 
@@ -164,7 +165,7 @@ planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* repla
     straight.col(i) = scene.start.p + (i - 1) * kAhead * scene.start.v;
   }
   planning::ReplannerState state;
-  state.current = state.next = planning::UniformBspline(straight, kAhead, 0.0);
+  state.current.curve = state.next.curve = planning::UniformBspline(straight, kAhead, 0.0);
   replanner->Restore(state);
   planning::ReplanInput input;
   input.vehicle.p_WB = scene.start.p;

@@ -23,6 +23,7 @@ class Declare {
  public:
   void operator()(const char* name, bool&) { Add(name, "INTEGER"); }
   void operator()(const char* name, int&) { Add(name, "INTEGER"); }
+  void operator()(const char* name, std::int64_t&) { Add(name, "INTEGER"); }
   void operator()(const char* name, std::uint64_t&) { Add(name, "INTEGER"); }
   void operator()(const char* name, double&) { Add(name, "REAL"); }
   void operator()(const char* name, std::optional<double>&) { Add(name, "REAL"); }
@@ -51,6 +52,7 @@ class Take {
  public:
   void operator()(const char*, bool& value) { Add(std::int64_t{value}); }
   void operator()(const char*, int& value) { Add(std::int64_t{value}); }
+  void operator()(const char*, std::int64_t& value) { Add(value); }
   void operator()(const char*, std::uint64_t& value) { Add(static_cast<std::int64_t>(value)); }
   void operator()(const char*, double& value) { AddNumber(value); }
   void operator()(const char*, std::optional<double>& value) { AddNumber(value); }
@@ -84,6 +86,7 @@ class Put {
   explicit Put(const std::vector<SqlValue>& values) : values_(values) {}
   void operator()(const char* name, bool& value) { value = Whole(name) != 0; }
   void operator()(const char* name, int& value) { value = static_cast<int>(Whole(name)); }
+  void operator()(const char* name, std::int64_t& value) { value = Whole(name); }
   void operator()(const char* name, std::uint64_t& value) {
     value = static_cast<std::uint64_t>(Whole(name));
   }
@@ -196,6 +199,16 @@ void WalkTrial(Walk& walk, TrialResult& r) {
     walk("own_max_velocity_mps", o.max_velocity_mps);
     walk("own_rmse_attitude_rad", o.rmse_attitude_rad);
     walk("own_max_attitude_rad", o.max_attitude_rad);
+  });
+  walk.Group(r.safety, [&](SafetyFigures& s) {
+    walk("safety_uncertified_steps", s.uncertified_steps);
+    walk("safety_escaping_steps", s.escaping_steps);
+    walk("safety_stops_flown", s.stops_flown);
+    walk("safety_map_errors", s.map_errors);
+    walk("safety_tracking_events", s.tracking_events);
+    walk("safety_tracking_max_m", s.tracking_max_m);
+    walk("safety_free_cells", s.free_cells);
+    walk("safety_falsely_free_cells", s.falsely_free_cells);
   });
   walk("t_star_s", r.t_star_s);
   walk("t_star_upper_s", r.t_star_upper_s);

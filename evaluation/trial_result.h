@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/landing_judge.h"
+#include "touchdown/evaluation/safety_watch.h"
 #include "touchdown/evaluation/sensing_times.h"
 
 namespace touchdown::evaluation {
@@ -87,8 +88,7 @@ struct TrialResult {
   std::optional<double> t_star_upper_s;
   /// max_speed_mps and max_acceleration_mps2 are within the scenario's limits, as T* supposes.
   bool within_limits = false;
-  // The figures of a safety rule belong here, as an optional group of their own with a Group in WalkTrial
-  // (trial_columns.cc): events by kind, the share of falsely free cells.
+  std::optional<SafetyFigures> safety;  ///< of a planner that flies by the safety rule
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }

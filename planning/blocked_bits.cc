@@ -162,10 +162,13 @@ std::uint64_t BlockedBits::OfCells(int row, int word) const {
   const int count = std::min(kWord, size.x() - word * kWord);
   const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
   const Eigen::Vector3d centre = map.CentreOf(first);
-  const bool too_low = centre.z() < space_.floor;
-  const bool too_low_over_pad = space_.pad_radius > 0.0 ? centre.z() < space_.pad_floor : too_low;
-  if (centre.z() > space_.ceiling || (too_low && too_low_over_pad)) return all;
-  std::uint64_t bits = map.BlockedRow(first, count);
+  const double half = 0.5 * map.resolution();
+  const double low = centre.z() - half + FreeSpace::kLevelRounding;
+  const bool too_low = low < space_.floor;
+  const bool too_low_over_pad = space_.pad_radius > 0.0 ? low < space_.pad_floor : too_low;
+  const bool too_high = centre.z() + half > space_.ceiling + FreeSpace::kLevelRounding;
+  if (too_high || (too_low && too_low_over_pad)) return all;
+  std::uint64_t bits = space_.ClosedRow(first, count);
   if (too_low != too_low_over_pad) {
     const std::uint64_t over = OverPad(first, count);
     bits |= too_low_over_pad ? over : all & ~over;

@@ -93,35 +93,10 @@ bool Escapes(const UniformBspline& curve, double t_from, const FreeSpace& space,
   return false;
 }
 
-// Share of the acceleration limit that braking is counted with.
-constexpr double kBrakingShare = 0.6;
-constexpr double kObservedStep = 0.02;  // [s]
-
-/// Walks the stopping distance of the state at `t` along the curve through observed cells.
-bool StopsInObservedSpace(const UniformBspline& curve, double t, const Limits& limits,
-                          const FreeSpace& space) {
-  FlatState at = curve.Evaluate(t);
-  double left =
-      at.v_WB.squaredNorm() / (2.0 * kBrakingShare * limits.acceleration * limits.braking_factor);
-  while (left > 0.0 && t < curve.t_end()) {
-    const Eigen::Vector3d from = at.p_WB;
-    t += kObservedStep;
-    at = curve.Evaluate(t);
-    left -= (at.p_WB - from).norm();
-    const bool observed =
-        TraverseCells(from, at.p_WB, space.map->resolution(), [&](const CellIndex& cell) {
-          return space.map->IsObservedFree(cell) || space.OverPad(space.map->CentreOf(cell));
-        });
-    if (!observed) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
-                    const SplineState* wanted, const Limits& limits, double reaction,
-                    const FreeSpace& space) {
+                    const SplineState* wanted, const Limits& limits, const FreeSpace& space) {
   Certificate c;
   if (start) {
     const FlatState at = curve.Evaluate(t_from);
@@ -150,8 +125,6 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   if (!c.clear && space.Blocked(curve.Position(t_from))) {
     c.escaping = Escapes(curve, t_from, space, &c.clearance);
   }
-  const double decided = std::min(t_from + reaction, curve.t_end());
-  c.stops_in_observed_space = StopsInObservedSpace(curve, decided, limits, space);
   return c;
 }
 

@@ -7,8 +7,7 @@
 
 namespace touchdown::planning {
 
-/// What was proven about a trajectory. A new one is committed only if passed(), but for the last
-/// resort that ReplanStatus::kUnsafe names.
+/// What was proven about a trajectory. A new one is committed only if passed().
 struct Certificate {
   bool endpoint_required = true;            ///< false for braking and climbing: they end at rest
   double endpoint_tolerance = 1e-9;         ///< on the residuals at both ends [m, m/s]
@@ -25,10 +24,13 @@ struct Certificate {
   /// The start itself is blocked; the curve leaves the inflated cells and on the way never comes
   /// back by more than 2 cm towards an occupied one.
   bool escaping = false;
-  bool stops_in_observed_space = true;  ///< braking from what is flown until the next plan
-                                        ///< ends before the curve meets cells not observed free
-  double clearance = 0.0;               ///< that `clear` or `escaping` stands for [m]
-  double first_hit_t = 0.0;             ///< absolute time of the first blocked cell if !clear [s]
+  /// What is flown until a newer pair takes over, and the stop that is stored for the case that none
+  /// does, stay in observed-free cells with the hull and its margins (planning/stored_stop.h).
+  bool stops_in_observed_space = false;
+  /// That pair starts among cells that are not observed free and only moves away from them.
+  bool leaves = false;
+  double clearance = 0.0;    ///< that `clear` or `escaping` stands for [m]
+  double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 
   bool endpoint_met() const {
     return !endpoint_required || (endpoint_position_residual <= endpoint_tolerance &&
@@ -48,11 +50,10 @@ struct Certificate {
 /// there by construction), the endpoint against `wanted` (nullptr: none is required), the limits by
 /// the convex hull, the clearance by visiting every cell of `space` that the curve passes. A start
 /// beyond a limit, by its speed or by V_1 = v0 + h a0 / 2, which it fixes, is certified against the
-/// RecoveryProfile from the larger of the two on, and alike for the acceleration. The vehicle must
-/// also be able to brake, `reaction` seconds after t_from, before the curve meets cells that were
-/// never observed (the strip over the pad excepted). Does not allocate.
+/// RecoveryProfile from the larger of the two on, and alike for the acceleration. What the vehicle may
+/// rely on until it rests is proven apart (ProvePair, ProveStop) and entered by the caller:
+/// stops_in_observed_space, leaves. Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
-                    const SplineState* wanted, const Limits& limits, double reaction,
-                    const FreeSpace& space);
+                    const SplineState* wanted, const Limits& limits, const FreeSpace& space);
 
 }  // namespace touchdown::planning

@@ -80,7 +80,7 @@ void Corridor::Collect(const Vector3d& point, const FreeSpace& space) {
         near_.push_back(
             {{x[cell].coordinate, y[row.y()].coordinate, z[row.z()].coordinate}, distance2});
       };
-      const std::uint64_t bits = map.BlockedRow(row, high.x() - low.x());
+      const std::uint64_t bits = space.ClosedRow(row, high.x() - low.x());
       const std::uint64_t above = bits >> own;  // from the point's own cell on
       const std::uint64_t below = bits ^ (above << own);
       if (above != 0) offer(at.x() + std::countr_zero(above));

@@ -33,8 +33,9 @@ void ForEachChord(const UniformBspline& curve, double t_from, const FreeSpace& s
     for (int i = 1; i <= chords; ++i) {
       const double t_next = t_start + (t_end - t_start) * i / chords;
       const Eigen::Vector3d p_next = curve.Position(t_next);
-      const bool clear = TraverseCells(p, p_next, space.map->resolution(),
-                                       [&](const CellIndex& cell) { return !space.Blocked(cell); });
+      const bool clear = !space.OffLevel(p) && !space.OffLevel(p_next) &&
+                         TraverseCells(p, p_next, space.map->resolution(),
+                                       [&](const CellIndex& cell) { return !space.Closed(cell); });
       if (!visit(t, t_next, !clear)) return;
       t = t_next;
       p = p_next;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ladder below a plan: keep what is committed while it is safe, else come to rest on a quintic that is
-// certified like any plan: out of an obstacle's zone, as the caller wishes, by braking, by climbing.
+// The ladder below a plan. Each step of it is proven as a pair like any plan: the committed curve with a newer
+// stop, a way to rest that is wanted, a way out of an obstacle's zone. Below them is the stop that was
+// stored with the committed pair: it is flown without being asked.
 
 #include "touchdown/planning/fallback.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/grid_search.h"
@@ -18,77 +17,85 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kMoving = 1e-6;  // [m/s]
-constexpr double kClimb = 1.5;    // [m]
 constexpr double kAtRest = 0.05;  // below this speed and way to go [m/s, m]
 
-const Eigen::Vector3d kNoShift = Eigen::Vector3d::Zero();
+const UniformBspline& LastCurve(const FlightPair& pair) {
+  return std::isfinite(pair.t_stop) ? pair.stop : pair.curve;
+}
 
 }  // namespace
 
-Fallback::Fallback(const Limits& limits, double reaction) : limits_(limits), reaction_(reaction) {
-  braking_.Reserve(PlanAttempt::kMostControlPoints);
+Fallback::Fallback(const Limits& limits) : limits_(limits) {
+  pair_.curve.Reserve(PlanAttempt::kMostControlPoints);
+  pair_.stop.Reserve(PlanAttempt::kMostControlPoints);
 }
 
 bool Fallback::NoTimeToBrake(const SplineState& start, const FreeSpace& space) {
-  MakeRestTrajectory(start, 0.0, kNoShift, limits_, &braking_);
-  return std::isfinite(FirstBlockedTime(braking_, 0.0, space));
+  MakeRestTrajectory(start, 0.0, Eigen::Vector3d::Zero(), limits_, &pair_.stop);
+  return std::isfinite(FirstBlockedTime(pair_.stop, 0.0, space));
 }
 
-bool Fallback::Stays(const UniformBspline& committed, const SplineState& start) {
-  const SplineState last = committed.AtKnot(committed.segments());
-  return start.v.norm() <= kAtRest && last.v.norm() <= kMoving &&
-         (last.p - start.p).norm() <= kAtRest;
+bool Fallback::AtRest(const FlightPair& committed, double t0) {
+  const FlatState now = committed.At(t0);
+  const UniformBspline& last = LastCurve(committed);
+  const SplineState end = last.AtKnot(last.segments());
+  return now.v_WB.norm() <= kAtRest && end.v.norm() <= 1e-6 && (end.p - now.p_WB).norm() <= kAtRest;
 }
 
-bool Fallback::KeepsCommitted(const UniformBspline& committed, double t0, const SplineState& start,
-                              const FreeSpace& space, ReplanResult* result) {
-  const Certificate now = Certify(committed, t0, nullptr, nullptr, limits_, reaction_, space);
-  const bool moves_at_end = committed.AtKnot(committed.segments()).v.norm() > kMoving;
-  const bool at_rest = !space.Blocked(start.p) && Stays(committed, start);
-  const bool leaves = now.escaping && now.passed();
-  if (!at_rest && !leaves) {
-    if (!now.stops_in_observed_space) return false;
-    MakeRestTrajectory(start, t0, kNoShift, limits_, &braking_);
-    const double never = std::numeric_limits<double>::infinity();
-    const double hit = now.clear ? never : now.first_hit_t;
-    const double end = moves_at_end ? committed.t_end() : never;
-    if (std::min(hit, end) <= t0 + braking_.duration() + reaction_) return false;
-  }
-  result->status = at_rest ? ReplanStatus::kHolding : ReplanStatus::kKept;
-  result->curve = committed;
-  result->certificate = now;
+bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
+                      ReplanResult* result) {
+  if (t0 >= committed.t_stop) return false;  // its curve is behind it
+  StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
+  pair_.curve = committed.curve;
+  const bool touches = result->ends_in_contact;
+  const PairProof proof = ProvePair(t0, t_stop, touches, limits_, hull, &pair_);
+  if (!proof.proven) return false;
+  result->curve = pair_.curve;
+  result->t_stop = pair_.t_stop;
+  result->stop = pair_.stop;
+  result->certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
+  result->certificate.stops_in_observed_space = true;
+  result->certificate.leaves = proof.leaves;
   return true;
 }
 
-bool Fallback::TryRest(double t0, const SplineState& start, const Eigen::Vector3d& shift,
-                       const FreeSpace& space, ReplanResult* result) const {
-  MakeRestTrajectory(start, t0, shift, limits_, &result->curve);
+bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,
+                     const HullSpace& hull, ReplanResult* result) {
   StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
-  result->certificate = Certify(result->curve, t0, nullptr, nullptr, limits_, reaction_, space);
-  return result->certificate.passed();
+  MakeRestTrajectory(start, t0, shift, limits_, &pair_.curve);
+  const PairProof proof = ProveStop(t0, hull, &pair_);
+  Certificate certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
+  certificate.stops_in_observed_space = proof.proven;
+  certificate.leaves = proof.leaves;
+  if (!certificate.passed()) return false;
+  result->curve = pair_.curve;
+  result->t_stop = pair_.t_stop;
+  result->certificate = certificate;
+  return true;
 }
 
-void Fallback::ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space,
-                          ReplanResult* result) const {
-  CellIndex way_out = space.map->CellOf(start.p);
-  const bool inside = space.Blocked(start.p) && GridSearch::NearestFree(space, &way_out);
-  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  const auto rests = [&](const Eigen::Vector3d& shift) {
-    return TryRest(t0, start, shift, space, result);
-  };
-  if (inside && rests(space.map->CentreOf(way_out) - start.p)) {
-    result->status = ReplanStatus::kEscaping;
-  } else if (climb > 0.0 && rests(climb * up)) {
-    result->status = ReplanStatus::kClimbing;
-  } else if (rests(kNoShift)) {
-    result->status = ReplanStatus::kBraking;
-  } else if (climb <= 0.0 && rests(kClimb * up)) {
-    result->status = ReplanStatus::kClimbing;
-  } else {
-    // Nothing is certified. Of what is left, braking meets any obstacle slowest.
-    result->status = ReplanStatus::kUnsafe;
-    rests(kNoShift);
+bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hull,
+                       ReplanResult* result) {
+  CellIndex way_out = hull.space->map->CellOf(start.p);
+  return hull.space->Blocked(start.p) && GridSearch::NearestFree(*hull.space, &way_out) &&
+         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull, result);
+}
+
+void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,
+                       ReplanResult* result) {
+  result->status = AtRest(committed, t0) ? ReplanStatus::kHolding : ReplanStatus::kBraking;
+  result->curve = t0 < committed.t_stop ? committed.curve : committed.stop;
+  result->t_stop = committed.t_stop;
+  result->stop = committed.stop;
+  result->certificate = {};
+  result->certificate.endpoint_required = false;
+  result->certificate.limits_kept = result->certificate.clear = true;
+  result->certificate.stops_in_observed_space = true;
+  const UniformBspline& last = LastCurve(committed);
+  if (result->status == ReplanStatus::kBraking && hull.space != nullptr) {
+    const double t_from = std::max(t0, last.t0());
+    const Sweep again = SweepHull(last, t_from, last.t_end(), last.Position(t_from), hull);
+    result->map_error = !again.proven;
   }
 }
 

@@ -1,42 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "touchdown/planning/certificate.h"
-#include "touchdown/planning/free_space.h"
 #include "touchdown/planning/replan_result.h"
-#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/planning/stored_stop.h"
 
 namespace touchdown::planning {
 
-/// What is flown where no new plan could be certified. Does not allocate.
+/// What is flown where no new plan could be certified: whatever it is, it is a proven pair. Each call fills
+/// curve, stop and certificate of `result` if it succeeds. Does not allocate.
 class Fallback {
  public:
-  Fallback(const Limits& limits, double reaction);
+  explicit Fallback(const Limits& limits);
 
-  /// True if the committed curve may go on from t0 [s], where the vehicle is in the state `start` of it: at
-  /// rest and free, or clear for longer than braking takes and slow enough for what was observed. Fills
-  /// status, curve and certificate of `result` if so.
-  bool KeepsCommitted(const UniformBspline& committed, double t0, const SplineState& start,
-                      const FreeSpace& space, ReplanResult* result);
+  /// What the pull of this step leaves of the limits.
+  void SetLimits(const Limits& limits) { limits_ = limits; }
 
-  /// Out of an inflated zone first; else the climb [m] that the caller wants, if > 0; else brake; else
-  /// climb. Fills status, curve and certificate; kUnsafe if nothing of it is certified.
-  void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space,
-                  ReplanResult* result) const;
+  /// The curve of the committed pair goes on from t0 to t_stop [s], with a newer stop.
+  bool GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
+              ReplanResult* result);
+
+  /// From `start` at t0 to rest, `shift` away from where braking ends.
+  bool Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,
+             const HullSpace& hull, ReplanResult* result);
+
+  /// From rest among cells that block to the nearest place that does not.
+  bool Escapes(double t0, const SplineState& start, const HullSpace& hull, ReplanResult* result);
+
+  /// The stop that was stored: it was proven when it was made, and needs no more.
+  static void FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,
+                      ReplanResult* result);
 
   /// The start itself leads into an obstacle: arriving later does not change that.
   bool NoTimeToBrake(const SplineState& start, const FreeSpace& space);
 
-  /// The vehicle is at rest, and so it remains on the committed curve.
-  static bool Stays(const UniformBspline& committed, const SplineState& start);
+  /// The vehicle is at rest at t0 [s], and so it remains on the committed pair.
+  static bool AtRest(const FlightPair& committed, double t0);
 
  private:
-  bool TryRest(double t0, const SplineState& start, const Eigen::Vector3d& shift,
-               const FreeSpace& space, ReplanResult* result) const;
-
   Limits limits_;
-  double reaction_;
-  UniformBspline braking_;
+  FlightPair pair_;
 };
 
 }  // namespace touchdown::planning

@@ -36,7 +36,7 @@ void FrameVotes::Begin(const Eigen::Vector3d& eye) {
   hits_.clear();
 }
 
-void FrameVotes::AddRay(const Eigen::Vector3d& end, bool hit) {
+void FrameVotes::AddRay(const Eigen::Vector3d& end) {
   Ray ray;
   ray.along = end - eye_;
   double leaves = 2.0;  // ray parameter at which it leaves the window; the end is at 1
@@ -55,7 +55,6 @@ void FrameVotes::AddRay(const Eigen::Vector3d& end, bool hit) {
   low_ = low_.cwiseMin(ray.last);
   high_ = high_.cwiseMax(ray.last + Eigen::Vector3i::Ones());
   if (ends_within) {
-    if (hit) hits_.push_back(Address(ray.last));
     // The face crossed last leads into the end cell: nothing is said of what is behind it.
     int final_axis = -1;
     double latest = -1.0;
@@ -111,8 +110,16 @@ void FrameVotes::MissBehindFaces(const Ray& ray, int axis) {
   }
 }
 
+void FrameVotes::AddHit(const Eigen::Vector3d& at, std::uint8_t vote) {
+  if ((at.array() < 0.0).any() || (at.array() >= size_.cast<double>().array()).any()) return;
+  const Eigen::Vector3i cell = CellIn(at);
+  low_ = low_.cwiseMin(cell);
+  high_ = high_.cwiseMax(cell + Eigen::Vector3i::Ones());
+  hits_.push_back({Address(cell), vote});
+}
+
 void FrameVotes::Finish() {
-  for (const std::size_t address : hits_) votes_[address] = kHit;
+  for (const Hit& hit : hits_) votes_[hit.address] = std::max(votes_[hit.address], hit.vote);
 }
 
 }  // namespace touchdown::planning

@@ -17,7 +17,10 @@ class FrameVotes {
  public:
   static constexpr std::uint8_t kNone = 0;
   static constexpr std::uint8_t kMiss = 1;
-  static constexpr std::uint8_t kHit = 2;
+  // Of returns, in the order in which one wins over the others in its cell:
+  static constexpr std::uint8_t kPad = 2;    ///< from the pad
+  static constexpr std::uint8_t kDoubt = 3;  ///< maybe from the pad
+  static constexpr std::uint8_t kHit = 4;    ///< from an obstacle
 
   /// A window of 2^n cells a side, n <= 10.
   explicit FrameVotes(const Eigen::Vector3i& size_log2);
@@ -26,10 +29,13 @@ class FrameVotes {
   void Begin(const Eigen::Vector3d& eye);
 
   /// Votes miss for the cells that the segment from the eye to `end` passes within the window, but
-  /// for the one that holds `end`: that one is seen in part only. `hit`: it is voted hit instead.
-  void AddRay(const Eigen::Vector3d& end, bool hit);
+  /// for the one that holds `end`: that one is seen in part only.
+  void AddRay(const Eigen::Vector3d& end);
 
-  /// Ends the frame: a cell that was both hit and missed is hit.
+  /// Votes for the cell of a return, if it is in the window.
+  void AddHit(const Eigen::Vector3d& at, std::uint8_t vote);
+
+  /// Ends the frame: a return in a cell wins over what passed it.
   void Finish();
 
   /// Box [low, high) that holds every vote of the frame.
@@ -72,7 +78,11 @@ class FrameVotes {
   Eigen::Vector3i low_ = Eigen::Vector3i::Zero();
   Eigen::Vector3i high_ = Eigen::Vector3i::Zero();
   std::vector<std::uint8_t> votes_;
-  std::vector<std::size_t> hits_;  // addresses
+  struct Hit {
+    std::size_t address;
+    std::uint8_t vote;
+  };
+  std::vector<Hit> hits_;
 };
 
 }  // namespace touchdown::planning

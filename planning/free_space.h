@@ -5,14 +5,16 @@
 #include <limits>
 
 #include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/unseen_zone.h"
 
 namespace touchdown::planning {
 
 /// Where a plan may go: the inflated map, a floor and a ceiling for the body's origin, and the strip
-/// above the moving pad that has a floor of its own. Unknown space counts as free. A view of the map,
+/// above the moving pad that has a floor of its own. Unknown space counts as free, but where `unseen` closes it. A view of the map,
 /// cheap to make anew for every replanning step.
 struct FreeSpace {
   const OccupancyMap* map = nullptr;
+  const UnseenZone* unseen = nullptr;                        ///< closed as well; nullptr: nothing
   double floor = 0.0;                                        ///< [m]
   double ceiling = std::numeric_limits<double>::infinity();  ///< [m]
   Eigen::Vector2d pad_from = Eigen::Vector2d::Zero();  ///< strip's axis: pad at start and arrival
@@ -31,12 +33,32 @@ struct FreeSpace {
 
   double FloorAt(const Eigen::Vector3d& p_W) const { return OverPad(p_W) ? pad_floor : floor; }
 
+  /// A cell is free if all of it is between floor and ceiling.
   bool Blocked(const CellIndex& cell) const {
-    if (map->IsBlocked(cell)) return true;
+    if (Closed(cell)) return true;
     const Eigen::Vector3d centre = map->CentreOf(cell);
-    return centre.z() > ceiling || centre.z() < FloorAt(centre);
+    const double half = 0.5 * map->resolution();
+    return centre.z() + half > ceiling + kLevelRounding ||
+           centre.z() - half < FloorAt(centre) - kLevelRounding;
   }
-  bool Blocked(const Eigen::Vector3d& p_W) const { return Blocked(map->CellOf(p_W)); }
+  /// A place is free if its cell does not block and it is itself between floor and ceiling.
+  bool Blocked(const Eigen::Vector3d& p_W) const {
+    return Closed(map->CellOf(p_W)) || OffLevel(p_W);
+  }
+  /// By an obstacle, or for want of having been seen.
+  bool Closed(const CellIndex& cell) const {
+    return map->IsBlocked(cell) || (unseen != nullptr && unseen->Holds(cell));
+  }
+  /// The same as bits of cells along x; see OccupancyMap::BlockedRow.
+  std::uint64_t ClosedRow(const CellIndex& first, int count) const {
+    const std::uint64_t row = map->BlockedRow(first, count);
+    return unseen != nullptr ? row | unseen->Row(first, count) : row;
+  }
+  bool OffLevel(const Eigen::Vector3d& p_W) const {
+    return p_W.z() > ceiling + kLevelRounding || p_W.z() < FloorAt(p_W) - kLevelRounding;
+  }
+
+  static constexpr double kLevelRounding = 1e-6;  ///< of sums of control points [m]
 };
 
 }  // namespace touchdown::planning

@@ -22,12 +22,14 @@ Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
   const auto left_by = [&](double tilt) {
     return std::min(std::tan(tilt) * up, of_thrust) - pull_W.head<2>().norm();
   };
-  const double left = left_by(vehicle.tilt_max);
+  const double least = std::min(kLeastAcceleration, limits.acceleration);
+  const double reserve =
+      std::max(least, left_by(std::max(vehicle.tilt_max, vehicle.tracking_tilt_max)));
+  const double left =
+      std::max(left_by(vehicle.tilt_max), std::min(kShareOfReserve * limits.acceleration, reserve));
   Limits under = limits;
-  under.acceleration =
-      std::clamp(left, kLeastShareInWind * limits.acceleration, limits.acceleration);
-  const double stopping = std::clamp(left_by(std::max(vehicle.tilt_max, vehicle.tracking_tilt_max)),
-                                     under.acceleration, limits.acceleration);
+  under.acceleration = std::clamp(left, least, limits.acceleration);
+  const double stopping = std::clamp(reserve, under.acceleration, limits.acceleration);
   under.braking_factor = stopping / under.acceleration;
   return under;
 }

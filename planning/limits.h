@@ -39,14 +39,16 @@ struct VehicleFacts {
 
 /// What is left of the limits while a steady `pull_W`, a force over the mass [m/s^2], acts beside
 /// gravity: an acceleration in any horizontal direction that thrust and tilt still allow in level
-/// flight, and at least kLeastShareInWind of the limit. Stops are counted with what the tracking law's
+/// flight. Where that is little, plans take up to kShareOfReserve of the limit from the tracking law's reserve of
+/// tilt, but never more than it has, and never less than kLeastAcceleration. Stops are counted with what the tracking law's
 /// own tilt leaves, at most the whole limit.
 /// Without a pull the limits themselves.
 Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
                    const Eigen::Vector3d& pull_W) noexcept;
 
-/// With less than this share of its acceleration a vehicle could not follow a pad: the tracking law,
-/// which may tilt farther than plans do, has to find the rest.
-inline constexpr double kLeastShareInWind = 1.0 / 3.0;
+/// With less than this share of its acceleration a vehicle could hardly follow a pad.
+inline constexpr double kShareOfReserve = 1.0 / 3.0;
+/// With less no plan has a scale to be made on [m/s^2].
+inline constexpr double kLeastAcceleration = 0.3;
 
 }  // namespace touchdown::planning

@@ -41,6 +41,18 @@ std::uint64_t NotZero(const std::uint16_t* counts, int n) {
   return bits;
 }
 
+std::uint8_t VoteOf(ReturnKind kind) {
+  switch (kind) {
+    case ReturnKind::kPad:
+      return FrameVotes::kPad;
+    case ReturnKind::kDoubtful:
+      return FrameVotes::kDoubt;
+    case ReturnKind::kObstacle:
+      break;
+  }
+  return FrameVotes::kHit;
+}
+
 void CheckDepths(const estimation::DepthFrame& frame) {
   const estimation::CameraIntrinsics& k = frame.intrinsics;
   const auto pixels = static_cast<std::size_t>(k.width) * static_cast<std::size_t>(k.height);
@@ -60,6 +72,10 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
   Require(options.inflation_radius >= 0.0 && options.inflation_radius <= 10 * options.resolution,
           "inflation_radius is " + number(options.inflation_radius) + " m, it must be in [0, " +
               number(10 * options.resolution) + "]");
+  Require(options.thinnest_obstacle > 0.0,
+          "thinnest_obstacle is " + number(options.thinnest_obstacle) + " m, it must be > 0");
+  Require(options.range_noise >= 0.0 && options.range_noise < 1.0 / kNoiseSigmas,
+          "range_noise is " + number(options.range_noise) + ", it must be in [0, 1/3)");
   Require(options.probability_min > 0.0 && options.probability_min < options.probability_miss &&
               options.probability_miss < 0.5 && options.probability_hit > 0.5 &&
               options.probability_hit < options.probability_max && options.probability_max < 1.0,
@@ -81,15 +97,15 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
   inflation_.assign(cells, 0);
   words_per_row_ = (static_cast<std::size_t>(size_.x()) + kWord - 1) / kWord;
   blocked_.assign(cells / static_cast<std::size_t>(size_.x()) * words_per_row_, 0);
+  free_.assign(blocked_.size(), 0);
   for (int old = -128; old < 128; ++old) {
     const auto after = [&](int change) {
       return static_cast<std::int8_t>(
           std::clamp<int>((old == kUnknown ? 0 : old) + change, min_, max_));
     };
     const auto i = static_cast<std::uint8_t>(old);
-    update_[FrameVotes::kNone][i] = static_cast<std::int8_t>(old);
-    update_[FrameVotes::kMiss][i] = after(miss_);
-    update_[FrameVotes::kHit][i] = after(hit);
+    after_miss_[i] = after(miss_);
+    after_hit_[i] = std::max({occupied_, hit, after(hit)});
   }
 
   // A cell is blocked if any of its points is nearer than the radius to any point of an occupied
@@ -110,6 +126,7 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
     }
   }
   flips_.reserve(1 << 14);
+  doubts_.reserve(1 << 14);
   left_.reserve(1 << 14);
   entered_.reserve(3);
   slabs_.reserve(3);
@@ -117,20 +134,20 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
 }
 
 bool OccupancyMap::IsOccupied(const CellIndex& cell) const {
-  return InWindow(cell) && cells_[Address(cell)].log_odds >= occupied_;
+  return InWindow(cell) && Blocks(cells_[Address(cell)]);
 }
 
 bool OccupancyMap::IsKnown(const CellIndex& cell) const {
   return InWindow(cell) && cells_[Address(cell)].log_odds != kUnknown;
 }
 
-bool OccupancyMap::IsObservedFree(const CellIndex& cell) const {
-  if (!InWindow(cell)) return false;
-  const std::int8_t log_odds = cells_[Address(cell)].log_odds;
-  return log_odds != kUnknown && log_odds < 0;
+std::int64_t OccupancyMap::CountObservedFree() const {
+  std::int64_t count = 0;
+  for (const std::uint64_t word : free_) count += std::popcount(word);
+  return count;
 }
 
-void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded) {
+void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutline& pad) {
   flips_.clear();
   const estimation::CameraIntrinsics& k = frame.intrinsics;
   CheckDepths(frame);
@@ -143,6 +160,10 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const Excluded
   };
   votes_.Begin(in_window(frame.p_WC));
   const double per_pixel = 1.0 / k.focal;
+  // Farther away an obstacle may stand between two pixels.
+  const double resolved = options_.thinnest_obstacle * k.focal;
+  sharp_ = 0.5 * resolved;
+  const double short_of_return = 1.0 - kNoiseSigmas * options_.range_noise;
   const float* depth = frame.depth.data();
   for (int v = 0; v < k.height; ++v) {
     const double down = (v + 0.5 - k.cy) * per_pixel;
@@ -155,17 +176,21 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const Excluded
       const bool returned = std::isfinite(along);
       if (!returned) along = frame.max_range / per_depth;
       if (along * per_depth < options_.min_ray) continue;
-      const Eigen::Vector3d end = frame.p_WC + (row_W + frame.R_WC.col(0) * right) * along;
-      const bool on_pad = excluded.radius > 0.0 && end.z() < excluded.top &&
-                          (end.head<2>() - excluded.centre).norm() < excluded.radius;
-      votes_.AddRay(in_window(end), returned && end.z() > options_.ground_height && !on_pad);
+      const Eigen::Vector3d ray_W = row_W + frame.R_WC.col(0) * right;
+      const double freed = std::min(returned ? along * short_of_return : along, resolved);
+      votes_.AddRay(in_window(frame.p_WC + ray_W * freed));
+      if (!returned) continue;
+      const Eigen::Vector3d end = frame.p_WC + ray_W * along;
+      if (end.z() <= options_.ground_height) continue;
+      const double error = kNoiseSigmas * options_.range_noise * along * per_depth;
+      votes_.AddHit(in_window(end), VoteOf(pad.Classify(end, options_.resolution + error)));
     }
   }
   votes_.Finish();
-  ApplyVotes();
+  ApplyVotes(frame.p_WC, frame.t);
 }
 
-void OccupancyMap::ApplyVotes() {
+void OccupancyMap::ApplyVotes(const Eigen::Vector3d& eye, double t) {
   constexpr int kVotes = 8;  // looked at in one go: most have none
   static_assert(std::endian::native == std::endian::little, "a word's first vote is its lowest");
   CellIndex cell;
@@ -182,64 +207,117 @@ void OccupancyMap::ApplyVotes() {
         std::memset(votes + x, FrameVotes::kNone, sizeof(word));
         cell.x() = origin_.x() + x;
         for (; word != 0; word >>= 8, ++cell.x()) {
+          const auto vote = static_cast<std::uint8_t>(word & 0xff);
+          if (vote == FrameVotes::kNone) continue;
           Cell& stored = cells_[row | static_cast<std::size_t>(cell.x() & mask_.x())];
-          const std::int8_t value = Updated(word & 0xff, stored.log_odds);
-          if (value != stored.log_odds) SetLogOdds(cell, value);
+          // Nearly all votes say again that free space is free.
+          const bool settled = vote == FrameVotes::kMiss && stored.log_odds == min_;
+          if (!settled || !IsObservedFree(cell)) Apply(vote, cell, eye, t);
         }
       }
     }
   }
 }
 
+int OccupancyMap::RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const {
+  const double steps = (CentreOf(cell) - eye).norm() / kRangeStep;
+  return std::min(static_cast<int>(steps), kFarthest);
+}
+
+void OccupancyMap::Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye,
+                         double t) {
+  Cell value = cells_[Address(cell)];
+  const auto old = static_cast<std::uint8_t>(value.log_odds);
+  const bool was_hit = value.log_odds >= 0;
+  if (vote == FrameVotes::kMiss) {
+    // What may have been the pad has moved on with it; any other hit is outweighed by a better look only.
+    const bool better = value.doubtful || RangeOf(cell, eye) < value.hit_range ||
+                        (CentreOf(cell) - eye).norm() <= sharp_;
+    if (was_hit && !better) return;
+    value.log_odds = after_miss_[old];
+    if (value.log_odds < 0) value.doubtful = false;
+    Set(cell, value);
+    SetObservedFree(cell, value.log_odds < 0);
+    return;
+  }
+  SetObservedFree(cell, false);
+  if (vote == FrameVotes::kPad) {
+    value.log_odds = kUnknown;
+    value.doubtful = false;
+    return Set(cell, value);
+  }
+  const bool firm = Blocks(value);
+  if (vote == FrameVotes::kDoubt && firm) return;
+  const int range = RangeOf(cell, eye);
+  value.hit_range = static_cast<std::uint8_t>(
+      (was_hit ? std::min<int>(value.hit_range, range) : range) & kFarthest);
+  value.doubtful = vote == FrameVotes::kDoubt;
+  value.log_odds = after_hit_[old];
+  Set(cell, value);
+  if (!value.doubtful) return;
+  if (doubts_.size() == doubts_.capacity()) return MakeCertain(cell, false);  // no room: it blocks
+  doubts_.push_back({t, cell});
+}
+
+void OccupancyMap::MakeCertain(const CellIndex& cell, bool explained) {
+  Cell value = cells_[Address(cell)];
+  value.doubtful = false;
+  if (explained) value.log_odds = kUnknown;
+  Set(cell, value);
+}
+
 void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
-  flips_.clear();
-  const CellIndex cell = CellOf(p_W);
-  if (InWindow(cell)) SetLogOdds(cell, max_);
+  SetState(CellOf(p_W), CellState::kOccupied);
 }
 
 void OccupancyMap::SetState(const CellIndex& cell, CellState state) {
   flips_.clear();
   if (!InWindow(cell)) return;
-  const bool known = state != CellState::kUnknown;
-  SetLogOdds(cell, !known ? kUnknown : state == CellState::kOccupied ? max_ : min_);
+  Cell value;
+  if (state != CellState::kUnknown) value.log_odds = state == CellState::kFree ? min_ : max_;
+  Set(cell, value);
+  SetObservedFree(cell, state == CellState::kFree);
 }
 
-void OccupancyMap::MarkOwnVolume(const Eigen::Vector3d& p_W, double radius) {
+void OccupancyMap::MarkFree(const Eigen::Vector3d& p_W, double radius) {
   const CellIndex low = CellOf(p_W.array() - radius);
   const CellIndex high = CellOf(p_W.array() + radius) + CellIndex::Ones();
   ForEachCell({low, high}, [&](const CellIndex& cell) {
     if (!InWindow(cell) || (CentreOf(cell) - p_W).norm() > radius) return;
-    const std::int8_t stored = cells_[Address(cell)].log_odds;
-    // A stray hit that does not block yet is outweighed by being here.
-    if (stored == kUnknown || (stored >= 0 && stored < occupied_)) SetLogOdds(cell, miss_);
+    Cell value = cells_[Address(cell)];
+    if (Blocks(value)) return;
+    if (value.log_odds >= 0 || value.log_odds == kUnknown) value.log_odds = miss_;
+    value.doubtful = false;
+    Set(cell, value);
+    SetObservedFree(cell, true);
   });
 }
 
 void OccupancyMap::MarkRestFree() {
   flips_.clear();
-  for (Cell& stored : cells_) {
-    if (stored.log_odds < occupied_) stored = {min_, true};
-  }
-}
-
-void OccupancyMap::Clear(const ExcludedVolume& excluded) {
-  flips_.clear();
-  if (!(excluded.radius > 0.0)) return;
-  const double r = excluded.radius;
-  const CellIndex low = CellOf({excluded.centre.x() - r, excluded.centre.y() - r, 0.0});
-  const CellIndex high = CellOf({excluded.centre.x() + r, excluded.centre.y() + r, excluded.top});
-  const CellBox box = {low.cwiseMax(origin_), (high + CellIndex::Ones()).cwiseMin(origin_ + size_)};
-  ForEachCell(box, [&](const CellIndex& cell) {
-    if (cells_[Address(cell)].log_odds < 0) return;
-    if ((CentreOf(cell).head<2>() - excluded.centre).norm() < r) SetLogOdds(cell, min_);
+  ForEachCell({origin_, origin_ + size_}, [&](const CellIndex& cell) {
+    Cell value = cells_[Address(cell)];
+    if (Blocks(value)) return;
+    value.log_odds = min_;
+    value.doubtful = false;
+    Set(cell, value);
+    SetObservedFree(cell, true);
   });
 }
 
-void OccupancyMap::SetLogOdds(const CellIndex& cell, std::int8_t value) {
+void OccupancyMap::SetObservedFree(const CellIndex& cell, bool free) {
+  const auto x = static_cast<std::size_t>(cell.x() & mask_.x());
+  std::uint64_t& word = free_[RowIndex(cell.y(), cell.z()) * words_per_row_ + x / kWord];
+  const std::uint64_t bit = std::uint64_t{1} << (x % kWord);
+  word = free ? word | bit : word & ~bit;
+}
+
+void OccupancyMap::Set(const CellIndex& cell, Cell value) {
   Cell& stored = cells_[Address(cell)];
-  const bool was = stored.log_odds >= occupied_;
-  const bool is = value >= occupied_;
-  stored = {value, true};
+  const bool was = Blocks(stored);
+  const bool is = Blocks(value);
+  stored = value;
+  stored.changed = true;
   if (was == is) return;
   Inflate(cell, is ? 1 : -1);
   flips_.push_back({cell, is});

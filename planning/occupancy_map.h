@@ -12,6 +12,7 @@
 #include "touchdown/estimation/measurements.h"
 #include "touchdown/planning/cell_box.h"
 #include "touchdown/planning/frame_votes.h"
+#include "touchdown/planning/pad_outline.h"
 
 namespace touchdown::planning {
 
@@ -32,17 +33,13 @@ struct OccupancyMapOptions {
   double probability_occupied = 0.60;  ///< a cell at least this likely blocks: one hit on an
                                        ///< unknown cell does
   double min_ray = 0.2;                ///< nearer returns are ignored [m]
-  double ground_height = 0.15;         ///< returns below are ground, not obstacles [m]
+  double thinnest_obstacle = 0.1;  ///< that is promised to be seen: a ray frees cells only where
+                                   ///< neighbouring pixels are no farther apart [m]
+  double range_noise = 0.0;        ///< 1 sigma of a return's range over the range
+  double ground_height = 0.15;     ///< returns below are ground, not obstacles [m]
 };
 
-/// A vertical cylinder that is left out of the map: the pad's own volume.
-struct ExcludedVolume {
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< in W [m]
-  double radius = 0.0;                               ///< [m]; 0: none
-  double top = 0.0;                                  ///< returns above this height count again [m]
-};
-
-/// What a planner can tell of a cell. What was hit and is neither free nor occupied is unknown to it.
+/// What a planner can tell of a cell: kFree is observed free. All else that does not block is unknown to it.
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
 /// A cell that became blocked or free, before inflation.
@@ -58,12 +55,24 @@ struct CellValue {
 };
 
 /// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle; what
-/// leaves it is forgotten here, and handed to whoever keeps it (planning/persistent_map.h). Unknown
-/// is free for planning; IsKnown tells the difference. Allocates in the constructor only (the lists
-/// of flips, hits and cells that left grow to their high-water mark).
+/// leaves it is forgotten here, and handed to whoever keeps it (planning/persistent_map.h).
+///
+/// Plans take unknown cells for free. Stops may not (docs/safety.md): they stay in cells that were
+/// observed free, which is less. A cell is observed free once a ray has passed it
+///  - at a depth at which no obstacle of `thinnest_obstacle` fits between neighbouring pixels,
+///  - short of the ray's return by kNoiseSigmas of its noise;
+/// a hit ends that at once. A cell that was hit takes a miss only from nearer than it was hit from, or from
+/// so near that two pixels fall on the thinnest obstacle, and needs as many as its log-odds ask for. What was read from memory is not observed.
+///
+/// Returns that may be the pad's are kept apart (planning/pad_outline.h): their cells are neither free
+/// nor occupied until ExplainDoubts.
+///
+/// Allocates in the constructor only (the lists of flips, hits, doubts and cells that left grow to their
+/// high-water mark).
 class OccupancyMap {
  public:
   static constexpr double kLogOddsStep = 1.0 / 16.0;
+  static constexpr double kNoiseSigmas = 3.0;  ///< of a return, in front of which nothing is freed
 
   /// Throws std::invalid_argument on a resolution, size, radius or probability out of range.
   explicit OccupancyMap(const OccupancyMapOptions& options);
@@ -95,26 +104,27 @@ class OccupancyMap {
   void TakeChanges(std::vector<CellValue>* changes);
 
   /// Fuses one depth frame. Every cell is updated at most once: as hit if a return ends in it, else
-  /// as miss if a ray passes it. The cell in which a ray ends without a return, or at the ground or
-  /// the excluded volume, is not updated by that ray. A camera out of the window or at
-  /// a pose that is not finite says nothing.
+  /// as miss if a ray frees it. A return from the ground hits nothing; one from `pad`, which is where the
+  /// pad was when the frame was taken, makes its cell unknown, one that may be from it makes it
+  /// doubtful. A camera out of the window or at a pose that is not finite says nothing.
   /// @throws std::invalid_argument if the frame has not width x height depths.
-  void Integrate(const estimation::DepthFrame& frame, const ExcludedVolume& excluded);
+  void Integrate(const estimation::DepthFrame& frame, const PadOutline& pad);
+
+  /// Settles what was doubtful, now that the pad is known: `outline_at(t)` [s] gives a PadOutline. Doubtful
+  /// cells whose every return it explains at its time become unknown, the others occupied.
+  template <class OutlineAt>
+  void ExplainDoubts(OutlineAt&& outline_at);
 
   /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored.
   void SetOccupied(const Eigen::Vector3d& p_W);
 
-  /// Marks the cells within `radius` of p_W that are not occupied as observed free: the vehicle is
-  /// there itself.
-  void MarkOwnVolume(const Eigen::Vector3d& p_W, double radius);
+  /// Marks the cells within `radius` of p_W that are not occupied as observed free: what is given around
+  /// the start, or known otherwise.
+  void MarkFree(const Eigen::Vector3d& p_W, double radius);
 
   /// Takes every cell of the window that is not occupied as observed free: all of the map is known
   /// beforehand.
   void MarkRestFree();
-
-  /// Frees what stands inside the volume: cells that were seen before the pad was known to be
-  /// there.
-  void Clear(const ExcludedVolume& excluded);
 
   CellIndex CellOf(const Eigen::Vector3d& p_W) const {
     return (p_W / options_.resolution).array().floor().matrix().cast<int>();
@@ -136,22 +146,26 @@ class OccupancyMap {
   bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
   /// Bit i: the cell i beyond `first` along x is blocked. `count` (at most 64) cells, all in the window.
   std::uint64_t BlockedRow(const CellIndex& first, int count) const {
-    const std::uint64_t* row = &blocked_[RowIndex(first.y(), first.z()) * words_per_row_];
-    const auto x = static_cast<std::size_t>(first.x() & mask_.x());
-    const std::size_t bit = x % kWord;
-    const std::size_t per_word = std::min(kWord, static_cast<std::size_t>(size_.x()));
-    std::uint64_t bits = row[x / kWord] >> bit;
-    if (bit + static_cast<std::size_t>(count) > per_word) {  // the row goes on, or wraps around
-      bits |= row[(x / kWord + 1) & (words_per_row_ - 1)] << (per_word - bit);
-    }
-    return bits & ~std::uint64_t{0} >> (static_cast<int>(kWord) - count);
+    return Row(blocked_, first, count);
+  }
+  /// The same of the cells that were observed free.
+  std::uint64_t ObservedFreeRow(const CellIndex& first, int count) const {
+    return Row(free_, first, count);
   }
   /// Occupied itself, without inflation.
   bool IsOccupied(const CellIndex& cell) const;
-  /// Observed at least once, free or occupied.
+  /// Observed at least once, free or occupied or doubtful.
   bool IsKnown(const CellIndex& cell) const;
-  /// Observed, and likelier free than not. A cell that was hit once may be neither free nor occupied.
-  bool IsObservedFree(const CellIndex& cell) const;
+  /// See above. Out of the window: no.
+  bool IsObservedFree(const CellIndex& cell) const {
+    return InWindow(cell) && ObservedFreeRow(cell, 1) != 0;
+  }
+  /// Hit by returns that may be the pad's.
+  bool IsDoubtful(const CellIndex& cell) const {
+    return InWindow(cell) && cells_[Address(cell)].doubtful;
+  }
+  /// Cells of the window that were observed free.
+  std::int64_t CountObservedFree() const;
 
   /// States of the window's cells, x fastest, from origin() on. Allocates if `states` is too small.
   void CopyStates(std::vector<CellState>* states) const;
@@ -170,8 +184,17 @@ class OccupancyMap {
   static constexpr std::int8_t kUnknown = -128;
 
   struct Cell {
-    std::int8_t log_odds = kUnknown;  // in steps of kLogOddsStep
-    bool changed = false;             // since it entered the window or was last taken
+    std::int8_t log_odds = kUnknown;    // in steps of kLogOddsStep
+    std::uint8_t hit_range : 6 = 0;     // nearest that it was hit from, in steps of kRangeStep
+    std::uint8_t doubtful : 1 = false;  // hit by what may be the pad
+    std::uint8_t changed : 1 = false;   // since it entered the window or was last taken
+  };
+  static constexpr double kRangeStep = 0.2;  // [m]
+  static constexpr int kFarthest = 63;       // steps
+  /// A return that may be the pad's.
+  struct Doubt {
+    double t;
+    CellIndex cell;
   };
   /// Offsets (-half..half, y, z) from an obstacle's cell.
   struct BallRow {
@@ -187,15 +210,29 @@ class OccupancyMap {
   std::size_t Address(const CellIndex& cell) const {
     return RowAddress(cell.y(), cell.z()) | static_cast<std::size_t>(cell.x() & mask_.x());
   }
-  std::int8_t Updated(std::uint8_t vote, std::int8_t log_odds) const {
-    return update_[vote][static_cast<std::uint8_t>(log_odds)];
+  std::uint64_t Row(const std::vector<std::uint64_t>& grid, const CellIndex& first,
+                    int count) const {
+    const std::uint64_t* row = &grid[RowIndex(first.y(), first.z()) * words_per_row_];
+    const auto x = static_cast<std::size_t>(first.x() & mask_.x());
+    const std::size_t bit = x % kWord;
+    const std::size_t per_word = std::min(kWord, static_cast<std::size_t>(size_.x()));
+    std::uint64_t bits = row[x / kWord] >> bit;
+    if (bit + static_cast<std::size_t>(count) > per_word) {  // the row goes on, or wraps around
+      bits |= row[(x / kWord + 1) & (words_per_row_ - 1)] << (per_word - bit);
+    }
+    return bits & ~std::uint64_t{0} >> (static_cast<int>(kWord) - count);
   }
-  void ApplyVotes();
+  bool Blocks(const Cell& cell) const { return cell.log_odds >= occupied_ && !cell.doubtful; }
+  void SetObservedFree(const CellIndex& cell, bool free);
+  int RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const;
+  void ApplyVotes(const Eigen::Vector3d& eye, double t);
+  void Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye, double t);
+  void MakeCertain(const CellIndex& cell, bool explained);
   template <class Visit>
   void ForEachAddress(const CellBox& box, Visit&& visit) const;
   void Forget(const CellIndex& cell, Cell* stored);
   void CountInflation(const CellIndex& cell, const CellBox& but_for);
-  void SetLogOdds(const CellIndex& cell, std::int8_t value);
+  void Set(const CellIndex& cell, Cell value);
   void Inflate(const CellIndex& cell, int increment);
   void AddToRow(int y, int z, int x_begin, int x_end, int increment);
   void ClearRow(int y, int z, int x_begin, int x_end);
@@ -208,19 +245,36 @@ class OccupancyMap {
   CellIndex size_;
   CellIndex mask_;
   std::int8_t miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
-  // What a cell becomes, by its vote and its log-odds: unknown and the clamps are settled here once.
-  std::array<std::array<std::int8_t, 256>, 3> update_;
+  // What log-odds become by a miss and by a hit: unknown and the clamps are settled here once.
+  std::array<std::int8_t, 256> after_miss_, after_hit_;
   std::vector<BallRow> ball_;  // cells that one obstacle cell blocks
   int ball_reach_ = 0;         // its largest extent along an axis
   std::vector<Cell> cells_;
   std::vector<std::uint16_t> inflation_;  // number of obstacle cells whose ball holds it
   std::vector<std::uint64_t> blocked_;    // bit by bit along x: that number is not zero
+  std::vector<std::uint64_t> free_;       // bit by bit along x: observed free
   std::size_t words_per_row_ = 0;
+  double sharp_ =
+      0.0;  // of the frame at hand: up to here two pixels fall on the thinnest obstacle [m]
   FrameVotes votes_;
+  std::vector<Doubt> doubts_;
   std::vector<CellFlip> flips_;
   std::vector<CellValue> left_;
   std::vector<CellBox> entered_;
   std::vector<CellBox> slabs_;  // of the Recentre at hand
 };
+
+template <class OutlineAt>
+void OccupancyMap::ExplainDoubts(OutlineAt&& outline_at) {
+  // One return that the pad does not explain makes an obstacle, whatever else was in the cell.
+  for (const bool explained : {false, true}) {
+    for (const Doubt& doubt : doubts_) {
+      if (!IsDoubtful(doubt.cell)) continue;
+      const ReturnKind kind = outline_at(doubt.t).Classify(CentreOf(doubt.cell), resolution());
+      if ((kind != ReturnKind::kObstacle) == explained) MakeCertain(doubt.cell, explained);
+    }
+  }
+  doubts_.clear();
+}
 
 }  // namespace touchdown::planning

@@ -60,14 +60,15 @@ void OccupancyMap::MoveWindow(const CellIndex& origin) {
   EdgeSlabs(window, shift + ball_reach_ * reach, &slabs_);
   for (const CellBox& slab : slabs_) {
     ForEachAddress(slab, [&](const CellIndex& cell, std::size_t address) {
-      if (cells_[address].log_odds >= occupied_) CountInflation(cell, old);
+      if (Blocks(cells_[address])) CountInflation(cell, old);
     });
   }
 }
 
 void OccupancyMap::Forget(const CellIndex& cell, Cell* stored) {
-  if (stored->changed) left_.push_back({cell, stored->log_odds});
-  SetLogOdds(cell, kUnknown);
+  if (stored->changed && !stored->doubtful) left_.push_back({cell, stored->log_odds});
+  Set(cell, Cell{});
+  SetObservedFree(cell, false);
   stored->changed = false;
 }
 
@@ -88,14 +89,17 @@ void OccupancyMap::Restore(const CellValue& value) {
   const std::int8_t log_odds = std::clamp(value.log_odds, min_, max_);
   const double top = (value.cell.z() + 1) * options_.resolution;
   if (log_odds >= 0 && top <= options_.ground_height) return;
-  SetLogOdds(value.cell, log_odds);
+  Cell restored;
+  restored.log_odds = log_odds;
+  restored.hit_range = kFarthest;
+  Set(value.cell, restored);
   cells_[Address(value.cell)].changed = false;
 }
 
 void OccupancyMap::TakeChanges(std::vector<CellValue>* changes) {
   ForEachAddress({origin_, origin_ + size_}, [&](const CellIndex& cell, std::size_t address) {
     Cell& stored = cells_[address];
-    if (!stored.changed || stored.log_odds == kUnknown) return;
+    if (!stored.changed || stored.doubtful || stored.log_odds == kUnknown) return;
     changes->push_back({cell, stored.log_odds});
     stored.changed = false;
   });
@@ -104,11 +108,9 @@ void OccupancyMap::TakeChanges(std::vector<CellValue>* changes) {
 void OccupancyMap::CopyStates(std::vector<CellState>* states) const {
   states->resize(cells_.size());
   CellState* out = states->data();
-  ForEachAddress({origin_, origin_ + size_}, [&](const CellIndex&, std::size_t address) {
-    const std::int8_t log_odds = cells_[address].log_odds;
-    const CellState free =
-        log_odds < 0 && log_odds != kUnknown ? CellState::kFree : CellState::kUnknown;
-    *out++ = log_odds >= occupied_ ? CellState::kOccupied : free;
+  ForEachAddress({origin_, origin_ + size_}, [&](const CellIndex& cell, std::size_t address) {
+    const CellState free = IsObservedFree(cell) ? CellState::kFree : CellState::kUnknown;
+    *out++ = Blocks(cells_[address]) ? CellState::kOccupied : free;
   });
 }
 

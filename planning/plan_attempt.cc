@@ -61,7 +61,8 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
   pairs_.reserve(static_cast<std::size_t>(options.problem.max_pairs_per_point) *
                  kMostControlPoints);
   runs_.reserve(64);
-  for (UniformBspline* curve : {&first_curve_, &best_.curve, &other_.curve}) {
+  for (UniformBspline* curve : {&first_curve_, &best_.pair.curve, &best_.pair.stop,
+                                &other_.pair.curve, &other_.pair.stop}) {
     curve->Reserve(kMostControlPoints);
   }
 }
@@ -88,9 +89,12 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   best_.pairs = 0;
   best_.round = -1;
   best_.reason = Try(request, result);
-  if (request.arrival == ArrivalMode::kFree && best_.solved) duration_ = best_.curve.duration();
+  if (request.arrival == ArrivalMode::kFree && best_.solved)
+    duration_ = best_.pair.curve.duration();
   if (best_.solved) {
-    result->curve = best_.curve;
+    result->curve = best_.pair.curve;
+    result->t_stop = best_.pair.t_stop;
+    result->stop = best_.pair.stop;
     result->solver = best_.solver;
   }
   result->certificate = best_.certificate.value_or(Certificate());
@@ -141,7 +145,7 @@ ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request,
 /// So near that the first control point that is free comes too late to pass it.
 bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
   if (runs_.empty() || runs_.front().at_start) return false;
-  return runs_.front().t_in - request.t0 < kNear * best_.curve.interval();
+  return runs_.front().t_in - request.t0 < kNear * best_.pair.curve.interval();
 }
 
 /// The curve on shorter segments, before it is led past what is in its way. Where the arrival is fixed its
@@ -149,7 +153,7 @@ bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
 /// after it gain: there the curve is only interpolated, to within millimetres, so that the blocked runs
 /// stand. If no round can be solved then, the next attempt fixes the arrival.
 ReplanReason PlanAttempt::Refine(const AttemptRequest& request, ReplanResult* result) {
-  first_curve_ = best_.curve;
+  first_curve_ = best_.pair.curve;
   segments_ = request.near_segments;
   const bool interpolates = request.arrival == ArrivalMode::kFree && options_.max_rebinds > 0 &&
                             options_.problem.endpoint == EndpointMode::kEliminated;
@@ -164,7 +168,7 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, ReplanResult* re
   problem.SetDuration(first_curve_.duration());
   problem.WarmGuess(first_curve_, &now_->start.y);
   now_->first_guess = now_->start.y;
-  problem.Curve(now_->start.y, &best_.curve);
+  problem.Curve(now_->start.y, &best_.pair.curve);
   return ReplanReason::kNone;
 }
 
@@ -187,7 +191,7 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
 ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* result) {
   AttemptRequest request = asked;
   if (!request.previous) now_->first_guess = now_->start.y;
-  first_curve_ = best_.curve;
+  first_curve_ = best_.pair.curve;
   const BlockedRun first = runs_.front();
   if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
   if (request.previous && request.previous->t_end() > request.t0) {
@@ -207,7 +211,7 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* r
     if (i == 0 && !request.previous) Postpone(span, &request);
     first_guide_ = guide_;
     Candidate* candidate = i == 0 ? &best_ : &other_;
-    candidate->curve = first_curve_;
+    candidate->pair.curve = first_curve_;
     candidate->certificate.reset();
     now_->start.y = now_->first_guess;
     runs_.assign(1, span);
@@ -248,12 +252,12 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
 /// the first round they lead along the guide, and later ones bind what is still blocked.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
-  binder_.Begin(candidate->curve.segments() + 3);
+  binder_.Begin(candidate->pair.curve.segments() + 3);
   pressure_ = {};
   double blocked = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= options_.max_rebinds; ++round) {
     const bool guide_is_known = round == 1;
-    ReplanReason reason = Bind(request, candidate->curve, guide_is_known, result);
+    ReplanReason reason = Bind(request, candidate->pair.curve, guide_is_known, result);
     if (reason != ReplanReason::kNone) return reason;
     if (!guide_is_known) pressure_.pairs *= kPressure;
     ++result->rebinds;
@@ -317,14 +321,14 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   }
   if (!now_->solver.usable()) return ReplanReason::kSolverFailed;
   now_->start.y = now_->solver.x;
-  problem.Curve(now_->start.y, &candidate->curve);
+  problem.Curve(now_->start.y, &candidate->pair.curve);
   candidate->solved = true;
   {
     StageTimer timer(&result->times.check, StageTimer::kWhileLogged);
-    FindBlockedRuns(candidate->curve, request.t0, *request.space, &runs_);
+    FindBlockedRuns(candidate->pair.curve, request.t0, *request.space, &runs_);
   }
   if (request.log) {
-    request.log->rounds.back().curve = candidate->curve;
+    request.log->rounds.back().curve = candidate->pair.curve;
     request.log->rounds.back().blocked = runs_;
   }
   return ReplanReason::kNone;
@@ -334,11 +338,18 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
 ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candidate,
                                  ReplanResult* result) {
   StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
-  const UniformBspline& curve = candidate->curve;
+  const UniformBspline& curve = candidate->pair.curve;
   const SplineState wanted = EndStateAt(*request.pad, request.target, curve.t_end()).state;
-  Certificate& certificate =
-      candidate->certificate.emplace(Certify(curve, request.t0, &request.start, &wanted,
-                                             request.limits, options_.reaction, *request.space));
+  Certificate& certificate = candidate->certificate.emplace(
+      Certify(curve, request.t0, &request.start, &wanted, request.limits, *request.space));
+  if (certificate.limits_kept && (certificate.clear || certificate.escaping)) {
+    const PairProof proof =
+        ProvePair(request.t0, request.t0 + options_.reaction, result->ends_in_contact,
+                  request.limits, *request.hull, &candidate->pair);
+    certificate.stops_in_observed_space = proof.proven;
+    certificate.leaves = proof.leaves;
+    if (!proof.proven && !result->unseen_W) result->unseen_W = proof.unseen_W;
+  }
   if (options_.problem.endpoint == EndpointMode::kExplicit) {
     certificate.endpoint_tolerance = kRowTolerance;
   }

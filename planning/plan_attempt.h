@@ -12,6 +12,7 @@
 #include "touchdown/planning/prepared_problems.h"
 #include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/replan_result.h"
+#include "touchdown/planning/stored_stop.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
@@ -29,6 +30,7 @@ struct AttemptRequest {
   int near_segments = 0;                             ///< ... and where an obstacle is near
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
+  const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   bool at_rest = false;   ///< there is time to look for long ways round
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice
@@ -52,7 +54,7 @@ class PlanAttempt {
   /// All attempts until the next call share max_expansions.
   void RefillExpansions() { finder_.Refill(options_.max_expansions); }
 
-  /// Tries once; fills curve, certificate, pairs, guide paths, solver, counts and times of `result`
+  /// Tries once; fills curve with its stop, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
   /// does not allocate it does not either, once its buffers have grown.
   ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
@@ -64,7 +66,7 @@ class PlanAttempt {
  private:
   /// A plan that was tried, and how it ended.
   struct Candidate {
-    UniformBspline curve;
+    FlightPair pair;
     std::optional<Certificate> certificate;
     solvers::SolverSummary solver;
     int pairs = 0;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,14 +36,17 @@ struct ReplannerOptions {
   double min_duration = 0.8;     ///< shortest plan: a vehicle above the pad keeps following [s]
   double min_contact_duration = 0.3;  ///< ... and one that is to end in contact [s]
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
-  double reaction = 0.15;           ///< a plan is flown this long before the next can take over [s]
-  double vertical_cost = 2.0;       ///< of A*: a metre up or down costs as much as this many ahead
-  int max_guides = 2;               ///< ways around the first obstacle that are tried
-  bool warm_start = true;           ///< a solve begins at the rest of the committed plan
-  int max_rebinds = 3;              ///< solve / check / re-bind rounds per attempt
-  int max_solves = 14;         ///< after so many no further arrival time is tried, but from rest
-  int max_iterations = 50;     ///< solver iterations per solve
-  int max_expansions = 30000;  ///< of A* in a step; from rest in each attempt
+  double reaction = 0.15;  ///< a plan is flown this long before its stop, if no newer one comes [s]
+  double hull_radius = 0.324;   ///< of the body at every tilt, about its origin [m]
+  double margin = 0.08;         ///< around the hull, until it rests (docs/safety.md) [m]
+  double deck_half_size = 0.0;  ///< of the pad's deck [m]; 0: there is none to land on
+  double vertical_cost = 2.0;   ///< of A*: a metre up or down costs as much as this many ahead
+  int max_guides = 2;           ///< ways around the first obstacle that are tried
+  bool warm_start = true;       ///< a solve begins at the rest of the committed plan
+  int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
+  int max_solves = 14;          ///< after so many no further arrival time is tried, but from rest
+  int max_iterations = 50;      ///< solver iterations per solve
+  int max_expansions = 30000;   ///< of A* in a step; from rest in each attempt
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.
@@ -59,13 +63,13 @@ struct ReplanInput {
 
 /// What is flown after a replanning step.
 enum class ReplanStatus {
-  kPlanned,   ///< a new certified plan
-  kKept,      ///< no new certified plan; the previous one is still safe
-  kBraking,   ///< a certified braking trajectory to rest
+  kPlanned,   ///< a new certified plan, with its stop
+  kKept,      ///< no new certified plan; the previous one goes on, with a newer stop
+  kBraking,   ///< the stop that was stored with the previous plan is flown, or one that is wanted
   kClimbing,  ///< a certified climb straight up to rest
   kEscaping,  ///< a certified way out of the inflated zone around an obstacle, to rest
-  kHolding,   ///< at rest already and nothing better is certified: stay
-  kUnsafe,    ///< nothing could be certified: it brakes, uncertified, and says so
+  kHolding,   ///< at rest, and nothing else is certified: stay
+  kUnsafe,    ///< the baselines only: what is flown is not certified
 };
 
 /// Why no new plan was made; kNone with kPlanned.
@@ -139,10 +143,18 @@ struct ReplanResult {
   ReplanReason reason = ReplanReason::kNone;
   /// How the EGO-Planner baseline calls the outcome of its plan call; empty with the others.
   std::string_view detail;
-  bool idle = false;           ///< the planner had nothing to do: there is no answer
-  bool from_odometry = false;  ///< started at the vehicle, not at the old plan
-  UniformBspline curve;        ///< what is flown from t_start on
+  bool ends_in_contact = false;  ///< what is asked for is a plan that does
+  bool idle = false;             ///< the planner had nothing to do: there is no answer
+  bool from_odometry = false;    ///< started at the vehicle, not at the old plan
+  UniformBspline curve;          ///< what is flown from t_start on ...
+  double t_stop = 0.0;  ///< ... until this moment, unless a newer pair takes over [s]: then ...
+  UniformBspline stop;  ///< ... this; t_stop is infinite where the curve itself is the stop
   Certificate certificate;
+  /// The stored stop is flown, and a cell of its tube is not free any more: the map was wrong.
+  bool map_error = false;
+  /// The first cell that is not observed free and that the next stops will need: of the plan beyond its
+  /// own stop, or of the first that was not proven for want of it. In W [m].
+  std::optional<Eigen::Vector3d> unseen_W;
   PathList guide_paths;           ///< A* paths of this step
   int pairs = 0;                  ///< {p, v} pairs bound at the end
   int solves = 0;                 ///< solver calls

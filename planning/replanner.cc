@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The replanning step: start from the committed trajectory (or from the vehicle where tracking lost
 // it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified.
-// If nothing is, the ladder of fallback.h: keep the previous plan while it is safe, else come to rest.
+// If nothing is, the ladder of fallback.h. What is committed is always a pair, a curve and its stop, so that
+// a step that has no answer needs none.
 
 #include "touchdown/planning/replanner.h"
 
@@ -30,7 +31,12 @@ constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter repla
 constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
+constexpr double kLastStretch = 1.2;     // before contact [s]
 constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
+constexpr double kUnseenReach =
+    1.0;  // around a start, in which a plan keeps to what was seen [m] ...
+constexpr double kLeastReach = 0.5;  // ... and where nothing leads out of that
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
@@ -39,10 +45,9 @@ SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat
 class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-      : options_(options),
-        attempt_(options, backends),
-        fallback_(options.limits, options.reaction) {
-    for (UniformBspline* curve : {&current_, &next_, &result_.curve}) {
+      : options_(options), attempt_(options, backends), fallback_(options.limits) {
+    for (UniformBspline* curve : {&current_.curve, &current_.stop, &next_.curve, &next_.stop,
+                                  &result_.curve, &result_.stop}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
     }
     result_.guide_paths.Reserve(kUsualPaths, kUsualPathPoints);
@@ -50,18 +55,29 @@ class Replanner::Impl {
 
   void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }
 
-  void Commit(const UniformBspline& curve) {
+  /// The pair of the result takes over at t0.
+  void Commit(double t0) {
     current_ = next_;
-    next_ = curve;
-    takes_over_ = curve.t0();
+    next_.curve = result_.curve;
+    next_.t_stop = result_.t_stop;
+    next_.stop = result_.stop;
+    takes_over_ = t0;
+    committed_ = true;
   }
 
+  /// A pair that comes after the older one's stop has begun comes too late: it does not start there.
   void TakeOverAt(double t) {
-    if (result_.status != ReplanStatus::kKept) takes_over_ = std::max(takes_over_, t);
+    if (!committed_ || t <= takes_over_) return;
+    if (t > current_.t_stop) {
+      next_ = current_;
+      planned_before_ = false;
+      climbing_ = -1.0;
+    }
+    takes_over_ = t;
   }
 
-  /// The curve that is flown at time t.
-  const UniformBspline& InForce(double t) const { return t < takes_over_ ? current_ : next_; }
+  /// The pair that is flown at time t.
+  const FlightPair& InForce(double t) const { return t < takes_over_ ? current_ : next_; }
 
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
   const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
@@ -70,8 +86,9 @@ class Replanner::Impl {
   void Restore(const ReplannerState& state);
 
   const ReplannerOptions options_;
-  UniformBspline current_, next_;
+  FlightPair current_, next_;
   double takes_over_ = 0.0;  // next_ does [s]
+  bool committed_ = false;   // in this step
   ReplanLog* log_ = nullptr;
 
  private:
@@ -81,18 +98,20 @@ class Replanner::Impl {
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
   void Begin(const ReplanInput& input);
-  const ReplanResult& RefuseState();
+  const ReplanResult& RefuseState(const ReplanInput& input);
   SplineState Start(const ReplanInput& input);
   bool InTime(const ReplanInput& input) const;
   double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
-  bool KeepCommitted(const ReplanInput& input, const SplineState& start, const FreeSpace& space);
-  void ComeToRest(double t0, const SplineState& start, double climb, const FreeSpace& space);
+  HullSpace HullIn(const FreeSpace& space, const estimation::PadPrediction* pad) const;
+  std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
+  void StepDown(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
 
   PlanAttempt attempt_;
   Fallback fallback_;
   Limits limits_;  // what the pull of this step leaves
   ReplanResult result_;
+  UnseenZone unseen_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
@@ -125,7 +144,7 @@ FreeSpace Replanner::Impl::SpaceWithoutPad(const ReplanInput& input,
 
 /// The strip over the pad reaches as far as the committed plan does.
 double Replanner::Impl::WatchedUntil(const ReplanInput& input) const {
-  return std::max(input.t_start + options_.min_duration, next_.t_end());
+  return std::max(input.t_start + options_.min_duration, next_.curve.t_end());
 }
 
 ReplannerState Replanner::Impl::State() const {
@@ -144,7 +163,7 @@ ReplannerState Replanner::Impl::State() const {
 void Replanner::Impl::Restore(const ReplannerState& state) {
   current_ = state.current;
   next_ = state.next;
-  takes_over_ = next_.t0();
+  takes_over_ = next_.curve.t0();
   planned_before_ = state.planned;
   climbing_ = state.climb.value_or(-1.0);
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
@@ -158,11 +177,16 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
 
 void Replanner::Impl::Begin(const ReplanInput& input) {
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
+  fallback_.SetLimits(limits_);
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
-  result_.from_odometry = false;
+  result_.from_odometry = result_.map_error = committed_ = false;
+  // A level stretch at the end of a landing, or a vertical descent, may go below the height of contact.
+  result_.ends_in_contact =
+      input.endpoint.touches() || input.endpoint.height_floor < options_.contact_height;
+  result_.unseen_W.reset();
   result_.reason = ReplanReason::kNone;
   result_.certificate = {};
   result_.solver.status = solvers::SolveStatus::kNumericalFailure;
@@ -170,20 +194,20 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.solver.cost = 0.0;
 }
 
-/// Without a usable state of the vehicle nothing can be decided: what is committed goes on.
-const ReplanResult& Replanner::Impl::RefuseState() {
-  result_.status = ReplanStatus::kKept;
+/// Without a usable state of the vehicle nothing can be decided: what is committed goes on, to its stop.
+const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input) {
+  const double t0 = std::isfinite(input.t_start) ? input.t_start : next_.curve.t0();
+  Fallback::FlyStop(next_, t0, HullSpace{}, &result_);
   result_.reason = ReplanReason::kInvalidInput;
-  result_.curve = next_;
   return result_;
 }
 
 /// The committed state when the answer takes over, or the vehicle's own where tracking is lost.
 SplineState Replanner::Impl::Start(const ReplanInput& input) {
-  const FlatState reference = InForce(input.t_now).EvaluateOnward(input.t_now);
+  const FlatState reference = InForce(input.t_now).At(input.t_now);
   const double error = (reference.p_WB - input.vehicle.p_WB).norm();
   result_.from_odometry = error > options_.odometry_threshold;
-  if (!result_.from_odometry) return ToSpline(InForce(input.t_start).EvaluateOnward(input.t_start));
+  if (!result_.from_odometry) return ToSpline(InForce(input.t_start).At(input.t_start));
   const double latency = input.t_start - input.t_now;
   return {input.vehicle.p_WB + latency * input.vehicle.v_WB, input.vehicle.v_WB,
           Eigen::Vector3d::Zero()};
@@ -194,10 +218,21 @@ bool Replanner::Impl::InTime(const ReplanInput& input) const {
   return input.t_now >= takes_over_ - kClockRounding;
 }
 
+HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
+                                  const estimation::PadPrediction* pad) const {
+  HullSpace hull;
+  hull.space = &space;
+  hull.radius = options_.hull_radius + options_.margin;
+  hull.pad = pad;
+  hull.deck_half_size = options_.deck_half_size;
+  hull.foot_depth = options_.contact_height;
+  return hull;
+}
+
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
   Begin(input);
   StageTimer total(&result_.times.total);
-  if (!StateValid(input) || !InTime(input)) return RefuseState();
+  if (!StateValid(input) || !InTime(input)) return RefuseState(input);
   const SplineState start = Start(input);
   climbing_ = -1.0;
   const bool target_valid = TargetValid(input);
@@ -209,31 +244,70 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
-    Commit(result_.curve);
+    Commit(input.t_start);
+    result_.unseen_W = NeededNext(input, HullIn(strip_, input.pad));
     return result_;
   }
   const FreeSpace space = target_valid ? strip_ : SpaceWithoutPad(input, map);
-  if (!KeepCommitted(input, start, space)) {
-    planned_before_ = false;
-    ComeToRest(input.t_start, start, 0.0, space);
-  }
+  StepDown(input, start, HullIn(space, target_valid ? input.pad : nullptr));
   return result_;
+}
+
+/// What the stops of the steps to come need: the way on behind the pair's first part.
+std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& input,
+                                                           const HullSpace& hull) const {
+  const UniformBspline& curve = next_.curve;
+  const double t_from = input.t_start + options_.reaction;
+  const double t_to = std::min(t_from + kLookAhead, curve.t_end());
+  if (t_to <= t_from) return std::nullopt;
+  return SweepHull(curve, t_from, t_to, curve.Position(t_from), hull).unseen_W;
+}
+
+/// Below a plan: the committed curve with a newer stop, a way out from rest, the stop that is stored.
+void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
+                               const HullSpace& hull) {
+  const double t0 = input.t_start;
+  const bool at_rest = !result_.from_odometry && Fallback::AtRest(next_, t0);
+  const bool on_plan = planned_before_ && !result_.from_odometry && !at_rest;
+  if (on_plan && fallback_.GoesOn(next_, t0, t0 + options_.reaction, hull, &result_)) {
+    result_.status = ReplanStatus::kKept;
+    return Commit(t0);
+  }
+  planned_before_ = false;
+  if (at_rest && fallback_.Escapes(t0, start, hull, &result_)) {
+    result_.status = ReplanStatus::kEscaping;
+    return Commit(t0);
+  }
+  if (result_.from_odometry && fallback_.Rests(t0, start, {0.0, 0.0, 0.0}, hull, &result_)) {
+    result_.status = ReplanStatus::kBraking;
+    return Commit(t0);
+  }
+  Fallback::FlyStop(next_, t0, hull, &result_);
 }
 
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& map) {
   Begin(input);
   StageTimer total(&result_.times.total);
-  if (!StateValid(input) || !InTime(input)) return RefuseState();
+  if (!StateValid(input) || !InTime(input)) return RefuseState(input);
   const SplineState start = Start(input);
   const FreeSpace space = SpaceWithoutPad(input, map);
+  const HullSpace hull = HullIn(space, nullptr);
   planned_before_ = false;
   const bool under_way = climbing_ == climb && !result_.from_odometry;
-  if (under_way && KeepCommitted(input, start, space)) return result_;
-  ComeToRest(input.t_start, start, climb, space);
-  // What came out otherwise (an escape, a brake instead of a climb) is no reason to stop trying.
-  const ReplanStatus wanted = climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking;
-  climbing_ = result_.status == wanted ? climb : -1.0;
+  if (!under_way) {
+    climbing_ = -1.0;
+    for (const double rise : {climb, 0.0}) {
+      if (!fallback_.Rests(input.t_start, start, {0.0, 0.0, rise}, hull, &result_)) continue;
+      // What came out otherwise is no reason to stop trying.
+      if (rise == climb) climbing_ = climb;
+      result_.status = rise > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking;
+      Commit(input.t_start);
+      return result_;
+    }
+  }
+  StepDown(input, start, hull);
+  if (under_way && result_.status == ReplanStatus::kBraking) result_.status = ReplanStatus::kKept;
   return result_;
 }
 
@@ -259,7 +333,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   }
   if (!(fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   // An arrival once promised is kept: guessing anew at every step would put it off for ever.
-  const double left = next_.t_end() - input.t_start;
+  const double left = next_.curve.t_end() - input.t_start;
   const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
   // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
   const double shortest =
@@ -267,6 +341,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   double T = std::clamp(promised ? left : fresh, shortest, options_.max_duration);
 
   const double first = T;
+  double unseen_reach = 0.0;
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
@@ -276,12 +351,12 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pull_W = input.pull_W;
   // The prepared problems' free arrival has the usual bound below.
   request.arrival = T < options_.min_duration ? ArrivalMode::kFixed : options_.arrival;
-  request.at_rest = Fallback::Stays(next_, start);
+  request.at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
     if (request.arrival == ArrivalMode::kFixed) T = FirstFreeArrival(input, T, map);
-    const FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
+    FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     // From rest there is time for long searches.
     if (i == 0 || request.at_rest) attempt_.RefillExpansions();
     request.duration = T;
@@ -290,14 +365,34 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.segments = SegmentsFor(longest, limits_, false);
     request.near_segments = SegmentsFor(longest, limits_, true);
     request.space = &space;
+    const HullSpace hull = HullIn(space, input.pad);
+    request.hull = &hull;
+    if (unseen_reach > 0.0) {
+      unseen_.Build(hull, start.p, unseen_reach);
+      space.unseen = &unseen_;
+    }
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
-    request.previous = i == 0 && planned_before_ ? &next_ : nullptr;
+    request.previous = i == 0 && planned_before_ ? &next_.curve : nullptr;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
     if (reason == ReplanReason::kNone) return reason;
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
       return reason;
+    // Shortly before contact nothing is put off: the committed pair ends in it.
+    if (reason == ReplanReason::kUnobserved && result_.ends_in_contact && first < kLastStretch) {
+      return reason;
+    }
+    // What the stop would have touched unseen is closed, and the same arrival tried again.
+    if (reason == ReplanReason::kUnobserved && unseen_reach == 0.0) {
+      unseen_reach = kUnseenReach;
+      continue;
+    }
+    if (request.at_rest && unseen_reach > 0.0) {
+      if (unseen_reach == kLeastReach) return ReplanReason::kUnobserved;
+      unseen_reach = kLeastReach;
+      continue;
+    }
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
@@ -316,18 +411,6 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   return reason;
 }
 
-bool Replanner::Impl::KeepCommitted(const ReplanInput& input, const SplineState& start,
-                                    const FreeSpace& space) {
-  return !result_.from_odometry &&
-         fallback_.KeepsCommitted(next_, input.t_start, start, space, &result_);
-}
-
-void Replanner::Impl::ComeToRest(double t0, const SplineState& start, double climb,
-                                 const FreeSpace& space) {
-  fallback_.ComeToRest(t0, start, climb, space, &result_);
-  Commit(result_.curve);
-}
-
 Replanner::Replanner(const ReplannerOptions& options, const solvers::BackendRegistry& backends) {
   Validate(options);
   impl_ = std::make_unique<Impl>(options, backends);
@@ -342,7 +425,7 @@ void Replanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
   ControlPoints points(3, 4);
   points.colwise() = p_W;
   ReplannerState hover;
-  hover.current = hover.next = UniformBspline(points, 1.0, t);
+  hover.current.curve = hover.next.curve = UniformBspline(points, 1.0, t);
   impl_->Restore(hover);
 }
 
@@ -357,7 +440,7 @@ const ReplanResult& Replanner::Rest(const ReplanInput& input, double climb,
 
 void Replanner::TakeOverAt(double t) { impl_->TakeOverAt(t); }
 
-FlatState Replanner::Reference(double t) const { return impl_->InForce(t).EvaluateOnward(t); }
+FlatState Replanner::Reference(double t) const { return impl_->InForce(t).At(t); }
 
 const ReplannerOptions& Replanner::options() const { return impl_->options_; }
 

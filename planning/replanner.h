@@ -8,6 +8,7 @@
 
 #include "touchdown/planning/planner.h"
 #include "touchdown/planning/replan_log.h"
+#include "touchdown/planning/stored_stop.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
@@ -15,8 +16,8 @@ namespace touchdown::planning {
 /// All that a replanner remembers from one step to the next. Plain data: with the same options, map
 /// and input the next step gives the same bits.
 struct ReplannerState {
-  UniformBspline current;       ///< flown before next.t0()
-  UniformBspline next;          ///< committed
+  FlightPair current;           ///< flown before `next` takes over
+  FlightPair next;              ///< committed
   bool planned = false;         ///< `next` is a plan to the pad: its arrival is kept
   std::optional<double> climb;  ///< `next` is the caller's rest with this climb [m]
   std::optional<double>
@@ -42,13 +43,13 @@ class Replanner : public Planner {
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
 
-  /// One replanning step against the map. The result stays valid until the next call. What the map
-  /// has not observed cannot be braked in: a map that was filled by hand needs MarkOwnVolume around
-  /// the vehicle, as a sensor's map needs the vehicle's own hull.
+  /// One replanning step against the map. The result stays valid until the next call. Whatever comes
+  /// out is a proven pair (docs/safety.md). Nothing can be proven in what the map has not observed: a
+  /// map that was filled by hand needs MarkFree, one of a sensor at least around the start.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
 
   /// Comes to rest and stays, for want of a pad to go to: a certified braking trajectory, or with
-  /// `climb` > 0 [m] one that ends that much higher. Once it is under way and clear it is kept.
+  /// `climb` > 0 [m] one that ends that much higher. Once it is under way it is kept.
   /// `input.pad` and `input.endpoint` are not used.
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;

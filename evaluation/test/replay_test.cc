@@ -101,7 +101,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 5");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 6");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");
@@ -113,6 +113,9 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
   damaged("UPDATE state_point SET i = 4 WHERE plan = 3 AND i = 3", "state_point");
   damaged("UPDATE map_change SET count = -1 WHERE rowid = 1", "map_change");
   damaged("UPDATE replanner_state SET next_h = -1 WHERE plan = 3", "interval");
+  damaged("UPDATE replanner_state SET next_stop_h = -1 WHERE plan = 3", "interval");
+  damaged("UPDATE state_point SET curve = 'stop' WHERE plan = 3 AND curve = 'next_stop'",
+          "an unknown curve");
 }
 
 // What a record does not hold itself must be what it was in flight.
@@ -148,7 +151,7 @@ TEST(MapRecorder, RebuildsARollingMap) {
   for (int step = 0; step < 12; ++step) {
     const Eigen::Vector3d p(0.7 * step, step < 6 ? 0.3 * step : 3.0 - 0.5 * step, 0.1 * step);
     map.Recentre(p);
-    map.MarkOwnVolume(p, 0.5);
+    map.MarkFree(p, 0.5);
     map.SetOccupied(p + Eigen::Vector3d(0.6, 0.2, 0.1));
     Apply(recorder.Take(map), &rebuilt);
     EXPECT_EQ(rebuilt.origin(), map.origin());

@@ -48,7 +48,7 @@ TEST(LimitsUnder, StopsAreCountedWithWhatTheTrackingLawHasLeft) {
   };
   EXPECT_NEAR(stopping(3.0), 6.0, 1e-12);
   EXPECT_NEAR(stopping(5.0), 9.81 - 5.0, 0.01);
-  EXPECT_NEAR(stopping(8.0), 2.0, 1e-12);
+  EXPECT_NEAR(stopping(8.0), 9.81 - 8.0, 0.01);
 }
 
 TEST(LimitsUnder, ThrustIsSharedToo) {
@@ -58,9 +58,17 @@ TEST(LimitsUnder, ThrustIsSharedToo) {
   EXPECT_NEAR(under.acceleration, std::sqrt(11.0 * 11.0 - 9.81 * 9.81) - 2.0, 1e-12);
 }
 
+// Before, a third of the limit was always left: more than thrust and tilt had.
+TEST(LimitsUnder, PlansTakeNoMoreThanTheTrackingLawHas) {
+  VehicleFacts facts = Facts();
+  facts.tracking_tilt_max = facts.tilt_max + 10.0 * std::acos(-1.0) / 180.0;
+  EXPECT_NEAR(LimitsUnder({3.0, 6.0}, facts, {6.0, 0.0, 0.0}).acceleration, 2.0, 1e-12);
+  EXPECT_NEAR(LimitsUnder({3.0, 6.0}, facts, {8.5, 0.0, 0.0}).acceleration, 9.81 - 8.5, 0.01);
+}
+
 TEST(LimitsUnder, SomethingIsAlwaysLeft) {
-  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {20.0, 0.0, 0.0}).acceleration, 2.0);
-  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {0.0, 0.0, 30.0}).acceleration, 2.0);
+  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {20.0, 0.0, 0.0}).acceleration, kLeastAcceleration);
+  EXPECT_EQ(LimitsUnder({3.0, 6.0}, Facts(), {0.0, 0.0, 30.0}).acceleration, kLeastAcceleration);
 }
 
 // Any acceleration within what is left can be flown, in any horizontal direction.

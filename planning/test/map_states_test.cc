@@ -13,7 +13,7 @@ TEST(MapStates, RebuildAMap) {
   options.inflation_radius = 0.3;
   OccupancyMap map(options), copy(options);
   map.Recentre({3.7, -2.3, 0.4});
-  map.MarkOwnVolume({3.7, -2.3, 0.4}, 0.8);
+  map.MarkFree({3.7, -2.3, 0.4}, 0.8);
   map.SetOccupied({4.6, -2.3, 0.4});
   std::vector<CellState> states, again;
   map.CopyStates(&states);

@@ -94,56 +94,107 @@ TEST(OccupancyMap, SeesAWallAndWhatIsFreeBeforeIt) {
   ExpectInflationIsConsistent(map);
 }
 
-TEST(OccupancyMap, OneHitBlocksUnlessMoreIsAskedAndIsNeverFree) {
-  OccupancyMapOptions wary = SmallMap();
-  wary.probability_occupied = 0.8;
-  OccupancyMap map(wary);
-  OccupancyMap usual(SmallMap());
-  usual.Recentre({0.05, 0.05, 0.85});
-  usual.Integrate(WallFrame({0.05, 0.05, 0.85}, 2.0), {});
-  EXPECT_TRUE(usual.IsOccupied(usual.CellOf({2.01, 0.05, 0.85})));
-  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
-  map.Recentre(p_WC);
-  map.Integrate(WallFrame(p_WC, 2.0), {});
-  const CellIndex wall = map.CellOf({2.01, 0.05, 0.85});
-  EXPECT_TRUE(map.IsKnown(wall));
-  EXPECT_FALSE(map.IsOccupied(wall));
-  EXPECT_FALSE(map.IsObservedFree(wall));
-  EXPECT_TRUE(map.IsObservedFree(map.CellOf({1.5, 0.05, 0.85})));
-}
-
-TEST(OccupancyMap, ForgetsAnObstacleThatHasGone) {
+TEST(OccupancyMap, OneHitBlocksHoweverOftenACellWasSeenFree) {
   OccupancyMap map(SmallMap());
   const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
   map.Recentre(p_WC);
-  for (int i = 0; i < 5; ++i) map.Integrate(WallFrame(p_WC, 2.0), {});
-  for (int i = 0; i < 6; ++i) map.Integrate(WallFrame(p_WC, 3.0), {});
-  EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.05, 0.85})));
+  const CellIndex cell = map.CellOf({2.01, 0.05, 0.85});
+  for (int i = 0; i < 10; ++i) map.Integrate(WallFrame(p_WC, 3.0), {});
+  EXPECT_TRUE(map.IsObservedFree(cell));
+  map.Integrate(WallFrame(p_WC, 2.0), {});
+  EXPECT_TRUE(map.IsOccupied(cell));
+  EXPECT_FALSE(map.IsObservedFree(cell));
+  EXPECT_TRUE(map.IsObservedFree(map.CellOf({1.5, 0.05, 0.85})));
+  ExpectInflationIsConsistent(map);
+}
+
+TEST(OccupancyMap, AHitIsOutweighedFromNearerOnly) {
+  OccupancyMap map(SmallMap());
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85), nearer(0.65, 0.05, 0.85);
+  map.Recentre(p_WC);
+  const CellIndex cell = map.CellOf({2.41, 0.05, 0.85});
+  for (int i = 0; i < 2; ++i) map.Integrate(WallFrame(p_WC, 2.41), {});
+  for (int i = 0; i < 20; ++i) map.Integrate(WallFrame(p_WC, 3.0), {});
+  EXPECT_TRUE(map.IsOccupied(cell));
+  // As many misses as there were hits make it unsure, one more free.
+  for (int i = 0; i < 2; ++i) map.Integrate(WallFrame(nearer, 3.0), {});
+  EXPECT_FALSE(map.IsOccupied(cell));
+  EXPECT_FALSE(map.IsObservedFree(cell));
+  map.Integrate(WallFrame(nearer, 3.0), {});
+  EXPECT_TRUE(map.IsObservedFree(cell));
   EXPECT_TRUE(map.IsOccupied(map.CellOf({3.01, 0.05, 0.85})));
   ExpectInflationIsConsistent(map);
+}
+
+TEST(OccupancyMap, NothingIsFreedFartherThanAThinObstacleIsSeen) {
+  OccupancyMapOptions options = SmallMap();
+  options.thinnest_obstacle = 0.05;  // at a focal length of 40 pixels: 2 m
+  OccupancyMap map(options);
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  map.Integrate(WallFrame(p_WC, 2.85), {});
+  EXPECT_TRUE(map.IsObservedFree(map.CellOf({1.95, 0.05, 0.85})));
+  EXPECT_FALSE(map.IsKnown(map.CellOf({2.15, 0.05, 0.85})));
+  EXPECT_TRUE(map.IsOccupied(map.CellOf({2.86, 0.05, 0.85})));  // but what returned is there
+}
+
+TEST(OccupancyMap, NothingIsFreedWithinTheNoiseOfAReturn) {
+  OccupancyMapOptions options = SmallMap();
+  options.range_noise = 0.05;
+  OccupancyMap map(options);
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  map.Integrate(WallFrame(p_WC, 2.05), {});
+  // 3 sigma of 2 m are 0.3 m.
+  EXPECT_TRUE(map.IsObservedFree(map.CellOf({1.65, 0.05, 0.85})));
+  EXPECT_FALSE(map.IsKnown(map.CellOf({1.85, 0.05, 0.85})));
 }
 
 TEST(OccupancyMap, LeavesOutGroundAndPad) {
   OccupancyMap map(SmallMap());
   const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
   map.Recentre(p_WC);
-  const ExcludedVolume pad{{2.0, 0.0}, 0.5, 1.0};
+  PadOutline pad;
+  pad.p_WP = {2.4, 0.0, 1.0};
+  pad.half_size = 0.5;
   for (int i = 0; i < 3; ++i) map.Integrate(WallFrame(p_WC, 2.0), pad);
-  EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.05, 0.85})));
+  const CellIndex front = map.CellOf({2.01, 0.05, 0.85});
+  EXPECT_FALSE(map.IsOccupied(front));
+  EXPECT_FALSE(map.IsObservedFree(front));                       // it was seen, and not as free
   EXPECT_TRUE(map.IsOccupied(map.CellOf({2.01, 0.05, 1.15})));   // above its top
   EXPECT_TRUE(map.IsOccupied(map.CellOf({2.01, 0.75, 0.85})));   // beside it
   EXPECT_FALSE(map.IsOccupied(map.CellOf({2.01, 0.75, 0.05})));  // ground
 }
 
-TEST(OccupancyMap, ClearFreesThePadsVolume) {
+// A wall 0.7 m high, 1.6 m before a pad of which only a coarse GPS tells: before, all of it was erased.
+TEST(OccupancyMap, ReturnsThatMayBeThePadsAreKeptUntilThePadIsKnown) {
   OccupancyMap map(SmallMap());
-  map.SetOccupied({0.55, 0.05, 0.15});
-  map.SetOccupied({0.55, 0.05, 0.65});
-  map.Clear({{0.5, 0.0}, 0.4, 0.6});
-  EXPECT_FALSE(map.IsOccupied(map.CellOf({0.55, 0.05, 0.15})));
-  EXPECT_TRUE(map.IsOccupied(map.CellOf({0.55, 0.05, 0.65})));
-  ASSERT_EQ(map.flips().size(), 1u);
-  EXPECT_FALSE(map.flips().front().occupied);
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  PadOutline coarse;
+  coarse.p_WP = {2.6, 0.0, 1.0};
+  coarse.half_size = 0.5;
+  coarse.sigma = 0.5;
+  estimation::DepthFrame frame = WallFrame(p_WC, 2.0);
+  frame.t = 7.0;
+  map.Integrate(frame, coarse);
+  const CellIndex pad_cell = map.CellOf({2.01, 0.05, 0.85}), post = map.CellOf({2.01, 1.05, 0.85});
+  for (const CellIndex& cell : {pad_cell, post}) {
+    EXPECT_TRUE(map.IsDoubtful(cell));
+    EXPECT_FALSE(map.IsOccupied(cell));
+    EXPECT_FALSE(map.IsObservedFree(cell));
+  }
+  ExpectInflationIsConsistent(map);
+  // The tags tell where the pad was at that time: one cell was its front, the other was not it.
+  map.ExplainDoubts([&](double t) {
+    EXPECT_EQ(t, 7.0);
+    PadOutline known = coarse;
+    known.sigma = 0.01;
+    return known;
+  });
+  EXPECT_FALSE(map.IsDoubtful(pad_cell));
+  EXPECT_FALSE(map.IsKnown(pad_cell));
+  EXPECT_TRUE(map.IsOccupied(post));
   ExpectInflationIsConsistent(map);
 }
 
@@ -249,12 +300,12 @@ estimation::DepthFrame AnyFrame(Draw* draw, const Eigen::Vector3d& about) {
   return frame;
 }
 
-enum class Seen { kNot, kMissed, kHit };
+enum class Seen { kNot, kMissed, kPad, kHit };
 
 /// The documented rule, with a traversal per ray.
 std::map<std::array<int, 3>, Seen> SeenCells(const OccupancyMap& map,
                                              const estimation::DepthFrame& frame,
-                                             const ExcludedVolume& pad) {
+                                             const PadOutline& pad) {
   std::map<std::array<int, 3>, Seen> seen;
   const estimation::CameraIntrinsics& k = frame.intrinsics;
   for (int v = 0; v < k.height; ++v) {
@@ -265,17 +316,22 @@ std::map<std::array<int, 3>, Seen> SeenCells(const OccupancyMap& map,
       const bool returned = std::isfinite(depth);
       const double along = returned ? depth : frame.max_range / ray.norm();
       if (along * ray.norm() < map.options().min_ray) continue;
+      const double freed = std::min(along, map.options().thinnest_obstacle * k.focal);
       const Eigen::Vector3d end = frame.p_WC + frame.R_WC * ray * along;
-      const bool counts = returned && end.z() > map.options().ground_height &&
-                          !(end.z() < pad.top && (end.head<2>() - pad.centre).norm() < pad.radius);
-      TraverseCells(frame.p_WC, end, map.resolution(), [&](const CellIndex& cell) {
-        if (!map.InWindow(cell)) return false;
+      const Eigen::Vector3d free_end = frame.p_WC + frame.R_WC * ray * freed;
+      const auto see = [&](const CellIndex& cell, Seen as) {
         Seen& cell_seen = seen[{cell.x(), cell.y(), cell.z()}];
-        const bool last = cell == map.CellOf(end);
-        if (!last) cell_seen = std::max(cell_seen, Seen::kMissed);
-        if (last && counts) cell_seen = Seen::kHit;
+        cell_seen = std::max(cell_seen, as);
+      };
+      TraverseCells(frame.p_WC, free_end, map.resolution(), [&](const CellIndex& cell) {
+        if (!map.InWindow(cell)) return false;
+        if (cell != map.CellOf(free_end)) see(cell, Seen::kMissed);
         return true;
       });
+      if (!returned || end.z() <= map.options().ground_height) continue;
+      if (!map.InWindow(map.CellOf(end))) continue;
+      const bool of_pad = pad.Classify(end, map.resolution()) == ReturnKind::kPad;
+      see(map.CellOf(end), of_pad ? Seen::kPad : Seen::kHit);
     }
   }
   return seen;
@@ -283,7 +339,9 @@ std::map<std::array<int, 3>, Seen> SeenCells(const OccupancyMap& map,
 
 TEST(OccupancyMap, UpdatesWhatATraversalOfEveryRayVisits) {
   Draw draw(5);
-  const ExcludedVolume pad{{0.5, 0.3}, 0.6, 0.5};
+  PadOutline pad;
+  pad.p_WP = {0.5, 0.3, 0.5};
+  pad.half_size = 0.6;
   int hits = 0, misses = 0;
   for (int round = 0; round < 12; ++round) {
     OccupancyMap map(SmallMap());

@@ -15,7 +15,7 @@ namespace {
 TEST(ReplannerFallback, UnobservedSpaceIsEnteredAtACrawlOrNotAtAll) {
   OccupancyMap unobserved{OccupancyMapOptions{}};
   const Eigen::Vector3d start(-4.0, 0.0, 1.5);
-  unobserved.MarkOwnVolume(start, 0.3);
+  unobserved.MarkFree(start, 0.3);
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   replanner.CommitHover(start, 0.0);
@@ -31,7 +31,7 @@ TEST(ReplannerFallback, BrakesBeforeSpaceThatStaysUnobserved) {
   // The camera is dead: the map never grows beyond 4 m around the start.
   OccupancyMap map{OccupancyMapOptions{}};
   const Eigen::Vector3d start(-6.0, 0.0, 1.5);
-  map.MarkOwnVolume(start, 4.0);
+  map.MarkFree(start, 4.0);
   const ArcPad pad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   replanner.CommitHover(start, 0.0);
@@ -84,7 +84,7 @@ TEST(ReplannerFallback, AStartInTheInflatedZoneIsLedOut) {
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   replanner.CommitHover(start, 0.0);
   Eigen::Vector3d p = start;
-  ReplanStatus status = ReplanStatus::kUnsafe;
+  ReplanStatus status = ReplanStatus::kHolding;
   for (int step = 0; step < 30 && status != ReplanStatus::kPlanned; ++step) {
     ReplanInput input = Input(p, pad, 0.1 * step);
     input.vehicle.v_WB = replanner.Reference(input.t_now).v_WB;
@@ -108,9 +108,15 @@ TEST(ReplannerFallback, BrakesWhenTheWayCloses) {
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   const Eigen::Vector3d start(-6.0, 0.0, 1.5);
   replanner.CommitHover(start, 0.0);
-  ASSERT_EQ(replanner.Replan(Input(start, pad, 0.0), map).status, ReplanStatus::kPlanned);
+  // A plan without a newer one is flown to its stop: it takes one at every step to get up to speed.
+  double t = 0.0;
+  for (; t < 1.95; t += 0.1) {
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    ASSERT_EQ(replanner.Replan(input, map).status, ReplanStatus::kPlanned);
+  }
   // In full flight a wall appears from side to side and top to bottom, 1.8 m ahead.
-  const double t = 2.0;
   const FlatState at = replanner.Reference(t);
   ASSERT_GT(at.v_WB.norm(), 1.5);
   for (double y = -12.75; y < 12.8; y += 0.1) {
@@ -123,7 +129,10 @@ TEST(ReplannerFallback, BrakesWhenTheWayCloses) {
   const ReplanResult& result = replanner.Replan(input, map);
   EXPECT_EQ(result.status, ReplanStatus::kBraking) << ToString(result.reason);
   EXPECT_TRUE(result.certificate.passed());
-  const FlatState end = replanner.Reference(result.curve.t_end());
+  // What is flown is the stop that was stored with the last plan.
+  const FlightPair flown = replanner.state().next;
+  const FlatState end = replanner.Reference(flown.stop.t_end());
+  EXPECT_EQ(end.p_WB, flown.stop.Position(flown.stop.t_end()));
   EXPECT_LT(end.v_WB.norm(), 1e-9);
   EXPECT_FALSE(map.IsBlocked(end.p_WB));
 }

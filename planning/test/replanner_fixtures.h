@@ -2,6 +2,8 @@
 // A replanner over random pillars: what its tests share.
 #pragma once
 
+#include <limits>
+
 #include "touchdown/planning/replanner.h"
 #include "touchdown/planning/test/planning_fixtures.h"
 
@@ -12,7 +14,7 @@ inline OccupancyMap ObservedMap(double inflation = 0.35) {
   OccupancyMapOptions options;
   options.inflation_radius = inflation;
   OccupancyMap map(options);
-  map.MarkOwnVolume(Eigen::Vector3d(0, 0, 0), 11.0);
+  map.MarkFree(Eigen::Vector3d(0, 0, 0), 11.0);
   return map;
 }
 
@@ -36,7 +38,8 @@ inline void FlyAlong(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& v_WB,
   ControlPoints points(3, 8);
   for (int i = 0; i < 8; ++i) points.col(i) = p_WB + (i - 3) * v_WB;
   ReplannerState state = replanner->state();
-  state.current = state.next = UniformBspline(points, 1.0, -2.0);
+  state.current.curve = state.next.curve = UniformBspline(points, 1.0, -2.0);
+  state.current.t_stop = state.next.t_stop = std::numeric_limits<double>::infinity();
   replanner->Restore(state);
 }
 

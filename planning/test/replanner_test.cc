@@ -89,7 +89,7 @@ TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
     input.vehicle.v_WB = replanner.Reference(t).v_WB;
     const FlatState before = replanner.Reference(input.t_start);
     map.Recentre(p);
-    map.MarkOwnVolume(p, 6.0);
+    map.MarkFree(p, 6.0);
     const ReplanResult& result = replanner.Replan(input, map);
     ASSERT_EQ(result.status, ReplanStatus::kPlanned) << ToString(result.reason) << " at " << t;
     const FlatState after = replanner.Reference(input.t_start);

@@ -16,7 +16,10 @@ TEST(ReplannerVariants, AnEndAtRestStandsWhereThePadWillBe) {
   const OccupancyMap map = ObservedMap();
   const ArcPad pad({5.0, 0.0, 0.3}, 0.8, 0.4, 0.1);
   for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
-    Replanner replanner(Options(arrival), solvers::StandardBackends());
+    ReplannerOptions options = Options(arrival);
+    options.reaction =
+        60.0;  // the plan itself is flown to its end, not the stop that comes with it
+    Replanner replanner(options, solvers::StandardBackends());
     replanner.CommitHover(kStart, 0.0);
     ReplanInput input = Input(kStart, pad, 0.0);
     input.endpoint.at_rest = true;
@@ -77,7 +80,9 @@ TEST(ReplannerVariants, WithoutAWarmStartEverySolveBeginsBetweenTheEndsAlone) {
 TEST(ReplannerVariants, ALateAnswerTakesOverLate) {
   const OccupancyMap map = ObservedMap();
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
-  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.reaction = 2.0;  // its stop begins after all that is asked here
+  Replanner replanner(options, solvers::StandardBackends());
   replanner.CommitHover(kStart, 0.0);
   ASSERT_EQ(replanner.Replan(Input(kStart, pad, 0.0), map).status, ReplanStatus::kPlanned);
   replanner.TakeOverAt(0.3);
@@ -88,7 +93,7 @@ TEST(ReplannerVariants, ALateAnswerTakesOverLate) {
   EXPECT_EQ(replanner.Reference(1.0).p_WB, promised);
   // Nothing was committed by that step: there is nothing to put off.
   replanner.TakeOverAt(0.9);
-  EXPECT_EQ(replanner.Reference(0.8).p_WB, replanner.state().next.Evaluate(0.8).p_WB);
+  EXPECT_EQ(replanner.Reference(0.8).p_WB, replanner.state().next.curve.Evaluate(0.8).p_WB);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ int main() {
 
   planning::OccupancyMap map{planning::OccupancyMapOptions{}};
   map.Recentre(start);
-  map.MarkOwnVolume(start, 2.0);  // observed: the vehicle may move here
+  map.MarkFree(start, 2.0);  // observed: the vehicle may move here
   for (double y = -1.0; y <= 1.0; y += 0.1) {
     for (double z = 0.05; z < 4.0; z += 0.1) map.SetOccupied({3.0, y, z});
   }

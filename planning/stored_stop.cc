@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pair of a curve and its stop: the stop that is proven here is the one that is flown
+// (docs/safety.md). By induction nothing that stands is touched as long as observed-free cells are free
+// and the margins hold: a newer pair takes over before the stop, or the stop is flown.
+
+#include "touchdown/planning/stored_stop.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "touchdown/planning/rest_trajectory.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kAboveDeck = 0.1;    // of the feet of a vehicle that rests in the pad's way [m]
+constexpr double kClimb = 1.0;        // where braking on the level is not proven [m]
+constexpr double kPressing = 0.2;     // past the contact that is expected, until it is noticed [s]
+constexpr double kLastStretch = 1.2;  // of a curve to contact: the mission has decided by then [s]
+constexpr double kOnward = 1.5;       // from a curve's end to contact at most [s]
+
+/// What a stop that begins in `state` braces with.
+Limits LimitsOfStops(const Limits& limits) {
+  Limits stops = limits;
+  stops.acceleration *= limits.braking_factor;
+  return stops;
+}
+
+/// How far a vehicle that rests at p has to rise so that the pad may drive on below it [m].
+double TooLow(const Eigen::Vector3d& p, double t, const HullSpace& hull) {
+  if (hull.pad == nullptr || !hull.space->OverPad(p)) return 0.0;
+  const double lowest = hull.pad->At(t).p_WP.z() + hull.foot_depth + kAboveDeck;
+  return std::max(0.0, lowest - p.z());
+}
+
+/// From the curve's end until the feet meet the deck at the end's velocity [s].
+double OnwardToContact(const UniformBspline& curve, const HullSpace& hull) {
+  if (hull.pad == nullptr) return std::numeric_limits<double>::infinity();
+  const SplineState end = curve.AtKnot(curve.segments());
+  const estimation::PadState pad = hull.pad->At(curve.t_end());
+  const double left = end.p.z() - hull.foot_depth - pad.p_WP.z();
+  const double sinks = pad.v_WP.z() - end.v.z();
+  if (left <= 0.0) return 0.0;
+  return sinks > 0.0 ? left / sinks : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+PairProof ProvePair(double t_from, double t_handover, bool touches, const Limits& limits,
+                    const HullSpace& hull, FlightPair* pair) {
+  PairProof proof;
+  const UniformBspline& curve = pair->curve;
+  const Eigen::Vector3d p_start = curve.EvaluateOnward(t_from).p_WB;
+  const Sweep until = SweepHull(curve, t_from, t_handover, p_start, hull);
+  const auto note = [&](const Sweep& sweep) {
+    if (!sweep.proven && !proof.unseen_W) proof.unseen_W = sweep.unseen_W;
+    return sweep.proven;
+  };
+  if (!note(until)) return proof;
+  const FlatState from = curve.EvaluateOnward(t_handover);
+  const SplineState state{from.p_WB, from.v_WB, from.a_WB};
+  const Limits stops = LimitsOfStops(limits);
+  const auto rests = [&](double climb) {
+    MakeRestTrajectory(state, t_handover, {0.0, 0.0, climb}, stops, &pair->stop);
+    const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
+    if (TooLow(p_rest, pair->stop.t_end(), hull) > 1e-6) return false;
+    const Sweep sweep =
+        SweepHull(pair->stop, t_handover, pair->stop.t_end(), p_start, hull, DeckContact::kMayNot);
+    proof.leaves = until.leaves || sweep.leaves;
+    return note(sweep);
+  };
+  const auto touches_down = [&] {
+    const double onward = OnwardToContact(curve, hull);
+    if (!touches || onward > kOnward) return false;
+    const double t_contact = std::max(t_handover, curve.t_end() + onward) + kPressing;
+    const Sweep sweep = SweepHull(curve, t_handover, t_contact, p_start, hull);
+    proof.leaves = until.leaves || sweep.leaves;
+    return note(sweep);
+  };
+  // Shortly before contact braking over the deck is the more dangerous end.
+  const bool arrives = curve.t_end() - t_handover < kLastStretch;
+  if (arrives && touches_down()) {
+    proof.proven = proof.contact = true;
+  } else {
+    proof.proven = rests(0.0);
+    if (!proof.proven) {
+      const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
+      const double lift = TooLow(p_rest, pair->stop.t_end(), hull);
+      proof.proven = rests(lift > 0.0 ? lift + kAboveDeck : kClimb);
+    }
+    if (!proof.proven && !arrives) proof.proven = proof.contact = touches_down();
+  }
+  pair->t_stop = proof.contact ? std::numeric_limits<double>::infinity() : t_handover;
+  return proof;
+}
+
+PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {
+  const Eigen::Vector3d p_start = pair->curve.EvaluateOnward(t_from).p_WB;
+  const Sweep sweep = SweepHull(pair->curve, t_from, pair->curve.t_end(), p_start, hull);
+  pair->t_stop = std::numeric_limits<double>::infinity();
+  return {sweep.proven, sweep.leaves, false, sweep.unseen_W};
+}
+
+}  // namespace touchdown::planning

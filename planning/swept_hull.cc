@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hull's tube through the observed-free cells. The hull at every tilt is a ball, and so is the hull
+// grown by its margins. The curve is sampled so densely that the ball, larger by kSampling, holds the
+// tube between two samples; the cells that a ball touches are asked row by row, 64 along x at a time.
+
+#include "touchdown/planning/swept_hull.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "touchdown/planning/pad_outline.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kStep = 0.01;     // between looks at the position [s] ...
+constexpr double kSpacing = 0.06;  // ... and the way between two balls [m]
+constexpr double kSampling =
+    0.01;                         // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s [m]
+constexpr double kNearer = 1e-6;  // rounding of a hull that leaves a cell: it comes no nearer [m]
+constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
+constexpr double kLevel = 2e-3;     // rounding of floor and ceiling: kChordSagitta [m]
+
+/// Distance of a coordinate from the cell i.
+double Gap(double x, int i, double resolution) {
+  return std::max({0.0, i * resolution - x, x - (i + 1) * resolution});
+}
+
+class Tube {
+ public:
+  Tube(const HullSpace& hull, const Eigen::Vector3d& p_start_W)
+      : hull_(hull), map_(*hull.space->map), start_(p_start_W), radius_(hull.radius + kSampling) {}
+
+  /// Whether all cells that the ball at p touches at time t are observed free, or excepted.
+  bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
+    const double cell = map_.resolution();
+    const int z_low = Index(p.z() - radius_), z_high = Index(p.z() + radius_);
+    const Deck deck = DeckBelow(p, t);
+    for (int z = z_low; z <= z_high; ++z) {
+      if ((z + 1) * cell <= deck.exempt_below + kRounding) continue;
+      const bool holds_deck = deck.over && z * cell <= deck.outline.p_WP.z() + kRounding;
+      const double dz = Gap(p.z(), z, cell);
+      const double left = radius_ * radius_ - dz * dz;
+      if (left <= 0.0) continue;
+      const double reach = std::sqrt(left);
+      const int y_high = Index(p.y() + reach);
+      for (int y = Index(p.y() - reach); y <= y_high; ++y) {
+        const double dy = Gap(p.y(), y, cell);
+        const double half2 = left - dy * dy;
+        if (half2 <= 0.0) continue;
+        const double half = std::sqrt(half2);
+        const int x_low = Index(p.x() - half), x_high = Index(p.x() + half);
+        const PadOutline* surface = holds_deck ? &deck.outline : nullptr;
+        if (!RowHolds({x_low, y, z}, x_high - x_low + 1, p, surface, sweep)) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  int Index(double x) const { return static_cast<int>(std::floor(x / map_.resolution())); }
+
+  /// The deck below the ball.
+  struct Deck {
+    PadOutline outline;
+    bool over = false;          ///< the body is over it, wherever it may be
+    double exempt_below = 0.0;  ///< cells whose upper face is no higher are excepted [m]
+  };
+  Deck DeckBelow(const Eigen::Vector3d& p, double t) const {
+    Deck deck;
+    deck.exempt_below = map_.options().ground_height;
+    if (hull_.pad == nullptr) return deck;
+    deck.outline = OutlineOf(hull_.pad->At(t), hull_.deck_half_size);
+    const double top = deck.outline.p_WP.z();
+    if (p.z() - radius_ >= top + map_.resolution()) return deck;  // it does not reach down to it
+    PadOutline sure = deck.outline;
+    sure.half_size = sure.SureHalfSize();
+    deck.over = sure.half_size > 0.0 && DistanceBeside(sure, p) <= 0.0;
+    if (deck.over) deck.exempt_below = std::max(deck.exempt_below, top);
+    return deck;
+  }
+
+  /// `surface`: cells of this row over this deck hold its upper face, and what a ray met there was the deck.
+  bool RowHolds(const CellIndex& first, int count, const Eigen::Vector3d& p,
+                const PadOutline* surface, Sweep* sweep) const {
+    CellIndex at = first;
+    for (int left = count; left > 0;) {
+      const int n = std::min(left, 64);
+      if (!map_.InWindow(at) || !map_.InWindow(at + CellIndex(n - 1, 0, 0))) {
+        return Unseen(at, sweep);
+      }
+      const std::uint64_t all = ~std::uint64_t{0} >> (64 - n);
+      std::uint64_t missing = ~map_.ObservedFreeRow(at, n) & all;
+      for (; missing != 0; missing &= missing - 1) {
+        const CellIndex cell = at + CellIndex(std::countr_zero(missing), 0, 0);
+        const bool on_deck =
+            surface != nullptr && DistanceBeside(*surface, map_.CentreOf(cell)) <= 0.0;
+        if (on_deck && !map_.IsOccupied(cell)) continue;
+        if (!WasThere(cell, p)) return Unseen(cell, sweep);
+        sweep->leaves = true;
+      }
+      left -= n;
+      at.x() += n;
+    }
+    return true;
+  }
+
+  /// The hull reached into the cell at the start and is now no nearer to it.
+  bool WasThere(const CellIndex& cell, const Eigen::Vector3d& p) const {
+    const double at_start = Distance(cell, start_);
+    return at_start > 0.0 && at_start < radius_ && Distance(cell, p) >= at_start - kNearer;
+  }
+
+  double Distance(const CellIndex& cell, const Eigen::Vector3d& p) const {
+    const double side = map_.resolution();
+    return Eigen::Vector3d(Gap(p.x(), cell.x(), side), Gap(p.y(), cell.y(), side),
+                           Gap(p.z(), cell.z(), side))
+        .norm();
+  }
+
+  bool Unseen(const CellIndex& cell, Sweep* sweep) const {
+    sweep->unseen_W = map_.CentreOf(cell);
+    return false;
+  }
+
+  const HullSpace& hull_;
+  const OccupancyMap& map_;
+  Eigen::Vector3d start_;
+  double radius_;
+};
+
+/// Feet above the deck, as far as the hull may be over it.
+bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t,
+               const Eigen::Vector3d& start) {
+  if (hull.pad == nullptr) return true;
+  PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
+  const double feet = p.z() - hull.foot_depth;
+  if (feet >= deck.p_WP.z() || p.z() >= start.z()) return true;
+  return DistanceBeside(deck, p) > hull.radius + PadOutline::kSigmas * deck.sigma;
+}
+
+/// Between floor and ceiling; who starts beyond one of them does not go farther. Where the deck may be
+/// touched it is the floor itself.
+bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Vector3d& start,
+               DeckContact contact) {
+  const double ceiling = std::max(space.ceiling, start.z());
+  if (p.z() > ceiling + kLevel) return false;
+  if (contact == DeckContact::kMay && space.OverPad(p)) return true;
+  return p.z() >= std::min(space.FloorAt(p), start.z()) - kLevel;
+}
+
+}  // namespace
+
+Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
+                const Eigen::Vector3d& p_start_W, const HullSpace& hull, DeckContact contact) {
+  Sweep sweep;
+  const Tube tube(hull, p_start_W);
+  Eigen::Vector3d ball = p_start_W;  // where the hull was looked at last,
+  Eigen::Vector3d before = ball;     // and the place after it that was passed over
+  double t_before = t_from;
+  const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / kStep)));
+  for (int i = 0; i <= steps; ++i) {
+    const double t = t_from + (t_to - t_from) * i / steps;
+    const Eigen::Vector3d p = t <= curve.t_end() ? curve.Position(t) : curve.EvaluateOnward(t).p_WB;
+    if (!LevelKept(*hull.space, p, p_start_W, contact)) return sweep;
+    if (contact == DeckContact::kMayNot && !AboveDeck(hull, p, t, p_start_W)) return sweep;
+    const bool first_or_last = i == 0 || i == steps;
+    const double away = (p - ball).norm(), away_before = (before - ball).norm();
+    // A way that turns back was at its farthest just before.
+    if (!first_or_last && away < away_before) {
+      if (!tube.Holds(before, t_before, &sweep)) return sweep;
+      ball = before;
+    }
+    before = p;
+    t_before = t;
+    if (!first_or_last && (p - ball).norm() < kSpacing) continue;
+    if (!tube.Holds(p, t, &sweep)) return sweep;
+    ball = p;
+  }
+  sweep.proven = true;
+  return sweep;
+}
+
+}  // namespace touchdown::planning

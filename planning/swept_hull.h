@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/pad_prediction.h"
+#include "touchdown/planning/free_space.h"
+#include "touchdown/planning/uniform_bspline.h"
+
+namespace touchdown::planning {
+
+/// What the hull may sweep until it rests: cells that were observed free, and the deck
+/// (docs/safety.md). A view of the map, made anew for every replanning step.
+struct HullSpace {
+  const FreeSpace* space = nullptr;  ///< its map; its floor and ceiling for the body's origin
+  double radius = 0.0;               ///< of the hull at every tilt and the margins around it [m]
+  /// Where the deck will be; nullptr: there is none.
+  const estimation::PadPrediction* pad = nullptr;
+  double deck_half_size = 0.0;  ///< half the deck's side [m]
+  double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
+};
+
+/// What became of a look along a curve.
+struct Sweep {
+  bool proven = false;
+  /// The hull starts among cells that are not observed free, and only ever moves away from those.
+  bool leaves = false;
+  /// First place that is not observed free, in W [m], if that is why nothing is proven.
+  std::optional<Eigen::Vector3d> unseen_W;
+};
+
+/// Whether the hull may touch the deck along a curve.
+enum class DeckContact {
+  kMay,
+  kMayNot,  ///< while it may be over the deck the feet are above it; who starts lower only rises
+};
+
+/// Looks whether the hull, grown by the margins, stays in observed-free cells along the curve from t_from
+/// to t_to [s], past the curve's end at its end's velocity, and the body's origin between floor and
+/// ceiling. Exceptions: cells that end below the map's ground height; while the body's origin is over the
+/// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
+/// upper face, and those over the deck that hold it; and, with `leaves`, cells around `p_start_W` that the hull reached there already and
+/// does not come nearer to. Does not allocate.
+Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
+                const Eigen::Vector3d& p_start_W, const HullSpace& hull,
+                DeckContact contact = DeckContact::kMay);
+
+}  // namespace touchdown::planning

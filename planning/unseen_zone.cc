@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cells that are not observed free, grown by the hull: rows of 63 cells in a word, each grown along x by
+// shifts and laid over the rows that the ball reaches.
+
+#include "touchdown/planning/unseen_zone.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "touchdown/planning/swept_hull.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+/// Each bit spread to those at most `by` beside it.
+std::uint64_t Spread(std::uint64_t bits, int by) {
+  for (int done = 0; done < by;) {
+    const int step = std::min(by - done, done + 1);
+    bits |= bits << step | bits >> step;
+    done += step;
+  }
+  return bits;
+}
+
+}  // namespace
+
+void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, double reach) {
+  const OccupancyMap& map = *hull.space->map;
+  const double side = map.resolution();
+  const CellIndex centre = map.CellOf(start_W);
+  low_ = centre.array() - kReach;
+  missing_.fill(0);
+  closed_.fill(0);
+  // Between a cell's centre and the nearest point of one that it may not touch.
+  const double radius = hull.radius / side + 0.5;
+  const int around = static_cast<int>(std::ceil(radius));
+  const double farthest = std::min(reach, kFarthest);
+  const int asked = std::min(kReach, static_cast<int>(farthest / side) + around + 1);
+  const double ground = map.options().ground_height;
+  const double deck = hull.pad != nullptr ? hull.pad->At(0.0).p_WP.z() + side : ground;
+  for (int z = kReach - asked; z <= kReach + asked; ++z) {
+    for (int y = kReach - asked; y <= kReach + asked; ++y) {
+      const CellIndex first = low_ + CellIndex(kReach - asked, y, z);
+      const int count = 2 * asked + 1;
+      if ((first.z() + 1) * side <= ground + 1e-9) continue;
+      const bool in_window =
+          map.InWindow(first) && map.InWindow(first + CellIndex(count - 1, 0, 0));
+      std::uint64_t bits = ~std::uint64_t{0} >> (64 - count);
+      if (in_window) bits &= ~map.ObservedFreeRow(first, count);
+      const bool may_be_deck = (first.z() + 1) * side <= deck + 1e-9;
+      for (std::uint64_t left = bits; left != 0; left &= left - 1) {
+        const int x = std::countr_zero(left);
+        const Eigen::Vector3d p = map.CentreOf(first + CellIndex(x, 0, 0));
+        const Eigen::Array3d off = ((p - start_W).array().abs() - 0.5 * side).max(0.0);
+        const bool touched = off.matrix().norm() < hull.radius;
+        const bool over = may_be_deck && hull.space->OverPad(p);
+        if (touched || over) bits &= ~(std::uint64_t{1} << x);
+      }
+      missing_[RowOf(y, z)] = bits << (kReach - asked);
+    }
+  }
+  const int kept = std::min(kReach, static_cast<int>(farthest / side));
+  const std::uint64_t columns = (~std::uint64_t{0} >> (64 - (2 * kept + 1))) << (kReach - kept);
+  for (int z = kReach - kept; z <= kReach + kept; ++z) {
+    for (int y = kReach - kept; y <= kReach + kept; ++y) {
+      std::uint64_t closed = 0;
+      for (int dz = -around; dz <= around; ++dz) {
+        for (int dy = -around; dy <= around; ++dy) {
+          const double left = radius * radius - dz * dz - dy * dy;
+          const int row_y = y + dy, row_z = z + dz;
+          if (left < 0.0 || row_y < 0 || row_y >= kSide || row_z < 0 || row_z >= kSide) continue;
+          const std::uint64_t bits = missing_[RowOf(row_y, row_z)];
+          if (bits != 0) closed |= Spread(bits, static_cast<int>(std::sqrt(left)));
+        }
+      }
+      closed_[RowOf(y, z)] = closed & columns;
+    }
+  }
+}
+
+std::uint64_t UnseenZone::Row(const CellIndex& first, int count) const {
+  const CellIndex at = first - low_;
+  if (at.y() < 0 || at.y() >= kSide || at.z() < 0 || at.z() >= kSide) return 0;
+  if (at.x() >= kSide || at.x() + count <= 0) return 0;
+  const std::uint64_t row = closed_[RowOf(at.y(), at.z())];
+  const std::uint64_t bits = at.x() >= 0 ? row >> at.x() : row << -at.x();
+  return bits & ~std::uint64_t{0} >> (64 - count);
+}
+
+}  // namespace touchdown::planning
