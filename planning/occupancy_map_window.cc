@@ -91,7 +91,7 @@ void OccupancyMap::Restore(const CellValue& value) {
   if (log_odds >= 0 && top <= options_.ground_height) return;
   Cell restored;
   restored.log_odds = log_odds;
-  restored.hit_range = kFarthest;
+  restored.hit_range = 0;  // from where it was hit is forgotten: only a sharp look outweighs it
   Set(value.cell, restored);
   cells_[Address(value.cell)].changed = false;
 }

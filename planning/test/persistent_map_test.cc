@@ -112,6 +112,22 @@ TEST(PersistentMap, AnObstacleThatHasGoneIsFreedInMemoryToo) {
   EXPECT_FALSE(kept.IsOccupied(post));
 }
 
+// Before, a remembered obstacle was freed by whatever passed its cell from however far.
+TEST(PersistentMap, ARememberedObstacleIsNotFreedFromAfar) {
+  PersistentMap kept(SmallMap());
+  OccupancyMap map(SmallMap());
+  kept.Recentre(kEye, &map);
+  map.SetOccupied({2.25, 0.05, kEye.z()});
+  const CellIndex cell = map.CellOf({2.25, 0.05, kEye.z()});
+  kept.Recentre(kEye + Eigen::Vector3d(20.0, 0.0, 0.0), &map);
+  kept.Recentre(kEye, &map);
+  ASSERT_TRUE(map.IsOccupied(cell));
+  for (int i = 0; i < 20; ++i) map.Integrate(Scene(kNoPost), {});  // 2.2 m away: not sharp
+  EXPECT_TRUE(map.IsOccupied(cell));
+  for (int i = 0; i < 5; ++i) map.Integrate(Scene(kNoPost, kNearer), {});
+  EXPECT_FALSE(map.IsOccupied(cell));
+}
+
 TEST(PersistentMap, MemoryIsNoObservation) {
   OccupancyMap map = SeenMap();
   PersistentMap kept(SmallMap());
