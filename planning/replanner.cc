@@ -31,12 +31,10 @@ constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter repla
 constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
-constexpr double kLastStretch = 1.2;     // before contact [s]
 constexpr double kClockRounding = 1e-6;  // [s]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
-constexpr double kUnseenReach =
-    1.0;  // around a start, in which a plan keeps to what was seen [m] ...
-constexpr double kLeastReach = 0.5;  // ... and where nothing leads out of that
+constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
+constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 

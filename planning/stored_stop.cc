@@ -14,13 +14,12 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kAboveDeck = 0.1;    // of the feet of a vehicle that rests in the pad's way [m]
-constexpr double kClimb = 1.0;        // where braking on the level is not proven [m]
-constexpr double kPressing = 0.2;     // past the contact that is expected, until it is noticed [s]
-constexpr double kLastStretch = 1.2;  // of a curve to contact: the mission has decided by then [s]
-constexpr double kOnward = 1.5;       // from a curve's end to contact at most [s]
+constexpr double kAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
+constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
+constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
+constexpr double kOnward = 1.5;     // from a curve's end to contact at most [s]
 
-/// What a stop that begins in `state` braces with.
+/// What stops brake with.
 Limits LimitsOfStops(const Limits& limits) {
   Limits stops = limits;
   stops.acceleration *= limits.braking_factor;

@@ -24,6 +24,9 @@ struct FlightPair {
   }
 };
 
+/// Of a curve to contact: the mission has decided by then, and nothing is put off any more [s].
+inline constexpr double kLastStretch = 1.2;
+
 /// A plan that is proven as a pair, or why it is not.
 struct PairProof {
   bool proven = false;
