@@ -46,7 +46,8 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
   Track(!now.touching, t, state.lifted_since);
   const bool bounces =
       state.contact_since != kNever && !LastedLonger(state.lifted_since, t, p.contact_break);
-  Track(state.mode == MissionMode::kLanding && (now.touching || bounces), t, state.contact_since);
+  const bool lands = state.mode == MissionMode::kLanding || in.lands;
+  Track(lands && (now.touching || bounces), t, state.contact_since);
 }
 
 // Moves the commanded foot height by dt; returns why a descent pauses.

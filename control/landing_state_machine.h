@@ -11,7 +11,7 @@
 //   tracking       hold            pad_lost           no converged pad for over pad_timeout
 //   tracking       hold            plan_failed        no plan for over plan_timeout
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
-//   landing        disarmed        contact            feet at the deck with a force for contact_time,
+//   (lands)        disarmed        contact            feet at the deck with a force for contact_time,
 //                                                     but for breaks of contact_break, and at last
 //                                                     for contact_rest without
 //   landing        go_around       pad_lost           no converged pad for over pad_timeout
@@ -37,7 +37,9 @@
 //   emergency_stop hold            emergency_cleared  flag down for over emergency_time
 // clang-format on
 //
-// (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
+// Contact counts in every mode in which what is flown leads to it: a go-around for which nothing is certified
+// ends on the deck.
+// (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
 // error beyond commit_abort_distance (or outside the cone), too_fast, the end of the bridge before the feet touch, no_contact,
 // own_state_lost, invalid_input or emergency. A pad counts as converged only while the vehicle's
@@ -132,6 +134,8 @@ struct MissionInputs {
   bool own_usable = true;   ///< own state is good enough to fly to the pad by
   double foot_force = 0.0;  ///< sum over the feet [N]
   bool has_plan = false;    ///< a certified plan exists
+  bool lands =
+      false;  ///< what is flown ends in contact, whatever the mode: nothing else was certified
   double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
   /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
   /// does not lead there.

@@ -60,7 +60,7 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
 
 std::optional<SafetyWatch> SafetyWatchOf(const Scenario& scenario, const sim::World& world) {
   if (scenario.planner != PlannerKind::kLanding) return std::nullopt;
-  return SafetyWatch(world.config().obstacles, planning::ReplannerOptions{}.margin);
+  return SafetyWatch(world.config().obstacles);
 }
 
 class Trial {
@@ -184,7 +184,8 @@ class Trial {
       ++result_.replans_by_reason[no_plan_reason_];
     }
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
-    if (safety_watch_ && !judge_.touchdown()) safety_watch_->Step(*plan);
+    if (safety_watch_ && !judge_.touchdown())
+      safety_watch_->Step(*plan, pilot_.last_replan().request.input.margins);
     const planning::StageTimes::Span& total = plan->times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
@@ -242,7 +243,7 @@ class Trial {
 
   void WatchSafety(const estimation::VehicleState& vehicle) {
     const Eigen::Vector3d believed = perception_.own().now().p_WB;
-    safety_watch_->Tracked(believed, pilot_.Reference(vehicle.t).p_WB);
+    safety_watch_->Tracked(believed, vehicle.p_WB, pilot_.Reference(vehicle.t).p_WB);
     if (!map_look_clock_.Due(vehicle.t)) return;
     safety_watch_->LookAt(perception_.map(), believed, believed - vehicle.p_WB);
   }

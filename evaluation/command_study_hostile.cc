@@ -34,13 +34,14 @@ struct HostileArguments {
   bool retry = false;
   std::string db;
   std::string html;
+  std::string against;
   bool json = false;
 };
 
 void CheckArguments(const HostileArguments& arguments, const Command& command) {
   for (const char* alone : {"--only", "--show", "--ways"}) {
     if (!command.Given(alone)) continue;
-    for (const char* other : {"--db", "--html", "--shard", "--retry"}) {
+    for (const char* other : {"--db", "--html", "--shard", "--retry", "--against"}) {
       if (command.Given(other))
         throw BadInput(fmt::format("{} does not go with {}.", other, alone));
     }
@@ -53,6 +54,7 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
   if (!arguments.db.empty() && arguments.db == arguments.html) {
     throw BadInput(fmt::format("--db and --html are the same file, {}.", arguments.db));
   }
+  if (!arguments.against.empty()) ReadHostileTimes(arguments.options, arguments.against);
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.html.empty()) CheckOutputPath("--html", arguments.html);
 }
@@ -110,6 +112,11 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
     std::cout << HostileJson(arguments.options, result.rows).dump(2) << std::endl;
   } else {
     std::cout << HostileText(arguments.options, result.rows) << std::flush;
+    if (!arguments.against.empty()) {
+      std::cout << HostilePairsText(result.rows,
+                                    ReadHostileTimes(arguments.options, arguments.against))
+                << std::flush;
+    }
   }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
                                 [](const SweepRow& row) { return IsLost(row.result.outcome); });
@@ -172,6 +179,10 @@ void AddHostileStudyCommand(Command study, const Registries& registries, Command
       "--db", &arguments->db,
       "Keep the flights, an SQLite file; with one of the same study go on where it ends", "F.db");
   command.AddFile("--html", &arguments->html, "Write the report as a page", "F.html");
+  command.AddFile("--against", &arguments->against,
+                  "Compare times with this file: the same flights with --set "
+                  "map.observed_free=truth, or otherwise",
+                  "F.db");
   command.AddFlag("--retry", arguments->retry,
                   "Fly again what crashed, hung or ended in an error, of the flights in --db");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");

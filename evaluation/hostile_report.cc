@@ -58,9 +58,14 @@ std::string TableText(const std::vector<SweepRow>& rows, bool within) {
   const SafetyFigures& s = all.safety;
   text += fmt::format("  steps without a proven pair {}; flights that escaped {}\n",
                       s.uncertified_steps, RateText(all.escaping_flights, all.flights));
+  text += fmt::format("  stops flown {}; map errors {}; steps with less than the margins {}\n",
+                      s.stops_flown, s.map_errors, s.narrow_steps);
   text += fmt::format(
-      "  stops flown {}; map errors {}; tracking beyond its margin {} times, at most {:.2f} m\n",
-      s.stops_flown, s.map_errors, s.tracking_events, s.tracking_max_m);
+      "  margins: median of flights {:.2f} m, p95 {:.2f}, largest {:.2f}; tracking beyond its "
+      "share {} times, at most "
+      "{:.2f} m; own state beyond its share {} times, at most {:.2f} m\n",
+      Quantile(all.margins_m, 0.5).value_or(0.0), Quantile(all.margins_m, 0.95).value_or(0.0),
+      s.margin_max_m, s.tracking_events, s.tracking_max_m, s.drift_events, s.drift_max_m);
   text += fmt::format("  falsely free {} of {} cells\n", s.falsely_free_cells, s.free_cells);
   return text + "\n";
 }
@@ -107,6 +112,10 @@ Json TallyJson(const HostileTally& t) {
           {"escaping_flights", t.escaping_flights},
           {"stops_flown", t.safety.stops_flown},
           {"map_errors", t.safety.map_errors},
+          {"narrow_steps", t.safety.narrow_steps},
+          {"margin_max_m", t.safety.margin_max_m},
+          {"drift_events", t.safety.drift_events},
+          {"drift_max_m", t.safety.drift_max_m},
           {"tracking_events", t.safety.tracking_events},
           {"tracking_max_m", t.safety.tracking_max_m},
           {"free_cells", t.safety.free_cells},

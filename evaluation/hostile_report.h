@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,15 @@ std::string HostilePage(const HostileOptions& options, const std::vector<SweepRo
 
 /// Where a way exists, by family, of flights that are not flown.
 std::string HostileWaysText(const std::vector<HostileFlight>& flights);
+
+/// Time to land of each flight that landed, by its seed, of a campaign's file.
+using HostileTimes = std::map<std::uint64_t, double>;
+
+/// @throws BadInput if the file at `path` is no file of `touchdown study hostile` with the same seed.
+HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& path);
+
+/// Ratios of times to land, flight by flight, to those of the same flights in another campaign, by family.
+std::string HostilePairsText(const std::vector<SweepRow>& rows, const HostileTimes& others);
 
 /// "3 of 120 [0.5, 7.1] %", with the 95 % Clopper-Pearson interval; "0 of 0" without any.
 std::string RateText(int count, int of);

@@ -82,10 +82,15 @@ void HostileTally::Add(const SweepRow& row) {
 void HostileTally::AddSafety(const SafetyFigures& figures) {
   safety.uncertified_steps += figures.uncertified_steps;
   safety.escaping_steps += figures.escaping_steps;
+  safety.narrow_steps += figures.narrow_steps;
   safety.stops_flown += figures.stops_flown;
   safety.map_errors += figures.map_errors;
   safety.tracking_events += figures.tracking_events;
   safety.tracking_max_m = std::max(safety.tracking_max_m, figures.tracking_max_m);
+  safety.margin_max_m = std::max(safety.margin_max_m, figures.margin_max_m);
+  margins_m.push_back(figures.margin_mean_m);
+  safety.drift_events += figures.drift_events;
+  safety.drift_max_m = std::max(safety.drift_max_m, figures.drift_max_m);
   safety.free_cells += figures.free_cells;
   safety.falsely_free_cells += figures.falsely_free_cells;
   escaping_flights += figures.escaping_steps > 0 ? 1 : 0;

@@ -32,7 +32,8 @@ struct HostileTally {
   int timeouts = 0;                  ///< time ran out, for whatever reason
   int lost = 0;                      ///< error, crashed, hung
   int other = 0;                     ///< unstable, disarmed in the air, ...
-  SafetyFigures safety;              ///< sums over the flights; of tracking_max_m the largest
+  SafetyFigures safety;              ///< sums over the flights; of what ends in max_m the largest
+  std::vector<double> margins_m;     ///< mean margin of each flight
   int escaping_flights = 0;          ///< with a step that escapes
 
   void Add(const SweepRow& row);

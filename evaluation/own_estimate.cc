@@ -63,4 +63,12 @@ double OwnEstimate::HorizontalSigma() const {
       estimation::LargestVariance(source_->filter().belief().cov.topLeftCorner<2, 2>()));
 }
 
+double OwnEstimate::PositionSigma() const { return LargestSigma(estimation::kPositionError); }
+double OwnEstimate::AttitudeSigma() const { return LargestSigma(estimation::kAttitudeError); }
+
+double OwnEstimate::LargestSigma(int first) const {
+  if (!source_) return 0.0;
+  return std::sqrt(source_->filter().belief().cov.diagonal().segment<3>(first).maxCoeff());
+}
+
 }  // namespace touchdown::evaluation

@@ -41,7 +41,14 @@ class OwnEstimate {
   /// Largest horizontal 1 sigma of the position in W [m]; 0 for the truth.
   double HorizontalSigma() const;
 
+  /// Largest 1 sigma of the position in W, of any direction [m], and of the attitude about any of B's axes [rad];
+  /// 0 for the truth.
+  double PositionSigma() const;
+  double AttitudeSigma() const;
+
  private:
+  double LargestSigma(int first) const;
+
   std::optional<sim::OwnStateSource> source_;
   estimation::VehicleState now_;
 };

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "touchdown/evaluation/map_file.h"
+#include "touchdown/evaluation/truth_map.h"
 #include "touchdown/planning/stage_timer.h"
 #include "touchdown/solvers/thread_clock.h"
 
@@ -82,6 +83,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
   map_.Recentre(own_.now().p_WB);
   if (prior) persistent_map_.Refill(&map_);
   map_.MarkFree(own_.now().p_WB, kStartFree);
+  if (scenario.map_observed_free == ObservedFreeKind::kTruth) truth_ = world.config().obstacles;
 }
 
 void Perception::Sense(const sim::World& world) {
@@ -106,6 +108,7 @@ void Perception::Sense(const sim::World& world) {
       }
       UpdateMap(t, glimpse->frame);
     }
+    if (truth_) ObserveTruth(*truth_, own_.now().p_WB - vehicle.p_WB, &map_);
     depth_eye_->Recycle(std::move(*glimpse));
   }
   if (image_taken_) mapping_cpu_s_ += solvers::ThreadCpuSeconds() - sensed;

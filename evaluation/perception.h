@@ -83,6 +83,7 @@ class Perception {
   planning::OccupancyMap map_;
   planning::PersistentMap persistent_map_;
   double deck_half_size_;
+  std::optional<sim::ObstacleField> truth_;  // stands in for what the depth camera sees free
   std::vector<PadArrival>* pad_log_ = nullptr;
   bool pad_measured_ = false;
   bool image_taken_ = false;

@@ -141,6 +141,9 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
                         double foot_force, double dt) {
   const estimation::VehicleState& vehicle = own.now();
   const double t = vehicle.t;
+  own_position_sigma_ = own.PositionSigma();
+  own_attitude_sigma_ = own.AttitudeSigma();
+  recent_error_.Note(t, (planner_->Reference(t).p_WB - vehicle.p_WB).norm());
   control::MissionInputs inputs;
   inputs.t = t;
   inputs.pad_available = filter.initialized();
@@ -165,6 +168,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   own_usable_ = inputs.own_usable;
   inputs.foot_force = foot_force_ = foot_force;
   inputs.has_plan = has_plan_;
+  inputs.lands = lands_;
   // Between replans the last one counts: no plan has failed since it succeeded.
   if (requested_t_ && !last_planned_) {
     inputs.plan_failed_for =
@@ -179,7 +183,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   mission_ = step.outputs;
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
-  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const bool landing = Landing();
   const bool at_deck = std::abs(foot_height_) <= parameters_.contact_height &&
                        inputs.horizontal_distance <= parameters_.contact_distance;
   settling_.Note(t, at_deck && foot_force > kTouchForce, landing);
@@ -202,6 +206,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   input.t_start = vehicle.t + replan_.latency_s;
   input.vehicle = vehicle;
   if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
+  input.margins = planning::MarginsOf(own_position_sigma_, own_attitude_sigma_,
+                                      recent_error_.value(), input.pull_W);
   if (!arriving()) level_time_ = LevelTime(input.pull_W);
   input.endpoint = Endpoint(vehicle.t);
 
@@ -212,15 +218,18 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
   if (result.idle) return nullptr;
   look_W_ = result.unseen_W;
+  if (result.from_odometry) recent_error_ = {};  // the reference comes to the vehicle
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   DeliverLate(vehicle.t);
-  // Where there is nothing left to plan, no plan is missing.
+  // Where there is nothing left to plan, or what is flown lands, no plan is missing.
+  const bool kept = result.status == planning::ReplanStatus::kKept;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned ||
-                  result.reason == planning::ReplanReason::kAtGoal;
-  has_plan_ = last_planned_ || result.status == planning::ReplanStatus::kKept;
+                  result.reason == planning::ReplanReason::kAtGoal || (kept && result.Lands());
+  lands_ = result.Lands();
+  has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
-  if (result.status != planning::ReplanStatus::kKept && !Levelled(vehicle.t)) {
+  if (!kept && !Levelled(vehicle.t)) {
     const bool touches = last_planned_ && wants_plan && input.endpoint.touches();
     plan_end_t_ = touches ? result.curve.t_end() : std::numeric_limits<double>::infinity();
   }
@@ -237,7 +246,9 @@ void Pilot::DeliverLate(double t) {
 
 // Longer, and the shortest plan would end too early to be decided on.
 double Pilot::LevelTime(const Eigen::Vector3d& pull_W) const {
-  return std::min(kLevelTime + kLevelTimeInPull * pull_W.head<2>().norm(),
+  const double gusts = kLevelTimeInPull * pull_W.head<2>().norm();
+  const double errors = recent_error_.value() / parameters_.touchdown_rate;
+  return std::min(kLevelTime + std::max(gusts, errors),
                   parameters_.decide_time - 1.3 * shortest_contact_plan_);
 }
 
@@ -283,7 +294,7 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   estimation::VehicleState told = vehicle;
   planning::FlatState reference = Reference(vehicle.t);
   control::Disturbance compensated = disturbance();
-  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const bool landing = Landing();
   const bool low = landing && foot_height_ < kFlareHeight;
   const control::Controller& law = low ? *low_controller_ : *controller_;
   // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
@@ -317,6 +328,9 @@ bool Pilot::Levelled(double t) const {
   const double left = plan_end_t_ - (t + replan_.latency_s);
   return arriving() && left < shortest_contact_plan_;
 }
+
+// Whatever the mission wants: where nothing else is proven, a landing that has begun is flown to its end.
+bool Pilot::Landing() const { return mission_.mode == control::MissionMode::kLanding || lands_; }
 
 bool Pilot::arriving() const {
   return mission_.mode == control::MissionMode::kLanding &&

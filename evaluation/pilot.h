@@ -82,6 +82,7 @@ class Pilot {
   double Latency() const;
   void DeliverLate(double t);
   bool Levelled(double t) const;
+  bool Landing() const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
@@ -113,9 +114,12 @@ class Pilot {
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
-  bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
-  std::optional<double> planned_t_;    ///< when the last new plan was made
-  std::optional<double> requested_t_;  ///< since when plans are asked for without a break
+  bool lands_ = false;  // what is flown ends in contact
+  double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;
+  planning::RecentError recent_error_;  // of tracking
+  bool last_planned_ = false;           ///< the last replanning step left no plan to be wished for
+  std::optional<double> planned_t_;     ///< when the last new plan was made
+  std::optional<double> requested_t_;   ///< since when plans are asked for without a break
   /// When the committed plan that leads to contact ends [s]; infinite if there is none.
   double plan_end_t_ = std::numeric_limits<double>::infinity();
   double level_time_ = 0.0;        ///< from there to contact [s]

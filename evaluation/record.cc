@@ -45,13 +45,14 @@ CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL, re
   pad_ax REAL, pad_ay REAL, pad_az REAL, pad_yaw REAL, pad_yaw_rate REAL,
   endpoint_t_reference REAL, endpoint_height REAL, endpoint_sink_rate REAL,
   endpoint_height_floor REAL, endpoint_arrival_sink REAL, endpoint_at_rest INTEGER,
-  pull_x REAL, pull_y REAL, pull_z REAL);
+  pull_x REAL, pull_y REAL, pull_z REAL,
+  margin_own_state REAL, margin_attitude REAL, margin_tracking REAL);
 CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t REAL, height REAL,
   noise_position REAL, noise_velocity REAL, noise_acceleration REAL, noise_heading REAL,
   noise_turn REAL);
 CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, cov2 REAL, cov3 REAL,
   cov4 REAL, PRIMARY KEY(plan, i));
-CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, climb REAL, strip_t REAL,
+CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
   next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL, next_t_stop REAL);
@@ -143,7 +144,8 @@ void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
              pad.p_WP.z(), pad.v_WP.x(), pad.v_WP.y(), pad.v_WP.z(), pad.a_WP.x(), pad.a_WP.y(),
              pad.a_WP.z(), pad.yaw, pad.yaw_rate, end.t_reference, end.height, end.sink_rate,
              end.height_floor, end.arrival_sink, end.at_rest, input.pull_W.x(), input.pull_W.y(),
-             input.pull_W.z());
+             input.pull_W.z(), input.margins.own_state, input.margins.attitude,
+             input.margins.tracking);
 }
 
 std::optional<double> FiniteOrNone(double x) {
@@ -160,13 +162,13 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement input = db.Prepare(
       "INSERT INTO replan_input VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "?, "
-      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement prediction =
       db.Prepare("INSERT INTO prediction VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?)");
+      "?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const RecordPlan& row : plans) {
@@ -180,10 +182,10 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       belief.Run(id, i, p.belief.mean(i), c(i, 0), c(i, 1), c(i, 2), c(i, 3), c(i, 4));
     }
     const planning::ReplannerState& s = row.before;
-    state.Run(id, s.planned, s.climb, s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(),
-              s.strip_to.y(), s.strip_floor, s.current.curve.t0(), s.current.curve.interval(),
-              s.current.stop.t0(), s.current.stop.interval(), s.next.curve.t0(),
-              s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
+    state.Run(id, s.planned, s.around_unseen, s.climb, s.strip_t, s.strip_from.x(),
+              s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor, s.current.curve.t0(),
+              s.current.curve.interval(), s.current.stop.t0(), s.current.stop.interval(),
+              s.next.curve.t0(), s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
               FiniteOrNone(s.current.t_stop), FiniteOrNone(s.next.t_stop));
     WritePoints(point, id, "current", s.current.curve.control_points());
     WritePoints(point, id, "current_stop", s.current.stop.control_points());

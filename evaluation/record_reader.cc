@@ -141,6 +141,9 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
     input.endpoint.arrival_sink = row.Number();
     input.endpoint.at_rest = row.Flag();
     input.pull_W = row.Vector3();
+    input.margins.own_state = row.Number();
+    input.margins.attitude = row.Number();
+    input.margins.tracking = row.Number();
   };
   ReadEach(
       TableRows(db, "replan_input",
@@ -149,7 +152,7 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
                 "pad_yaw, pad_yaw_rate, endpoint_t_reference, endpoint_height, "
                 "endpoint_sink_rate, endpoint_height_floor, endpoint_arrival_sink, "
                 "endpoint_at_rest, pull_x, pull_y, "
-                "pull_z",
+                "pull_z, margin_own_state, margin_attitude, margin_tracking",
                 "plan"),
       plans, read_input);
   const auto read_prediction = [](TableRows& row, RecordPlan* plan) {
@@ -179,29 +182,32 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
 
 void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   std::vector<std::map<std::string, Knots>> knots(plans->size());
-  ReadEach(TableRows(db, "replanner_state",
-                     "plan, planned, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
-                     "strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
-                     "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
-                     "current_t_stop, next_t_stop",
-                     "plan"),
-           plans, [&](TableRows& row, RecordPlan* plan) {
-             planning::ReplannerState& s = plan->before;
-             s.planned = row.Flag();
-             s.climb = row.Optional();
-             s.strip_t = row.Optional();
-             s.strip_from = row.Vector2();
-             s.strip_to = row.Vector2();
-             s.strip_floor = row.Number();
-             auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
-             for (const char* curve : {"current", "current_stop", "next", "next_stop"}) {
-               curves[curve].t0 = row.Number();
-               curves[curve].h = row.Number();
-             }
-             for (planning::FlightPair* pair : {&s.current, &s.next}) {
-               pair->t_stop = row.Optional().value_or(std::numeric_limits<double>::infinity());
-             }
-           });
+  ReadEach(
+      TableRows(
+          db, "replanner_state",
+          "plan, planned, around_unseen, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
+          "strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
+          "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
+          "current_t_stop, next_t_stop",
+          "plan"),
+      plans, [&](TableRows& row, RecordPlan* plan) {
+        planning::ReplannerState& s = plan->before;
+        s.planned = row.Flag();
+        s.around_unseen = row.Flag();
+        s.climb = row.Optional();
+        s.strip_t = row.Optional();
+        s.strip_from = row.Vector2();
+        s.strip_to = row.Vector2();
+        s.strip_floor = row.Number();
+        auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
+        for (const char* curve : {"current", "current_stop", "next", "next_stop"}) {
+          curves[curve].t0 = row.Number();
+          curves[curve].h = row.Number();
+        }
+        for (planning::FlightPair* pair : {&s.current, &s.next}) {
+          pair->t_stop = row.Optional().value_or(std::numeric_limits<double>::infinity());
+        }
+      });
   ReadMany(TableRows(db, "state_point", "plan, curve, i, x, y, z", "plan, curve, i"), plans,
            [&](TableRows& row, RecordPlan* plan) {
              auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];

@@ -36,21 +36,34 @@ int CountFreeInside(const planning::OccupancyMap& map, const sim::Obstacle& obst
 
 }  // namespace
 
-void SafetyWatch::Step(const planning::ReplanResult& plan) {
-  if (!plan.certificate.stops_in_observed_space) ++figures_.uncertified_steps;
-  if (plan.certificate.escaping || plan.certificate.leaves) ++figures_.escaping_steps;
+void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margins& margins) {
+  margins_ = margins;
+  figures_.margin_max_m = std::max(figures_.margin_max_m, margins.Sum());
+  figures_.margin_mean_m += (margins.Sum() - figures_.margin_mean_m) / ++steps_;
+  const planning::Certificate& certificate = plan.certificate;
+  if (!certificate.stops_in_observed_space) ++figures_.uncertified_steps;
+  const bool escapes = certificate.leaves || plan.status == planning::ReplanStatus::kEscaping;
+  const bool narrow = certificate.narrow || certificate.escaping;
+  if (escapes) ++figures_.escaping_steps;
+  if (!escapes && narrow) ++figures_.narrow_steps;
   if (plan.map_error) ++figures_.map_errors;
   const bool stops = plan.status == planning::ReplanStatus::kBraking;
   if (stops && !stopping_) ++figures_.stops_flown;
   stopping_ = stops;
 }
 
-void SafetyWatch::Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_reference_W) {
-  const double error = (p_WB - p_reference_W).norm();
-  figures_.tracking_max_m = std::max(figures_.tracking_max_m, error);
-  const bool off = error > margin_;
-  if (off && !off_) ++figures_.tracking_events;
-  off_ = off;
+void SafetyWatch::Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_true_WB,
+                          const Eigen::Vector3d& p_reference_W) {
+  const auto note = [](double error, double margin, double* largest, bool* beyond, int* events) {
+    *largest = std::max(*largest, error);
+    const bool off = error > margin;
+    if (off && !*beyond) ++*events;
+    *beyond = off;
+  };
+  note((p_WB - p_reference_W).norm(), margins_.tracking, &figures_.tracking_max_m, &off_,
+       &figures_.tracking_events);
+  note((p_WB - p_true_WB).norm(), margins_.own_state, &figures_.drift_max_m, &drifted_,
+       &figures_.drift_events);
 }
 
 void SafetyWatch::LookAt(const planning::OccupancyMap& map, const Eigen::Vector3d& p_WB,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/planning/margins.h"
 #include "touchdown/planning/occupancy_map.h"
 #include "touchdown/planning/replan_result.h"
 #include "touchdown/sim/obstacle_field.h"
@@ -14,11 +15,20 @@ namespace touchdown::evaluation {
 /// What became of the safety rule in a flight, until first contact (docs/safety.md).
 struct SafetyFigures {
   int uncertified_steps = 0;  ///< after which something flies that is not part of a proven pair
-  int escaping_steps = 0;  ///< whose pair starts among cells that are not observed free, or block
-  int stops_flown = 0;     ///< stored stops that began, for want of a newer pair
-  int map_errors = 0;  ///< steps in which the tube of a stop that is flown was not free any more
-  int tracking_events = 0;  ///< times that the vehicle left its reference by more than the margin
+  int escaping_steps =
+      0;  ///< whose pair starts with the hull in cells that are not observed free, or leads out
+          ///< of a zone that blocks
+  int narrow_steps =
+      0;  ///< ... with only the margins in such cells, or within the clearance of plans
+  int stops_flown = 0;  ///< stored stops that began, for want of a newer pair
+  int map_errors = 0;   ///< steps in which the tube of a stop that is flown was not free any more
+  double margin_mean_m = 0.0;  ///< over the steps
+  double margin_max_m = 0.0;
+  int tracking_events =
+      0;  ///< times that the vehicle left its reference by more than the margin of then
   double tracking_max_m = 0.0;  ///< largest distance from the reference, as the vehicle knows it
+  int drift_events = 0;         ///< times that the own position was off by more than its margin
+  double drift_max_m = 0.0;     ///< largest error of the own position
   std::int64_t free_cells = 0;  ///< observed free, over all looks at the map, one a second
   std::int64_t falsely_free_cells = 0;  ///< of those, cells whose centre is inside an obstacle
 };
@@ -26,12 +36,12 @@ struct SafetyFigures {
 /// Collects them. The truth is the obstacles'; what the vehicle knows is in the frame of its estimate.
 class SafetyWatch {
  public:
-  /// `margin` is the distance from the reference that a pair allows for [m].
-  SafetyWatch(const sim::ObstacleField& obstacles, double margin)
-      : obstacles_(obstacles), margin_(margin) {}
+  explicit SafetyWatch(const sim::ObstacleField& obstacles) : obstacles_(obstacles) {}
 
-  void Step(const planning::ReplanResult& plan);
-  void Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_reference_W);
+  void Step(const planning::ReplanResult& plan, const planning::Margins& margins);
+  /// Where the vehicle takes itself to be, where it is, and where it is to be.
+  void Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_true_WB,
+               const Eigen::Vector3d& p_reference_W);
   /// `drift_W` is the vehicle's estimate of its position less the truth [m].
   void LookAt(const planning::OccupancyMap& map, const Eigen::Vector3d& p_WB,
               const Eigen::Vector3d& drift_W);
@@ -40,9 +50,10 @@ class SafetyWatch {
 
  private:
   sim::ObstacleField obstacles_;
-  double margin_;
+  planning::Margins margins_;  // of the latest step
+  int steps_ = 0;
   bool stopping_ = false;
-  bool off_ = false;
+  bool off_ = false, drifted_ = false;
   SafetyFigures figures_;
 };
 

@@ -25,6 +25,7 @@ enum class DescentKind { kNone, kVertical, kPlanned };
 enum class PlannerKind { kLanding, kEgo, kEgoVelocity, kPid };
 enum class SensingKind { kFast, kRendered };
 enum class OwnStateKind { kTrue, kEstimated };
+enum class ObservedFreeKind { kSensed, kTruth };
 enum class ArrivalKind { kFixed, kFree };
 enum class EndpointVelocityKind { kPad, kRest };
 enum class EndpointKind { kEliminated, kExplicit };
@@ -144,6 +145,7 @@ struct Scenario {
 
   /// An OctoMap file that is known before the flight, or none.
   std::string map_prior = "none";
+  ObservedFreeKind map_observed_free = ObservedFreeKind::kSensed;
 
   /// The air; without any of it, it stands still.
   struct Wind {

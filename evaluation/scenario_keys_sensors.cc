@@ -82,6 +82,11 @@ void AddSensorKeys(KeyList& keys) {
   keys.push_back(Text("map.prior", "none or the path of an OctoMap file (.bt or .ot)",
                       "what is known of the obstacles before the flight, in cells of 0.1 m",
                       TOUCHDOWN_AT(map_prior)));
+  keys.push_back(
+      Choice("map.observed_free", {"sensed", "truth"},
+             "which cells stops may use: what the depth camera saw free, or, for studies "
+             "alone, all that no obstacle reaches into",
+             TOUCHDOWN_AT(map_observed_free)));
   keys.push_back(Choice("sensing", {"fast", "rendered"},
                         "fast: models of both cameras; rendered: images, in which the pad is found",
                         TOUCHDOWN_AT(sensing)));

@@ -203,10 +203,15 @@ void WalkTrial(Walk& walk, TrialResult& r) {
   walk.Group(r.safety, [&](SafetyFigures& s) {
     walk("safety_uncertified_steps", s.uncertified_steps);
     walk("safety_escaping_steps", s.escaping_steps);
+    walk("safety_narrow_steps", s.narrow_steps);
     walk("safety_stops_flown", s.stops_flown);
     walk("safety_map_errors", s.map_errors);
+    walk("safety_margin_mean_m", s.margin_mean_m);
+    walk("safety_margin_max_m", s.margin_max_m);
     walk("safety_tracking_events", s.tracking_events);
     walk("safety_tracking_max_m", s.tracking_max_m);
+    walk("safety_drift_events", s.drift_events);
+    walk("safety_drift_max_m", s.drift_max_m);
     walk("safety_free_cells", s.free_cells);
     walk("safety_falsely_free_cells", s.falsely_free_cells);
   });

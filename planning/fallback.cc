@@ -19,10 +19,6 @@ namespace {
 
 constexpr double kAtRest = 0.05;  // below this speed and way to go [m/s, m]
 
-const UniformBspline& LastCurve(const FlightPair& pair) {
-  return std::isfinite(pair.t_stop) ? pair.stop : pair.curve;
-}
-
 }  // namespace
 
 Fallback::Fallback(const Limits& limits) : limits_(limits) {
@@ -37,9 +33,15 @@ bool Fallback::NoTimeToBrake(const SplineState& start, const FreeSpace& space) {
 
 bool Fallback::AtRest(const FlightPair& committed, double t0) {
   const FlatState now = committed.At(t0);
-  const UniformBspline& last = LastCurve(committed);
+  const UniformBspline& last = committed.Last();
   const SplineState end = last.AtKnot(last.segments());
   return now.v_WB.norm() <= kAtRest && end.v.norm() <= 1e-6 && (end.p - now.p_WB).norm() <= kAtRest;
+}
+
+bool Fallback::Misses(const FlightPair& committed, double t0, const HullSpace& hull) {
+  if (!committed.Lands()) return false;
+  return t0 > committed.curve.t_end() + kLatestContact ||
+         (hull.pad != nullptr && !std::isfinite(ContactTime(committed.curve, hull)));
 }
 
 bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
@@ -47,15 +49,14 @@ bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, con
   if (t0 >= committed.t_stop) return false;  // its curve is behind it
   StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
   pair_.curve = committed.curve;
-  const bool touches = result->ends_in_contact;
-  const PairProof proof = ProvePair(t0, t_stop, touches, limits_, hull, &pair_);
+  const PairEnd ends = result->ends_in_contact ? PairEnd::kRestOrContact : PairEnd::kRest;
+  const PairProof proof = ProvePair(t0, t_stop, ends, limits_, hull, &pair_);
   if (!proof.proven) return false;
-  result->curve = pair_.curve;
-  result->t_stop = pair_.t_stop;
-  result->stop = pair_.stop;
+  result->pair() = pair_;
   result->certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
   result->certificate.stops_in_observed_space = true;
   result->certificate.leaves = proof.leaves;
+  result->certificate.narrow = proof.narrow;
   return true;
 }
 
@@ -67,9 +68,9 @@ bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d&
   Certificate certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
   certificate.stops_in_observed_space = proof.proven;
   certificate.leaves = proof.leaves;
+  certificate.narrow = proof.narrow;
   if (!certificate.passed()) return false;
-  result->curve = pair_.curve;
-  result->t_stop = pair_.t_stop;
+  result->pair() = pair_;
   result->certificate = certificate;
   return true;
 }
@@ -83,18 +84,21 @@ bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hul
 
 void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,
                        ReplanResult* result) {
-  result->status = AtRest(committed, t0) ? ReplanStatus::kHolding : ReplanStatus::kBraking;
-  result->curve = t0 < committed.t_stop ? committed.curve : committed.stop;
-  result->t_stop = committed.t_stop;
-  result->stop = committed.stop;
+  result->status = committed.Lands()       ? ReplanStatus::kKept
+                   : AtRest(committed, t0) ? ReplanStatus::kHolding
+                                           : ReplanStatus::kBraking;
+  result->pair() = committed;
+  if (t0 >= committed.t_stop) result->curve = committed.stop;
   result->certificate = {};
   result->certificate.endpoint_required = false;
   result->certificate.limits_kept = result->certificate.clear = true;
-  result->certificate.stops_in_observed_space = true;
-  const UniformBspline& last = LastCurve(committed);
-  if (result->status == ReplanStatus::kBraking && hull.space != nullptr) {
+  result->certificate.stops_in_observed_space = !Misses(committed, t0, hull);
+  const UniformBspline& last = committed.Last();
+  if (result->status != ReplanStatus::kHolding && hull.space != nullptr) {
     const double t_from = std::max(t0, last.t0());
-    const Sweep again = SweepHull(last, t_from, last.t_end(), last.Position(t_from), hull);
+    HullSpace bare = hull;  // the margins may have grown since
+    bare.margin = 0.0;
+    const Sweep again = SweepHull(last, t_from, last.t_end(), last.Position(t_from), bare);
     result->map_error = !again.proven;
   }
 }

@@ -36,6 +36,9 @@ class Fallback {
   /// The vehicle is at rest at t0 [s], and so it remains on the committed pair.
   static bool AtRest(const FlightPair& committed, double t0);
 
+  /// The pair was to end in contact, and that is long due, or the deck will not be there.
+  static bool Misses(const FlightPair& committed, double t0, const HullSpace& hull);
+
  private:
   Limits limits_;
   FlightPair pair_;

@@ -105,8 +105,8 @@ void LandingProblem::Update() {
 }
 
 void LandingProblem::SetBoundary(const SplineState& start, double t0,
-                                 const estimation::PadPrediction& pad,
-                                 const EndpointTarget& target, const Eigen::Vector3d& pull_W) {
+                                 const estimation::PadPrediction& pad, const EndpointTarget& target,
+                                 const Eigen::Vector3d& pull_W) {
   context_.limits = LimitsUnder(limits_, vehicle_, pull_W);
   context_.pull_W = pull_W;
   context_.start = start;

@@ -92,9 +92,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   if (request.arrival == ArrivalMode::kFree && best_.solved)
     duration_ = best_.pair.curve.duration();
   if (best_.solved) {
-    result->curve = best_.pair.curve;
-    result->t_stop = best_.pair.t_stop;
-    result->stop = best_.pair.stop;
+    result->pair() = best_.pair;
     result->solver = best_.solver;
   }
   result->certificate = best_.certificate.value_or(Certificate());
@@ -183,7 +181,9 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
     reason = Refine(request, result);
   }
   if (reason != ReplanReason::kNone) return reason;
-  if (!runs_.empty() && options_.max_rebinds > 0) return TryGuides(request, result);
+  // Shortly before contact there is no time for a way around.
+  const bool leads_around = options_.max_rebinds > 0 && request.pair_end != PairEnd::kContact;
+  if (!runs_.empty() && leads_around) return TryGuides(request, result);
   return KeepLimits(request, &best_, result);
 }
 
@@ -343,11 +343,11 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
   Certificate& certificate = candidate->certificate.emplace(
       Certify(curve, request.t0, &request.start, &wanted, request.limits, *request.space));
   if (certificate.limits_kept && (certificate.clear || certificate.escaping)) {
-    const PairProof proof =
-        ProvePair(request.t0, request.t0 + options_.reaction, result->ends_in_contact,
-                  request.limits, *request.hull, &candidate->pair);
+    const PairProof proof = ProvePair(request.t0, request.t0 + options_.reaction, request.pair_end,
+                                      request.limits, *request.hull, &candidate->pair);
     certificate.stops_in_observed_space = proof.proven;
     certificate.leaves = proof.leaves;
+    certificate.narrow = proof.narrow;
     if (!proof.proven && !result->unseen_W) result->unseen_W = proof.unseen_W;
   }
   if (options_.problem.endpoint == EndpointMode::kExplicit) {

@@ -32,7 +32,8 @@ struct AttemptRequest {
   const FreeSpace* space = nullptr;
   const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
-  bool at_rest = false;   ///< there is time to look for long ways round
+  PairEnd pair_end = PairEnd::kRest;
+  bool at_rest = false;                      ///< there is time to look for long ways round
   const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice
   AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
 };

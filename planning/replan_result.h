@@ -15,8 +15,9 @@
 #include "touchdown/estimation/vehicle_state.h"
 #include "touchdown/planning/certificate.h"
 #include "touchdown/planning/endpoint.h"
+#include "touchdown/planning/flight_pair.h"
 #include "touchdown/planning/landing_problem.h"
-#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/planning/margins.h"
 #include "touchdown/solvers/solver_result.h"
 
 namespace touchdown::planning {
@@ -38,7 +39,6 @@ struct ReplannerOptions {
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
   double reaction = 0.15;  ///< a plan is flown this long before its stop, if no newer one comes [s]
   double hull_radius = 0.324;   ///< of the body at every tilt, about its origin [m]
-  double margin = 0.08;         ///< around the hull, until it rests (docs/safety.md) [m]
   double deck_half_size = 0.0;  ///< of the pad's deck [m]; 0: there is none to land on
   double vertical_cost = 2.0;   ///< of A*: a metre up or down costs as much as this many ahead
   int max_guides = 2;           ///< ways around the first obstacle that are tried
@@ -59,12 +59,13 @@ struct ReplanInput {
   /// Steady force on the vehicle beside gravity and drag in still air, over its mass, in W: plans keep
   /// what it leaves of the limits (LimitsUnder) [m/s^2].
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
+  Margins margins;  ///< around the hull, until it rests
 };
 
 /// What is flown after a replanning step.
 enum class ReplanStatus {
   kPlanned,   ///< a new certified plan, with its stop
-  kKept,      ///< no new certified plan; the previous one goes on, with a newer stop
+  kKept,      ///< no new certified plan; the previous one goes on, with a newer stop or to contact
   kBraking,   ///< the stop that was stored with the previous plan is flown, or one that is wanted
   kClimbing,  ///< a certified climb straight up to rest
   kEscaping,  ///< a certified way out of the inflated zone around an obstacle, to rest
@@ -138,7 +139,8 @@ class PathList {
   std::size_t size_ = 0;
 };
 
-struct ReplanResult {
+/// The pair that is flown from t_start on, and how it came about.
+struct ReplanResult : FlightPair {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
   /// How the EGO-Planner baseline calls the outcome of its plan call; empty with the others.
@@ -146,9 +148,8 @@ struct ReplanResult {
   bool ends_in_contact = false;  ///< what is asked for is a plan that does
   bool idle = false;             ///< the planner had nothing to do: there is no answer
   bool from_odometry = false;    ///< started at the vehicle, not at the old plan
-  UniformBspline curve;          ///< what is flown from t_start on ...
-  double t_stop = 0.0;  ///< ... until this moment, unless a newer pair takes over [s]: then ...
-  UniformBspline stop;  ///< ... this; t_stop is infinite where the curve itself is the stop
+  FlightPair& pair() { return *this; }
+  const FlightPair& pair() const { return *this; }
   Certificate certificate;
   /// The stored stop is flown, and a cell of its tube is not free any more: the map was wrong.
   bool map_error = false;

@@ -32,6 +32,7 @@ constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost ho
 constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kClimbFromMiss = 0.5;   // of a landing whose deck is gone [m]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
 constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
@@ -56,9 +57,7 @@ class Replanner::Impl {
   /// The pair of the result takes over at t0.
   void Commit(double t0) {
     current_ = next_;
-    next_.curve = result_.curve;
-    next_.t_stop = result_.t_stop;
-    next_.stop = result_.stop;
+    next_ = result_.pair();
     takes_over_ = t0;
     committed_ = true;
   }
@@ -103,17 +102,21 @@ class Replanner::Impl {
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   HullSpace HullIn(const FreeSpace& space, const estimation::PadPrediction* pad) const;
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
+  bool LandsSoon(const ReplanInput& input, const HullSpace& hull) const;
+  bool GoesOn(const ReplanInput& input, const HullSpace& hull);
   void StepDown(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
 
   PlanAttempt attempt_;
   Fallback fallback_;
-  Limits limits_;  // what the pull of this step leaves
+  Limits limits_;        // what the pull of this step leaves
+  double margin_ = 0.0;  // around the hull in this step [m]
   ReplanResult result_;
   UnseenZone unseen_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
-  double climbing_ = -1.0;  // the committed curve is the caller's rest with this climb
+  bool around_unseen_ = false;  // ... and it led around cells that were not seen
+  double climbing_ = -1.0;      // the committed curve is the caller's rest with this climb
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -150,6 +153,7 @@ ReplannerState Replanner::Impl::State() const {
   state.current = current_;
   state.next = next_;
   state.planned = planned_before_;
+  state.around_unseen = around_unseen_;
   if (climbing_ >= 0.0) state.climb = climbing_;
   if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
   state.strip_from = strip_.pad_from;
@@ -163,6 +167,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   next_ = state.next;
   takes_over_ = next_.curve.t0();
   planned_before_ = state.planned;
+  around_unseen_ = state.around_unseen;
   climbing_ = state.climb.value_or(-1.0);
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
   strip_.floor = options_.floor_height;
@@ -174,6 +179,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
 }
 
 void Replanner::Impl::Begin(const ReplanInput& input) {
+  margin_ = input.margins.Sum();
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   fallback_.SetLimits(limits_);
   if (log_) log_->attempts.clear();
@@ -220,7 +226,8 @@ HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
                                   const estimation::PadPrediction* pad) const {
   HullSpace hull;
   hull.space = &space;
-  hull.radius = options_.hull_radius + options_.margin;
+  hull.hull_radius = options_.hull_radius;
+  hull.margin = margin_;
   hull.pad = pad;
   hull.deck_half_size = options_.deck_half_size;
   hull.foot_depth = options_.contact_height;
@@ -261,13 +268,31 @@ std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& in
   return SweepHull(curve, t_from, t_to, curve.Position(t_from), hull).unseen_W;
 }
 
-/// Below a plan: the committed curve with a newer stop, a way out from rest, the stop that is stored.
+/// The committed curve, with a newer stop.
+bool Replanner::Impl::GoesOn(const ReplanInput& input, const HullSpace& hull) {
+  return fallback_.GoesOn(next_, input.t_start, input.t_start + options_.reaction, hull, &result_);
+}
+
+/// Shortly before a contact that is still wanted nothing is put off: the committed pair was proven until then.
+bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull) const {
+  const bool wanted = input.endpoint.touches() || input.endpoint.sink_rate > 0.0;
+  return result_.ends_in_contact && wanted && next_.Lands() &&
+         ContactTime(next_.curve, hull) - input.t_start < kLastStretch;
+}
+
+/// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,
+/// the stop that is stored.
 void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
                                const HullSpace& hull) {
   const double t0 = input.t_start;
+  const bool lost = result_.from_odometry || Fallback::Misses(next_, t0, hull);
+  if (!lost && LandsSoon(input, hull)) {
+    Fallback::FlyStop(next_, t0, hull, &result_);
+    return;
+  }
   const bool at_rest = !result_.from_odometry && Fallback::AtRest(next_, t0);
   const bool on_plan = planned_before_ && !result_.from_odometry && !at_rest;
-  if (on_plan && fallback_.GoesOn(next_, t0, t0 + options_.reaction, hull, &result_)) {
+  if (on_plan && GoesOn(input, hull)) {
     result_.status = ReplanStatus::kKept;
     return Commit(t0);
   }
@@ -276,7 +301,8 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
     result_.status = ReplanStatus::kEscaping;
     return Commit(t0);
   }
-  if (result_.from_odometry && fallback_.Rests(t0, start, {0.0, 0.0, 0.0}, hull, &result_)) {
+  for (const double climb : {0.0, kClimbFromMiss}) {
+    if (!lost || !fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, &result_)) continue;
     result_.status = ReplanStatus::kBraking;
     return Commit(t0);
   }
@@ -339,7 +365,11 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   double T = std::clamp(promised ? left : fresh, shortest, options_.max_duration);
 
   const double first = T;
-  double unseen_reach = 0.0;
+  const FreeSpace plain = Space(map);
+  const bool lands_soon = !result_.from_odometry && LandsSoon(input, HullIn(plain, input.pad));
+  // A plan that led around what was not seen is followed by others that do: not by turns.
+  const bool on_plan = planned_before_ && !result_.from_odometry;
+  double unseen_reach = around_unseen_ && on_plan ? kUnseenReach : 0.0;
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
@@ -348,12 +378,16 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.limits = limits_;
   request.pull_W = input.pull_W;
   // The prepared problems' free arrival has the usual bound below.
-  request.arrival = T < options_.min_duration ? ArrivalMode::kFixed : options_.arrival;
+  request.arrival =
+      T < options_.min_duration || lands_soon ? ArrivalMode::kFixed : options_.arrival;
+  request.pair_end = lands_soon                ? PairEnd::kContact
+                     : result_.ends_in_contact ? PairEnd::kRestOrContact
+                                               : PairEnd::kRest;
   request.at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts; ++i) {
     if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
-    if (request.arrival == ArrivalMode::kFixed) T = FirstFreeArrival(input, T, map);
+    if (request.arrival == ArrivalMode::kFixed && !lands_soon) T = FirstFreeArrival(input, T, map);
     FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     // From rest there is time for long searches.
     if (i == 0 || request.at_rest) attempt_.RefillExpansions();
@@ -374,12 +408,26 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.previous = i == 0 && planned_before_ ? &next_.curve : nullptr;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
-    if (reason == ReplanReason::kNone) return reason;
+    if (reason == ReplanReason::kNone) {
+      around_unseen_ = unseen_reach > 0.0 && result_.rebinds > 0;
+      return reason;
+    }
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
       return reason;
-    // Shortly before contact nothing is put off: the committed pair ends in it.
-    if (reason == ReplanReason::kUnobserved && result_.ends_in_contact && first < kLastStretch) {
+    const bool was_free = request.arrival == ArrivalMode::kFree;
+    if (lands_soon) {
+      if (i > 0 || T < options_.min_duration) return reason;
+      request.arrival = options_.arrival;
+      continue;
+    }
+    // What is not seen yet may soon be: as long as it can, the committed curve goes on.
+    if (reason == ReplanReason::kUnobserved && i == 0 && on_plan && !request.at_rest &&
+        GoesOn(input, hull)) {
       return reason;
+    }
+    if (i == 0 && unseen_reach > 0.0 && reason != ReplanReason::kUnobserved) {
+      unseen_reach = 0.0;
+      continue;
     }
     // What the stop would have touched unseen is closed, and the same arrival tried again.
     if (reason == ReplanReason::kUnobserved && unseen_reach == 0.0) {
@@ -391,10 +439,13 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       unseen_reach = kLeastReach;
       continue;
     }
+    // Where the end itself is not seen yet, there is nothing to lead around.
+    if (unseen_reach > 0.0 && reason == ReplanReason::kGoalBlocked) {
+      return ReplanReason::kUnobserved;
+    }
     const bool slower_helps =
         reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
         reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
-    const bool was_free = request.arrival == ArrivalMode::kFree;
     if (!slower_helps && !was_free) return reason;
     request.arrival = ArrivalMode::kFixed;
     if (!slower_helps) continue;

@@ -18,7 +18,8 @@ namespace touchdown::planning {
 struct ReplannerState {
   FlightPair current;           ///< flown before `next` takes over
   FlightPair next;              ///< committed
-  bool planned = false;         ///< `next` is a plan to the pad: its arrival is kept
+  bool planned = false;         ///< `next` is a plan to the pad: its arrival is kept ...
+  bool around_unseen = false;   ///< ... and it led around cells that were not seen
   std::optional<double> climb;  ///< `next` is the caller's rest with this climb [m]
   std::optional<double>
       strip_t;  ///< when the strip over the pad was last known [s], and the strip:

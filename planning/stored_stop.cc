@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "touchdown/planning/pad_outline.h"
 #include "touchdown/planning/rest_trajectory.h"
 
 namespace touchdown::planning {
@@ -17,7 +18,7 @@ namespace {
 constexpr double kAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
 constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
 constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
-constexpr double kOnward = 1.5;     // from a curve's end to contact at most [s]
+constexpr double kOnward = kLatestContact - kPressing;  // from a curve's end to contact at most [s]
 
 /// What stops brake with.
 Limits LimitsOfStops(const Limits& limits) {
@@ -46,7 +47,7 @@ double OnwardToContact(const UniformBspline& curve, const HullSpace& hull) {
 
 }  // namespace
 
-PairProof ProvePair(double t_from, double t_handover, bool touches, const Limits& limits,
+PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits& limits,
                     const HullSpace& hull, FlightPair* pair) {
   PairProof proof;
   const UniformBspline& curve = pair->curve;
@@ -60,6 +61,7 @@ PairProof ProvePair(double t_from, double t_handover, bool touches, const Limits
   const FlatState from = curve.EvaluateOnward(t_handover);
   const SplineState state{from.p_WB, from.v_WB, from.a_WB};
   const Limits stops = LimitsOfStops(limits);
+  const double t_contact = ContactTime(curve, hull);
   const auto rests = [&](double climb) {
     MakeRestTrajectory(state, t_handover, {0.0, 0.0, climb}, stops, &pair->stop);
     const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
@@ -67,21 +69,22 @@ PairProof ProvePair(double t_from, double t_handover, bool touches, const Limits
     const Sweep sweep =
         SweepHull(pair->stop, t_handover, pair->stop.t_end(), p_start, hull, DeckContact::kMayNot);
     proof.leaves = until.leaves || sweep.leaves;
+    proof.narrow = until.narrow || sweep.narrow;
     return note(sweep);
   };
   const auto touches_down = [&] {
-    const double onward = OnwardToContact(curve, hull);
-    if (!touches || onward > kOnward) return false;
-    const double t_contact = std::max(t_handover, curve.t_end() + onward) + kPressing;
-    const Sweep sweep = SweepHull(curve, t_handover, t_contact, p_start, hull);
+    if (ends == PairEnd::kRest || !std::isfinite(t_contact)) return false;
+    const double t_end = std::max(t_handover, t_contact) + kPressing;
+    const Sweep sweep = SweepHull(curve, t_handover, t_end, p_start, hull);
     proof.leaves = until.leaves || sweep.leaves;
+    proof.narrow = until.narrow || sweep.narrow;
     return note(sweep);
   };
   // Shortly before contact braking over the deck is the more dangerous end.
-  const bool arrives = curve.t_end() - t_handover < kLastStretch;
+  const bool arrives = ends == PairEnd::kContact || t_contact - t_handover < kLastStretch;
   if (arrives && touches_down()) {
     proof.proven = proof.contact = true;
-  } else {
+  } else if (ends != PairEnd::kContact) {
     proof.proven = rests(0.0);
     if (!proof.proven) {
       const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
@@ -94,11 +97,20 @@ PairProof ProvePair(double t_from, double t_handover, bool touches, const Limits
   return proof;
 }
 
+double ContactTime(const UniformBspline& curve, const HullSpace& hull) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const double onward = OnwardToContact(curve, hull);
+  if (onward > kOnward) return kNever;
+  const double t = curve.t_end() + onward;
+  const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
+  return DistanceBeside(deck, curve.EvaluateOnward(t).p_WB) <= 0.0 ? t : kNever;
+}
+
 PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {
   const Eigen::Vector3d p_start = pair->curve.EvaluateOnward(t_from).p_WB;
   const Sweep sweep = SweepHull(pair->curve, t_from, pair->curve.t_end(), p_start, hull);
   pair->t_stop = std::numeric_limits<double>::infinity();
-  return {sweep.proven, sweep.leaves, false, sweep.unseen_W};
+  return {sweep.proven, sweep.leaves, sweep.narrow, false, sweep.unseen_W};
 }
 
 }  // namespace touchdown::planning

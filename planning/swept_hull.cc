@@ -31,7 +31,10 @@ double Gap(double x, int i, double resolution) {
 class Tube {
  public:
   Tube(const HullSpace& hull, const Eigen::Vector3d& p_start_W)
-      : hull_(hull), map_(*hull.space->map), start_(p_start_W), radius_(hull.radius + kSampling) {}
+      : hull_(hull),
+        map_(*hull.space->map),
+        start_(p_start_W),
+        radius_(hull.radius() + kSampling) {}
 
   /// Whether all cells that the ball at p touches at time t are observed free, or excepted.
   bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
@@ -40,7 +43,7 @@ class Tube {
     const Deck deck = DeckBelow(p, t);
     for (int z = z_low; z <= z_high; ++z) {
       if ((z + 1) * cell <= deck.exempt_below + kRounding) continue;
-      const bool holds_deck = deck.over && z * cell <= deck.outline.p_WP.z() + kRounding;
+      const bool holds_deck = deck.over && (z - 1) * cell <= deck.outline.p_WP.z() + kRounding;
       const double dz = Gap(p.z(), z, cell);
       const double left = radius_ * radius_ - dz * dz;
       if (left <= 0.0) continue;
@@ -98,8 +101,13 @@ class Tube {
         const bool on_deck =
             surface != nullptr && DistanceBeside(*surface, map_.CentreOf(cell)) <= 0.0;
         if (on_deck && !map_.IsOccupied(cell)) continue;
-        if (!WasThere(cell, p)) return Unseen(cell, sweep);
-        sweep->leaves = true;
+        if (!WasThere(cell, p)) {
+          return Unseen(cell, sweep);
+        }
+        // What only the room between two balls reaches into is not in the grown hull.
+        const double at_start = Distance(cell, start_);
+        sweep->leaves |= at_start < hull_.hull_radius - kNearer;
+        sweep->narrow |= at_start < hull_.radius() - kNearer;
       }
       left -= n;
       at.x() += n;
@@ -138,7 +146,7 @@ bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t,
   PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   const double feet = p.z() - hull.foot_depth;
   if (feet >= deck.p_WP.z() || p.z() >= start.z()) return true;
-  return DistanceBeside(deck, p) > hull.radius + PadOutline::kSigmas * deck.sigma;
+  return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 
 /// Between floor and ceiling; who starts beyond one of them does not go farther. Where the deck may be

@@ -15,18 +15,21 @@ namespace touchdown::planning {
 /// (docs/safety.md). A view of the map, made anew for every replanning step.
 struct HullSpace {
   const FreeSpace* space = nullptr;  ///< its map; its floor and ceiling for the body's origin
-  double radius = 0.0;               ///< of the hull at every tilt and the margins around it [m]
+  double hull_radius = 0.0;          ///< of the hull at every tilt [m]
+  double margin = 0.0;               ///< around it: Margins::Sum [m]
   /// Where the deck will be; nullptr: there is none.
   const estimation::PadPrediction* pad = nullptr;
   double deck_half_size = 0.0;  ///< half the deck's side [m]
   double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
+
+  double radius() const { return hull_radius + margin; }
 };
 
 /// What became of a look along a curve.
 struct Sweep {
   bool proven = false;
-  /// The hull starts among cells that are not observed free, and only ever moves away from those.
-  bool leaves = false;
+  /// The hull, or only its margins, start among cells that are not observed free. It moves away from those alone.
+  bool leaves = false, narrow = false;
   /// First place that is not observed free, in W [m], if that is why nothing is proven.
   std::optional<Eigen::Vector3d> unseen_W;
 };
@@ -41,7 +44,7 @@ enum class DeckContact {
 /// to t_to [s], past the curve's end at its end's velocity, and the body's origin between floor and
 /// ceiling. Exceptions: cells that end below the map's ground height; while the body's origin is over the
 /// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
-/// upper face, and those over the deck that hold it; and, with `leaves`, cells around `p_start_W` that the hull reached there already and
+/// upper face, and those over the deck that hold it; and, at the start, cells around `p_start_W` that the hull reached there already and
 /// does not come nearer to. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
                 const Eigen::Vector3d& p_start_W, const HullSpace& hull,

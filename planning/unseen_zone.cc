@@ -34,7 +34,7 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
   missing_.fill(0);
   closed_.fill(0);
   // Between a cell's centre and the nearest point of one that it may not touch.
-  const double radius = hull.radius / side + 0.5;
+  const double radius = hull.radius() / side + 0.5;
   const int around = static_cast<int>(std::ceil(radius));
   const double farthest = std::min(reach, kFarthest);
   const int asked = std::min(kReach, static_cast<int>(farthest / side) + around + 1);
@@ -54,7 +54,7 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
         const int x = std::countr_zero(left);
         const Eigen::Vector3d p = map.CentreOf(first + CellIndex(x, 0, 0));
         const Eigen::Array3d off = ((p - start_W).array().abs() - 0.5 * side).max(0.0);
-        const bool touched = off.matrix().norm() < hull.radius;
+        const bool touched = off.matrix().norm() < hull.radius();
         const bool over = may_be_deck && hull.space->OverPad(p);
         if (touched || over) bits &= ~(std::uint64_t{1} << x);
       }

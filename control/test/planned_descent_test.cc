@@ -46,6 +46,24 @@ TEST(PlannedDescent, TrackingLeadsToContactFromTheStart) {
   EXPECT_TRUE(mission.outputs.motors_armed);
 }
 
+// A go-around for which nothing else is certified ends on the deck: the rotors stop there as after any landing.
+TEST(PlannedDescent, WhatIsFlownToContactEndsByContactInAnyMode) {
+  for (const bool lands : {false, true}) {
+    Approach mission;
+    mission.FlyTo(mission.parameters.decide_time - 0.05);
+    mission.Tick([](MissionInputs& in) { in.horizontal_distance = 5.0; });
+    ASSERT_EQ(ModeOf(mission), MissionMode::kGoAround);
+    mission.Run(mission.parameters.contact_time + 0.3, [&](MissionInputs& in) {
+      in.lands = lands;
+      in.height = 0.0;
+      in.horizontal_distance = 0.1;
+      in.foot_force = 2.0 * MissionParameters{}.contact_force;
+      in.plan_failed_for = 1.0;
+    });
+    EXPECT_EQ(ModeOf(mission) == MissionMode::kDisarmed, lands);
+  }
+}
+
 TEST(PlannedDescent, IsDecidedWithAnOpenGateAndEndsByContact) {
   Approach mission;
   mission.FlyTo(mission.parameters.decide_time + 0.05);

@@ -101,7 +101,7 @@ inline OccupancyMap RandomMap(Draw* draw, int boxes, double keep_free,
 inline HullSpace HullOf(const FreeSpace& space) {
   HullSpace hull;
   hull.space = &space;
-  hull.radius = kHull;
+  hull.hull_radius = kHull;
   return hull;
 }
 

@@ -174,7 +174,7 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
     ReplannerOptions options = Options(c.arrival);
     // With the hull that it has, the vehicle is too near to the pillar to stop, so that no plan is
     // proven: here it is the segments that count.
-    options.hull_radius = options.margin = 0.0;
+    options.hull_radius = 0.0;
     Replanner replanner(options, solvers::StandardBackends());
     ReplanLog log;
     replanner.set_log(&log);

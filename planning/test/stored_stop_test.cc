@@ -46,7 +46,8 @@ TEST(StoredStop, NoProvenPairMeetsWhatIsNotObservedFree) {
     FlightPair pair = PairFrom(from, to, draw.Uniform(0.8, 3.0));
     const double t_from = draw.Uniform(0.0, 0.3), t_handover = t_from + draw.Uniform(0.0, 0.5);
     const Eigen::Vector3d start = pair.curve.Position(t_from);
-    const PairProof proof = ProvePair(t_from, t_handover, false, kLimits, HullOf(space), &pair);
+    const PairProof proof =
+        ProvePair(t_from, t_handover, PairEnd::kRest, kLimits, HullOf(space), &pair);
     if (!proof.proven) {
       ++refused;
       EXPECT_TRUE(proof.unseen_W.has_value()) << trial;
@@ -112,7 +113,7 @@ TEST(StoredStop, WhatIsCertifiedIsAsLongAsWhatIsFlown) {
     }
   };
   FlightPair pair = Fast();
-  ASSERT_TRUE(ProvePair(0.0, 0.0, false, kLimits, HullOf(space), &pair).proven);
+  ASSERT_TRUE(ProvePair(0.0, 0.0, PairEnd::kRest, kLimits, HullOf(space), &pair).proven);
   const double flown = pair.stop.Position(pair.stop.t_end()).x() + 1.0;
   EXPECT_GT(flown, 0.87 + 0.2);
   EXPECT_LT(flown, 1.4);
@@ -120,10 +121,10 @@ TEST(StoredStop, WhatIsCertifiedIsAsLongAsWhatIsFlown) {
   const double face = 0.1 * std::floor(10.0 * (flown + kHull));
   ASSERT_GT(face, 0.87 + kHull + kHullRoom);
   wall_at(face, CellState::kUnknown);
-  EXPECT_FALSE(ProvePair(0.0, 0.0, false, kLimits, HullOf(space), &pair).proven);
+  EXPECT_FALSE(ProvePair(0.0, 0.0, PairEnd::kRest, kLimits, HullOf(space), &pair).proven);
   wall_at(face, CellState::kFree);
   wall_at(face + 0.2, CellState::kUnknown);
-  EXPECT_TRUE(ProvePair(0.0, 0.0, false, kLimits, HullOf(space), &pair).proven);
+  EXPECT_TRUE(ProvePair(0.0, 0.0, PairEnd::kRest, kLimits, HullOf(space), &pair).proven);
 }
 
 TEST(StoredStop, LessAccelerationNeedsALongerStop) {
@@ -133,7 +134,7 @@ TEST(StoredStop, LessAccelerationNeedsALongerStop) {
   const auto length = [&](const Limits& limits) {
     SplineState from{{-2.0, 0, 0}, {2.0, 0, 0}, {0, 0, 0}};
     FlightPair pair = PairFrom(from, {1, 0, 0}, 3.0);
-    EXPECT_TRUE(ProvePair(0.0, 0.0, false, limits, HullOf(space), &pair).proven);
+    EXPECT_TRUE(ProvePair(0.0, 0.0, PairEnd::kRest, limits, HullOf(space), &pair).proven);
     EXPECT_LE(BoundDerivatives(pair.stop).acceleration,
               limits.acceleration * limits.braking_factor + 1e-6);
     return (pair.stop.Position(pair.stop.t_end()) - from.p).norm();
@@ -158,11 +159,11 @@ class StopOverDeck : public ::testing::Test {
     hull_.foot_depth = 0.12;
   }
   /// Sinking over the deck with `rate`, `height` of the feet above it.
-  PairProof Prove(double height, double rate, bool touches, FlightPair* pair) const {
+  PairProof Prove(double height, double rate, PairEnd ends, FlightPair* pair) const {
     const double z = 0.45 + 0.12 + height;
     const SplineState from{{0, 0, z}, {0, 0, -rate}, {0, 0, 0}};
     pair->curve = Between(from, {{0, 0, 0.60}, {0, 0, -0.2}, {0, 0, 0}}, 0.5 + height);
-    return ProvePair(0.0, 0.1, touches, kLimits, hull_, pair);
+    return ProvePair(0.0, 0.1, ends, kLimits, hull_, pair);
   }
   OccupancyMap map_;
   ArcPad pad_;
@@ -173,7 +174,7 @@ class StopOverDeck : public ::testing::Test {
 TEST_F(StopOverDeck, NoStopRestsInThePadsWay) {
   FlightPair pair;
   for (const double height : {0.6, 0.4, 0.3, 0.1}) {
-    const PairProof proof = Prove(height, 0.5, false, &pair);
+    const PairProof proof = Prove(height, 0.5, PairEnd::kRest, &pair);
     ASSERT_TRUE(proof.proven) << height;
     const double feet = pair.stop.Position(pair.stop.t_end()).z() - 0.12 - 0.45;
     EXPECT_GE(feet, 0.1 - 1e-6) << "it climbs clear of the deck instead, from " << height << " m";
@@ -187,22 +188,54 @@ TEST_F(StopOverDeck, WhereItCannotClimbALandingGoesOnToContact) {
     for (int y = -32; y < 32; ++y) map_.SetState({x, y, 11}, CellState::kUnknown);
   }
   FlightPair pair;
-  EXPECT_FALSE(Prove(0.1, 0.4, false, &pair).proven);
-  const PairProof lands = Prove(0.1, 0.4, true, &pair);
+  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kRest, &pair).proven);
+  const PairProof lands = Prove(0.1, 0.4, PairEnd::kRestOrContact, &pair);
   EXPECT_TRUE(lands.proven);
   EXPECT_TRUE(lands.contact);
   EXPECT_EQ(pair.t_stop, std::numeric_limits<double>::infinity());
   // Not past a post beside the deck that stands 0.1 m above its top; one as high as the deck is no matter.
   map_.SetState({5, 0, 3}, CellState::kOccupied);
-  EXPECT_FALSE(Prove(0.1, 0.4, false, &pair).proven);
+  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kRest, &pair).proven);
   hull_.deck_half_size = 0.3;  // so that the hull's ball reaches beside it
   ForEachCell({CellIndex(-5, -5, 0), CellIndex(5, 5, 5)}, [&](const CellIndex& cell) {
     const Eigen::Vector3d p = map_.CentreOf(cell);
     if (p.head<2>().cwiseAbs().maxCoeff() > 0.3) map_.SetState(cell, CellState::kFree);
   });
-  ASSERT_TRUE(Prove(0.1, 0.4, true, &pair).proven);
+  ASSERT_TRUE(Prove(0.1, 0.4, PairEnd::kRestOrContact, &pair).proven);
   map_.SetState({3, 0, 5}, CellState::kOccupied);
-  EXPECT_FALSE(Prove(0.1, 0.4, true, &pair).proven);
+  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kRestOrContact, &pair).proven);
+}
+
+TEST_F(StopOverDeck, ALandingThatMissesTheDeckIsNone) {
+  FlightPair pair;
+  ASSERT_TRUE(Prove(0.1, 0.4, PairEnd::kContact, &pair).contact);
+  ASSERT_TRUE(pair.Lands());
+  EXPECT_LT(ContactTime(pair.curve, hull_), pair.curve.t_end() + 1.5);
+  const ArcPad gone({0.6, 0, 0.45}, 0.0, 0.0, 0.0);
+  hull_.pad = &gone;
+  EXPECT_EQ(ContactTime(pair.curve, hull_), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
+  hull_.pad = nullptr;
+  EXPECT_EQ(ContactTime(pair.curve, hull_), std::numeric_limits<double>::infinity());
+}
+
+TEST_F(StopOverDeck, WhereItIsToLandNoStopIsAnAnswer) {
+  map_.SetState({3, 0, 5}, CellState::kOccupied);
+  FlightPair pair;
+  EXPECT_TRUE(Prove(0.6, 0.3, PairEnd::kRestOrContact, &pair).proven) << "it stops above";
+  EXPECT_FALSE(pair.Lands());
+  EXPECT_FALSE(Prove(0.6, 0.3, PairEnd::kContact, &pair).proven);
+}
+
+// What a ray met on the deck or by its noise just above is the deck; what was seen there to block is not.
+TEST_F(StopOverDeck, TheCellsAtTheDecksFaceMayBeUnknownNotOccupied) {
+  FlightPair pair;
+  for (int x = -5; x < 5; ++x) {
+    for (int y = -5; y < 5; ++y) map_.SetState({x, y, 5}, CellState::kUnknown);
+  }
+  EXPECT_TRUE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
+  map_.SetState({2, 0, 5}, CellState::kOccupied);
+  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
 }
 
 // As the pilot asks for it: the feet meet the deck 0.15 s after the plan's end, sinking with 0.3 m/s.
@@ -218,7 +251,7 @@ TEST_F(StopOverDeck, TheStripLeavesRoomToPressUntilContact) {
   LayPadStrip(pad_, target, from.p, 0.0, 0.3, 1.2, 0.12, &space_);
   FlightPair pair;
   pair.curve = Between(from, to, 0.3);
-  const PairProof proof = ProvePair(0.0, 0.1, true, kLimits, hull_, &pair);
+  const PairProof proof = ProvePair(0.0, 0.1, PairEnd::kRestOrContact, kLimits, hull_, &pair);
   EXPECT_TRUE(proof.proven);
   EXPECT_TRUE(proof.contact);
 }
@@ -235,7 +268,8 @@ TEST(StoredStop, ProvingDoesNotAllocate) {
   for (int trial = 0; trial < 20; ++trial) {
     pair.curve.Assign(points, draw.Uniform(0.08, 0.2), 0.0);
     const long before = solvers::AllocationCount();
-    ProvePair(0.0, 0.3, trial % 2 == 0, kLimits, HullOf(space), &pair);
+    ProvePair(0.0, 0.3, trial % 2 == 0 ? PairEnd::kRest : PairEnd::kRestOrContact, kLimits,
+              HullOf(space), &pair);
     ProveStop(0.0, HullOf(space), &pair);
     EXPECT_EQ(solvers::AllocationCount(), before);
   }
@@ -255,7 +289,7 @@ TEST(StoredStop, TheCertifiedStopIsFlownWhereNoNewerPlanComes) {
   map.MarkRestFree();
   const FreeSpace space = SpaceOf(map);
   FlightPair pair = Fast();
-  ASSERT_TRUE(ProvePair(0.0, 0.0, false, kLimits, HullOf(space), &pair).proven);
+  ASSERT_TRUE(ProvePair(0.0, 0.0, PairEnd::kRest, kLimits, HullOf(space), &pair).proven);
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   ReplannerState state;
   state.current = state.next = pair;
@@ -349,7 +383,7 @@ struct Committed {
   double t;
   Eigen::Vector3d start;
   OccupancyMap map;
-  bool leaves;
+  bool narrow;
 };
 
 // The promise itself: whatever the map, and whichever answers get lost, the hull of what is flown stays in
@@ -413,7 +447,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
           replanner.TakeOverAt(takes_over);
         }
         if (is_new && !Same(replanner.state().next, before)) {
-          pairs.push_back({takes_over, start_W, map, result.certificate.leaves});
+          pairs.push_back({takes_over, start_W, map, result.certificate.narrow});
         } else if (is_new) {
           ++dropped;
         }
@@ -424,8 +458,8 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
         while (pairs[in_force].t > now) --in_force;
         const Committed& pair = pairs[in_force];
         ASSERT_TRUE(BallInFree(pair.map, replanner.Reference(now).p_WB,
-                               asked.hull_radius + asked.margin,
-                               pair.leaves ? &pair.start : nullptr, kHullRoom))
+                               asked.hull_radius + Margins().Sum(),
+                               pair.narrow ? &pair.start : nullptr, kHullRoom))
             << "trial " << trial << " at " << now;
       }
       pairs.erase(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(in_force));

@@ -65,12 +65,12 @@ TEST(SweptHull, AWayThatTurnsBackIsSeenToItsEnd) {
     const FreeSpace space = SpaceOf(map);
     HullSpace hull = HullOf(space);
     const double face = 0.5;
-    hull.radius = face - farthest + 0.005;
+    hull.hull_radius = face - farthest + 0.005;
     for (int y = -32; y < 32; ++y) {
       for (int z = -16; z < 16; ++z) map.SetState({5, y, z}, CellState::kUnknown);
     }
     EXPECT_FALSE(Look(curve, hull).proven) << "turns " << farthest << " m ahead";
-    hull.radius -= 0.016;
+    hull.hull_radius -= 0.016;
     EXPECT_TRUE(Look(curve, hull).proven) << "turns " << farthest << " m ahead";
   }
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+namespace touchdown::planning {
+
+/// What the room around the hull pays for, at one moment (docs/safety.md) [m].
+struct Margins {
+  double own_state =
+      0.0;  ///< a cell was seen with one error of the own position, and is passed with another
+  double attitude = 0.0;   ///< an attitude in error turns what the camera sees
+  double tracking = 0.08;  ///< how far the vehicle is from its reference
+
+  double Sum() const { return own_state + attitude + tracking; }
+};
+
+/// Margins from what the vehicle knows: one standard deviation of its position [m] and of its attitude [rad],
+/// how far it was from its reference of late [m], and the steady force on it over its mass (its horizontal part:
+/// wind that pushes comes in gusts) [m/s^2].
+Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
+                  const Eigen::Vector3d& pull_W) noexcept;
+
+/// The largest error of late: it fades with kFade [s].
+class RecentError {
+ public:
+  static constexpr double kFade = 1.0;
+
+  /// An error at time t [s], rising. Does not allocate.
+  void Note(double t, double error) noexcept;
+
+  double value() const { return value_; }
+
+ private:
+  double t_ = 0.0;
+  double value_ = 0.0;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The last stretch before contact: what was proven to land is not put off, unless the deck is gone.
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/test/replanner_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+constexpr double kDeck = 0.45;  // its height [m]
+
+/// Over a deck that drives along x, planning to contact until shortly before it.
+class LastStretch : public ::testing::Test {
+ protected:
+  LastStretch() : map_(ObservedMap()), pad_({0.0, 0.0, kDeck}, 0.5, 0.0, 0.0) {
+    ReplannerOptions options = Options(ArrivalMode::kFixed);
+    options.deck_half_size = 0.5;
+    replanner_ = std::make_unique<Replanner>(options, solvers::StandardBackends());
+    FlyAlong({-0.6, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, replanner_.get());
+    while (left() > 0.7 || t_ == 0.0) {
+      EXPECT_EQ(Ask(pad_).status, ReplanStatus::kPlanned) << t_;
+      t_ += 0.1;
+      if (t_ > 5.0) break;
+    }
+    landing_ = replanner_->state().next;
+  }
+
+  double left() const { return replanner_->state().next.curve.t_end() - t_; }
+
+  const ReplanResult& Ask(const estimation::PadPrediction& pad) {
+    const FlatState at = replanner_->Reference(t_);
+    ReplanInput input = Input(at.p_WB, pad, t_);
+    input.vehicle.v_WB = at.v_WB;
+    input.endpoint = {};
+    input.endpoint.t_reference = t_;
+    input.endpoint.height = input.endpoint.height_floor = 0.165;
+    input.endpoint.arrival_sink = 0.3;
+    return replanner_->Replan(input, map_);
+  }
+
+  OccupancyMap map_;
+  ArcPad pad_;
+  std::unique_ptr<Replanner> replanner_;
+  FlightPair landing_;
+  double t_ = 0.0;
+};
+
+TEST_F(LastStretch, ItsPairLands) {
+  EXPECT_TRUE(landing_.Lands());
+  EXPECT_GT(left(), 0.4);
+}
+
+TEST_F(LastStretch, WithoutANewPlanTheLandingIsKept) {
+  // Nothing around was ever seen, for all that the next step knows.
+  map_ = OccupancyMap(map_.options());
+  const ReplanResult& result = Ask(pad_);
+  EXPECT_EQ(result.status, ReplanStatus::kKept);
+  EXPECT_EQ(result.reason, ReplanReason::kUnobserved);
+  EXPECT_TRUE(result.Lands());
+  EXPECT_TRUE(result.certificate.stops_in_observed_space) << "it was proven when it was made";
+  EXPECT_TRUE(result.map_error) << "and what it was proven in is not there any more";
+  EXPECT_EQ(replanner_->state().next.curve.control_points(), landing_.curve.control_points());
+}
+
+TEST_F(LastStretch, AnObstacleBesideTheWayIsNotFlownAround) {
+  const Eigen::Vector3d end = landing_.curve.Position(landing_.curve.t_end());
+  map_.SetOccupied(end + Eigen::Vector3d(0.1, 0.55, 0.4));  // within the clearance of plans
+  const ReplanResult& result = Ask(pad_);
+  EXPECT_TRUE(result.Lands());
+  EXPECT_EQ(result.rebinds, 0);
+}
+
+TEST_F(LastStretch, ADeckThatIsGoneIsNotLandedOn) {
+  const ArcPad gone({4.0, 3.0, kDeck}, 0.5, 0.0, 0.0);
+  const ReplanResult& result = Ask(gone);
+  EXPECT_FALSE(result.Lands());
+  EXPECT_TRUE(result.certificate.stops_in_observed_space);
+  // And nothing goes on below where the deck was.
+  for (double t = t_; t < t_ + 5.0; t += 0.02) {
+    EXPECT_GT(replanner_->Reference(t).p_WB.z(), 0.44) << t;
+  }
+}
+
+TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
+  // The deck is lower than it is taken to be: the pair is flown to its end, and past it not for ever.
+  map_ = OccupancyMap(map_.options());
+  map_.MarkFree(Eigen::Vector3d(0, 0, 0), 11.0);
+  const double t_end = landing_.curve.t_end();
+  ReplanStatus status = ReplanStatus::kKept;
+  for (t_ = t_end; t_ < t_end + 3.0; t_ += 0.1) {
+    const FlatState at = replanner_->Reference(t_);
+    ReplanInput input = Input(at.p_WB, pad_, t_);
+    input.vehicle.v_WB = at.v_WB;
+    status = replanner_->Rest(input, 0.0, map_).status;
+    if (status != ReplanStatus::kKept) break;
+  }
+  EXPECT_NE(status, ReplanStatus::kKept);
+}
+
+}  // namespace
+}  // namespace touchdown::planning
