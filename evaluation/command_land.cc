@@ -62,6 +62,15 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
         fmt::format("  own state, RMS error   {:.3f} m, {:.3f} m/s, {:.2f} deg\n",
                     own.rmse_position_m, own.rmse_velocity_mps, own.rmse_attitude_rad * kDegPerRad);
   }
+  if (r.safety) {
+    const SafetyFigures& safety = *r.safety;
+    text += fmt::format(
+        "  safety                 {} steps without a proven pair, {} stops flown, {} map errors, "
+        "{} "
+        "beyond a margin\n",
+        safety.uncertified_steps, safety.stops_flown, safety.map_errors,
+        safety.tracking_events + safety.drift_events);
+  }
   text += fmt::format("  replans                {}", r.replans);
   for (const auto& [status, count] : r.replans_by_status) {
     text += fmt::format(", {} {}", count, status);

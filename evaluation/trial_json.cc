@@ -48,6 +48,23 @@ Json OwnStateJson(const std::optional<OwnStateQuality>& quality) {
           {"max_attitude_deg", quality->max_attitude_rad * kDegPerRad}};
 }
 
+Json SafetyJson(const std::optional<SafetyFigures>& safety) {
+  if (!safety) return nullptr;
+  return {{"uncertified_steps", safety->uncertified_steps},
+          {"escaping_steps", safety->escaping_steps},
+          {"narrow_steps", safety->narrow_steps},
+          {"stops_flown", safety->stops_flown},
+          {"map_errors", safety->map_errors},
+          {"margin_mean_m", safety->margin_mean_m},
+          {"margin_max_m", safety->margin_max_m},
+          {"tracking_events", safety->tracking_events},
+          {"tracking_max_m", safety->tracking_max_m},
+          {"drift_events", safety->drift_events},
+          {"drift_max_m", safety->drift_max_m},
+          {"free_cells", safety->free_cells},
+          {"falsely_free_cells", safety->falsely_free_cells}};
+}
+
 Json FollowingJson(const std::optional<Following>& following) {
   if (!following) return nullptr;
   return {{"mean_error_m", following->mean_error_m},
@@ -114,6 +131,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["replans_by_reason"] = result.replans_by_reason;
   json["estimator"] = EstimatorJson(result.estimator);
   json["own_state"] = OwnStateJson(result.own_state);
+  json["safety"] = SafetyJson(result.safety);
   json["planner"] = FindScenarioKey("planner")->get(scenario);
   json["backend"] = BackendName(scenario);
   json["scenario"] = scenario.name;

@@ -25,6 +25,7 @@
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/stand_watch.h"
 #include "touchdown/evaluation/trial_store.h"
+#include "touchdown/evaluation/truth_map.h"
 #include "touchdown/sim/pad_motion.h"
 
 namespace touchdown::evaluation {
@@ -400,6 +401,46 @@ TEST(HostileFlightTest, AStudyThatIsGoneOnWithIsTheOneThatWasFlownAtOnce) {
   EXPECT_EQ(parts.state.resumed, 1);
   EXPECT_EQ(HostileJson(options, parts.rows).dump(), HostileJson(options, whole.rows).dump());
   std::filesystem::remove_all(folder);
+}
+
+TEST(TruthMap, EveryCellThatNoObstacleReachesIntoIsObservedFree) {
+  planning::OccupancyMap map{planning::OccupancyMapOptions()};
+  const sim::Obstacle box = sim::Box{{2.03, 0.02, 1.0}, {0.3, 1.0, 1.0}, 0.0};
+  const sim::ObstacleField field({box});
+  const Eigen::Vector3d drift(0.07, -0.04, 0.0);
+  const planning::CellIndex seen = map.CellOf(Eigen::Vector3d(-1, 0, 1));
+  map.SetState(seen, planning::CellState::kOccupied);  // by noise: it still blocks
+  ObserveTruth(field, drift, &map);
+  EXPECT_FALSE(map.IsObservedFree(seen));
+  int inside = 0, free = 0;
+  planning::ForEachCell({map.CellOf({0, -2, 0.3}), map.CellOf({4, 2, 2.5})},
+                        [&](const planning::CellIndex& cell) {
+                          const Eigen::Vector3d p = map.CentreOf(cell) - drift;
+                          const double distance = sim::SignedDistance(box, p);
+                          if (distance < 0.049) {
+                            ++inside;
+                            EXPECT_FALSE(map.IsObservedFree(cell)) << p.transpose();
+                          } else if (distance > 0.09) {
+                            ++free;
+                            EXPECT_TRUE(map.IsObservedFree(cell)) << p.transpose();
+                          }
+                        });
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(free, 1000);
+}
+
+TEST(HostilePairs, TimesAreComparedFlightByFlight) {
+  SweepRow row;
+  row.trial.seed = 7;
+  row.trial.varied = {{"family", "door"}};
+  row.result.outcome = Outcome::kLanded;
+  row.result.touchdown.emplace().t = 6.0;
+  SweepRow other = row;
+  other.trial.seed = 8;
+  const std::string text = HostilePairsText({row, other}, {{7, 4.0}});
+  EXPECT_THAT(text, HasSubstr("door                1    1.500    1.500    1.500"));
+  HostileOptions options;
+  EXPECT_THROW(ReadHostileTimes(options, "/nowhere/f.db"), BadInput);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ TEST(Margins, EachGrowsWithWhatItPaysForAlone) {
   const Margins lost = MarginsOf(0.02, 0.0, 0.0, {0, 0, 0});
   EXPECT_DOUBLE_EQ(lost.own_state, 0.06);
   EXPECT_EQ(lost.tracking, calm.tracking);
+  EXPECT_LT(MarginsOf(5.0, 0.0, 0.0, {0, 0, 0}).own_state, 0.1)
+      << "who does not know where in W it is still knows how far it has come";
   EXPECT_GT(MarginsOf(0.0, 0.01, 0.0, {0, 0, 0}).attitude, 0.0);
   EXPECT_DOUBLE_EQ(MarginsOf(0.0, 0.0, 0.3, {0, 0, 0}).tracking, 0.3);
   const Margins windy = MarginsOf(0.0, 0.0, 0.0, {3.0, 4.0, 0.0});
