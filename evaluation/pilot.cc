@@ -218,6 +218,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
   if (result.idle) return nullptr;
   look_W_ = result.unseen_W;
+  way_ = &result.curve;
   if (result.from_odometry) recent_error_ = {};  // the reference comes to the vehicle
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -350,8 +351,8 @@ bool Pilot::plan_valid(double t) const {
 
 double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
                            const estimation::PadFilter& filter) const {
-  const Eigen::Vector3d ahead =
-      planner_->Reference(vehicle.t + kLookAhead).p_WB - planner_->Reference(vehicle.t).p_WB;
+  // The way, not the reference: that of a pair soon turns into its stop.
+  const Eigen::Vector3d ahead = WayAt(vehicle.t + kLookAhead) - WayAt(vehicle.t);
   if (ahead.head<2>().norm() > kLookDistance) {
     return Seeing(std::atan2(ahead.y(), ahead.x()), vehicle.p_WB);
   }
@@ -361,6 +362,10 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
   }
   const Eigen::Vector3d p_BP = filter.Estimate(vehicle.t).p_WP - vehicle.p_WB;
   return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_ahead_;
+}
+
+Eigen::Vector3d Pilot::WayAt(double t) const {
+  return way_ != nullptr ? way_->EvaluateOnward(t).p_WB : planner_->Reference(t).p_WB;
 }
 
 // The heading nearest to the given one at which the camera sees what the next stops need.

@@ -83,6 +83,7 @@ class Pilot {
   void DeliverLate(double t);
   bool Levelled(double t) const;
   bool Landing() const;
+  Eigen::Vector3d WayAt(double t) const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
@@ -114,7 +115,8 @@ class Pilot {
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
-  bool lands_ = false;  // what is flown ends in contact
+  const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
+  bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;
   planning::RecentError recent_error_;  // of tracking
   bool last_planned_ = false;           ///< the last replanning step left no plan to be wished for

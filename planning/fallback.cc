@@ -41,7 +41,7 @@ bool Fallback::AtRest(const FlightPair& committed, double t0) {
 bool Fallback::Misses(const FlightPair& committed, double t0, const HullSpace& hull) {
   if (!committed.Lands()) return false;
   return t0 > committed.curve.t_end() + kLatestContact ||
-         (hull.pad != nullptr && !std::isfinite(ContactTime(committed.curve, hull)));
+         (hull.pad != nullptr && !std::isfinite(ContactTime(committed.curve, t0, hull)));
 }
 
 bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,

@@ -277,7 +277,7 @@ bool Replanner::Impl::GoesOn(const ReplanInput& input, const HullSpace& hull) {
 bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull) const {
   const bool wanted = input.endpoint.touches() || input.endpoint.sink_rate > 0.0;
   return result_.ends_in_contact && wanted && next_.Lands() &&
-         ContactTime(next_.curve, hull) - input.t_start < kLastStretch;
+         ContactTime(next_.curve, input.t_start, hull) - input.t_start < kLastStretch;
 }
 
 /// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,

@@ -18,6 +18,7 @@ namespace {
 constexpr double kAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
 constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
 constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
+constexpr double kContactClock = 0.01;  // of the time at which contact is expected [s]
 constexpr double kOnward = kLatestContact - kPressing;  // from a curve's end to contact at most [s]
 
 /// What stops brake with.
@@ -34,15 +35,9 @@ double TooLow(const Eigen::Vector3d& p, double t, const HullSpace& hull) {
   return std::max(0.0, lowest - p.z());
 }
 
-/// From the curve's end until the feet meet the deck at the end's velocity [s].
-double OnwardToContact(const UniformBspline& curve, const HullSpace& hull) {
-  if (hull.pad == nullptr) return std::numeric_limits<double>::infinity();
-  const SplineState end = curve.AtKnot(curve.segments());
-  const estimation::PadState pad = hull.pad->At(curve.t_end());
-  const double left = end.p.z() - hull.foot_depth - pad.p_WP.z();
-  const double sinks = pad.v_WP.z() - end.v.z();
-  if (left <= 0.0) return 0.0;
-  return sinks > 0.0 ? left / sinks : std::numeric_limits<double>::infinity();
+/// Of the feet above the deck, wherever that is [m].
+double FeetAbove(const UniformBspline& curve, double t, const HullSpace& hull) {
+  return curve.EvaluateOnward(t).p_WB.z() - hull.foot_depth - hull.pad->At(t).p_WP.z();
 }
 
 }  // namespace
@@ -61,7 +56,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   const FlatState from = curve.EvaluateOnward(t_handover);
   const SplineState state{from.p_WB, from.v_WB, from.a_WB};
   const Limits stops = LimitsOfStops(limits);
-  const double t_contact = ContactTime(curve, hull);
+  const double t_contact = ContactTime(curve, t_from, hull);
   const auto rests = [&](double climb) {
     MakeRestTrajectory(state, t_handover, {0.0, 0.0, climb}, stops, &pair->stop);
     const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
@@ -97,13 +92,28 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   return proof;
 }
 
-double ContactTime(const UniformBspline& curve, const HullSpace& hull) {
+double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  const double onward = OnwardToContact(curve, hull);
-  if (onward > kOnward) return kNever;
-  const double t = curve.t_end() + onward;
-  const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
-  return DistanceBeside(deck, curve.EvaluateOnward(t).p_WB) <= 0.0 ? t : kNever;
+  if (hull.pad == nullptr) return kNever;
+  const auto over_deck = [&](double t) {
+    const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
+    return DistanceBeside(deck, curve.EvaluateOnward(t).p_WB) <= 0.0;
+  };
+  double above = std::max(t_from, curve.t_end());
+  const double left = FeetAbove(curve, above, hull);
+  if (left > 0.0) {
+    const double sinks = hull.pad->At(above).v_WP.z() - curve.EvaluateOnward(above).v_WB.z();
+    const double t = sinks > 0.0 ? above + left / sinks : kNever;
+    return t <= curve.t_end() + kOnward && over_deck(t) ? t : kNever;
+  }
+  // The feet cross the deck's face before the curve ends.
+  double below = above;
+  above = t_from;
+  while (below - above > kContactClock) {
+    const double t = 0.5 * (above + below);
+    (FeetAbove(curve, t, hull) > 0.0 ? above : below) = t;
+  }
+  return over_deck(below) ? below : kNever;
 }
 
 PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {

@@ -38,8 +38,8 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
 /// The same of a curve that ends at rest: all of it is the stop. Fills t_stop.
 PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair);
 
-/// When the feet meet the deck at the curve's end, or going on from there; infinite where they do not, as
-/// the pad is predicted now [s].
-double ContactTime(const UniformBspline& curve, const HullSpace& hull);
+/// When from t_from on the feet meet the deck, along the curve or going on from its end; infinite where they do
+/// not, as the pad is predicted now [s].
+double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull);
 
 }  // namespace touchdown::planning

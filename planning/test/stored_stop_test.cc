@@ -210,13 +210,13 @@ TEST_F(StopOverDeck, ALandingThatMissesTheDeckIsNone) {
   FlightPair pair;
   ASSERT_TRUE(Prove(0.1, 0.4, PairEnd::kContact, &pair).contact);
   ASSERT_TRUE(pair.Lands());
-  EXPECT_LT(ContactTime(pair.curve, hull_), pair.curve.t_end() + 1.5);
+  EXPECT_LT(ContactTime(pair.curve, 0.0, hull_), pair.curve.t_end() + 1.5);
   const ArcPad gone({0.6, 0, 0.45}, 0.0, 0.0, 0.0);
   hull_.pad = &gone;
-  EXPECT_EQ(ContactTime(pair.curve, hull_), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ContactTime(pair.curve, 0.0, hull_), std::numeric_limits<double>::infinity());
   EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
   hull_.pad = nullptr;
-  EXPECT_EQ(ContactTime(pair.curve, hull_), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ContactTime(pair.curve, 0.0, hull_), std::numeric_limits<double>::infinity());
 }
 
 TEST_F(StopOverDeck, WhereItIsToLandNoStopIsAnAnswer) {
