@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/closed_loop.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -148,6 +149,24 @@ TEST(ClosedLoop, TheBaselinesFlyAndNameTheirOutcomes) {
     EXPECT_EQ(LandJson(scenario, result)["planner"], planner);
     EXPECT_EQ(LandJson(scenario, result)["backend"], "lbfgs");
   }
+}
+
+// Over a slow pad the reference 0.8 s ahead is on the stored stop: the camera has to look along the way all the same.
+TEST(ClosedLoop, OverASlowPadTheCameraLooksAlongItsWay) {
+  const Scenario scenario = Shipped("straight_turn", {"descent=vertical"});
+  TrialRecord record;
+  const TrialResult result = RunTrial(scenario, 2960557394486996, StandardRegistries(), &record);
+  EXPECT_TRUE(result.landed()) << result.detail;
+  ASSERT_TRUE(result.touchdown.has_value());
+  int looked = 0;
+  for (const RecordSample& sample : record.samples) {
+    if (sample.t < result.touchdown->t - 1.5 || sample.t > result.touchdown->t) continue;
+    ++looked;
+    const double way = std::atan2(sample.pad.v_WP.y(), sample.pad.v_WP.x());
+    const double off = estimation::WrapAngle(estimation::Yaw(sample.vehicle.q_WB) - way);
+    EXPECT_LT(std::abs(off), 0.6) << sample.t;
+  }
+  EXPECT_GT(looked, 50);
 }
 
 TEST(ClosedLoop, DescentNoneFollowsAndNeverLands) {

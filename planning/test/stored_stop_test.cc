@@ -390,7 +390,7 @@ struct Committed {
 // cells that were observed free when the pair in force was committed.
 TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
   Draw draw(7);
-  int plans = 0, stops = 0, dropped = 0;
+  int plans = 0, kept = 0, stops = 0, dropped = 0;
   for (int trial = 0; trial < 30; ++trial) {
     OccupancyMapOptions options = NoGround();
     options.size_log2 = {7, 6, 5};
@@ -439,6 +439,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
             luck < 0.35 ? replanner.Rest(input, 0.0, map) : replanner.Replan(input, map);
         EXPECT_NE(result.status, ReplanStatus::kUnsafe);
         plans += result.status == ReplanStatus::kPlanned;
+        kept += result.status == ReplanStatus::kKept;
         stops += result.status == ReplanStatus::kBraking;
         const bool is_new = !Same(replanner.state().next, before);
         double takes_over = input.t_start;
@@ -467,6 +468,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
     }
   }
   EXPECT_GT(plans, 100);
+  EXPECT_GT(kept, 3);
   EXPECT_GT(stops, 20);
   EXPECT_GT(dropped, 5);
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/planning/test/hull_fixtures.h"
+#include "touchdown/planning/test/replanner_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
@@ -121,6 +122,45 @@ TEST(UnseenZone, DoesNotAllocate) {
   const long before = solvers::AllocationCount();
   zone->Build(HullOf(space), {0.0, 0.0, 0.0}, 1.0);
   EXPECT_EQ(solvers::AllocationCount(), before);
+}
+
+/// Flying towards a pad behind a block of cells that nobody has seen.
+class TowardsTheUnseen : public ::testing::Test {
+ protected:
+  TowardsTheUnseen()
+      : map_(ObservedMap()),
+        pad_({5.0, 0.0, 0.3}, 0.0, 0.0, 0.0),
+        replanner_(Options(ArrivalMode::kFixed), solvers::StandardBackends()) {}
+
+  void Hide(double x) {
+    ForEachCell({map_.CellOf({x, -0.6, 0.0}), map_.CellOf({x + 0.4, 0.6, 3.0})},
+                [&](const CellIndex& cell) { map_.SetState(cell, CellState::kUnknown); });
+  }
+
+  const ReplanResult& Ask(double t, ReplanLog* log = nullptr) {
+    const FlatState at = replanner_.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad_, t);
+    input.vehicle.v_WB = at.v_WB;
+    replanner_.set_log(log);
+    return replanner_.Replan(input, map_);
+  }
+
+  OccupancyMap map_;
+  ArcPad pad_;
+  Replanner replanner_;
+};
+
+TEST_F(TowardsTheUnseen, StepsAfterAWayAroundItLeadAroundItAtOnce) {
+  replanner_.CommitHover({-1.0, 0.0, 1.6}, 0.0);
+  Hide(-0.3);
+  double t = 0.0;
+  for (; t < 3.0 && !replanner_.state().around_unseen; t += 0.1) Ask(t);
+  ASSERT_TRUE(replanner_.state().around_unseen);
+  for (int step = 0; step < 3 && replanner_.state().around_unseen; ++step, t += 0.1) {
+    ReplanLog log;
+    ASSERT_EQ(Ask(t, &log).status, ReplanStatus::kPlanned) << t;
+    EXPECT_EQ(log.attempts.size(), 1U) << "no straight attempt before it, at " << t;
+  }
 }
 
 }  // namespace
