@@ -143,6 +143,10 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   const double t = vehicle.t;
   own_position_sigma_ = own.PositionSigma();
   own_attitude_sigma_ = own.AttitudeSigma();
+  if (meets_vehicle_at_ && t >= *meets_vehicle_at_) {  // a plan from the vehicle has taken over
+    recent_error_ = {};
+    meets_vehicle_at_.reset();
+  }
   recent_error_.Note(t, (planner_->Reference(t).p_WB - vehicle.p_WB).norm());
   control::MissionInputs inputs;
   inputs.t = t;
@@ -219,15 +223,18 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (result.idle) return nullptr;
   look_W_ = result.unseen_W;
   way_ = &result.curve;
-  if (result.from_odometry) recent_error_ = {};  // the reference comes to the vehicle
+  if (result.from_odometry) meets_vehicle_at_ = input.t_start;
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   DeliverLate(vehicle.t);
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
+  const bool to_contact = input.endpoint.touches() || input.endpoint.sink_rate > 0.0;
+  lands_ = scenario_.planner == PlannerKind::kLanding && result.Lands();
+  const bool lands_as_wanted = wants_plan && to_contact && kept && lands_ &&
+                               result.reason != planning::ReplanReason::kInvalidInput;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned ||
-                  result.reason == planning::ReplanReason::kAtGoal || (kept && result.Lands());
-  lands_ = result.Lands();
+                  result.reason == planning::ReplanReason::kAtGoal || lands_as_wanted;
   has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
   if (!kept && !Levelled(vehicle.t)) {

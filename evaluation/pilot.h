@@ -118,10 +118,11 @@ class Pilot {
   const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
   bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;
-  planning::RecentError recent_error_;  // of tracking
-  bool last_planned_ = false;           ///< the last replanning step left no plan to be wished for
-  std::optional<double> planned_t_;     ///< when the last new plan was made
-  std::optional<double> requested_t_;   ///< since when plans are asked for without a break
+  planning::RecentError recent_error_;      // of tracking
+  std::optional<double> meets_vehicle_at_;  // the reference does, that of a plan from the vehicle
+  bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
+  std::optional<double> planned_t_;    ///< when the last new plan was made
+  std::optional<double> requested_t_;  ///< since when plans are asked for without a break
   /// When the committed plan that leads to contact ends [s]; infinite if there is none.
   double plan_end_t_ = std::numeric_limits<double>::infinity();
   double level_time_ = 0.0;        ///< from there to contact [s]

@@ -37,7 +37,10 @@ int CountFreeInside(const planning::OccupancyMap& map, const sim::Obstacle& obst
 }  // namespace
 
 void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margins& margins) {
-  margins_ = margins;
+  // A stop that is flown keeps to the margins that it was proven with.
+  const bool stored = plan.status == planning::ReplanStatus::kBraking ||
+                      plan.status == planning::ReplanStatus::kHolding;
+  if (!stored) margins_ = margins;
   figures_.margin_max_m = std::max(figures_.margin_max_m, margins.Sum());
   figures_.margin_mean_m += (margins.Sum() - figures_.margin_mean_m) / ++steps_;
   const planning::Certificate& certificate = plan.certificate;

@@ -40,8 +40,22 @@ bool Fallback::AtRest(const FlightPair& committed, double t0) {
 
 bool Fallback::Misses(const FlightPair& committed, double t0, const HullSpace& hull) {
   if (!committed.Lands()) return false;
-  return t0 > committed.curve.t_end() + kLatestContact ||
-         (hull.pad != nullptr && !std::isfinite(ContactTime(committed.curve, t0, hull)));
+  if (t0 > committed.curve.t_end() + kLatestContact) return true;
+  if (hull.pad == nullptr) return false;
+  if (!std::isfinite(ContactTime(committed.curve, t0, hull))) return true;
+  // What is not seen any more was proven once; what is seen to block is a reason to stop.
+  const std::optional<Eigen::Vector3d> cell_W = SweepAgain(committed, t0, hull).unseen_W;
+  return cell_W && hull.space->map->IsOccupied(hull.space->map->CellOf(*cell_W));
+}
+
+Sweep Fallback::SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull) {
+  HullSpace bare = hull;  // the margins may have grown since
+  bare.margin = 0.0;
+  const UniformBspline& last = committed.Last();
+  const double t_from = std::max(t0, last.t0());
+  const double t_contact = committed.Lands() ? ContactTime(last, t_from, hull) : last.t_end();
+  const double t_to = std::max(t_from, std::isfinite(t_contact) ? t_contact : last.t_end());
+  return SweepHull(last, t_from, t_to, last.EvaluateOnward(t_from).p_WB, bare);
 }
 
 bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
@@ -93,13 +107,10 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
   result->certificate.endpoint_required = false;
   result->certificate.limits_kept = result->certificate.clear = true;
   result->certificate.stops_in_observed_space = !Misses(committed, t0, hull);
-  const UniformBspline& last = committed.Last();
-  if (result->status != ReplanStatus::kHolding && hull.space != nullptr) {
-    const double t_from = std::max(t0, last.t0());
-    HullSpace bare = hull;  // the margins may have grown since
-    bare.margin = 0.0;
-    const Sweep again = SweepHull(last, t_from, last.t_end(), last.Position(t_from), bare);
-    result->map_error = !again.proven;
+  // A landing is looked at against the deck, or not at all.
+  const bool looked_at = hull.space != nullptr && (hull.pad != nullptr || !committed.Lands());
+  if (result->status != ReplanStatus::kHolding && looked_at) {
+    result->map_error = !SweepAgain(committed, t0, hull).proven;
   }
 }
 

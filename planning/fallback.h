@@ -36,10 +36,14 @@ class Fallback {
   /// The vehicle is at rest at t0 [s], and so it remains on the committed pair.
   static bool AtRest(const FlightPair& committed, double t0);
 
-  /// The pair was to end in contact, and that is long due, or the deck will not be there.
+  /// The pair was to end in contact, and that is long due, the deck will not be there, or a cell on the way
+  /// is seen to be occupied by now.
   static bool Misses(const FlightPair& committed, double t0, const HullSpace& hull);
 
  private:
+  /// What ends the pair, from t0 on, in the map of today and with the hull alone.
+  static Sweep SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull);
+
   Limits limits_;
   FlightPair pair_;
 };

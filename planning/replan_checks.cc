@@ -23,12 +23,17 @@ void Require(bool ok, const char* name, double value, const char* range) {
                               std::to_string(value) + ", it must be " + range);
 }
 
+bool Plausible(const Margins& margins) {
+  const auto fine = [](double margin) { return std::isfinite(margin) && margin >= 0.0; };
+  return fine(margins.own_state) && fine(margins.attitude) && fine(margins.tracking);
+}
+
 }  // namespace
 
 bool StateValid(const ReplanInput& input) {
   return std::isfinite(input.t_now) && std::isfinite(input.t_start) &&
          input.t_start >= input.t_now && input.vehicle.p_WB.allFinite() &&
-         input.vehicle.v_WB.allFinite() && input.pull_W.allFinite() &&
+         input.vehicle.v_WB.allFinite() && input.pull_W.allFinite() && Plausible(input.margins) &&
          Plausible(input.vehicle.p_WB, input.vehicle.v_WB);
 }
 

@@ -302,7 +302,8 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
     return Commit(t0);
   }
   for (const double climb : {0.0, kClimbFromMiss}) {
-    if (!lost || !fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, &result_)) continue;
+    if (!(lost || next_.Lands()) || !fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, &result_))
+      continue;
     result_.status = ReplanStatus::kBraking;
     return Commit(t0);
   }
@@ -369,7 +370,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   const bool lands_soon = !result_.from_odometry && LandsSoon(input, HullIn(plain, input.pad));
   // A plan that led around what was not seen is followed by others that do: not by turns.
   const bool on_plan = planned_before_ && !result_.from_odometry;
-  double unseen_reach = around_unseen_ && on_plan ? kUnseenReach : 0.0;
+  double unseen_reach = around_unseen_ && on_plan && !lands_soon ? kUnseenReach : 0.0;
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
@@ -416,7 +417,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       return reason;
     const bool was_free = request.arrival == ArrivalMode::kFree;
     if (lands_soon) {
-      if (i > 0 || T < options_.min_duration) return reason;
+      const bool fixed = options_.arrival == ArrivalMode::kFixed || T < options_.min_duration;
+      if (i > 0 || fixed) return reason;
       request.arrival = options_.arrival;
       continue;
     }

@@ -96,8 +96,9 @@ double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& 
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (hull.pad == nullptr) return kNever;
   const auto over_deck = [&](double t) {
-    const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
-    return DistanceBeside(deck, curve.EvaluateOnward(t).p_WB) <= 0.0;
+    PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
+    deck.half_size = deck.SureHalfSize();
+    return deck.half_size > 0.0 && DistanceBeside(deck, curve.EvaluateOnward(t).p_WB) <= 0.0;
   };
   double above = std::max(t_from, curve.t_end());
   const double left = FeetAbove(curve, above, hull);
@@ -117,9 +118,12 @@ double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& 
 }
 
 PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {
-  const Eigen::Vector3d p_start = pair->curve.EvaluateOnward(t_from).p_WB;
-  const Sweep sweep = SweepHull(pair->curve, t_from, pair->curve.t_end(), p_start, hull);
   pair->t_stop = std::numeric_limits<double>::infinity();
+  const UniformBspline& curve = pair->curve;
+  const double t_rest = curve.t_end();
+  if (TooLow(curve.Position(t_rest), t_rest, hull) > 1e-6) return {};
+  const Eigen::Vector3d p_start = curve.EvaluateOnward(t_from).p_WB;
+  const Sweep sweep = SweepHull(curve, t_from, t_rest, p_start, hull, DeckContact::kMayNot);
   return {sweep.proven, sweep.leaves, sweep.narrow, false, sweep.unseen_W};
 }
 

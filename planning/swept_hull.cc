@@ -21,6 +21,7 @@ constexpr double kSampling =
     0.01;                         // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s [m]
 constexpr double kNearer = 1e-6;  // rounding of a hull that leaves a cell: it comes no nearer [m]
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
+constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kLevel = 2e-3;     // rounding of floor and ceiling: kChordSagitta [m]
 
 /// Distance of a coordinate from the cell i.
@@ -34,7 +35,9 @@ class Tube {
       : hull_(hull),
         map_(*hull.space->map),
         start_(p_start_W),
-        radius_(hull.radius() + kSampling) {}
+        radius_(hull.radius() + kSampling),
+        face_noise_(OccupancyMap::kNoiseSigmas * map_.options().range_noise * kFaceRange +
+                    kRounding) {}
 
   /// Whether all cells that the ball at p touches at time t are observed free, or excepted.
   bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
@@ -43,7 +46,7 @@ class Tube {
     const Deck deck = DeckBelow(p, t);
     for (int z = z_low; z <= z_high; ++z) {
       if ((z + 1) * cell <= deck.exempt_below + kRounding) continue;
-      const bool holds_deck = deck.over && (z - 1) * cell <= deck.outline.p_WP.z() + kRounding;
+      const bool holds_deck = deck.over && z * cell <= deck.outline.p_WP.z() + face_noise_;
       const double dz = Gap(p.z(), z, cell);
       const double left = radius_ * radius_ - dz * dz;
       if (left <= 0.0) continue;
@@ -85,7 +88,8 @@ class Tube {
     return deck;
   }
 
-  /// `surface`: cells of this row over this deck hold its upper face, and what a ray met there was the deck.
+  /// `surface`: cells of this row over this deck are where its returns lie, and what a ray met there was the
+  /// deck, unless it is occupied.
   bool RowHolds(const CellIndex& first, int count, const Eigen::Vector3d& p,
                 const PadOutline* surface, Sweep* sweep) const {
     CellIndex at = first;
@@ -137,6 +141,7 @@ class Tube {
   const OccupancyMap& map_;
   Eigen::Vector3d start_;
   double radius_;
+  double face_noise_;  // of returns from the deck [m]
 };
 
 /// Feet above the deck, as far as the hull may be over it.

@@ -44,7 +44,8 @@ enum class DeckContact {
 /// to t_to [s], past the curve's end at its end's velocity, and the body's origin between floor and
 /// ceiling. Exceptions: cells that end below the map's ground height; while the body's origin is over the
 /// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
-/// upper face, and those over the deck that hold it; and, at the start, cells around `p_start_W` that the hull reached there already and
+/// upper face, and those over the deck where its returns lie by
+/// their noise, unless occupied; and, at the start, cells around `p_start_W` that the hull reached there already and
 /// does not come nearer to. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
                 const Eigen::Vector3d& p_start_W, const HullSpace& hull,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The last stretch before contact: what was proven to land is not put off, unless the deck is gone.
+#include <limits>
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -71,6 +72,33 @@ TEST_F(LastStretch, AnObstacleBesideTheWayIsNotFlownAround) {
   const ReplanResult& result = Ask(pad_);
   EXPECT_TRUE(result.Lands());
   EXPECT_EQ(result.rebinds, 0);
+}
+
+TEST_F(LastStretch, WhatIsSeenToBlockTheWayEndsIt) {
+  const Eigen::Vector3d end = landing_.curve.Position(landing_.curve.t_end());
+  map_.SetOccupied(end + Eigen::Vector3d(0.15, 0.0, 0.2));
+  const ReplanResult& result = Ask(pad_);
+  EXPECT_FALSE(result.Lands());
+  EXPECT_TRUE(result.certificate.stops_in_observed_space);
+}
+
+TEST_F(LastStretch, ALandingThatIsNotWantedAnyMoreIsLeft) {
+  const FlatState at = replanner_->Reference(t_);
+  ReplanInput input = Input(at.p_WB, pad_, t_);
+  input.vehicle.v_WB = at.v_WB;
+  EXPECT_FALSE(replanner_->Replan(input, map_).Lands()) << "a plan to hover above the pad";
+  EXPECT_FALSE(replanner_->Rest(input, 1.0, map_).Lands()) << "a climb";
+}
+
+TEST_F(LastStretch, MarginsThatAreNoNumbersProveNothing) {
+  const FlatState at = replanner_->Reference(t_);
+  ReplanInput input = Input(at.p_WB, pad_, t_);
+  input.vehicle.v_WB = at.v_WB;
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -0.1}) {
+    input.margins.own_state = bad;
+    EXPECT_EQ(replanner_->Replan(input, map_).reason, ReplanReason::kInvalidInput);
+    EXPECT_EQ(replanner_->state().next.curve.control_points(), landing_.curve.control_points());
+  }
 }
 
 TEST_F(LastStretch, ADeckThatIsGoneIsNotLandedOn) {
