@@ -285,8 +285,7 @@ bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull)
 void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
                                const HullSpace& hull) {
   const double t0 = input.t_start;
-  const bool lost = result_.from_odometry || Fallback::Misses(next_, t0, hull);
-  if (!lost && LandsSoon(input, hull)) {
+  if (!result_.from_odometry && LandsSoon(input, hull) && !Fallback::Misses(next_, t0, hull)) {
     Fallback::FlyStop(next_, t0, hull, &result_);
     return;
   }
@@ -301,11 +300,13 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
     result_.status = ReplanStatus::kEscaping;
     return Commit(t0);
   }
-  for (const double climb : {0.0, kClimbFromMiss}) {
-    if (!(lost || next_.Lands()) || !fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, &result_))
-      continue;
-    result_.status = ReplanStatus::kBraking;
-    return Commit(t0);
+  // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
+  if (result_.from_odometry || next_.Lands()) {
+    for (const double climb : {0.0, kClimbFromMiss}) {
+      if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, &result_)) continue;
+      result_.status = ReplanStatus::kBraking;
+      return Commit(t0);
+    }
   }
   Fallback::FlyStop(next_, t0, hull, &result_);
 }
