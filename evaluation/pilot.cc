@@ -127,8 +127,9 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   const double latency = scenario.planning.latency.measured ? LongestLatency(scenario) : Latency();
   parameters_.turn_time = 1.0 / PlannerRate(scenario) + latency + kAttitudeLag;
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
-  if (scenario.control.disturbance && scenario.controller == ControllerKind::kGeometric) {
-    observer_.emplace(model);
+  if (scenario.controller == ControllerKind::kGeometric) {
+    lead_.emplace(model);
+    if (scenario.control.disturbance) observer_.emplace(model);
   }
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);
@@ -313,7 +314,8 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
                                 &reference);
   }
   settling_.Apply(&told, &reference, &compensated);
-  const control::MixerOutput mix = mixer_.Mix(law.Update(told, reference, compensated).wrench);
+  control::MixerOutput mix = mixer_.Mix(law.Update(told, reference, compensated).wrench);
+  if (lead_) mix.thrusts = lead_->Command(mix.thrusts, vehicle.t);
   if (observer_) observer_->Command(mix.thrusts);
   return mix;
 }

@@ -10,6 +10,7 @@
 #include "touchdown/control/disturbance_observer.h"
 #include "touchdown/control/landing_state_machine.h"
 #include "touchdown/control/mixer.h"
+#include "touchdown/control/rotor_lead.h"
 #include "touchdown/control/settling.h"
 #include "touchdown/control/yaw_planner.h"
 #include "touchdown/estimation/pad_filter.h"
@@ -99,6 +100,7 @@ class Pilot {
   std::unique_ptr<control::Controller> controller_;
   std::unique_ptr<control::Controller> low_controller_;  ///< close over the deck: leans less
   control::Mixer mixer_;
+  std::optional<control::RotorLead> lead_;  ///< the paper's law has none
   std::optional<control::DisturbanceObserver> observer_;
   control::Settling settling_;
   control::MissionParameters parameters_;

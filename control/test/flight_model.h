@@ -11,6 +11,7 @@
 
 #include "touchdown/control/controller.h"
 #include "touchdown/control/mixer.h"
+#include "touchdown/control/rotor_lead.h"
 
 namespace touchdown::control {
 
@@ -36,10 +37,12 @@ class FlightModel {
   }
 
   estimation::VehicleState state;
-  bool saturated = false;  ///< in the last step
+  bool saturated = false;     ///< in the last step
+  RotorLead* lead = nullptr;  ///< on the rotors' commands, if given
 
   void Step(const planning::FlatState& reference) {
-    const MixerOutput command = mixer_.Mix(controller_.Update(state, reference).wrench);
+    MixerOutput command = mixer_.Mix(controller_.Update(state, reference).wrench);
+    if (lead != nullptr) command.thrusts = lead->Command(command.thrusts, state.t);
     saturated = command.saturated;
     Vector17 x;
     x << state.p_WB, state.v_WB, state.q_WB.coeffs(), state.w_WB_B, thrusts_;

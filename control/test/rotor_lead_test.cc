@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/control/rotor_lead.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "touchdown/control/geometric_controller.h"
+#include "touchdown/control/test/flight_model.h"
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kStep = 0.002;  // [s]
+
+TEST(RotorLead, RotorsOfTheModelFollowAsIfTheirLagWereAThird) {
+  const estimation::VehicleModel model = TestVehicle();
+  RotorLead lead(model);
+  const double hover = 0.25 * model.HoverThrust();
+  const Eigen::Vector4d wanted = Eigen::Vector4d::Constant(hover) +
+                                 0.1 * hover * Eigen::Vector4d(1.0, -1.0, 0.5, -0.5);
+  Eigen::Vector4d given = Eigen::Vector4d::Constant(hover);
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector4d command = lead.Command(wanted, i * kStep);
+    given += (1.0 - std::exp(-kStep / model.rotor_lag_s)) * (command - given);
+    const double t = (i + 1) * kStep;
+    const double left = std::exp(-3.0 * t / model.rotor_lag_s);
+    EXPECT_LT(((given - wanted).array() / (hover - wanted.array()) - left).abs().maxCoeff(), 0.05)
+        << "t = " << t;
+  }
+}
+
+TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
+  const estimation::VehicleModel model = TestVehicle();
+  RotorLead lead(model);
+  const Eigen::Vector4d most = Eigen::Vector4d::Constant(model.rotor_thrust_max);
+  double t = 0.0;
+  for (; t < 0.5; t += kStep) {
+    const Eigen::Vector4d command = lead.Command(most, t);
+    EXPECT_LE(command.maxCoeff(), model.rotor_thrust_max);
+  }
+  // The rotors are there; less is asked for, and less is commanded at once.
+  const Eigen::Vector4d command = lead.Command(0.9 * most, t);
+  EXPECT_LT(command.maxCoeff(), 0.9 * model.rotor_thrust_max);
+  EXPECT_GE(command.minCoeff(), model.rotor_thrust_min);
+}
+
+/// A vehicle that is struck turns with 3 rad/s: the fastest that it turns back and forth later than 0.2 s
+/// after [rad/s].
+double Ringing(double gain, double lag, bool with_lead) {
+  const estimation::VehicleModel model = TestVehicle();
+  estimation::VehicleModel plant = model;
+  plant.inertia /= gain;
+  plant.rotor_lag_s *= lag;
+  const GeometricController law(model, {});
+  RotorLead lead(model);
+  FlightModel flight(plant, law);
+  if (with_lead) flight.lead = &lead;
+  flight.state.w_WB_B.x() = 3.0;
+  double fastest = 0.0;
+  // The attitude alone: where the vehicle is and how fast is what is asked.
+  while (flight.state.t < 0.6) {
+    planning::FlatState reference;
+    reference.p_WB = flight.state.p_WB;
+    reference.v_WB = flight.state.v_WB;
+    flight.Step(reference);
+    if (flight.state.t > 0.2) fastest = std::max(fastest, std::abs(flight.state.w_WB_B.x()));
+  }
+  return fastest;
+}
+
+TEST(RotorLead, KeepsTheAttitudeDampedWhereThePlantIsOff) {
+  for (const double gain : {0.8 / 1.2, 1.0, 1.25, 1.5}) {
+    for (const double lag : {0.8, 1.0, 1.2}) {
+      SCOPED_TRACE(testing::Message() << "gain " << gain << ", lag " << lag);
+      const double without = Ringing(gain, lag, false), with = Ringing(gain, lag, true);
+      EXPECT_LT(with, 0.9);
+      if (lag >= 1.0) {
+        EXPECT_LT(with, 0.7 * without);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::control
