@@ -52,6 +52,7 @@ control::DescentStyle StyleOf(DescentKind kind) {
 // The paper extrapolates along the heading: a turn that the filter knows of is left out.
 PredictionData PredictionOf(const Scenario& scenario, const estimation::PadFilter& filter) {
   PredictionData data;
+  if (!filter.initialized()) return data;
   data.source = scenario.pad.prediction == PadPredictionKind::kOracle ? PredictionSource::kOracle
                                                                       : PredictionSource::kBelief;
   data.belief = filter.belief();
@@ -220,7 +221,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   // No plan is missing while none is tried: a climb must not end as a failure to plan.
   if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
-  const planning::ReplanResult& result = wants_plan ? PlanToPad(filter, map) : ComeToRest(map);
+  const planning::ReplanResult& result = Ask(wants_plan, filter, map);
   if (result.idle) return nullptr;
   look_W_ = result.unseen_W;
   way_ = &result.curve;
@@ -276,25 +277,22 @@ double Pilot::RestClimb() const {
   return mission_.guidance == control::Guidance::kClimb ? parameters_.follow_height : 0.0;
 }
 
-const planning::ReplanResult& Pilot::PlanToPad(const estimation::PadFilter& filter,
-                                               const planning::OccupancyMap& map) {
+// Who comes to rest may start above the deck, and is told where that is, too.
+const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFilter& filter,
+                                         const planning::OccupancyMap& map) {
   ReplanRequest& request = replan_.request;
   request.rest_climb.reset();
+  if (!for_plan) request.rest_climb = RestClimb();
   request.prediction = PredictionOf(scenario_, filter);
-  const estimation::BeliefPrediction prediction = request.prediction.Belief();
-  const bool oracle = request.prediction.source == PredictionSource::kOracle;
-  request.input.pad =
-      oracle ? static_cast<const estimation::PadPrediction*>(&oracle_) : &prediction;
-  replan_.pad = request.input.pad->At(request.input.t_now);
-  const planning::ReplanResult& result = planner_->Replan(request.input, map);
-  request.input.pad = nullptr;  // the prediction ends with this call
+  const estimation::BeliefPrediction belief = request.prediction.Belief();
+  planning::ReplanInput& input = request.input;
+  if (request.prediction.source == PredictionSource::kOracle) input.pad = &oracle_;
+  if (request.prediction.source == PredictionSource::kBelief) input.pad = &belief;
+  if (input.pad != nullptr) replan_.pad = input.pad->At(input.t_now);
+  const planning::ReplanResult& result =
+      for_plan ? planner_->Replan(input, map) : planner_->Rest(input, *request.rest_climb, map);
+  input.pad = nullptr;  // the prediction ends with this call
   return result;
-}
-
-const planning::ReplanResult& Pilot::ComeToRest(const planning::OccupancyMap& map) {
-  replan_.request.rest_climb = RestClimb();
-  replan_.request.prediction.source = PredictionSource::kNone;
-  return planner_->Rest(replan_.request.input, *replan_.request.rest_climb, map);
 }
 
 control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {

@@ -88,9 +88,8 @@ class Pilot {
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
-  const planning::ReplanResult& PlanToPad(const estimation::PadFilter& filter,
-                                          const planning::OccupancyMap& map);
-  const planning::ReplanResult& ComeToRest(const planning::OccupancyMap& map);
+  const planning::ReplanResult& Ask(bool for_plan, const estimation::PadFilter& filter,
+                                    const planning::OccupancyMap& map);
 
   Scenario scenario_;
   estimation::VehicleModel model_;

@@ -55,7 +55,8 @@ CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, co
 CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
-  next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL, next_t_stop REAL);
+  next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL,
+  current_proven INTEGER, next_t_stop REAL, next_proven INTEGER);
 CREATE TABLE state_point(plan INTEGER, curve TEXT, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL, radius REAL);
@@ -168,7 +169,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?)");
+      "?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const RecordPlan& row : plans) {
@@ -186,7 +187,8 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
               s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor, s.current.curve.t0(),
               s.current.curve.interval(), s.current.stop.t0(), s.current.stop.interval(),
               s.next.curve.t0(), s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
-              FiniteOrNone(s.current.t_stop), FiniteOrNone(s.next.t_stop));
+              FiniteOrNone(s.current.t_stop), s.current.proven, FiniteOrNone(s.next.t_stop),
+              s.next.proven);
     WritePoints(point, id, "current", s.current.curve.control_points());
     WritePoints(point, id, "current_stop", s.current.stop.control_points());
     WritePoints(point, id, "next", s.next.curve.control_points());

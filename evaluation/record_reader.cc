@@ -162,7 +162,7 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
     p.belief.t = row.Number();
     p.height = row.Number();
     p.noise = {row.Number(), row.Number(), row.Number(), row.Number(), row.Number()};
-    if (plan->request.rest_climb.has_value() != (p.source == PredictionSource::kNone)) {
+    if (!plan->request.rest_climb && p.source == PredictionSource::kNone) {
       row.Refuse("does not agree with the table replan_input");
     }
   };
@@ -188,7 +188,7 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
           "plan, planned, around_unseen, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
           "strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
           "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
-          "current_t_stop, next_t_stop",
+          "current_t_stop, current_proven, next_t_stop, next_proven",
           "plan"),
       plans, [&](TableRows& row, RecordPlan* plan) {
         planning::ReplannerState& s = plan->before;
@@ -206,6 +206,7 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
         }
         for (planning::FlightPair* pair : {&s.current, &s.next}) {
           pair->t_stop = row.Optional().value_or(std::numeric_limits<double>::infinity());
+          pair->proven = row.Flag();
         }
       });
   ReadMany(TableRows(db, "state_point", "plan, curve, i, x, y, z", "plan, curve, i"), plans,

@@ -112,11 +112,12 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   const DerivativeBounds bounds = BoundDerivatives(curve);
   c.speed_bound = bounds.speed;
   c.acceleration_bound = bounds.acceleration;
-  c.limits_kept = bounds.speed <= limits.speed + kLimitSlack &&
+  const bool turns = bounds.body_rate <= limits.body_rate + kLimitSlack;
+  c.limits_kept = turns && bounds.speed <= limits.speed + kLimitSlack &&
                   bounds.acceleration <= limits.acceleration + kLimitSlack;
   c.recovering = !c.limits_kept && (StartSpeed(curve) > limits.speed + kLimitSlack ||
                                     curve.AtKnot(0).a.norm() > limits.acceleration + kLimitSlack);
-  if (c.recovering) c.limits_kept = RecoveryProfileKept(curve, limits);
+  if (c.recovering) c.limits_kept = turns && RecoveryProfileKept(curve, limits);
 
   const double hit = FirstBlockedTime(curve, t_from, space);
   c.clear = !std::isfinite(hit);

@@ -6,6 +6,7 @@
 #include "touchdown/planning/fallback.h"
 
 #include <cmath>
+#include <limits>
 
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/grid_search.h"
@@ -42,7 +43,8 @@ bool Fallback::Misses(const FlightPair& committed, double t0, const HullSpace& h
   if (!committed.Lands()) return false;
   if (t0 > committed.curve.t_end() + kLatestContact) return true;
   if (hull.pad == nullptr) return false;
-  if (!std::isfinite(ContactTime(committed.curve, t0, hull))) return true;
+  const double t_contact = ContactTime(committed.curve, t0, hull);
+  if (!std::isfinite(t_contact) || !TouchesSoftly(committed.curve, t_contact, hull)) return true;
   // What is not seen any more was proven once; what is seen to block is a reason to stop.
   const std::optional<Eigen::Vector3d> cell_W = SweepAgain(committed, t0, hull).unseen_W;
   return cell_W && hull.space->map->IsOccupied(hull.space->map->CellOf(*cell_W));
@@ -89,6 +91,14 @@ bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d&
   return true;
 }
 
+void Fallback::RisesUnproven(double t0, const SplineState& start, double climb,
+                             const HullSpace& hull, ReplanResult* result) const {
+  MakeRestTrajectory(start, t0, {0.0, 0.0, climb}, limits_, &result->curve);
+  result->t_stop = std::numeric_limits<double>::infinity();
+  result->proven = false;
+  result->certificate = Certify(result->curve, t0, nullptr, nullptr, limits_, *hull.space);
+}
+
 bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hull,
                        ReplanResult* result) {
   CellIndex way_out = hull.space->map->CellOf(start.p);
@@ -106,7 +116,7 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
   result->certificate = {};
   result->certificate.endpoint_required = false;
   result->certificate.limits_kept = result->certificate.clear = true;
-  result->certificate.stops_in_observed_space = !Misses(committed, t0, hull);
+  result->certificate.stops_in_observed_space = committed.proven && !Misses(committed, t0, hull);
   // A landing is looked at against the deck, or not at all.
   const bool looked_at = hull.space != nullptr && (hull.pad != nullptr || !committed.Lands());
   if (result->status != ReplanStatus::kHolding && looked_at) {

@@ -23,6 +23,11 @@ class Fallback {
   bool Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,
              const HullSpace& hull, ReplanResult* result);
 
+  /// From a landing whose deck is gone to rest, `climb` higher [m], where nothing is proven: less may be touched
+  /// than by what is committed, and more is not said of it.
+  void RisesUnproven(double t0, const SplineState& start, double climb, const HullSpace& hull,
+                     ReplanResult* result) const;
+
   /// From rest among cells that block to the nearest place that does not.
   bool Escapes(double t0, const SplineState& start, const HullSpace& hull, ReplanResult* result);
 
@@ -36,8 +41,8 @@ class Fallback {
   /// The vehicle is at rest at t0 [s], and so it remains on the committed pair.
   static bool AtRest(const FlightPair& committed, double t0);
 
-  /// The pair was to end in contact, and that is long due, the deck will not be there, or a cell on the way
-  /// is seen to be occupied by now.
+  /// The pair was to end in contact, and that is long due, the deck will not be there or not move along, or a
+  /// cell on the way is seen to be occupied by now.
   static bool Misses(const FlightPair& committed, double t0, const HullSpace& hull);
 
  private:

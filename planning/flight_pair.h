@@ -15,6 +15,7 @@ struct FlightPair {
   double t_stop = std::numeric_limits<double>::infinity();  ///< the stop begins [s]; infinite: the
                                                             ///< curve is a stop itself
   UniformBspline stop;
+  bool proven = true;  ///< false: the least that could be done, and not a proven pair
 
   /// The reference at time t (yaw fields zero). Does not allocate.
   FlatState At(double t) const {

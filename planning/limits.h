@@ -5,13 +5,16 @@
 
 namespace touchdown::planning {
 
-/// Limits on the norms of velocity and acceleration.
+/// Limits on the norms of velocity and acceleration, and on how fast the vehicle has to turn for them.
 struct Limits {
   double speed = 3.0;         ///< [m/s]
   double acceleration = 6.0;  ///< [m/s^2]
   /// Over the acceleration, of what a stop in observed space is counted with: in wind the tracking
   /// law tilts farther for it than plans do.
   double braking_factor = 1.0;
+  /// Of the thrust axis of who flies the curve exactly: faster the attitude cannot follow, and swings far
+  /// beyond [rad/s].
+  double body_rate = 4.0;
 };
 
 /// How fast a start beyond a limit must come back to it: the speed may be

@@ -39,11 +39,13 @@ bool StateValid(const ReplanInput& input) {
 
 bool TargetValid(const ReplanInput& input) {
   const EndpointTarget& end = input.endpoint;
-  if (input.pad == nullptr || !std::isfinite(end.height) || !std::isfinite(end.sink_rate) ||
-      !std::isfinite(end.height_floor) || !std::isfinite(end.t_reference) ||
-      !std::isfinite(end.arrival_sink) || end.arrival_sink < 0.0) {
-    return false;
-  }
+  return std::isfinite(end.height) && std::isfinite(end.sink_rate) &&
+         std::isfinite(end.height_floor) && std::isfinite(end.t_reference) &&
+         std::isfinite(end.arrival_sink) && end.arrival_sink >= 0.0 && PadValid(input);
+}
+
+bool PadValid(const ReplanInput& input) {
+  if (input.pad == nullptr) return false;
   const estimation::PadState pad = input.pad->At(input.t_start);
   return pad.p_WP.allFinite() && pad.v_WP.allFinite() && Plausible(pad.p_WP, pad.v_WP);
 }

@@ -13,7 +13,10 @@ void Validate(const ReplannerOptions& options);
 /// gets.
 bool StateValid(const ReplanInput& input);
 
-/// The endpoint and the pad's state at the start can be used.
+/// The pad is known, and its state at the start can be used.
+bool PadValid(const ReplanInput& input);
+
+/// PadValid, and the endpoint can be used.
 bool TargetValid(const ReplanInput& input);
 
 }  // namespace touchdown::planning

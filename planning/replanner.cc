@@ -187,6 +187,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.guide_paths.Clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
   result_.from_odometry = result_.map_error = committed_ = false;
+  result_.proven = true;
   // A level stretch at the end of a landing, or a vertical descent, may go below the height of contact.
   result_.ends_in_contact =
       input.endpoint.touches() || input.endpoint.height_floor < options_.contact_height;
@@ -281,7 +282,7 @@ bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull)
 }
 
 /// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,
-/// the stop that is stored.
+/// the stop that is stored; and where that was a landing whose deck is gone, up, proven or not.
 void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
                                const HullSpace& hull) {
   const double t0 = input.t_start;
@@ -308,6 +309,11 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
       return Commit(t0);
     }
   }
+  if (Fallback::Misses(next_, t0, hull)) {
+    fallback_.RisesUnproven(t0, start, kClimbFromMiss, hull, &result_);
+    result_.status = ReplanStatus::kBraking;
+    return Commit(t0);
+  }
   Fallback::FlyStop(next_, t0, hull, &result_);
 }
 
@@ -318,7 +324,7 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   if (!StateValid(input) || !InTime(input)) return RefuseState(input);
   const SplineState start = Start(input);
   const FreeSpace space = SpaceWithoutPad(input, map);
-  const HullSpace hull = HullIn(space, nullptr);
+  const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
   planned_before_ = false;
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (!under_way) {

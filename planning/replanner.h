@@ -51,7 +51,8 @@ class Replanner : public Planner {
 
   /// Comes to rest and stays, for want of a pad to go to: a certified braking trajectory, or with
   /// `climb` > 0 [m] one that ends that much higher. Once it is under way it is kept.
-  /// `input.pad` and `input.endpoint` are not used.
+  /// `input.pad`, nullptr where nothing is known of it, is the deck that it may start above; `input.endpoint` is
+  /// not used.
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
 

@@ -35,7 +35,8 @@ void MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector
   for (int i = 0; i <= kMaxTries; ++i, T *= kGrowth) {
     make(T);
     const DerivativeBounds bounds = BoundDerivatives(*trajectory);
-    const double excess = std::max(bounds.speed / speed, bounds.acceleration / acceleration);
+    const double excess = std::max({bounds.speed / speed, bounds.acceleration / acceleration,
+                                    bounds.body_rate / limits.body_rate});
     if (excess <= 1.0 + 1e-9) return;
     if (excess < least_excess) {
       least_excess = excess;

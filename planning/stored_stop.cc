@@ -18,6 +18,8 @@ namespace {
 constexpr double kAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
 constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
 constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
+constexpr double kSoftSink = 0.45;  // relative to the deck; 0.5 is allowed [m/s]
+constexpr double kSoftDrift = 0.5;  // alike; 0.6 is allowed [m/s]
 constexpr double kContactClock = 0.01;  // of the time at which contact is expected [s]
 constexpr double kOnward = kLatestContact - kPressing;  // from a curve's end to contact at most [s]
 
@@ -69,6 +71,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   };
   const auto touches_down = [&] {
     if (ends == PairEnd::kRest || !std::isfinite(t_contact)) return false;
+    if (!TouchesSoftly(curve, t_contact, hull)) return false;
     const double t_end = std::max(t_handover, t_contact) + kPressing;
     const Sweep sweep = SweepHull(curve, t_handover, t_end, p_start, hull);
     proof.leaves = until.leaves || sweep.leaves;
@@ -90,6 +93,11 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   }
   pair->t_stop = proof.contact ? std::numeric_limits<double>::infinity() : t_handover;
   return proof;
+}
+
+bool TouchesSoftly(const UniformBspline& curve, double t, const HullSpace& hull) {
+  const Eigen::Vector3d v = curve.EvaluateOnward(t).v_WB - hull.pad->At(t).v_WP;
+  return -v.z() <= kSoftSink && v.head<2>().norm() <= kSoftDrift;
 }
 
 double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull) {

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "touchdown/estimation/vehicle_model.h"
+
 namespace touchdown::planning {
 
 UniformBspline::UniformBspline() : numbers_(12, 0.0) {}
@@ -116,6 +118,16 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
   }
   for (int i = 1; i + 2 < n; ++i) {
     bounds.speed = std::max(bounds.speed, (q.col(i + 1) - q.col(i)).norm() / h);
+  }
+  // The specific thrust f = a + g e_z is linear on a segment, so that f x j is constant there, and the axis
+  // turns with |f x j| / |f|^2: fastest where f is shortest.
+  const Eigen::Vector3d g_W = estimation::kGravity * Eigen::Vector3d::UnitZ();
+  for (int i = 0; i < curve.segments(); ++i) {
+    const Eigen::Vector3d from = curve.AtKnot(i).a + g_W, change = curve.AtKnot(i + 1).a + g_W - from;
+    const double turn = from.cross(change).norm() / h;
+    if (turn == 0.0) continue;
+    const double nearest = std::clamp(-from.dot(change) / change.squaredNorm(), 0.0, 1.0);
+    bounds.body_rate = std::max(bounds.body_rate, turn / (from + nearest * change).squaredNorm());
   }
   return bounds;
 }

@@ -84,6 +84,7 @@ class UniformBspline {
 struct DerivativeBounds {
   double speed = 0.0;         ///< [m/s]
   double acceleration = 0.0;  ///< [m/s^2]
+  double body_rate = 0.0;     ///< of the thrust axis of who flies it exactly [rad/s]
 };
 DerivativeBounds BoundDerivatives(const UniformBspline& curve);
 

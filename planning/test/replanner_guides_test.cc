@@ -175,6 +175,7 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
     // With the hull that it has, the vehicle is too near to the pillar to stop, so that no plan is
     // proven: here it is the segments that count.
     options.hull_radius = 0.0;
+    options.limits.body_rate = 100.0;
     Replanner replanner(options, solvers::StandardBackends());
     ReplanLog log;
     replanner.set_log(&log);

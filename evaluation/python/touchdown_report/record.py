@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "7"
+SUPPORTED_VERSION = "8"
 
 
 class RecordError(Exception):
