@@ -58,6 +58,20 @@ TEST(Certificate, AStartBeyondALimitIsHeldToItsRecovery) {
   EXPECT_FALSE(Certify(persists, 0.0, nullptr, &faster, {3.0, 6.0}, space).limits_kept);
 }
 
+TEST(Certificate, WhatTheAttitudeCannotFollowBreaksALimit) {
+  OccupancyMap map(SmallMap(0.2));
+  map.MarkFree(Eigen::Vector3d::Zero(), 5.0);
+  const FreeSpace space = SpaceOf(map);
+  const SplineState start{{-2, 0, 0}, {0, 0, 0}, {0, 0, 0}}, end{{2, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  ControlPoints q = HermiteControlPoints(start, end, 40, 4.0);
+  q(1, 20) += 0.02;  // to the side and back within a few tenths of a second
+  const UniformBspline curve(q, 0.1, 0.0);
+  Limits limits{4.0, 6.0};
+  EXPECT_FALSE(Certify(curve, 0.0, nullptr, &end, limits, space).limits_kept);
+  limits.body_rate = 10.0;
+  EXPECT_TRUE(Certify(curve, 0.0, nullptr, &end, limits, space).limits_kept);
+}
+
 TEST(Certificate, AStartInTheInflatedZoneMayOnlyLeave) {
   OccupancyMap map(SmallMap(0.4));
   map.MarkFree(Eigen::Vector3d::Zero(), 5.0);

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "touchdown/planning/cell_box.h"
 #include "touchdown/planning/replanner.h"
 #include "touchdown/planning/test/replanner_fixtures.h"
 
@@ -110,6 +111,58 @@ TEST_F(LastStretch, ADeckThatIsGoneIsNotLandedOn) {
   for (double t = t_; t < t_ + 5.0; t += 0.02) {
     EXPECT_GT(replanner_->Reference(t).p_WB.z(), 0.44) << t;
   }
+}
+
+TEST_F(LastStretch, ADeckThatHasBrakedIsNotTouched) {
+  // Where contact is due it stands: the feet would meet it with the pad's old speed.
+  const double t_contact = landing_.curve.t_end();
+  const Eigen::Vector3d p = landing_.curve.Position(t_contact);
+  const ArcPad stands({p.x() - 0.1, 0.0, kDeck}, -0.3, 0.0, 0.0);
+  map_ = OccupancyMap(map_.options());
+  map_.MarkFree(Eigen::Vector3d(0, 0, 0), 11.0);
+  const FlatState at = replanner_->Reference(t_);
+  ReplanInput input = Input(at.p_WB, stands, t_);
+  input.vehicle.v_WB = at.v_WB;
+  EXPECT_FALSE(replanner_->Rest(input, 0.0, map_).Lands());
+}
+
+// Without a proof it rises, and does not go on to where the deck was; and the pair says what it is.
+TEST_F(LastStretch, AMissedLandingInTheUnseenRisesAndIsNotCalledProven) {
+  map_ = OccupancyMap(map_.options());
+  const ArcPad gone({4.0, 3.0, kDeck}, 0.5, 0.0, 0.0);
+  const ReplanResult& result = Ask(gone);
+  EXPECT_EQ(result.status, ReplanStatus::kBraking);
+  EXPECT_FALSE(result.Lands());
+  EXPECT_FALSE(result.proven);
+  EXPECT_FALSE(result.certificate.stops_in_observed_space);
+  EXPECT_GT(replanner_->Reference(t_ + 5.0).p_WB.z(), kDeck + 0.5);
+  // What is flown on without a new pair is not proven by being flown on.
+  t_ += 0.1;
+  EXPECT_FALSE(Ask(gone).certificate.stops_in_observed_space);
+  // A hover elsewhere is a new pair.
+  map_ = ObservedMap();
+  t_ += 3.0;
+  EXPECT_TRUE(Ask(gone).proven);
+}
+
+// Above the deck the hull is among cells that nobody sees free, as the deck is: no escape from there.
+TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
+  t_ = landing_.curve.t_end() - 0.2;
+  map_ = ObservedMap();
+  const Eigen::Vector3d deck = pad_.At(t_).p_WP;
+  ForEachCell({map_.CellOf(deck - Eigen::Vector3d(0.4, 0.4, 0.4)),
+               map_.CellOf(deck + Eigen::Vector3d(0.4, 0.4, -0.04))},
+              [&](const CellIndex& cell) { map_.SetState(cell, CellState::kUnknown); });
+  const FlatState at = replanner_->Reference(t_);
+  ReplanInput input = Input(at.p_WB, pad_, t_);
+  input.vehicle.v_WB = at.v_WB;
+  const ReplannerState before = replanner_->state();
+  const ReplanResult& result = replanner_->Rest(input, 1.0, map_);
+  EXPECT_EQ(result.status, ReplanStatus::kClimbing);
+  EXPECT_FALSE(result.certificate.leaves);
+  replanner_->Restore(before);
+  input.pad = nullptr;
+  EXPECT_EQ(replanner_->Rest(input, 1.0, map_).status, ReplanStatus::kKept) << "it cannot leave";
 }
 
 TEST_F(LastStretch, ContactThatNeverComesEndsIt) {

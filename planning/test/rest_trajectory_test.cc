@@ -28,6 +28,7 @@ TEST(RestTrajectory, JoinsTheStartKeepsTheLimitsAndEndsAtRest) {
     const double allowed = speeds_up ? 1.25 : 1.0 + 1e-9;
     EXPECT_LE(bounds.speed, allowed * limits.speed);
     EXPECT_LE(bounds.acceleration, allowed * limits.acceleration);
+    EXPECT_LE(bounds.body_rate, allowed * limits.body_rate);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "touchdown/planning/stored_stop.h"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -217,6 +218,19 @@ TEST_F(StopOverDeck, ALandingThatMissesTheDeckIsNone) {
   EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
   hull_.pad = nullptr;
   EXPECT_EQ(ContactTime(pair.curve, 0.0, hull_), std::numeric_limits<double>::infinity());
+}
+
+// The same way on to a deck that drives off below it or rises to meet it is no touchdown.
+TEST_F(StopOverDeck, ContactThatIsNotSoftIsNone) {
+  FlightPair pair;
+  ASSERT_TRUE(Prove(0.1, 0.4, PairEnd::kContact, &pair).contact);
+  const double t = ContactTime(pair.curve, 0.0, hull_);
+  EXPECT_TRUE(TouchesSoftly(pair.curve, t, hull_));
+  const ArcPad drives(Eigen::Vector3d(-0.6 * t, 0, 0.45), 0.6, 0.0, 0.0);
+  hull_.pad = &drives;
+  EXPECT_TRUE(std::isfinite(ContactTime(pair.curve, 0.0, hull_))) << "it is below by then";
+  EXPECT_FALSE(TouchesSoftly(pair.curve, t, hull_));
+  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
 }
 
 TEST_F(StopOverDeck, WhereItIsToLandNoStopIsAnAnswer) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/planning/boundary_lift.h"
+#include "touchdown/planning/flatness.h"
 #include "touchdown/planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
@@ -98,10 +99,16 @@ TEST(UniformBspline, DerivativeBoundsHoldAlongTheCurve) {
   for (int trial = 0; trial < 50; ++trial) {
     const UniformBspline curve = RandomCurve(&draw, 12);
     const DerivativeBounds bounds = BoundDerivatives(curve);
-    double fastest = 0.0, strongest = 0.0;
+    double fastest = 0.0, strongest = 0.0, turning = 0.0;
     for (double t = curve.t0(); t <= curve.t_end(); t += 0.002) {
       fastest = std::max(fastest, curve.Evaluate(t).v_WB.norm());
       strongest = std::max(strongest, curve.Evaluate(t).a_WB.norm());
+      const FlatInputs inputs = InvertFlatness(curve.Evaluate(t));
+      turning = std::max(turning, inputs.w_WB_B.head<2>().norm());
+    }
+    EXPECT_LE(turning, bounds.body_rate + 1e-9);
+    if (bounds.body_rate < 20.0) {  // near to free fall it is too short a moment to be met
+      EXPECT_GE(turning, 0.9 * bounds.body_rate);
     }
     EXPECT_LE(fastest, bounds.speed + 1e-9);
     EXPECT_LE(strongest, bounds.acceleration + 1e-9);
