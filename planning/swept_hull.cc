@@ -31,13 +31,14 @@ double Gap(double x, int i, double resolution) {
 
 class Tube {
  public:
-  Tube(const HullSpace& hull, const Eigen::Vector3d& p_start_W)
+  Tube(const HullSpace& hull, const Eigen::Vector3d& p_start_W, double t_start)
       : hull_(hull),
         map_(*hull.space->map),
         start_(p_start_W),
         radius_(hull.radius() + kSampling),
         face_noise_(OccupancyMap::kNoiseSigmas * map_.options().range_noise * kFaceRange +
-                    kRounding) {}
+                    kRounding),
+        start_deck_(DeckBelow(start_, t_start)) {}
 
   /// Whether all cells that the ball at p touches at time t are observed free, or excepted.
   bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
@@ -46,7 +47,7 @@ class Tube {
     const Deck deck = DeckBelow(p, t);
     for (int z = z_low; z <= z_high; ++z) {
       if ((z + 1) * cell <= deck.exempt_below + kRounding) continue;
-      const bool holds_deck = deck.over && z * cell <= deck.outline.p_WP.z() + face_noise_;
+      const bool holds_deck = HoldsFace(z, deck);
       const double dz = Gap(p.z(), z, cell);
       const double left = radius_ * radius_ - dz * dz;
       if (left <= 0.0) continue;
@@ -58,7 +59,7 @@ class Tube {
         if (half2 <= 0.0) continue;
         const double half = std::sqrt(half2);
         const int x_low = Index(p.x() - half), x_high = Index(p.x() + half);
-        const PadOutline* surface = holds_deck ? &deck.outline : nullptr;
+        const Deck* surface = holds_deck ? &deck : nullptr;
         if (!RowHolds({x_low, y, z}, x_high - x_low + 1, p, surface, sweep)) return false;
       }
     }
@@ -80,7 +81,8 @@ class Tube {
     if (hull_.pad == nullptr) return deck;
     deck.outline = OutlineOf(hull_.pad->At(t), hull_.deck_half_size);
     const double top = deck.outline.p_WP.z();
-    if (p.z() - radius_ >= top + map_.resolution()) return deck;  // it does not reach down to it
+    const double highest = top + face_noise_ + map_.resolution();  // of cells that hold its face
+    if (p.z() - radius_ >= highest) return deck;
     PadOutline sure = deck.outline;
     sure.half_size = sure.SureHalfSize();
     deck.over = sure.half_size > 0.0 && DistanceBeside(sure, p) <= 0.0;
@@ -88,10 +90,19 @@ class Tube {
     return deck;
   }
 
-  /// `surface`: cells of this row over this deck are where its returns lie, and what a ray met there was the
-  /// deck, unless it is occupied.
-  bool RowHolds(const CellIndex& first, int count, const Eigen::Vector3d& p,
-                const PadOutline* surface, Sweep* sweep) const {
+  /// Cells of this level over the deck are where its returns lie.
+  bool HoldsFace(int z, const Deck& deck) const {
+    return deck.over && z * map_.resolution() <= deck.outline.p_WP.z() + face_noise_;
+  }
+
+  /// What a ray met in this cell was the deck, unless it is occupied.
+  bool IsFace(const CellIndex& cell, const Deck& deck) const {
+    return DistanceBeside(deck.outline, map_.CentreOf(cell)) <= 0.0 && !map_.IsOccupied(cell);
+  }
+
+  /// `surface`: the deck whose face cells of this row hold.
+  bool RowHolds(const CellIndex& first, int count, const Eigen::Vector3d& p, const Deck* surface,
+                Sweep* sweep) const {
     CellIndex at = first;
     for (int left = count; left > 0;) {
       const int n = std::min(left, 64);
@@ -102,12 +113,12 @@ class Tube {
       std::uint64_t missing = ~map_.ObservedFreeRow(at, n) & all;
       for (; missing != 0; missing &= missing - 1) {
         const CellIndex cell = at + CellIndex(std::countr_zero(missing), 0, 0);
-        const bool on_deck =
-            surface != nullptr && DistanceBeside(*surface, map_.CentreOf(cell)) <= 0.0;
-        if (on_deck && !map_.IsOccupied(cell)) continue;
+        if (surface != nullptr && IsFace(cell, *surface)) continue;
         if (!WasThere(cell, p)) {
           return Unseen(cell, sweep);
         }
+        // The deck may have driven on: where it was nothing else is.
+        if (HoldsFace(cell.z(), start_deck_) && IsFace(cell, start_deck_)) continue;
         // What only the room between two balls reaches into is not in the grown hull.
         const double at_start = Distance(cell, start_);
         sweep->leaves |= at_start < hull_.hull_radius - kNearer;
@@ -142,6 +153,7 @@ class Tube {
   Eigen::Vector3d start_;
   double radius_;
   double face_noise_;  // of returns from the deck [m]
+  Deck start_deck_;    // below the start, when it was there
 };
 
 /// Feet above the deck, as far as the hull may be over it.
@@ -169,7 +181,7 @@ bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Ve
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
                 const Eigen::Vector3d& p_start_W, const HullSpace& hull, DeckContact contact) {
   Sweep sweep;
-  const Tube tube(hull, p_start_W);
+  const Tube tube(hull, p_start_W, t_from);
   Eigen::Vector3d ball = p_start_W;  // where the hull was looked at last,
   Eigen::Vector3d before = ball;     // and the place after it that was passed over
   double t_before = t_from;

@@ -227,6 +227,23 @@ TEST_F(OverDeck, WhatStandsOnItForbids) {
   EXPECT_FALSE(Lands());
 }
 
+// Who rises from above a deck that drives on leaves nothing but where the deck was.
+TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
+  const ArcPad drives({0, 0, 0.45}, 0.8, 0.0, 0.0);
+  const FreeSpace space = SpaceOf(map_);
+  HullSpace hull = HullOf(space);
+  hull.pad = &drives;
+  hull.deck_half_size = 0.3;
+  hull.foot_depth = 0.12;
+  const SplineState low{{0, 0, 0.62}, {0, 0, 0}, {0, 0, 0}};
+  const SplineState high{{0, 0, 1.1}, {0, 0, 0}, {0, 0, 0}};
+  const Sweep rises = Look(Between(low, high, 2.0), hull);
+  EXPECT_TRUE(rises.proven);
+  EXPECT_FALSE(rises.leaves);
+  map_.SetState({1, 1, 5}, CellState::kOccupied);  // what blocks there does not belong to it
+  EXPECT_TRUE(Look(Between(low, high, 2.0), hull).leaves);
+}
+
 TEST_F(OverDeck, AirAboveItHasToBeSeen) {
   map_.SetState({1, 1, 5}, CellState::kUnknown);
   EXPECT_FALSE(Lands());
