@@ -91,7 +91,7 @@ TEST(ClosedLoop, PhysicsThatFailsIsTheOutcomeUnstableAndIsRecorded) {
   const auto replace = [&mjcf](const std::string& from, const std::string& to) {
     mjcf.replace(mjcf.find(from), from.size(), to);
   };
-  replace("mass=\"1.18\"", "mass=\"0.002\"");
+  replace("mass=\"1.18\"", "mass=\"0.0002\"");
   replace("0.19 0.19 0.0", "10 10 10");
   const std::string path = ::testing::TempDir() + "touchdown_feather.xml";
   std::ofstream(path) << mjcf;
