@@ -424,9 +424,11 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       return reason;
     const bool was_free = request.arrival == ArrivalMode::kFree;
     if (lands_soon) {
-      const bool fixed = options_.arrival == ArrivalMode::kFixed || T < options_.min_duration;
-      if (i > 0 || fixed) return reason;
-      request.arrival = options_.arrival;
+      // Once more a little later: a pad that brakes is not met with what was promised before.
+      if (i > 0) return reason;
+      const bool free = options_.arrival == ArrivalMode::kFree && T >= options_.min_duration;
+      if (free) request.arrival = ArrivalMode::kFree;
+      if (!free) T = std::min(kStretch * T, options_.max_duration);
       continue;
     }
     // What is not seen yet may soon be: as long as it can, the committed curve goes on.
