@@ -9,8 +9,8 @@
 
 namespace touchdown::control {
 namespace {
-// With the plant 20 % off in everything it leaves the attitude a damping ratio of 0.62 in the worst corner,
-// where 1 leaves 0.45 and none 0.21.
+// With the plant 20 % off in everything the attitude's loop, with the observer and 4 ms of delay, keeps a damping
+// ratio of 0.52 in the worst corner (its eigenvalues); with a lead of 1 it is 0.45, without one 0.21.
 constexpr double kLead = 2.0;
 }  // namespace
 

@@ -7,7 +7,7 @@
 
 namespace touchdown::planning {
 
-/// What was proven about a trajectory. A new one is committed only if passed().
+/// What was proven about a trajectory. A new plan is committed only if passed().
 struct Certificate {
   bool endpoint_required = true;            ///< false for braking and climbing: they end at rest
   double endpoint_tolerance = 1e-9;         ///< on the residuals at both ends [m, m/s]

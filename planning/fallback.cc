@@ -39,25 +39,28 @@ bool Fallback::AtRest(const FlightPair& committed, double t0) {
   return now.v_WB.norm() <= kAtRest && end.v.norm() <= 1e-6 && (end.p - now.p_WB).norm() <= kAtRest;
 }
 
-bool Fallback::Misses(const FlightPair& committed, double t0, const HullSpace& hull) {
-  if (!committed.Lands()) return false;
-  if (t0 > committed.curve.t_end() + kLatestContact) return true;
-  if (hull.pad == nullptr) return false;
+Fallback::Landing Fallback::LookAtLanding(const FlightPair& committed, double t0,
+                                          const HullSpace& hull) {
+  if (!committed.Lands()) return Landing::kHolds;
+  if (t0 > committed.curve.t_end() + kLatestContact) return Landing::kMisses;
+  if (hull.pad == nullptr) return Landing::kHolds;
   const double t_contact = ContactTime(committed.curve, t0, hull);
-  if (!std::isfinite(t_contact) || !TouchesSoftly(committed.curve, t_contact, hull)) return true;
+  if (!std::isfinite(t_contact)) return Landing::kMisses;
   // What is not seen any more was proven once; what is seen to block is a reason to stop.
-  const std::optional<Eigen::Vector3d> cell_W = SweepAgain(committed, t0, hull).unseen_W;
-  return cell_W && hull.space->map->IsOccupied(hull.space->map->CellOf(*cell_W));
+  if (SweepAgain(committed, t0, hull, true).unseen_W) return Landing::kMisses;
+  return TouchesSoftly(committed.curve, t_contact, 1.0, hull) ? Landing::kHolds : Landing::kHard;
 }
 
-Sweep Fallback::SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull) {
+Sweep Fallback::SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull,
+                           bool unseen_passes) {
   HullSpace bare = hull;  // the margins may have grown since
   bare.margin = 0.0;
+  bare.unseen_passes = unseen_passes;
   const UniformBspline& last = committed.Last();
   const double t_from = std::max(t0, last.t0());
   const double t_contact = committed.Lands() ? ContactTime(last, t_from, hull) : last.t_end();
   const double t_to = std::max(t_from, std::isfinite(t_contact) ? t_contact : last.t_end());
-  return SweepHull(last, t_from, t_to, last.EvaluateOnward(t_from).p_WB, bare);
+  return SweepHull(last, t_from, t_to, {last.EvaluateOnward(t_from).p_WB, t_from}, bare);
 }
 
 bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
@@ -116,11 +119,13 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
   result->certificate = {};
   result->certificate.endpoint_required = false;
   result->certificate.limits_kept = result->certificate.clear = true;
-  result->certificate.stops_in_observed_space = committed.proven && !Misses(committed, t0, hull);
+  result->certificate.stops_in_observed_space =
+      committed.proven && !result->from_odometry &&
+      LookAtLanding(committed, t0, hull) != Landing::kMisses;
   // A landing is looked at against the deck, or not at all.
   const bool looked_at = hull.space != nullptr && (hull.pad != nullptr || !committed.Lands());
   if (result->status != ReplanStatus::kHolding && looked_at) {
-    result->map_error = !SweepAgain(committed, t0, hull).proven;
+    result->map_error = !SweepAgain(committed, t0, hull, false).proven;
   }
 }
 

@@ -6,7 +6,7 @@
 
 namespace touchdown::planning {
 
-/// What is flown where no new plan could be certified: whatever it is, it is a proven pair. Each call fills
+/// What is flown where no new plan could be certified: a proven pair, but for RisesUnproven. Each call fills
 /// curve, stop and certificate of `result` if it succeeds. Does not allocate.
 class Fallback {
  public:
@@ -23,15 +23,15 @@ class Fallback {
   bool Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,
              const HullSpace& hull, ReplanResult* result);
 
-  /// From a landing whose deck is gone to rest, `climb` higher [m], where nothing is proven: less may be touched
-  /// than by what is committed, and more is not said of it.
+  /// From a landing that misses to rest, `climb` higher [m], where nothing is proven.
   void RisesUnproven(double t0, const SplineState& start, double climb, const HullSpace& hull,
                      ReplanResult* result) const;
 
   /// From rest among cells that block to the nearest place that does not.
   bool Escapes(double t0, const SplineState& start, const HullSpace& hull, ReplanResult* result);
 
-  /// The stop that was stored: it was proven when it was made, and needs no more.
+  /// The stop that was stored: it was proven when it was made, and needs no more. Where the vehicle is not on it,
+  /// or it is a landing that misses, nothing is proven.
   static void FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,
                       ReplanResult* result);
 
@@ -41,13 +41,18 @@ class Fallback {
   /// The vehicle is at rest at t0 [s], and so it remains on the committed pair.
   static bool AtRest(const FlightPair& committed, double t0);
 
-  /// The pair was to end in contact, and that is long due, the deck will not be there or not move along, or a
-  /// cell on the way is seen to be occupied by now.
-  static bool Misses(const FlightPair& committed, double t0, const HullSpace& hull);
+  /// What has become of a pair that was to end in contact.
+  enum class Landing {
+    kHolds,   ///< or it was none
+    kHard,    ///< the deck will be there, but not move along: the landing rule forbids it
+    kMisses,  ///< contact is long due, the deck will not be there, or something is seen to be in the way
+  };
+  static Landing LookAtLanding(const FlightPair& committed, double t0, const HullSpace& hull);
 
  private:
   /// What ends the pair, from t0 on, in the map of today and with the hull alone.
-  static Sweep SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull);
+  static Sweep SweepAgain(const FlightPair& committed, double t0, const HullSpace& hull,
+                          bool unseen_passes);
 
   Limits limits_;
   FlightPair pair_;

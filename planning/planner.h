@@ -26,8 +26,8 @@ class Planner {
   virtual const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) = 0;
 
   /// Comes to rest and stays, for want of a pad to go to, or with `climb` > 0 [m] that much higher.
-  /// `input.pad`, nullptr where nothing is known of it, is the deck that it may start above; `input.endpoint` is
-  /// not used.
+  /// `input.pad`, nullptr where nothing is known of it, is the deck that it may start above; `input.endpoint`
+  /// says whether a contact is still wanted.
   virtual const ReplanResult& Rest(const ReplanInput& input, double climb,
                                    const OccupancyMap& map) = 0;
 

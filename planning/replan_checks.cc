@@ -47,12 +47,14 @@ bool TargetValid(const ReplanInput& input) {
 bool PadValid(const ReplanInput& input) {
   if (input.pad == nullptr) return false;
   const estimation::PadState pad = input.pad->At(input.t_start);
-  return pad.p_WP.allFinite() && pad.v_WP.allFinite() && Plausible(pad.p_WP, pad.v_WP);
+  return pad.p_WP.allFinite() && pad.v_WP.allFinite() && std::isfinite(pad.yaw) &&
+         pad.cov_p.allFinite() && Plausible(pad.p_WP, pad.v_WP);
 }
 
 void Validate(const ReplannerOptions& o) {
   Require(o.limits.speed > 0.0, "limits.speed", o.limits.speed, "> 0 m/s");
   Require(o.limits.acceleration > 0.0, "limits.acceleration", o.limits.acceleration, "> 0 m/s^2");
+  Require(o.limits.body_rate > 0.0, "limits.body_rate", o.limits.body_rate, "> 0 rad/s");
   Require(o.ceiling_height > o.floor_height, "ceiling_height", o.ceiling_height,
           "above floor_height");
   Require(o.min_duration > 0.0, "min_duration", o.min_duration, "> 0 s");

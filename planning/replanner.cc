@@ -266,7 +266,7 @@ std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& in
   const double t_from = input.t_start + options_.reaction;
   const double t_to = std::min(t_from + kLookAhead, curve.t_end());
   if (t_to <= t_from) return std::nullopt;
-  return SweepHull(curve, t_from, t_to, curve.Position(t_from), hull).unseen_W;
+  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull).unseen_W;
 }
 
 /// The committed curve, with a newer stop.
@@ -282,11 +282,12 @@ bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull)
 }
 
 /// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,
-/// the stop that is stored; and where that was a landing whose deck is gone, up, proven or not.
+/// the stop that is stored; and where that was a landing that misses, up, proven or not.
 void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
                                const HullSpace& hull) {
   const double t0 = input.t_start;
-  if (!result_.from_odometry && LandsSoon(input, hull) && !Fallback::Misses(next_, t0, hull)) {
+  const Fallback::Landing landing = Fallback::LookAtLanding(next_, t0, hull);
+  if (!result_.from_odometry && LandsSoon(input, hull) && landing == Fallback::Landing::kHolds) {
     Fallback::FlyStop(next_, t0, hull, &result_);
     return;
   }
@@ -309,7 +310,7 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
       return Commit(t0);
     }
   }
-  if (Fallback::Misses(next_, t0, hull)) {
+  if (landing == Fallback::Landing::kMisses) {
     fallback_.RisesUnproven(t0, start, kClimbFromMiss, hull, &result_);
     result_.status = ReplanStatus::kBraking;
     return Commit(t0);

@@ -45,14 +45,14 @@ class Replanner : public Planner {
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
 
   /// One replanning step against the map. The result stays valid until the next call. Whatever comes
-  /// out is a proven pair (docs/safety.md). Nothing can be proven in what the map has not observed: a
+  /// out is a proven pair, or says that it is not (docs/safety.md). Nothing can be proven in what the map has not observed: a
   /// map that was filled by hand needs MarkFree, one of a sensor at least around the start.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
 
   /// Comes to rest and stays, for want of a pad to go to: a certified braking trajectory, or with
   /// `climb` > 0 [m] one that ends that much higher. Once it is under way it is kept.
-  /// `input.pad`, nullptr where nothing is known of it, is the deck that it may start above; `input.endpoint` is
-  /// not used.
+  /// `input.pad`, nullptr where nothing is known of it, is the deck that it may start above; `input.endpoint`
+  /// says whether a contact is still wanted.
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
 

@@ -18,8 +18,9 @@ namespace {
 constexpr double kAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
 constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
 constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
-constexpr double kSoftSink = 0.45;  // relative to the deck; 0.5 is allowed [m/s]
-constexpr double kSoftDrift = 0.5;  // alike; 0.6 is allowed [m/s]
+constexpr double kSoftSink = 0.5;   // what the landing rule allows, relative to the deck [m/s]
+constexpr double kSoftDrift = 0.6;  // alike [m/s]
+constexpr double kRoom = 0.9;       // of it, for a landing that is to be committed
 constexpr double kContactClock = 0.01;  // of the time at which contact is expected [s]
 constexpr double kOnward = kLatestContact - kPressing;  // from a curve's end to contact at most [s]
 
@@ -48,8 +49,9 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
                     const HullSpace& hull, FlightPair* pair) {
   PairProof proof;
   const UniformBspline& curve = pair->curve;
-  const Eigen::Vector3d p_start = curve.EvaluateOnward(t_from).p_WB;
-  const Sweep until = SweepHull(curve, t_from, t_handover, p_start, hull);
+  const HullStart start{curve.EvaluateOnward(t_from).p_WB, t_from};
+  const DeckContact until_then = ends == PairEnd::kRest ? DeckContact::kMayNot : DeckContact::kMay;
+  const Sweep until = SweepHull(curve, t_from, t_handover, start, hull, until_then);
   const auto note = [&](const Sweep& sweep) {
     if (!sweep.proven && !proof.unseen_W) proof.unseen_W = sweep.unseen_W;
     return sweep.proven;
@@ -64,16 +66,16 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
     const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
     if (TooLow(p_rest, pair->stop.t_end(), hull) > 1e-6) return false;
     const Sweep sweep =
-        SweepHull(pair->stop, t_handover, pair->stop.t_end(), p_start, hull, DeckContact::kMayNot);
+        SweepHull(pair->stop, t_handover, pair->stop.t_end(), start, hull, DeckContact::kMayNot);
     proof.leaves = until.leaves || sweep.leaves;
     proof.narrow = until.narrow || sweep.narrow;
     return note(sweep);
   };
   const auto touches_down = [&] {
     if (ends == PairEnd::kRest || !std::isfinite(t_contact)) return false;
-    if (!TouchesSoftly(curve, t_contact, hull)) return false;
+    if (!TouchesSoftly(curve, t_contact, kRoom, hull)) return false;
     const double t_end = std::max(t_handover, t_contact) + kPressing;
-    const Sweep sweep = SweepHull(curve, t_handover, t_end, p_start, hull);
+    const Sweep sweep = SweepHull(curve, t_handover, t_end, start, hull);
     proof.leaves = until.leaves || sweep.leaves;
     proof.narrow = until.narrow || sweep.narrow;
     return note(sweep);
@@ -95,9 +97,9 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   return proof;
 }
 
-bool TouchesSoftly(const UniformBspline& curve, double t, const HullSpace& hull) {
+bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull) {
   const Eigen::Vector3d v = curve.EvaluateOnward(t).v_WB - hull.pad->At(t).v_WP;
-  return -v.z() <= kSoftSink && v.head<2>().norm() <= kSoftDrift;
+  return -v.z() <= share * kSoftSink && v.head<2>().norm() <= share * kSoftDrift;
 }
 
 double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull) {
@@ -130,8 +132,8 @@ PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {
   const UniformBspline& curve = pair->curve;
   const double t_rest = curve.t_end();
   if (TooLow(curve.Position(t_rest), t_rest, hull) > 1e-6) return {};
-  const Eigen::Vector3d p_start = curve.EvaluateOnward(t_from).p_WB;
-  const Sweep sweep = SweepHull(curve, t_from, t_rest, p_start, hull, DeckContact::kMayNot);
+  const HullStart start{curve.EvaluateOnward(t_from).p_WB, t_from};
+  const Sweep sweep = SweepHull(curve, t_from, t_rest, start, hull, DeckContact::kMayNot);
   return {sweep.proven, sweep.leaves, sweep.narrow, false, sweep.unseen_W};
 }
 

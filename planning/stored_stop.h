@@ -38,9 +38,9 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
 /// The same of a curve that ends at rest: all of it is the stop. Fills t_stop.
 PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair);
 
-/// The deck is met as softly as the landing rule asks of a touchdown, with room to spare (docs/landing.md): at
-/// time t the curve neither sinks nor drifts too fast relative to the pad as it is predicted.
-bool TouchesSoftly(const UniformBspline& curve, double t, const HullSpace& hull);
+/// The deck is met with at most `share` of the sink rate and of the drift that the landing rule allows a
+/// touchdown at (docs/landing.md): the curve at time t [s], relative to the pad's centre as it is predicted.
+bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull);
 
 /// When from t_from on the feet meet the deck, along the curve or going on from its end; infinite where they do
 /// not, as the pad is predicted now [s].

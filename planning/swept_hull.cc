@@ -31,14 +31,14 @@ double Gap(double x, int i, double resolution) {
 
 class Tube {
  public:
-  Tube(const HullSpace& hull, const Eigen::Vector3d& p_start_W, double t_start)
+  Tube(const HullSpace& hull, const HullStart& start)
       : hull_(hull),
         map_(*hull.space->map),
-        start_(p_start_W),
+        start_(start.p_W),
         radius_(hull.radius() + kSampling),
         face_noise_(OccupancyMap::kNoiseSigmas * map_.options().range_noise * kFaceRange +
                     kRounding),
-        start_deck_(DeckBelow(start_, t_start)) {}
+        start_deck_(DeckBelow(start.p_W, start.t)) {}
 
   /// Whether all cells that the ball at p touches at time t are observed free, or excepted.
   bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
@@ -113,6 +113,7 @@ class Tube {
       std::uint64_t missing = ~map_.ObservedFreeRow(at, n) & all;
       for (; missing != 0; missing &= missing - 1) {
         const CellIndex cell = at + CellIndex(std::countr_zero(missing), 0, 0);
+        if (hull_.unseen_passes && !map_.IsOccupied(cell)) continue;
         if (surface != nullptr && IsFace(cell, *surface)) continue;
         if (!WasThere(cell, p)) {
           return Unseen(cell, sweep);
@@ -179,18 +180,18 @@ bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Ve
 }  // namespace
 
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
-                const Eigen::Vector3d& p_start_W, const HullSpace& hull, DeckContact contact) {
+                const HullStart& start, const HullSpace& hull, DeckContact contact) {
   Sweep sweep;
-  const Tube tube(hull, p_start_W, t_from);
-  Eigen::Vector3d ball = p_start_W;  // where the hull was looked at last,
+  const Tube tube(hull, start);
+  Eigen::Vector3d ball = start.p_W;  // where the hull was looked at last,
   Eigen::Vector3d before = ball;     // and the place after it that was passed over
   double t_before = t_from;
   const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / kStep)));
   for (int i = 0; i <= steps; ++i) {
     const double t = t_from + (t_to - t_from) * i / steps;
     const Eigen::Vector3d p = t <= curve.t_end() ? curve.Position(t) : curve.EvaluateOnward(t).p_WB;
-    if (!LevelKept(*hull.space, p, p_start_W, contact)) return sweep;
-    if (contact == DeckContact::kMayNot && !AboveDeck(hull, p, t, p_start_W)) return sweep;
+    if (!LevelKept(*hull.space, p, start.p_W, contact)) return sweep;
+    if (contact == DeckContact::kMayNot && !AboveDeck(hull, p, t, start.p_W)) return sweep;
     const bool first_or_last = i == 0 || i == steps;
     const double away = (p - ball).norm(), away_before = (before - ball).norm();
     // A way that turns back was at its farthest just before.

@@ -21,6 +21,8 @@ struct HullSpace {
   const estimation::PadPrediction* pad = nullptr;
   double deck_half_size = 0.0;  ///< half the deck's side [m]
   double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
+  /// Only what is seen to be occupied blocks: of a way that was proven before.
+  bool unseen_passes = false;
 
   double radius() const { return hull_radius + margin; }
 };
@@ -34,6 +36,12 @@ struct Sweep {
   std::optional<Eigen::Vector3d> unseen_W;
 };
 
+/// Where and when what is looked at begins.
+struct HullStart {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< of the body's origin [m]
+  double t = 0.0;                                 ///< [s]
+};
+
 /// Whether the hull may touch the deck along a curve.
 enum class DeckContact {
   kMay,
@@ -45,10 +53,10 @@ enum class DeckContact {
 /// ceiling. Exceptions: cells that end below the map's ground height; while the body's origin is over the
 /// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
 /// upper face, and those over the deck where its returns lie by
-/// their noise, unless occupied; and, at the start, cells around `p_start_W` that the hull reached there already and
+/// their noise, unless occupied; and, at the start, cells around `start` that the hull reached there already and
 /// does not come nearer to. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
-                const Eigen::Vector3d& p_start_W, const HullSpace& hull,
+                const HullStart& start, const HullSpace& hull,
                 DeckContact contact = DeckContact::kMay);
 
 }  // namespace touchdown::planning

@@ -34,16 +34,25 @@ TEST(RotorLead, RotorsOfTheModelFollowAsIfTheirLagWereAThird) {
 TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   const estimation::VehicleModel model = TestVehicle();
   RotorLead lead(model);
+  const double hover = 0.25 * model.HoverThrust();
   const Eigen::Vector4d most = Eigen::Vector4d::Constant(model.rotor_thrust_max);
-  double t = 0.0;
-  for (; t < 0.5; t += kStep) {
-    const Eigen::Vector4d command = lead.Command(most, t);
+  double given = hover;
+  const auto fly = [&](const Eigen::Vector4d& wanted, double t) {
+    const Eigen::Vector4d command = lead.Command(wanted, t);
     EXPECT_LE(command.maxCoeff(), model.rotor_thrust_max);
+    EXPECT_GE(command.minCoeff(), model.rotor_thrust_min);
+    given += (1.0 - std::exp(-kStep / model.rotor_lag_s)) * (command(0) - given);
+  };
+  int i = 0;
+  for (; i < 10; ++i) fly(most, i * kStep);
+  EXPECT_GT(given, 1.3 * hover);
+  // Back again the rotor does not fall below what is asked for, as it would for one that takes its cut
+  // commands for granted.
+  for (; i < 100; ++i) {
+    fly(Eigen::Vector4d::Constant(hover), i * kStep);
+    EXPECT_GT(given, 0.999 * hover);
   }
-  // The rotors are there; less is asked for, and less is commanded at once.
-  const Eigen::Vector4d command = lead.Command(0.9 * most, t);
-  EXPECT_LT(command.maxCoeff(), 0.9 * model.rotor_thrust_max);
-  EXPECT_GE(command.minCoeff(), model.rotor_thrust_min);
+  EXPECT_NEAR(given, hover, 1e-3 * hover);
 }
 
 /// A vehicle that is struck turns with 3 rad/s: the fastest that it turns back and forth later than 0.2 s

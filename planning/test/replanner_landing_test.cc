@@ -113,17 +113,44 @@ TEST_F(LastStretch, ADeckThatIsGoneIsNotLandedOn) {
   }
 }
 
-TEST_F(LastStretch, ADeckThatHasBrakedIsNotTouched) {
-  // Where contact is due it stands: the feet would meet it with the pad's old speed.
+/// A deck that is below where contact is due, and drives back by then.
+class TurnedBack : public ArcPad {
+ public:
+  TurnedBack(const FlightPair& landing, double speed)
+      : ArcPad({landing.curve.Position(landing.curve.t_end()).x() + speed * landing.curve.t_end(),
+                0.0, kDeck},
+               -speed, 0.0, 0.0) {}
+};
+
+TEST_F(LastStretch, ADeckThatHasTurnedBackIsNotTouched) {
+  // A new landing on to it takes longer than the last stretch: the old one is left.
+  const TurnedBack back(landing_, 0.4);
   const double t_contact = landing_.curve.t_end();
-  const Eigen::Vector3d p = landing_.curve.Position(t_contact);
-  const ArcPad stands({p.x() - 0.1, 0.0, kDeck}, -0.3, 0.0, 0.0);
+  ASSERT_LT((back.At(t_contact).p_WP - landing_.curve.Position(t_contact)).head<2>().norm(), 0.1);
+  const ReplanResult& result = Ask(back);
+  EXPECT_NE(result.curve.control_points(), landing_.curve.control_points());
+  EXPECT_TRUE(result.proven);
+  EXPECT_TRUE(result.certificate.stops_in_observed_space);
+}
+
+// Nothing else is proven: a hard touchdown is better than a rise into what nobody saw.
+TEST_F(LastStretch, WhereNothingElseIsProvenAHardLandingIsKept) {
   map_ = OccupancyMap(map_.options());
-  map_.MarkFree(Eigen::Vector3d(0, 0, 0), 11.0);
-  const FlatState at = replanner_->Reference(t_);
-  ReplanInput input = Input(at.p_WB, stands, t_);
-  input.vehicle.v_WB = at.v_WB;
-  EXPECT_FALSE(replanner_->Rest(input, 0.0, map_).Lands());
+  const TurnedBack back(landing_, 0.4);
+  const ReplanResult& result = Ask(back);
+  EXPECT_EQ(result.status, ReplanStatus::kKept);
+  EXPECT_TRUE(result.Lands());
+  EXPECT_TRUE(result.proven);
+}
+
+// What is unknown before it does not hide it.
+TEST_F(LastStretch, AnObstacleBehindUnknownCellsEndsIt) {
+  const Eigen::Vector3d end = landing_.curve.Position(landing_.curve.t_end());
+  map_ = OccupancyMap(map_.options());
+  map_.SetOccupied(end + Eigen::Vector3d(0.15, 0.0, 0.2));
+  const ReplanResult& result = Ask(pad_);
+  EXPECT_FALSE(result.Lands());
+  EXPECT_FALSE(result.certificate.stops_in_observed_space) << "nothing else is proven";
 }
 
 // Without a proof it rises, and does not go on to where the deck was; and the pair says what it is.
@@ -167,8 +194,8 @@ TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
 
 TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
   // The deck is lower than it is taken to be: the pair is flown to its end, and past it not for ever.
+  // Nothing else is proven meanwhile.
   map_ = OccupancyMap(map_.options());
-  map_.MarkFree(Eigen::Vector3d(0, 0, 0), 11.0);
   const double t_end = landing_.curve.t_end();
   ReplanStatus status = ReplanStatus::kKept;
   for (t_ = t_end; t_ < t_end + 3.0; t_ += 0.1) {
@@ -179,6 +206,7 @@ TEST_F(LastStretch, ContactThatNeverComesEndsIt) {
     if (status != ReplanStatus::kKept) break;
   }
   EXPECT_NE(status, ReplanStatus::kKept);
+  EXPECT_NEAR(t_, t_end + kLatestContact, 0.11);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -225,12 +226,18 @@ TEST_F(StopOverDeck, ContactThatIsNotSoftIsNone) {
   FlightPair pair;
   ASSERT_TRUE(Prove(0.1, 0.4, PairEnd::kContact, &pair).contact);
   const double t = ContactTime(pair.curve, 0.0, hull_);
-  EXPECT_TRUE(TouchesSoftly(pair.curve, t, hull_));
-  const ArcPad drives(Eigen::Vector3d(-0.6 * t, 0, 0.45), 0.6, 0.0, 0.0);
-  hull_.pad = &drives;
-  EXPECT_TRUE(std::isfinite(ContactTime(pair.curve, 0.0, hull_))) << "it is below by then";
-  EXPECT_FALSE(TouchesSoftly(pair.curve, t, hull_));
-  EXPECT_FALSE(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven);
+  EXPECT_TRUE(TouchesSoftly(pair.curve, t, 0.9, hull_));
+  map_.MarkRestFree();  // so that softness alone decides
+  for (const auto& [speed, share, soft] : {std::tuple(0.5, 0.9, true), std::tuple(0.57, 1.0, true),
+                                           std::tuple(0.57, 0.9, false), std::tuple(0.63, 1.0, false)}) {
+    const ArcPad drives(Eigen::Vector3d(-speed * t, 0, 0.45), speed, 0.0, 0.0);
+    hull_.pad = &drives;
+    EXPECT_TRUE(std::isfinite(ContactTime(pair.curve, 0.0, hull_))) << "it is below by then";
+    EXPECT_EQ(TouchesSoftly(pair.curve, t, share, hull_), soft) << speed;
+    if (share == 0.9) {
+      EXPECT_EQ(Prove(0.1, 0.4, PairEnd::kContact, &pair).proven, soft) << speed;
+    }
+  }
 }
 
 TEST_F(StopOverDeck, WhereItIsToLandNoStopIsAnAnswer) {

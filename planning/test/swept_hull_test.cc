@@ -18,7 +18,7 @@ UniformBspline RandomCurve(Draw* draw) {
 }
 
 Sweep Look(const UniformBspline& curve, const HullSpace& hull) {
-  return SweepHull(curve, curve.t0(), curve.t_end(), curve.Position(curve.t0()), hull);
+  return SweepHull(curve, curve.t0(), curve.t_end(), {curve.Position(curve.t0()), curve.t0()}, hull);
 }
 
 TEST(SweptHull, AgreesWithEveryCellOfEveryBall) {
@@ -240,8 +240,25 @@ TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   const Sweep rises = Look(Between(low, high, 2.0), hull);
   EXPECT_TRUE(rises.proven);
   EXPECT_FALSE(rises.leaves);
-  map_.SetState({1, 1, 5}, CellState::kOccupied);  // what blocks there does not belong to it
+  map_.SetState({1, 1, 4}, CellState::kOccupied);  // what blocks there does not belong to it
   EXPECT_TRUE(Look(Between(low, high, 2.0), hull).leaves);
+}
+
+// Of a way that was proven before, what is not seen any more is no matter: not even before what blocks.
+TEST(SweptHull, WhereUnseenPassesOnlyTheOccupiedBlocks) {
+  OccupancyMap map(NoGround());
+  const FreeSpace space = SpaceOf(map);
+  HullSpace hull = HullOf(space);
+  const UniformBspline curve =
+      Between({{-1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, 3.0);
+  EXPECT_FALSE(Look(curve, hull).proven);
+  hull.unseen_passes = true;
+  EXPECT_TRUE(Look(curve, hull).proven);
+  map.SetState({8, 0, 0}, CellState::kOccupied);
+  const Sweep sweep = Look(curve, hull);
+  EXPECT_FALSE(sweep.proven);
+  ASSERT_TRUE(sweep.unseen_W.has_value());
+  EXPECT_TRUE(map.IsOccupied(map.CellOf(*sweep.unseen_W)));
 }
 
 TEST_F(OverDeck, AirAboveItHasToBeSeen) {
