@@ -78,6 +78,8 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
       closed_[RowOf(y, z)] = closed & columns;
     }
   }
+  // Where the hull is already it may be, however the lattice rounds that.
+  closed_[RowOf(kReach, kReach)] &= ~(std::uint64_t{1} << kReach);
 }
 
 std::uint64_t UnseenZone::Row(const CellIndex& first, int count) const {
