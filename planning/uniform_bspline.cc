@@ -123,7 +123,8 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
   // turns with |f x j| / |f|^2: fastest where f is shortest.
   const Eigen::Vector3d g_W = estimation::kGravity * Eigen::Vector3d::UnitZ();
   for (int i = 0; i < curve.segments(); ++i) {
-    const Eigen::Vector3d from = curve.AtKnot(i).a + g_W, change = curve.AtKnot(i + 1).a + g_W - from;
+    const Eigen::Vector3d from = curve.AtKnot(i).a + g_W;
+    const Eigen::Vector3d change = curve.AtKnot(i + 1).a + g_W - from;
     const double turn = from.cross(change).norm() / h;
     if (turn == 0.0) continue;
     const double nearest = std::clamp(-from.dot(change) / change.squaredNorm(), 0.0, 1.0);
