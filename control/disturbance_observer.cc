@@ -21,6 +21,10 @@
 namespace touchdown::control {
 namespace {
 
+constexpr double kGainTime = 1.0;                         // [s]
+constexpr double kLeastGain = 0.5, kGreatestGain = 2.0;  // mass and thrust off by a third, either way
+constexpr double kLeastLift = 0.3;                        // of the weight: with less the factor is not seen
+
 constexpr double kLongestStep = 0.1;             // a longer gap restarts the observers [s]
 constexpr double kGreatestAcceleration = 100.0;  // quicker changes are jumps of an estimate [m/s^2]
 constexpr double kGreatestSpinUp = 5000.0;       // alike [rad/s^2]
@@ -102,7 +106,8 @@ void DisturbanceObserver::Predict(double dt) noexcept {
   const Wrench wrench = mixer_.Apply(thrusts_);
   const Eigen::Vector3d drag_B = model_.rotor_drag.cwiseProduct(R_WB.transpose() * last_.v_WB);
   const Eigen::Vector3d force_W =
-      R_WB * (wrench.thrust * Eigen::Vector3d::UnitZ() - drag_B) + disturbance_.force_W;
+      R_WB * (disturbance_.thrust_gain * wrench.thrust * Eigen::Vector3d::UnitZ() - drag_B) +
+      disturbance_.force_W;
   v_WB_ += dt * (force_W / model_.mass_kg - estimation::kGravity * Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d& w = last_.w_WB_B;
   const Eigen::Vector3d moment_B =
@@ -111,11 +116,25 @@ void DisturbanceObserver::Predict(double dt) noexcept {
   thrusts_ += (1.0 - std::exp(-dt / model_.rotor_lag_s)) * (commanded_ - thrusts_);
 }
 
+// Wind is level. What lasts vertically is a mass or rotors that are not the model's: a factor on the thrust,
+// which every error is answered with, and no force. The sum of both stays as it is.
+void DisturbanceObserver::LearnGain(double dt) noexcept {
+  const double upright = (last_.q_WB * Eigen::Vector3d::UnitZ()).z();
+  const double lift = upright * mixer_.Apply(thrusts_).thrust;
+  if (lift < kLeastLift * model_.HoverThrust()) return;
+  double& gain = disturbance_.thrust_gain;
+  const double moved = (1.0 - std::exp(-dt / kGainTime)) * disturbance_.force_W.z() / lift;
+  const double learnt = std::clamp(gain + moved, kLeastGain, kGreatestGain) - gain;
+  gain += learnt;
+  disturbance_.force_W.z() -= learnt * lift;
+}
+
 void DisturbanceObserver::Correct(const estimation::VehicleState& state, double dt) noexcept {
   const double z_v = std::exp(-options_.force_bandwidth * dt);
   const Eigen::Vector3d e_v = state.v_WB - v_WB_;
   v_WB_ += (1.0 - z_v * z_v) * e_v;
   disturbance_.force_W += model_.mass_kg * (1.0 - z_v) * (1.0 - z_v) / dt * e_v;
+  LearnGain(dt);
   Shorten(force_max_, &disturbance_.force_W);
   steady_force_W_ +=
       (1.0 - std::exp(-dt / options_.steady_time)) * (disturbance_.force_W - steady_force_W_);

@@ -20,7 +20,7 @@ struct DisturbanceObserverOptions {
 /// Throws std::invalid_argument naming the first option out of its range.
 void Validate(const DisturbanceObserverOptions& options);
 
-/// Estimates force and moment that the vehicle's model does not explain, from what the vehicle knows:
+/// Estimates force, moment and factor of thrust that the vehicle's model does not explain, from what the vehicle knows:
 /// its own state, and the thrusts it commanded, behind the rotors' lag. In steady wind the estimate
 /// has no bias. Its memory is its own: the tracking laws have none. Not to be shared between threads.
 class DisturbanceObserver {
@@ -47,6 +47,7 @@ class DisturbanceObserver {
 
  private:
   void Predict(double dt) noexcept;
+  void LearnGain(double dt) noexcept;
   void Correct(const estimation::VehicleState& state, double dt) noexcept;
 
   estimation::VehicleModel model_;

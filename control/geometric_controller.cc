@@ -43,7 +43,7 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
   output.w_WB_B_desired = inputs.w_WB_B;
   output.tilt_limited = force.tilt_limited;
   output.thrust_limited = force.thrust_limited;
-  output.wrench.thrust = std::max(0.0, force.f_W.dot(R_WB.col(2)));
+  output.wrench.thrust = std::max(0.0, force.f_W.dot(R_WB.col(2))) / disturbance.thrust_gain;
 
   const Eigen::Vector3d frequency(options_.attitude_frequency, options_.attitude_frequency,
                                   options_.yaw_frequency);

@@ -2,8 +2,9 @@
 // Mixer: the paper's eq. 8 for any four rotors. The wrench is linear in the thrusts; the 4x4 matrix
 // is inverted once. Saturation by priority: with the contribution r of the roll and pitch moment, a
 // collective thrust T is possible if low <= s r_i + c_i T <= high for every rotor i (c_i > 0: share
-// of rotor i in pure thrust). The greatest scale s <= 1 that leaves such a T follows in closed form
-// from all pairs of rotors; T is clamped to its interval; yaw takes what is left.
+// of rotor i in pure thrust). The greatest scale s <= 1 that leaves such a T, none above what is wanted or what
+// the thrust may be raised to, follows in closed form from all rotors and pairs of them; T is clamped to its
+// interval; yaw takes what is left.
 
 #include "touchdown/control/mixer.h"
 
@@ -17,7 +18,9 @@
 namespace touchdown::control {
 
 Mixer::Mixer(const estimation::VehicleModel& model)
-    : min_(model.rotor_thrust_min), max_(model.rotor_thrust_max) {
+    : min_(model.rotor_thrust_min),
+      max_(model.rotor_thrust_max),
+      raised_thrust_(kRaisedThrust * model.HoverThrust()) {
   if (!(std::isfinite(min_) && std::isfinite(max_) && min_ >= 0.0 && min_ < max_)) {
     throw std::invalid_argument("VehicleModel.rotor_thrust_min, _max = " + std::to_string(min_) +
                                 ", " + std::to_string(max_) + ", allowed: 0 <= min < max");
@@ -59,8 +62,11 @@ MixerOutput Mixer::Mix(const Wrench& wrench) const noexcept {
   const Eigen::Vector4d yaw = thrusts_from_wrench_.col(3) * demand(3);
   Eigen::Vector4d thrusts = thrusts_from_wrench_.middleCols<2>(1) * demand.segment<2>(1);
 
+  const double highest_thrust = std::max(demand(0), raised_thrust_);
   double scale = 1.0;
   for (int i = 0; i < 4; ++i) {
+    const double room = std::max(0.0, highest_thrust * share(i) - min_);
+    if (-thrusts(i) * scale > room) scale = room / -thrusts(i);
     for (int j = 0; j < 4; ++j) {
       const double needed = thrusts(j) / share(j) - thrusts(i) / share(i);
       const double available = max_ / share(j) - min_ / share(i);

@@ -15,9 +15,13 @@ struct MixerOutput {
 };
 
 /// Wrench to rotor thrusts for any four-rotor geometry (eq. 8 generalised). Where the limits forbid
-/// the whole wrench, roll and pitch moment come first, then collective thrust, then yaw moment.
+/// the whole wrench, roll and pitch moment come first, then collective thrust, then yaw moment. For them the
+/// thrust is raised to kRaisedThrust of hover at most: a vehicle that every correction of its attitude lifts leaves
+/// its way.
 class Mixer {
  public:
+  static constexpr double kRaisedThrust = 0.5;  ///< of the hover thrust [-]
+
   /// Throws std::invalid_argument if the rotors cannot produce every wrench, or hover without
   /// moment would need a rotor to pull down.
   explicit Mixer(const estimation::VehicleModel& model);
@@ -33,6 +37,7 @@ class Mixer {
   Eigen::Matrix4d thrusts_from_wrench_;
   double min_;
   double max_;
+  double raised_thrust_;  ///< up to which moments may raise the thrust [N]
 };
 
 }  // namespace touchdown::control

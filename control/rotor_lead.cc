@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A lead filter (T s + 1) / (T s / (1 + k) + 1) on each rotor's command, T the model's lag. It is made with
-// the model's rotor instead of a difference of the command: command = given + (1 + k)(wanted - given).
-// What the limits cut off is seen by that rotor too, so that nothing winds up.
+// A lead filter (T s + 1) / (T s / (1 + k) + 1) on the rotors' commands, T the model's lag. It is made with
+// the model's rotors instead of a difference of the command: command = given + (1 + k)(wanted - given). The
+// mixer decides what of it is given up where the limits forbid it: a rotor that is cut off alone lifts the
+// vehicle. Yaw, to which it gives least, is not led. Rotors follow what they were told, so that nothing winds up.
 
 #include "touchdown/control/rotor_lead.h"
 
@@ -15,7 +16,7 @@ constexpr double kLead = 2.0;
 }  // namespace
 
 RotorLead::RotorLead(const estimation::VehicleModel& model)
-    : lag_(model.rotor_lag_s), least_(model.rotor_thrust_min), greatest_(model.rotor_thrust_max) {
+    : lag_(model.rotor_lag_s), mixer_(model) {
   given_.setConstant(0.25 * model.HoverThrust());
   commanded_ = given_;
 }
@@ -24,7 +25,11 @@ Eigen::Vector4d RotorLead::Command(const Eigen::Vector4d& thrusts, double t) noe
   if (started_ && lag_ > 0.0) given_ += (1.0 - std::exp(-(t - t_) / lag_)) * (commanded_ - given_);
   started_ = true;
   t_ = t;
-  commanded_ = (given_ + (1.0 + kLead) * (thrusts - given_)).cwiseMax(least_).cwiseMin(greatest_);
+  const Wrench wanted = mixer_.Apply(thrusts), given = mixer_.Apply(given_);
+  Wrench led = wanted;
+  led.thrust += kLead * (wanted.thrust - given.thrust);
+  led.moment_B.head<2>() += kLead * (wanted.moment_B - given.moment_B).head<2>();
+  commanded_ = mixer_.Mix(led).thrusts;
   return commanded_;
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/control/mixer.h"
 #include "touchdown/estimation/vehicle_model.h"
 
 namespace touchdown::control {
@@ -16,12 +17,12 @@ class RotorLead {
   explicit RotorLead(const estimation::VehicleModel& model);
 
   /// The command with which the rotors are told from time t [s] on to give `thrusts` [N]: within their
-  /// limits. Once per control step, in time order. Does not allocate.
+  /// limits (Mixer). Once per control step, in time order. Does not allocate.
   Eigen::Vector4d Command(const Eigen::Vector4d& thrusts, double t) noexcept;
 
  private:
   double lag_;  ///< of the model [s]
-  double least_, greatest_;
+  Mixer mixer_;
   double t_ = 0.0;
   bool started_ = false;
   Eigen::Vector4d given_;  ///< by the rotors, as the model has it [N]

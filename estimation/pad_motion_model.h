@@ -25,7 +25,7 @@ int StateSize(PadMotion motion);
 struct PadNoise {
   double position = 1e-5;      ///< of the position's rate, each axis [m^2/s]
   double velocity = 0.06;      ///< of the velocity's rate, each axis, kVelocity only [m^2/s^3]
-  double acceleration = 0.01;  ///< of the speed's rate, along the heading [m^2/s^3]
+  double acceleration = 0.03;  ///< of the speed's rate, along the heading [m^2/s^3]
   double heading = 0.02;       ///< of the heading's rate, kHeading only [rad^2/s]
   double turn = 0.004;         ///< of the turn rate's rate, kTurn only [rad^2/s^3]
 };

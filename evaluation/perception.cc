@@ -22,9 +22,6 @@
 namespace touchdown::evaluation {
 namespace {
 
-// Given free around the start, where the camera has not looked: the hull and its margins are seen by it
-// at the edge of its field of view only from so far ahead [m].
-constexpr double kStartFree = 0.8;
 constexpr double kPriorShare = 0.5;  // of the vehicle's speed limit: 1 sigma of the pad's velocity
 
 // With an estimated own state; docs/own_state.md says what they are read off.
@@ -66,6 +63,7 @@ planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
   planning::OccupancyMapOptions options;
   options.inflation_radius = scenario.planning.clearance;
   options.range_noise = scenario.depth.noise;
+  options.thinnest_obstacle = scenario.map_thinnest_obstacle;
   return options;
 }
 
@@ -82,7 +80,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
   if (prior) ReadMapFile(scenario.map_prior, &persistent_map_);
   map_.Recentre(own_.now().p_WB);
   if (prior) persistent_map_.Refill(&map_);
-  map_.MarkFree(own_.now().p_WB, kStartFree);
+  map_.MarkFree(own_.now().p_WB, scenario.map_start_free);
   if (scenario.map_observed_free == ObservedFreeKind::kTruth) truth_ = world.config().obstacles;
 }
 

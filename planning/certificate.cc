@@ -109,7 +109,7 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
     c.endpoint_position_residual = (end.p - wanted->p).norm();
     c.endpoint_velocity_residual = (end.v - wanted->v).norm();
   }
-  const DerivativeBounds bounds = BoundDerivatives(curve);
+  const DerivativeBounds bounds = BoundDerivatives(curve, limits.pull_W);
   c.speed_bound = bounds.speed;
   c.acceleration_bound = bounds.acceleration;
   const bool turns = bounds.body_rate <= limits.body_rate + kLimitSlack;

@@ -28,6 +28,7 @@ Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
   const double left =
       std::max(left_by(vehicle.tilt_max), std::min(kShareOfReserve * limits.acceleration, reserve));
   Limits under = limits;
+  under.pull_W = pull_W;
   under.acceleration = std::clamp(left, least, limits.acceleration);
   const double stopping = std::clamp(reserve, under.acceleration, limits.acceleration);
   under.braking_factor = stopping / under.acceleration;

@@ -15,6 +15,8 @@ struct Limits {
   /// Of the thrust axis of who flies the curve exactly: faster the attitude cannot follow, and swings far
   /// beyond [rad/s].
   double body_rate = 4.0;
+  /// A steady force over the mass that acts beside gravity: the thrust axis is turned against it too [m/s^2].
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
 };
 
 /// How fast a start beyond a limit must come back to it: the speed may be

@@ -34,7 +34,7 @@ void MakeRestTrajectory(const SplineState& start, double t0, const Eigen::Vector
   double T = kShortest;
   for (int i = 0; i <= kMaxTries; ++i, T *= kGrowth) {
     make(T);
-    const DerivativeBounds bounds = BoundDerivatives(*trajectory);
+    const DerivativeBounds bounds = BoundDerivatives(*trajectory, limits.pull_W);
     const double excess = std::max({bounds.speed / speed, bounds.acceleration / acceleration,
                                     bounds.body_rate / limits.body_rate});
     if (excess <= 1.0 + 1e-9) return;

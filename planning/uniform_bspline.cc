@@ -104,7 +104,7 @@ SplineState UniformBspline::AtKnot(int k) const {
   return {(q0 + 4.0 * q1 + q2) / 6.0, (q2 - q0) / (2.0 * h_), (q0 - 2.0 * q1 + q2) / (h_ * h_)};
 }
 
-DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
+DerivativeBounds BoundDerivatives(const UniformBspline& curve, const Eigen::Vector3d& pull_W) {
   const Eigen::Map<const ControlPoints> q = curve.control_points();
   const double h = curve.interval();
   const int n = static_cast<int>(q.cols());
@@ -119,12 +119,12 @@ DerivativeBounds BoundDerivatives(const UniformBspline& curve) {
   for (int i = 1; i + 2 < n; ++i) {
     bounds.speed = std::max(bounds.speed, (q.col(i + 1) - q.col(i)).norm() / h);
   }
-  // The specific thrust f = a + g e_z is linear on a segment, so that f x j is constant there, and the axis
+  // The specific thrust f = a + g e_z - pull is linear on a segment, so that f x j is constant there, and the axis
   // turns with |f x j| / |f|^2: fastest where f is shortest.
-  const Eigen::Vector3d g_W = estimation::kGravity * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d hover_W = estimation::kGravity * Eigen::Vector3d::UnitZ() - pull_W;
   for (int i = 0; i < curve.segments(); ++i) {
-    const Eigen::Vector3d from = curve.AtKnot(i).a + g_W;
-    const Eigen::Vector3d change = curve.AtKnot(i + 1).a + g_W - from;
+    const Eigen::Vector3d from = curve.AtKnot(i).a + hover_W;
+    const Eigen::Vector3d change = curve.AtKnot(i + 1).a + hover_W - from;
     const double turn = from.cross(change).norm() / h;
     if (turn == 0.0) continue;
     const double nearest = std::clamp(-from.dot(change) / change.squaredNorm(), 0.0, 1.0);

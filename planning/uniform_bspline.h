@@ -84,8 +84,11 @@ class UniformBspline {
 struct DerivativeBounds {
   double speed = 0.0;         ///< [m/s]
   double acceleration = 0.0;  ///< [m/s^2]
-  double body_rate = 0.0;     ///< of the thrust axis of who flies it exactly [rad/s]
+  /// Of the thrust axis of who flies it exactly, against the pull [rad/s].
+  double body_rate = 0.0;
 };
-DerivativeBounds BoundDerivatives(const UniformBspline& curve);
+/// @param pull_W a steady force over the mass that acts beside gravity [m/s^2].
+DerivativeBounds BoundDerivatives(const UniformBspline& curve,
+                                  const Eigen::Vector3d& pull_W = Eigen::Vector3d::Zero());
 
 }  // namespace touchdown::planning

@@ -38,7 +38,8 @@ class Body {
       const Wrench wrench = mixer_.Apply(thrusts_);
       const Eigen::Vector3d drag_B = model_.rotor_drag.cwiseProduct(R_WB.transpose() * state.v_WB);
       const Eigen::Vector3d force_W =
-          R_WB * (wrench.thrust * Eigen::Vector3d::UnitZ() - drag_B) + disturbance.force_W;
+          R_WB * (disturbance.thrust_gain * wrench.thrust * Eigen::Vector3d::UnitZ() - drag_B) +
+          disturbance.force_W;
       const Eigen::Vector3d& w = state.w_WB_B;
       const Eigen::Vector3d moment_B =
           wrench.moment_B - w.cross(model_.inertia.cwiseProduct(w)) + disturbance.moment_B;
@@ -93,7 +94,7 @@ void Fly(DisturbanceObserver* observer, Body* body, double duration, const Pushe
   }
 }
 
-Disturbance Steady() { return {{3.0, -2.0, 0.8}, {0.02, -0.01, 0.005}}; }
+Disturbance Steady() { return {{3.0, -2.0, 0.0}, {0.02, -0.01, 0.005}}; }
 
 TEST(DisturbanceObserver, FindsASteadyDisturbanceWhileTheVehicleIsShaken) {
   DisturbanceObserver observer(Vehicle());
@@ -102,6 +103,19 @@ TEST(DisturbanceObserver, FindsASteadyDisturbanceWhileTheVehicleIsShaken) {
   // Thrust and attitude are held over a step: under 1 % is left of the shaking.
   EXPECT_LT((observer.disturbance().force_W - Steady().force_W).norm(), 0.04);
   EXPECT_LT((observer.disturbance().moment_B - Steady().moment_B).norm(), 4e-4);
+}
+
+// A force that grows with the thrust is no wind.
+TEST(DisturbanceObserver, RotorsAndMassThatAreNotTheModelsAreAFactorOfTheThrust) {
+  for (const double gain : {0.67, 1.0, 1.5}) {
+    DisturbanceObserver observer(Vehicle());
+    Body body(Vehicle());
+    Fly(&observer, &body, 8.0, [gain](double) {
+      return Disturbance{{3.0, -2.0, 0.0}, {0.0, 0.0, 0.0}, gain};
+    });
+    EXPECT_NEAR(observer.disturbance().thrust_gain, gain, 0.02);
+    EXPECT_LT((observer.disturbance().force_W - Eigen::Vector3d(3.0, -2.0, 0.0)).norm(), 0.2);
+  }
 }
 
 TEST(DisturbanceObserver, NothingIsFoundWhereNothingActs) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/control/mixer.h"
 
+#include <algorithm>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -96,6 +97,22 @@ TEST(Mixer, SaturatedKeepsLimitsAndPriority) {
     }
   }
   EXPECT_GT(saturated, 3000);
+}
+
+// Before, a turn lifted a vehicle whose rotors are stronger than it knows by metres per second.
+TEST(Mixer, RollAndPitchRaiseTheThrustToHalfOfHoverAtMost) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const estimation::VehicleModel model = TestVehicle();
+  const Mixer mixer(model);
+  const double raised = Mixer::kRaisedThrust * model.HoverThrust();
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Wrench wrench = {model.HoverThrust() * (1.0 + uniform(random)),
+                           {4.0 * uniform(random), 4.0 * uniform(random), 0.0}};
+    const Wrench got = mixer.Apply(mixer.Mix(wrench).thrusts);
+    EXPECT_LE(got.thrust, std::max(wrench.thrust, raised) + 1e-9);
+    EXPECT_GT(got.moment_B.head<2>().norm(), 0.0);  // some authority is always left
+  }
 }
 
 TEST(Mixer, BrokenWrenchGivesLeastThrust) {

@@ -55,6 +55,25 @@ TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   EXPECT_NEAR(given, hover, 1e-3 * hover);
 }
 
+// A rotor that is cut off alone lifts a vehicle of which little thrust and quick turns are asked.
+TEST(RotorLead, WhatTheLimitsCutOffLiftsNobody) {
+  const estimation::VehicleModel model = TestVehicle();
+  const Mixer mixer(model);
+  RotorLead lead(model);
+  const double thrust = 0.6 * model.HoverThrust();
+  Eigen::Vector4d given = Eigen::Vector4d::Constant(0.25 * model.HoverThrust());
+  double mean = 0.0;
+  constexpr int kSteps = 600, kBefore = 200;
+  for (int i = 0; i < kBefore + kSteps; ++i) {
+    const double most = (i / 10) % 2 == 0 ? 100.0 : -100.0;  // [N m]
+    const Eigen::Vector4d wanted = mixer.Mix({thrust, {most, 0.0, 0.0}}).thrusts;
+    const Eigen::Vector4d command = lead.Command(wanted, i * kStep);
+    given += (1.0 - std::exp(-kStep / model.rotor_lag_s)) * (command - given);
+    if (i >= kBefore) mean += given.sum() / kSteps;
+  }
+  EXPECT_NEAR(mean, thrust, 0.01 * thrust);
+}
+
 /// A vehicle that is struck turns with 3 rad/s: the fastest that it turns back and forth later than 0.2 s
 /// after [rad/s].
 double Ringing(double gain, double lag, bool with_lead) {
@@ -86,7 +105,7 @@ TEST(RotorLead, KeepsTheAttitudeDampedWhereThePlantIsOff) {
       const double without = Ringing(gain, lag, false), with = Ringing(gain, lag, true);
       EXPECT_LT(with, 0.9);
       if (lag >= 1.0) {
-        EXPECT_LT(with, 0.7 * without);
+        EXPECT_LT(with, 0.75 * without);
       }
     }
   }

@@ -310,7 +310,7 @@ TEST(PadFilter, TurnRateForetellsACircleBetterThanThePaper) {
   const double turn_rate = CirclePredictionError(PadModel::kTurnRate, true);
   RecordProperty("paper_m", std::to_string(paper));
   RecordProperty("turn_rate_m", std::to_string(turn_rate));
-  EXPECT_LT(turn_rate, paper / 3.0);
+  EXPECT_LT(turn_rate, paper / 2.5);
   // With GPS alone the speed's noise, which both models share, is a larger part of the error.
   const double paper_gps = CirclePredictionError(PadModel::kPaper, false);
   const double turn_rate_gps = CirclePredictionError(PadModel::kTurnRate, false);

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "touchdown/planning/rest_trajectory.h"
 #include "touchdown/planning/test/replanner_fixtures.h"
 
 namespace touchdown::planning {
@@ -25,6 +26,16 @@ TEST(LimitsUnder, WithoutAPullTheyAreWhatTheyWere) {
   const Limits limits{2.0, 8.0};
   EXPECT_EQ(LimitsUnder(limits, Facts(), Vector3d::Zero()).acceleration, 8.0);
   EXPECT_EQ(LimitsUnder(limits, Facts(), Vector3d::Zero()).speed, 2.0);
+}
+
+// Lifted by a third of its weight it has less thrust to turn, and the same curve turns the axis faster.
+TEST(LimitsUnder, APullUpMakesTheThrustAxisTurnFaster) {
+  const Vector3d pull(0.0, 0.0, 3.3);
+  const Limits under = LimitsUnder({3.0, 6.0}, Facts(), pull);
+  const SplineState start{Vector3d::Zero(), {1.5, 0.0, -0.5}, Vector3d::Zero()};
+  const UniformBspline light = MakeRestTrajectory(start, 0.0, Vector3d::Zero(), under);
+  EXPECT_LE(BoundDerivatives(light, pull).body_rate, under.body_rate + 1e-6);
+  EXPECT_GT(BoundDerivatives(light, pull).body_rate, 1.2 * BoundDerivatives(light).body_rate);
 }
 
 TEST(LimitsUnder, TiltIsSharedWithTheWind) {
