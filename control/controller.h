@@ -22,7 +22,7 @@ struct Wrench {
 struct Disturbance {
   Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d moment_B = Eigen::Vector3d::Zero();  ///< [N m]
-  /// Thrust that the rotors give, over what the model says, as far as the mass is the model's [-].
+  /// True thrust over true mass, over the same of the model [-].
   double thrust_gain = 1.0;
 };
 

@@ -116,17 +116,17 @@ void DisturbanceObserver::Predict(double dt) noexcept {
   thrusts_ += (1.0 - std::exp(-dt / model_.rotor_lag_s)) * (commanded_ - thrusts_);
 }
 
-// Wind is level. What lasts vertically is a mass or rotors that are not the model's: a factor on the thrust,
-// which every error is answered with, and no force. The sum of both stays as it is.
+// What lasts vertically is a mass or rotors that are not the model's, or air that does alike: a factor on the
+// thrust, with which every error is answered, and no force. The sum of both stays as it is.
 void DisturbanceObserver::LearnGain(double dt) noexcept {
-  const double upright = (last_.q_WB * Eigen::Vector3d::UnitZ()).z();
-  const double lift = upright * mixer_.Apply(thrusts_).thrust;
-  if (lift < kLeastLift * model_.HoverThrust()) return;
   double& gain = disturbance_.thrust_gain;
-  const double moved = (1.0 - std::exp(-dt / kGainTime)) * disturbance_.force_W.z() / lift;
+  const Eigen::Vector3d thrust_W =
+      mixer_.Apply(thrusts_).thrust * (last_.q_WB * Eigen::Vector3d::UnitZ());
+  if (gain * thrust_W.z() < kLeastLift * model_.HoverThrust()) return;
+  const double moved = (1.0 - std::exp(-dt / kGainTime)) * disturbance_.force_W.z() / thrust_W.z();
   const double learnt = std::clamp(gain + moved, kLeastGain, kGreatestGain) - gain;
   gain += learnt;
-  disturbance_.force_W.z() -= learnt * lift;
+  disturbance_.force_W -= learnt * thrust_W;
 }
 
 void DisturbanceObserver::Correct(const estimation::VehicleState& state, double dt) noexcept {

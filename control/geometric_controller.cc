@@ -29,7 +29,7 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
       R_WB * model_.rotor_drag.asDiagonal() * R_WB.transpose() * reference.v_WB;
   const LimitedForce force =
       LimitForce(PositionLoop(state, reference, model_, options_) + drag_W - disturbance.force_W,
-                 model_, options_);
+                 model_, options_, disturbance.thrust_gain);
 
   // Flatness at the force that is really asked for, so that attitude and rate belong together.
   planning::FlatState flat = reference;

@@ -19,8 +19,7 @@ namespace touchdown::control {
 
 Mixer::Mixer(const estimation::VehicleModel& model)
     : min_(model.rotor_thrust_min),
-      max_(model.rotor_thrust_max),
-      raised_thrust_(kRaisedThrust * model.HoverThrust()) {
+      max_(model.rotor_thrust_max) {
   if (!(std::isfinite(min_) && std::isfinite(max_) && min_ >= 0.0 && min_ < max_)) {
     throw std::invalid_argument("VehicleModel.rotor_thrust_min, _max = " + std::to_string(min_) +
                                 ", " + std::to_string(max_) + ", allowed: 0 <= min < max");
@@ -43,6 +42,8 @@ Mixer::Mixer(const estimation::VehicleModel& model)
                                 std::to_string(least_share) +
                                 ", allowed: > 0 (centre of mass between the rotors)");
   }
+  const double lowest = min_ / least_share;
+  raised_thrust_ = lowest + kRaisedThrust * std::max(0.0, model.HoverThrust() - lowest);
 }
 
 MixerOutput Mixer::Mix(const Wrench& wrench) const noexcept {

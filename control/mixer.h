@@ -16,11 +16,11 @@ struct MixerOutput {
 
 /// Wrench to rotor thrusts for any four-rotor geometry (eq. 8 generalised). Where the limits forbid
 /// the whole wrench, roll and pitch moment come first, then collective thrust, then yaw moment. For them the
-/// thrust is raised to kRaisedThrust of hover at most: a vehicle that every correction of its attitude lifts leaves
+/// thrust is raised to kRaisedThrust of the way from the rotors' least to hover at most: a vehicle that every correction of its attitude lifts leaves
 /// its way.
 class Mixer {
  public:
-  static constexpr double kRaisedThrust = 0.5;  ///< of the hover thrust [-]
+  static constexpr double kRaisedThrust = 0.5;  ///< [-]
 
   /// Throws std::invalid_argument if the rotors cannot produce every wrench, or hover without
   /// moment would need a rotor to pull down.

@@ -26,7 +26,7 @@ ControlOutput PaperController::Update(const estimation::VehicleState& state,
                                       const Disturbance& /*disturbance*/) const noexcept {
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
   const LimitedForce force =
-      LimitForce(PositionLoop(state, reference, model_, options_), model_, options_);
+      LimitForce(PositionLoop(state, reference, model_, options_), model_, options_, 1.0);
 
   ControlOutput output;
   output.R_WB_desired = planning::AttitudeFromThrust(force.f_W, reference.yaw);

@@ -11,7 +11,7 @@
 namespace touchdown::control {
 
 LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleModel& model,
-                        const ControllerOptions& options) {
+                        const ControllerOptions& options, double thrust_gain) {
   LimitedForce limited;
   limited.f_W = f_W;
   // Thrust cannot pull down: a hard demand to fall becomes the least upward force, so that the
@@ -28,7 +28,7 @@ LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleMod
     limited.tilt_limited = true;
   }
   const double length = limited.f_W.norm();
-  const double length_max = options.thrust_fraction_max * model.MaxThrust();
+  const double length_max = options.thrust_fraction_max * thrust_gain * model.MaxThrust();
   if (length > length_max) {
     limited.f_W *= length_max / length;
     limited.thrust_limited = true;

@@ -10,7 +10,7 @@
 namespace touchdown::evaluation {
 
 /// Files of trials.
-inline constexpr ResultFormat kTrialFormat{"touchdown trials", 7};
+inline constexpr ResultFormat kTrialFormat{"touchdown trials", 8};
 
 /// What the manifest of a campaign's file says besides the build. `plan_hash` is one figure for everything
 /// but the build that decides the trials: their seeds, labels and scenarios, and the files that these name.

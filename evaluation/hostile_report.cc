@@ -56,8 +56,11 @@ std::string TableText(const std::vector<SweepRow>& rows, bool within) {
   text +=
       fmt::format("  contacts: {}; stood: {}\n", CountsText(all.contacts), CountsText(all.stood));
   const SafetyFigures& s = all.safety;
-  text += fmt::format("  steps without a proven pair {}; flights that escaped {}\n",
-                      s.uncertified_steps, RateText(all.escaping_flights, all.flights));
+  text += fmt::format(
+      "  steps without a proven pair {}; flights that escaped {}, in occupied cells {}, in unknown "
+      "ones {}\n",
+      s.uncertified_steps, RateText(all.escaping_flights, all.flights), all.escaping_hit_flights,
+      all.escaping_unknown_flights);
   text += fmt::format("  stops flown {}; map errors {}; steps with less than the margins {}\n",
                       s.stops_flown, s.map_errors, s.narrow_steps);
   text += fmt::format(
@@ -110,6 +113,8 @@ Json TallyJson(const HostileTally& t) {
           {"uncertified_steps", t.safety.uncertified_steps},
           {"escaping_steps", t.safety.escaping_steps},
           {"escaping_flights", t.escaping_flights},
+          {"escaping_hit_flights", t.escaping_hit_flights},
+          {"escaping_unknown_flights", t.escaping_unknown_flights},
           {"stops_flown", t.safety.stops_flown},
           {"map_errors", t.safety.map_errors},
           {"narrow_steps", t.safety.narrow_steps},

@@ -82,6 +82,8 @@ void HostileTally::Add(const SweepRow& row) {
 void HostileTally::AddSafety(const SafetyFigures& figures) {
   safety.uncertified_steps += figures.uncertified_steps;
   safety.escaping_steps += figures.escaping_steps;
+  safety.escaping_hit_steps += figures.escaping_hit_steps;
+  safety.escaping_unknown_steps += figures.escaping_unknown_steps;
   safety.narrow_steps += figures.narrow_steps;
   safety.stops_flown += figures.stops_flown;
   safety.map_errors += figures.map_errors;
@@ -94,6 +96,8 @@ void HostileTally::AddSafety(const SafetyFigures& figures) {
   safety.free_cells += figures.free_cells;
   safety.falsely_free_cells += figures.falsely_free_cells;
   escaping_flights += figures.escaping_steps > 0 ? 1 : 0;
+  escaping_hit_flights += figures.escaping_hit_steps > 0 ? 1 : 0;
+  escaping_unknown_flights += figures.escaping_unknown_steps > 0 ? 1 : 0;
 }
 
 int HostileTally::all_contacts() const { return Sum(contacts); }

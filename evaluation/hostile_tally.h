@@ -35,6 +35,8 @@ struct HostileTally {
   SafetyFigures safety;              ///< sums over the flights; of what ends in max_m the largest
   std::vector<double> margins_m;     ///< mean margin of each flight
   int escaping_flights = 0;          ///< with a step that escapes
+  int escaping_hit_flights = 0;      ///< ... from occupied cells
+  int escaping_unknown_flights = 0;  ///< ... from cells that are not known
 
   void Add(const SweepRow& row);
   void AddSafety(const SafetyFigures& figures);

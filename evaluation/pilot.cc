@@ -231,9 +231,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   DeliverLate(vehicle.t);
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
-  const bool to_contact = input.endpoint.touches() || input.endpoint.sink_rate > 0.0;
   lands_ = scenario_.planner == PlannerKind::kLanding && result.Lands();
-  const bool lands_as_wanted = wants_plan && to_contact && kept && lands_ &&
+  const bool lands_as_wanted = wants_plan && input.endpoint.leads_to_contact() && kept && lands_ &&
                                result.reason != planning::ReplanReason::kInvalidInput;
   last_planned_ = result.status == planning::ReplanStatus::kPlanned ||
                   result.reason == planning::ReplanReason::kAtGoal || lands_as_wanted;

@@ -24,7 +24,8 @@ CREATE TABLE reference(t REAL, px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz R
   ax REAL, ay REAL, az REAL, yaw REAL, yaw_rate REAL);
 CREATE TABLE rotor(t REAL, thrust0 REAL, thrust1 REAL, thrust2 REAL, thrust3 REAL);
 CREATE TABLE air(t REAL, vx REAL, vy REAL, vz REAL);
-CREATE TABLE disturbance(t REAL, fx REAL, fy REAL, fz REAL, mx REAL, my REAL, mz REAL);
+CREATE TABLE disturbance(t REAL, fx REAL, fy REAL, fz REAL, mx REAL, my REAL, mz REAL,
+                         thrust_gain REAL);
 CREATE TABLE mode(t REAL, mode TEXT);
 CREATE TABLE event(t REAL, kind TEXT, text TEXT);
 CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT, reason TEXT,
@@ -103,7 +104,7 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
       db.Prepare("INSERT INTO reference VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement rotor = db.Prepare("INSERT INTO rotor VALUES(?, ?, ?, ?, ?)");
   SqliteStatement air = db.Prepare("INSERT INTO air VALUES(?, ?, ?, ?)");
-  SqliteStatement disturbance = db.Prepare("INSERT INTO disturbance VALUES(?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement disturbance = db.Prepare("INSERT INTO disturbance VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement mode = db.Prepare("INSERT INTO mode VALUES(?, ?)");
   for (const RecordSample& s : samples) {
     WriteVehicle(vehicle, s.vehicle, s.t, "true");
@@ -117,7 +118,7 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
     air.Run(s.t, s.air.x(), s.air.y(), s.air.z());
     const Eigen::Vector3d& f = s.disturbance.force_W;
     const Eigen::Vector3d& m = s.disturbance.moment_B;
-    disturbance.Run(s.t, f.x(), f.y(), f.z(), m.x(), m.y(), m.z());
+    disturbance.Run(s.t, f.x(), f.y(), f.z(), m.x(), m.y(), m.z(), s.disturbance.thrust_gain);
     mode.Run(s.t, s.mode);
   }
 }

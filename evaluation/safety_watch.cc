@@ -45,9 +45,12 @@ void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margi
   figures_.margin_mean_m += (margins.Sum() - figures_.margin_mean_m) / ++steps_;
   const planning::Certificate& certificate = plan.certificate;
   if (!certificate.stops_in_observed_space) ++figures_.uncertified_steps;
-  const bool escapes = certificate.leaves || plan.status == planning::ReplanStatus::kEscaping;
-  const bool narrow = certificate.narrow || certificate.escaping;
+  const planning::StartCells& start = certificate.start_cells;
+  const bool escapes = start.leaves() || plan.status == planning::ReplanStatus::kEscaping;
+  const bool narrow = start.narrow || certificate.escaping;
   if (escapes) ++figures_.escaping_steps;
+  if (start.occupied) ++figures_.escaping_hit_steps;
+  if (start.unknown) ++figures_.escaping_unknown_steps;
   if (!escapes && narrow) ++figures_.narrow_steps;
   if (plan.map_error) ++figures_.map_errors;
   const bool stops = plan.status == planning::ReplanStatus::kBraking;

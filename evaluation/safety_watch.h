@@ -18,6 +18,8 @@ struct SafetyFigures {
   int escaping_steps =
       0;  ///< whose pair starts with the hull in cells that are not observed free, or leads out
           ///< of a zone that blocks
+  int escaping_hit_steps = 0;      ///< ... with the hull in occupied cells
+  int escaping_unknown_steps = 0;  ///< ... with it in cells that are not known
   int narrow_steps =
       0;  ///< ... with only the margins in such cells, or within the clearance of plans
   int stops_flown = 0;  ///< stored stops that began, for want of a newer pair

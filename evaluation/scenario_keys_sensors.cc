@@ -91,9 +91,9 @@ void AddSensorKeys(KeyList& keys) {
                                   "obstacles as thick as this are promised to be seen: from where a "
                                   "thinner one fits between two pixels, no cell is freed",
                                   TOUCHDOWN_AT(map_thinnest_obstacle)));
-  keys.push_back(Number<Scenario>("map.start_free", In(0, 3, "m"),
-                                  "around the start that is given as free; what of it is not counts "
-                                  "as falsely free",
+  keys.push_back(Number<Scenario>("map.start_free", In(0.5, 3, "m"),
+                                  "this far around the start cells are given as free; those that are "
+                                  "not count as falsely free",
                                   TOUCHDOWN_AT(map_start_free)));
   keys.push_back(Choice("sensing", {"fast", "rendered"},
                         "fast: models of both cameras; rendered: images, in which the pad is found",

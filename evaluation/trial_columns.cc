@@ -203,6 +203,8 @@ void WalkTrial(Walk& walk, TrialResult& r) {
   walk.Group(r.safety, [&](SafetyFigures& s) {
     walk("safety_uncertified_steps", s.uncertified_steps);
     walk("safety_escaping_steps", s.escaping_steps);
+    walk("safety_escaping_hit_steps", s.escaping_hit_steps);
+    walk("safety_escaping_unknown_steps", s.escaping_unknown_steps);
     walk("safety_narrow_steps", s.narrow_steps);
     walk("safety_stops_flown", s.stops_flown);
     walk("safety_map_errors", s.map_errors);

@@ -52,6 +52,8 @@ Json SafetyJson(const std::optional<SafetyFigures>& safety) {
   if (!safety) return nullptr;
   return {{"uncertified_steps", safety->uncertified_steps},
           {"escaping_steps", safety->escaping_steps},
+          {"escaping_hit_steps", safety->escaping_hit_steps},
+          {"escaping_unknown_steps", safety->escaping_unknown_steps},
           {"narrow_steps", safety->narrow_steps},
           {"stops_flown", safety->stops_flown},
           {"map_errors", safety->map_errors},

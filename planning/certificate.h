@@ -3,6 +3,7 @@
 
 #include "touchdown/planning/free_space.h"
 #include "touchdown/planning/limits.h"
+#include "touchdown/planning/swept_hull.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {
@@ -27,8 +28,7 @@ struct Certificate {
   /// What is flown until a newer pair takes over, and the stop that is stored for the case that none
   /// does, stay in observed-free cells with the hull and its margins (planning/stored_stop.h).
   bool stops_in_observed_space = false;
-  /// The hull, or only its margins, start among cells that are not observed free: that pair only moves away.
-  bool leaves = false, narrow = false;
+  StartCells start_cells;  ///< that the pair starts among, and only moves away from
   double clearance = 0.0;    ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 
@@ -52,7 +52,7 @@ struct Certificate {
 /// beyond a limit, by its speed or by V_1 = v0 + h a0 / 2, which it fixes, is certified against the
 /// RecoveryProfile from the larger of the two on, and alike for the acceleration. What the vehicle may
 /// rely on until it rests is proven apart (ProvePair, ProveStop) and entered by the caller:
-/// stops_in_observed_space, leaves, narrow. Does not allocate.
+/// stops_in_observed_space, start_cells (Enter in stored_stop.h). Does not allocate.
 Certificate Certify(const UniformBspline& curve, double t_from, const SplineState* start,
                     const SplineState* wanted, const Limits& limits, const FreeSpace& space);
 

@@ -23,6 +23,8 @@ struct EndpointTarget {
 
   /// Whether the plan is to end in contact.
   bool touches() const { return arrival_sink > 0.0; }
+  /// Whether what follows it is contact: by this plan, or by the ones that sink with the height.
+  bool leads_to_contact() const { return touches() || sink_rate > 0.0; }
 };
 
 /// The end condition at an arrival time, with the derivatives with respect to it that free arrival

@@ -20,13 +20,6 @@ namespace {
 
 constexpr double kAtRest = 0.05;  // below this speed and way to go [m/s, m]
 
-/// What the proof of its pair says of a curve.
-void Add(const PairProof& proof, Certificate* certificate) {
-  certificate->stops_in_observed_space = proof.proven;
-  certificate->leaves = proof.leaves;
-  certificate->narrow = proof.narrow;
-}
-
 }  // namespace
 
 Fallback::Fallback(const Limits& limits) : limits_(limits) {
@@ -80,7 +73,7 @@ bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, con
   if (!proof.proven) return false;
   result->pair() = pair_;
   result->certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
-  Add(proof, &result->certificate);
+  Enter(proof, &result->certificate);
   return true;
 }
 
@@ -90,7 +83,7 @@ bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d&
   MakeRestTrajectory(start, t0, shift, limits_, &pair_.curve);
   const PairProof proof = ProveStop(t0, hull, &pair_);
   Certificate certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
-  Add(proof, &certificate);
+  Enter(proof, &certificate);
   if (!certificate.passed()) return false;
   result->pair() = pair_;
   result->certificate = certificate;

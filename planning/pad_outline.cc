@@ -25,6 +25,12 @@ double DistanceBeside(const PadOutline& pad, const Eigen::Vector3d& p_W) {
   return (in_P.abs() - pad.half_size).max(0.0).matrix().norm();
 }
 
+bool PadOutline::SurelyOver(const Eigen::Vector3d& p_W) const {
+  PadOutline sure = *this;
+  sure.half_size -= kSigmas * sigma;
+  return sure.half_size > 0.0 && DistanceBeside(sure, p_W) <= 0.0;
+}
+
 ReturnKind PadOutline::Classify(const Eigen::Vector3d& p_W, double tolerance) const {
   if (half_size <= 0.0 || p_W.z() > p_WP.z() + tolerance) return ReturnKind::kObstacle;
   const double doubt = kSigmas * sigma;

@@ -31,8 +31,8 @@ struct PadOutline {
   /// Known so well that no return is in doubt.
   bool Known() const { return kSigmas * sigma <= kSure; }
 
-  /// Half the side of the square that is over the deck wherever the pad is within kSigmas [m]; < 0: none.
-  double SureHalfSize() const { return half_size - kSigmas * sigma; }
+  /// p_W is above or below the deck, wherever the pad is within kSigmas.
+  bool SurelyOver(const Eigen::Vector3d& p_W) const;
 
   static constexpr double kSigmas = 3.0;
   static constexpr double kSure = 0.15;  ///< kSigmas of tags seen from 2 m, and a margin [m]

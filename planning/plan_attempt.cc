@@ -345,9 +345,7 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
   if (certificate.limits_kept && (certificate.clear || certificate.escaping)) {
     const PairProof proof = ProvePair(request.t0, request.t0 + options_.reaction, request.pair_end,
                                       request.limits, *request.hull, &candidate->pair);
-    certificate.stops_in_observed_space = proof.proven;
-    certificate.leaves = proof.leaves;
-    certificate.narrow = proof.narrow;
+    Enter(proof, &certificate);
     if (!proof.proven && !result->unseen_W) result->unseen_W = proof.unseen_W;
   }
   if (options_.problem.endpoint == EndpointMode::kExplicit) {

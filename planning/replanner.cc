@@ -276,8 +276,7 @@ bool Replanner::Impl::GoesOn(const ReplanInput& input, const HullSpace& hull) {
 
 /// Shortly before a contact that is still wanted nothing is put off: the committed pair was proven until then.
 bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull) const {
-  const bool wanted = input.endpoint.touches() || input.endpoint.sink_rate > 0.0;
-  return result_.ends_in_contact && wanted && next_.Lands() &&
+  return result_.ends_in_contact && input.endpoint.leads_to_contact() && next_.Lands() &&
          ContactTime(next_.curve, input.t_start, hull) - input.t_start < kLastStretch;
 }
 

@@ -45,6 +45,11 @@ double FeetAbove(const UniformBspline& curve, double t, const HullSpace& hull) {
 
 }  // namespace
 
+void Enter(const PairProof& proof, Certificate* certificate) {
+  certificate->stops_in_observed_space = proof.proven;
+  certificate->start_cells = proof.start;
+}
+
 PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits& limits,
                     const HullSpace& hull, FlightPair* pair) {
   PairProof proof;
@@ -53,6 +58,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   const DeckContact until_then = ends == PairEnd::kRest ? DeckContact::kMayNot : DeckContact::kMay;
   const Sweep until = SweepHull(curve, t_from, t_handover, start, hull, until_then);
   const auto note = [&](const Sweep& sweep) {
+    proof.start = until.start | sweep.start;
     if (!sweep.proven && !proof.unseen_W) proof.unseen_W = sweep.unseen_W;
     return sweep.proven;
   };
@@ -67,8 +73,6 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
     if (TooLow(p_rest, pair->stop.t_end(), hull) > 1e-6) return false;
     const Sweep sweep =
         SweepHull(pair->stop, t_handover, pair->stop.t_end(), start, hull, DeckContact::kMayNot);
-    proof.leaves = until.leaves || sweep.leaves;
-    proof.narrow = until.narrow || sweep.narrow;
     return note(sweep);
   };
   const auto touches_down = [&] {
@@ -76,8 +80,6 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
     if (!TouchesSoftly(curve, t_contact, kRoom, hull)) return false;
     const double t_end = std::max(t_handover, t_contact) + kPressing;
     const Sweep sweep = SweepHull(curve, t_handover, t_end, start, hull);
-    proof.leaves = until.leaves || sweep.leaves;
-    proof.narrow = until.narrow || sweep.narrow;
     return note(sweep);
   };
   // Shortly before contact braking over the deck is the more dangerous end.
@@ -106,9 +108,8 @@ double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& 
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (hull.pad == nullptr) return kNever;
   const auto over_deck = [&](double t) {
-    PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
-    deck.half_size = deck.SureHalfSize();
-    return deck.half_size > 0.0 && DistanceBeside(deck, curve.EvaluateOnward(t).p_WB) <= 0.0;
+    return OutlineOf(hull.pad->At(t), hull.deck_half_size)
+        .SurelyOver(curve.EvaluateOnward(t).p_WB);
   };
   double above = std::max(t_from, curve.t_end());
   const double left = FeetAbove(curve, above, hull);
@@ -134,7 +135,7 @@ PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {
   if (TooLow(curve.Position(t_rest), t_rest, hull) > 1e-6) return {};
   const HullStart start{curve.EvaluateOnward(t_from).p_WB, t_from};
   const Sweep sweep = SweepHull(curve, t_from, t_rest, start, hull, DeckContact::kMayNot);
-  return {sweep.proven, sweep.leaves, sweep.narrow, false, sweep.unseen_W};
+  return {sweep.proven, sweep.start, false, sweep.unseen_W};
 }
 
 }  // namespace touchdown::planning

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "touchdown/planning/certificate.h"
 #include "touchdown/planning/flight_pair.h"
 #include "touchdown/planning/limits.h"
 #include "touchdown/planning/swept_hull.h"
@@ -17,12 +18,14 @@ inline constexpr double kLatestContact = 1.7;
 /// A plan that is proven as a pair, or why it is not.
 struct PairProof {
   bool proven = false;
-  bool leaves = false,
-       narrow = false;   ///< it starts among cells that are not observed free: see Sweep
+  StartCells start;
   bool contact = false;  ///< the stop is the rest of the curve, to contact with the deck
   /// A cell for want of which it is not proven, in W [m].
   std::optional<Eigen::Vector3d> unseen_W;
 };
+
+/// What the proof of its pair says of a curve.
+void Enter(const PairProof& proof, Certificate* certificate);
 
 /// How a pair may end.
 enum class PairEnd { kRest, kRestOrContact, kContact };

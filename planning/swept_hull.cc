@@ -83,9 +83,7 @@ class Tube {
     const double top = deck.outline.p_WP.z();
     const double highest = top + face_noise_ + map_.resolution();  // of cells that hold its face
     if (p.z() - radius_ >= highest) return deck;
-    PadOutline sure = deck.outline;
-    sure.half_size = sure.SureHalfSize();
-    deck.over = sure.half_size > 0.0 && DistanceBeside(sure, p) <= 0.0;
+    deck.over = deck.outline.SurelyOver(p);
     if (deck.over) deck.exempt_below = std::max(deck.exempt_below, top);
     return deck;
   }
@@ -122,8 +120,10 @@ class Tube {
         if (HoldsFace(cell.z(), start_deck_) && IsFace(cell, start_deck_)) continue;
         // What only the room between two balls reaches into is not in the grown hull.
         const double at_start = Distance(cell, start_);
-        sweep->leaves |= at_start < hull_.hull_radius - kNearer;
-        sweep->narrow |= at_start < hull_.radius() - kNearer;
+        if (at_start < hull_.hull_radius - kNearer) {
+          (map_.IsOccupied(cell) ? sweep->start.occupied : sweep->start.unknown) = true;
+        }
+        sweep->start.narrow |= at_start < hull_.radius() - kNearer;
       }
       left -= n;
       at.x() += n;

@@ -27,11 +27,22 @@ struct HullSpace {
   double radius() const { return hull_radius + margin; }
 };
 
+/// Cells that are not observed free among which a sweep starts. It moves away from those alone.
+struct StartCells {
+  bool occupied = false;  ///< the hull is among some that are seen to be occupied
+  bool unknown = false;   ///< the hull is among some that are neither
+  bool narrow = false;    ///< the grown hull is among either
+
+  bool leaves() const { return occupied || unknown; }
+  StartCells operator|(const StartCells& other) const {
+    return {occupied || other.occupied, unknown || other.unknown, narrow || other.narrow};
+  }
+};
+
 /// What became of a look along a curve.
 struct Sweep {
   bool proven = false;
-  /// The hull, or only its margins, start among cells that are not observed free. It moves away from those alone.
-  bool leaves = false, narrow = false;
+  StartCells start;
   /// First place that is not observed free, in W [m], if that is why nothing is proven.
   std::optional<Eigen::Vector3d> unseen_W;
 };

@@ -215,6 +215,25 @@ TEST(GeometricController, BodyRateFollowsTheReference) {
   EXPECT_LT((output.wrench.moment_B - gyroscopic).norm(), 1e-9);
 }
 
+// Rotors that give more are told less: of the thrust, and of its limit.
+TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
+  const estimation::VehicleModel model = TestVehicle();
+  const auto controller = MakeController("geometric", model);
+  estimation::VehicleState state;
+  const auto with = [&](double gain, double height) {
+    return controller->Update(state, Hover(0.4, 0.0, height),
+                              {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), gain});
+  };
+  const ControlOutput nominal = with(1.0, 0.1), strong = with(1.5, 0.1);
+  EXPECT_NEAR(strong.wrench.thrust, nominal.wrench.thrust / 1.5, 1e-9);
+  EXPECT_EQ(strong.R_WB_desired, nominal.R_WB_desired);
+  for (const double gain : {0.67, 1.0, 1.5}) {
+    const ControlOutput most = with(gain, 50.0);
+    EXPECT_TRUE(most.thrust_limited);
+    EXPECT_LE(most.wrench.thrust, model.MaxThrust());
+  }
+}
+
 TEST(Controller, BadArgumentsAreNamed) {
   const estimation::VehicleModel model = TestVehicle();
   EXPECT_THROW(MakeController("lqr", model), std::invalid_argument);

@@ -105,23 +105,63 @@ TEST(DisturbanceObserver, FindsASteadyDisturbanceWhileTheVehicleIsShaken) {
   EXPECT_LT((observer.disturbance().moment_B - Steady().moment_B).norm(), 4e-4);
 }
 
-// A force that grows with the thrust is no wind.
-TEST(DisturbanceObserver, RotorsAndMassThatAreNotTheModelsAreAFactorOfTheThrust) {
+/// Thrusts with which a body of that gain hovers, shaken up and down.
+Eigen::Vector4d Heaving(double gain, double t) {
   const double hover = 0.25 * Vehicle().HoverThrust();
-  for (const double gain : {0.67, 1.0, 1.5}) {
-    DisturbanceObserver observer(Vehicle());
-    Body body(Vehicle());
-    const Disturbance wind = {{3.0, -2.0, 0.0}, Eigen::Vector3d::Zero(), gain};
-    while (body.state.t < 6.0) {
-      observer.Update(body.state, false);
-      const Eigen::Vector4d command =
-          Eigen::Vector4d::Constant(hover / gain * (1.0 + 0.2 * std::sin(3.0 * body.state.t)));
-      observer.Command(command);
-      body.Step(command, wind);
-    }
-    EXPECT_NEAR(observer.disturbance().thrust_gain, gain, 0.02);
-    EXPECT_LT((observer.disturbance().force_W - wind.force_W).norm(), 0.2);
+  return Eigen::Vector4d::Constant(hover / gain * (1.0 + 0.2 * std::sin(3.0 * t)));
+}
+
+void Heave(DisturbanceObserver* observer, Body* body, double duration, const Disturbance& push) {
+  const double end = body->state.t + duration;
+  while (body->state.t < end) {
+    observer->Update(body->state, false);
+    const Eigen::Vector4d command = Heaving(push.thrust_gain, body->state.t);
+    observer->Command(command);
+    body->Step(command, push);
   }
+}
+
+// A force that grows with the thrust is no wind: not upright, and not while the vehicle leans.
+TEST(DisturbanceObserver, RotorsAndMassThatAreNotTheModelsAreAFactorOfTheThrust) {
+  for (const double gain : {0.67, 1.0, 1.5}) {
+    for (const double lean : {0.0, 0.35}) {
+      SCOPED_TRACE(testing::Message() << "gain " << gain << ", lean " << lean);
+      DisturbanceObserver observer(Vehicle());
+      Body body(Vehicle());
+      body.state.q_WB = Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX());
+      const Disturbance wind = {{3.0, -2.0, 0.0}, Eigen::Vector3d::Zero(), gain};
+      // On the way the sum is right already: no part of it is counted twice.
+      Heave(&observer, &body, 1.5, wind);
+      EXPECT_LT((observer.disturbance().force_W - wind.force_W).head<2>().norm(),
+                0.45 * std::abs(gain - 1.0) + 0.25);
+      Heave(&observer, &body, 4.5, wind);
+      EXPECT_NEAR(observer.disturbance().thrust_gain, gain, 0.02);
+      EXPECT_LT((observer.disturbance().force_W - wind.force_W).norm(), 0.2);
+    }
+  }
+}
+
+TEST(DisturbanceObserver, TheFactorIsBoundedAndLearnedInFlightAlone) {
+  DisturbanceObserver observer(Vehicle());
+  Body body(Vehicle());
+  Heave(&observer, &body, 8.0, {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 3.0});
+  EXPECT_EQ(observer.disturbance().thrust_gain, 2.0);
+  // On the deck, and with hardly any thrust, it stays as it is.
+  for (int i = 0; i < 500; ++i) {
+    body.state.t += kStep;
+    body.state.v_WB.setZero();
+    observer.Update(body.state, true);
+  }
+  EXPECT_EQ(observer.disturbance().thrust_gain, 2.0);
+  DisturbanceObserver falls(Vehicle());
+  Body stone(Vehicle());
+  for (int i = 0; i < 500; ++i) {
+    falls.Update(stone.state, false);
+    falls.Command(Eigen::Vector4d::Constant(0.02));
+    stone.Step(Eigen::Vector4d::Constant(0.02), {{0.0, 0.0, 2.0}, {0.0, 0.0, 0.0}});
+    if (i == 150) EXPECT_GT(falls.disturbance().force_W.z(), 0.5);
+  }
+  EXPECT_LT(falls.disturbance().thrust_gain, 1.1);
 }
 
 TEST(DisturbanceObserver, NothingIsFoundWhereNothingActs) {

@@ -103,15 +103,19 @@ TEST(Mixer, SaturatedKeepsLimitsAndPriority) {
 TEST(Mixer, RollAndPitchRaiseTheThrustToHalfOfHoverAtMost) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const estimation::VehicleModel model = TestVehicle();
-  const Mixer mixer(model);
-  const double raised = Mixer::kRaisedThrust * model.HoverThrust();
-  for (int trial = 0; trial < 2000; ++trial) {
-    const Wrench wrench = {model.HoverThrust() * (1.0 + uniform(random)),
-                           {4.0 * uniform(random), 4.0 * uniform(random), 0.0}};
-    const Wrench got = mixer.Apply(mixer.Mix(wrench).thrusts);
-    EXPECT_LE(got.thrust, std::max(wrench.thrust, raised) + 1e-9);
-    EXPECT_GT(got.moment_B.head<2>().norm(), 0.0);  // some authority is always left
+  for (const double least : {0.0, 0.1, 1.0, 2.0}) {  // N, of 2.9 in hover
+    estimation::VehicleModel model = TestVehicle();
+    model.rotor_thrust_min = least;
+    const Mixer mixer(model);
+    const double raised =
+        4.0 * least + Mixer::kRaisedThrust * (model.HoverThrust() - 4.0 * least);
+    for (int trial = 0; trial < 1000; ++trial) {
+      const Wrench wrench = {model.HoverThrust() * (1.0 + uniform(random)),
+                             {4.0 * uniform(random), 4.0 * uniform(random), 0.0}};
+      const Wrench got = mixer.Apply(mixer.Mix(wrench).thrusts);
+      EXPECT_LE(got.thrust, std::max(wrench.thrust, raised) + 1e-9);
+      EXPECT_GT(got.moment_B.head<2>().norm(), 0.01);  // some authority is always left
+    }
   }
 }
 

@@ -95,7 +95,7 @@ TEST(ClosedLoop, PhysicsThatFailsIsTheOutcomeUnstableAndIsRecorded) {
   replace("0.19 0.19 0.0", "10 10 10");
   const std::string path = ::testing::TempDir() + "touchdown_feather.xml";
   std::ofstream(path) << mjcf;
-  const Scenario scenario = Shipped("open", {"vehicle=" + path});
+  const Scenario scenario = Shipped("open", {"vehicle=" + path, "wind.mean=3", "wind.max=3"});
   TrialRecord record;
   const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
   EXPECT_EQ(result.outcome, Outcome::kUnstable) << result.detail;

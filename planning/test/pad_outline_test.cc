@@ -57,7 +57,7 @@ TEST(PadOutline, WithACoarseFixAWallBeforeThePadIsInDoubtNotGone) {
   PadOutline pad = Deck(0.4);
   pad.p_WP.z() = 0.8;
   EXPECT_FALSE(pad.Known());
-  EXPECT_LT(pad.SureHalfSize(), 0.0);
+  EXPECT_FALSE(pad.SurelyOver(pad.p_WP));
   EXPECT_EQ(pad.Classify(Place(pad, 1.6, 0.0, -0.1), 0.1), ReturnKind::kDoubtful);
   EXPECT_EQ(pad.Classify(Place(pad, 1.6, 0.0, 0.3), 0.1), ReturnKind::kObstacle)
       << "above the deck";

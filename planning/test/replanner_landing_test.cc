@@ -186,7 +186,7 @@ TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
   const ReplannerState before = replanner_->state();
   const ReplanResult& result = replanner_->Rest(input, 1.0, map_);
   EXPECT_EQ(result.status, ReplanStatus::kClimbing);
-  EXPECT_FALSE(result.certificate.leaves);
+  EXPECT_FALSE(result.certificate.start_cells.leaves());
   replanner_->Restore(before);
   input.pad = nullptr;
   EXPECT_EQ(replanner_->Rest(input, 1.0, map_).status, ReplanStatus::kKept) << "it cannot leave";

@@ -56,7 +56,7 @@ TEST(StoredStop, NoProvenPairMeetsWhatIsNotObservedFree) {
       continue;
     }
     ++proven;
-    leaves += proof.leaves;
+    leaves += proof.start.leaves();
     EXPECT_FALSE(proof.contact);
     EXPECT_EQ(pair.t_stop, t_handover);
     // The two are one way: no jump in position, velocity or acceleration.
@@ -66,7 +66,7 @@ TEST(StoredStop, NoProvenPairMeetsWhatIsNotObservedFree) {
     EXPECT_LT((before.a_WB - after.a_WB).norm(), 1e-8);
     EXPECT_LT(pair.At(pair.stop.t_end() + 5.0).v_WB.norm(), 1e-9) << "it stays at rest";
     const auto place = [&](double t) { return pair.At(t).p_WB; };
-    EXPECT_TRUE(TubeInFree(map, t_from, RestOf(pair) + 0.5, kHull, proof.leaves ? &start : nullptr,
+    EXPECT_TRUE(TubeInFree(map, t_from, RestOf(pair) + 0.5, kHull, proof.start.leaves() ? &start : nullptr,
                            kHullRoom, place))
         << trial;
   }
@@ -476,7 +476,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
           replanner.TakeOverAt(takes_over);
         }
         if (is_new && !Same(replanner.state().next, before)) {
-          pairs.push_back({takes_over, start_W, map, result.certificate.narrow});
+          pairs.push_back({takes_over, start_W, map, result.certificate.start_cells.narrow});
         } else if (is_new) {
           ++dropped;
         }

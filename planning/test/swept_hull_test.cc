@@ -34,7 +34,7 @@ TEST(SweptHull, AgreesWithEveryCellOfEveryBall) {
       return TubeInFree(map, 0.0, curve.t_end(), radius, nullptr, 0.0, place);
     };
     if (sweep.proven) {
-      EXPECT_FALSE(sweep.leaves);
+      EXPECT_FALSE(sweep.start.leaves());
       EXPECT_TRUE(free(kHull)) << trial;
     } else {
       // 2 mm of its larger ball are between two of these looks.
@@ -87,7 +87,8 @@ TEST(SweptHull, FromAmongUnseenCellsItMayOnlyLeave) {
   };
   const Sweep away = go({1.5, 0, 0});
   EXPECT_TRUE(away.proven);
-  EXPECT_TRUE(away.leaves);
+  EXPECT_TRUE(away.start.unknown);
+  EXPECT_FALSE(away.start.occupied);
   EXPECT_TRUE(go({0, 0, 0}).proven) << "nor does it have to move";
   EXPECT_FALSE(go({-0.05, 0, 0}).proven);
   // To the side it comes nearer to cells of the same wall.
@@ -113,7 +114,7 @@ TEST(SweptHull, LeavesOnlyWhatItReachedAlready) {
       ++refused;
       continue;
     }
-    leaves += sweep.leaves;
+    leaves += sweep.start.leaves();
     const Eigen::Vector3d start = curve.Position(0.0);
     EXPECT_TRUE(TubeInFree(map, 0.0, curve.t_end(), kHull, &start, kHullRoom, [&](double t) {
       return curve.Position(t);
@@ -239,9 +240,11 @@ TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   const SplineState high{{0, 0, 1.1}, {0, 0, 0}, {0, 0, 0}};
   const Sweep rises = Look(Between(low, high, 2.0), hull);
   EXPECT_TRUE(rises.proven);
-  EXPECT_FALSE(rises.leaves);
+  EXPECT_FALSE(rises.start.leaves());
   map_.SetState({1, 1, 4}, CellState::kOccupied);  // what blocks there does not belong to it
-  EXPECT_TRUE(Look(Between(low, high, 2.0), hull).leaves);
+  const Sweep beside = Look(Between(low, high, 2.0), hull);
+  EXPECT_TRUE(beside.start.occupied);
+  EXPECT_FALSE(beside.start.unknown);
 }
 
 // Of a way that was proven before, what is not seen any more is no matter: not even before what blocks.

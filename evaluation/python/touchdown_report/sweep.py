@@ -17,7 +17,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-SUPPORTED_VERSION = "7"
+SUPPORTED_VERSION = "8"
 MOST_LISTS = 2
 LANDED, FAILED = "#0072B2", "#D55E00"
 

@@ -7,7 +7,7 @@ import pandas as pd
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "7"
+SUPPORTED_VERSION = "8"
 FLOWN = ("landed", "followed")
 
 
