@@ -329,10 +329,11 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (!under_way) {
     climbing_ = -1.0;
-    for (const double rise : {climb, 0.0}) {
+    // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
+    for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
       if (!fallback_.Rests(input.t_start, start, {0.0, 0.0, rise}, hull, &result_)) continue;
-      // What came out otherwise is no reason to stop trying.
-      if (rise == climb) climbing_ = climb;
+      // That none came out is no reason to stop trying.
+      if (rise > 0.0 || climb == 0.0) climbing_ = climb;
       result_.status = rise > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking;
       Commit(input.t_start);
       return result_;

@@ -165,6 +165,34 @@ TEST(ReplannerFallback, ComesToRestOnRequestAndStays) {
   }
 }
 
+// Before, who could not climb in full stayed low in the pad's way.
+TEST(ReplannerFallback, BelowARoofAPartOfTheClimbIsFlownOnce) {
+  OccupancyMap map = ObservedMap();
+  const Eigen::Vector3d start(-6.0, 0.0, 1.5);
+  const CellIndex above = map.CellOf(start + Eigen::Vector3d(0.0, 0.0, 1.5));
+  for (int x = -8; x <= 8; ++x) {
+    for (int y = -8; y <= 8; ++y) {
+      map.SetState(above + CellIndex(x, y, 0), CellState::kOccupied);
+    }
+  }
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  ReplanInput input = Input(start, ArcPad({6.0, 0.0, 0.3}, 0.0, 0.0, 0.0), 0.0);
+  input.pad = nullptr;
+  EXPECT_EQ(replanner.Rest(input, 1.6, map).status, ReplanStatus::kClimbing);
+  for (int step = 1; step < 40; ++step) {
+    const FlatState at = replanner.Reference(0.1 * step);
+    input.t_now = input.vehicle.t = 0.1 * step;
+    input.t_start = input.t_now;
+    input.vehicle.p_WB = at.p_WB;
+    input.vehicle.v_WB = at.v_WB;
+    const ReplanResult& result = replanner.Rest(input, 1.6, map);
+    EXPECT_NE(result.status, ReplanStatus::kClimbing);
+    EXPECT_TRUE(result.certificate.stops_in_observed_space);
+  }
+  EXPECT_NEAR(replanner.Reference(4.0).p_WB.z(), start.z() + 0.8, 1e-6);
+}
+
 TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
   // Too near to the wall, and too fast: no arrival time changes that.
   OccupancyMap map = ObservedMap();

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/safety_watch.h"
+
+#include <gtest/gtest.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+planning::ReplanResult Proven() {
+  planning::ReplanResult plan;
+  plan.status = planning::ReplanStatus::kPlanned;
+  plan.certificate.stops_in_observed_space = true;
+  return plan;
+}
+
+TEST(SafetyWatch, CountsWhatAPairStartsAmong) {
+  const sim::ObstacleField nothing;
+  SafetyWatch watch(nothing);
+  planning::ReplanResult plan = Proven();
+  watch.Step(plan, {});
+  plan.certificate.start_cells = {true, false, true};
+  watch.Step(plan, {});
+  plan.certificate.start_cells = {true, true, true};
+  watch.Step(plan, {});
+  plan.certificate.start_cells = {false, true, true};
+  watch.Step(plan, {});
+  plan.certificate.start_cells = {false, false, true};
+  watch.Step(plan, {});
+  plan = Proven();
+  plan.status = planning::ReplanStatus::kEscaping;  // out of a zone, among neither
+  watch.Step(plan, {});
+  const SafetyFigures& figures = watch.figures();
+  EXPECT_EQ(figures.escaping_steps, 4);
+  EXPECT_EQ(figures.escaping_hit_steps, 2);
+  EXPECT_EQ(figures.escaping_unknown_steps, 2);
+  EXPECT_EQ(figures.narrow_steps, 1);
+  EXPECT_EQ(figures.uncertified_steps, 0);
+}
+
+TEST(SafetyWatch, CountsStopsOnceAndEveryStepWithoutAProof) {
+  const sim::ObstacleField nothing;
+  SafetyWatch watch(nothing);
+  planning::ReplanResult stop = Proven();
+  stop.status = planning::ReplanStatus::kBraking;
+  for (int i = 0; i < 3; ++i) watch.Step(stop, {});
+  watch.Step(Proven(), {});
+  stop.certificate.stops_in_observed_space = false;
+  for (int i = 0; i < 2; ++i) watch.Step(stop, {});
+  EXPECT_EQ(watch.figures().stops_flown, 2);
+  EXPECT_EQ(watch.figures().uncertified_steps, 2);
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
