@@ -9,7 +9,7 @@
 namespace touchdown::control {
 
 struct DisturbanceObserverOptions {
-  double force_bandwidth = 6.0;    ///< both poles of the force's observer at -this [rad/s]
+  double force_bandwidth = 9.0;    ///< both poles of the force's observer at -this [rad/s]
   double moment_bandwidth = 10.0;  ///< of the moment's [rad/s]
   double steady_time = 2.0;        ///< the steady force is the force's mean over about this [s]
   double force_max = 1.0;          ///< of the estimated force, as a share of the weight [-]
