@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/sqlite_db.h"
@@ -62,8 +61,7 @@ class CampaignFiles : public ::testing::Test {
   std::string At(const std::string& name) const { return (folder_ / name).string(); }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) /
-                                  ("touchdown_campaign_" + std::to_string(getpid()));
+  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / "campaign";
 };
 
 /// Everything that does not depend on the clock, in the order in which it is stored.

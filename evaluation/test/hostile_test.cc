@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
@@ -379,8 +378,7 @@ INSTANTIATE_TEST_SUITE_P(Families, HostileFamilyFlight, ::testing::ValuesIn(Host
                          [](const auto& family) { return family.param; });
 
 TEST(HostileFlightTest, AStudyThatIsGoneOnWithIsTheOneThatWasFlownAtOnce) {
-  const auto folder = std::filesystem::path(::testing::TempDir()) /
-                      ("touchdown_hostile_" + std::to_string(getpid()));
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "hostile";
   std::filesystem::create_directories(folder);
   HostileOptions options;
   options.flights = 4;

@@ -9,7 +9,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
-#include <unistd.h>
 
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/program.h"
@@ -54,8 +53,7 @@ class MapFile : public ::testing::Test {
   }
 
  private:
-  fs::path directory_ =
-      fs::path(::testing::TempDir()) / ("touchdown_map_" + std::to_string(getpid()));
+  fs::path directory_ = fs::path(::testing::TempDir()) / "map";
 };
 
 Scenario StraightTurn(const std::vector<std::string>& overrides) {

@@ -39,8 +39,7 @@ class Replayed : public ::testing::Test {
 
   const Registries registries_ = StandardRegistries();
   TrialRecord flown_;
-  std::string path_ = ::testing::TempDir() + "touchdown_replay_" +
-                      ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".db";
+  std::string path_ = ::testing::TempDir() + "replay.db";
 };
 
 // Every step of a flight, in two orders.

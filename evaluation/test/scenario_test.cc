@@ -23,10 +23,6 @@ const Registries kRegistries = StandardRegistries();
 
 class ScenarioTest : public ::testing::Test {
  protected:
-  ScenarioTest() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = ::testing::TempDir() + "touchdown_" + test->name() + ".yaml";
-  }
   ~ScenarioTest() override { std::filesystem::remove(path_); }
 
   Scenario Load(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -44,7 +40,7 @@ class ScenarioTest : public ::testing::Test {
     return "accepted";
   }
 
-  std::string path_;
+  std::string path_ = ::testing::TempDir() + "scenario.yaml";
 };
 
 TEST_F(ScenarioTest, KeysLeftOutKeepTheirDefaults) {
