@@ -84,6 +84,11 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
       target = rest;
       hold = DescentHold::kCorridor;
     }
+    // A vehicle that had to stop would dive after a command that went on, and meet the deck hard.
+    if (now.numbers_valid && in.height > s.foot_height + p.height_lag) {
+      target = rest;
+      hold = DescentHold::kLag;
+    }
   }
   const RateStep step =
       StepTowards(target - s.foot_height, s.foot_height_rate, rate_max, p.height_acceleration, dt);

@@ -99,7 +99,7 @@ enum class TransitionReason {
 std::string_view ToString(TransitionReason reason);
 
 /// Why the descent pauses; kNone while it goes on.
-enum class DescentHold { kNone, kGate, kCorridor };
+enum class DescentHold { kNone, kGate, kCorridor, kLag };
 std::string_view ToString(DescentHold hold);
 
 /// What the vehicle shall do.
@@ -183,6 +183,7 @@ struct MissionParameters {
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
 
+  double height_lag = 0.15;       ///< the command waits for a vehicle higher than this above it [m]
   double press_depth = 0.3;       ///< the command goes this far below the deck until contact [m]
   double contact_force = 2.0;     ///< [N]
   double contact_time = 0.4;      ///< [s]: so long it takes to stand upright (settling.h)

@@ -26,7 +26,7 @@ std::string_view ToString(TransitionReason reason) {
 }
 
 std::string_view ToString(DescentHold hold) {
-  static constexpr std::array<std::string_view, 3> kNames = {"none", "gate", "corridor"};
+  static constexpr std::array<std::string_view, 4> kNames = {"none", "gate", "corridor", "lag"};
   return kNames.at(static_cast<std::size_t>(hold));
 }
 
@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 39> positive = {{
+  const std::array<Named, 40> positive = {{
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
@@ -76,6 +76,7 @@ void Validate(const MissionParameters& p) {
       {"contact_speed", p.contact_speed},
       {"closing_rate", p.closing_rate},
       {"cone_slope", p.cone_slope},
+      {"height_lag", p.height_lag},
       {"press_depth", p.press_depth},
       {"contact_force", p.contact_force},
       {"contact_time", p.contact_time},

@@ -91,6 +91,22 @@ TEST(LandingStateMachine, TrackingHoldsAndRecovers) {
   EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kRecovered);
 }
 
+TEST(LandingStateMachine, TheCommandWaitsForAVehicleThatLags) {
+  Mission mission;
+  mission.DescendTo(0.8);
+  mission.height_follows = false;
+  mission.in.height = mission.outputs.foot_height + 0.5;  // it had to stop
+  mission.Run(1.0);
+  const double held = mission.outputs.foot_height;
+  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kLag);
+  mission.Run(1.0);
+  EXPECT_NEAR(mission.outputs.foot_height, held, 1e-6);
+  mission.in.height = held + 0.1;
+  mission.Run(0.2);
+  EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone);
+  EXPECT_LT(mission.outputs.foot_height, held);
+}
+
 TEST(LandingStateMachine, CorridorHoldsTheHeight) {
   Mission mission;
   mission.DescendTo(0.8);
