@@ -25,6 +25,8 @@ constexpr double kGainTime = 1.0;                         // [s]
 constexpr double kLeastGain = 0.5, kGreatestGain = 2.0;  // mass and thrust off by a third, either way
 constexpr double kLeastLift = 0.3;                        // of the weight: with less the factor is not seen
 
+constexpr double kHoverTime = 20.0, kHoverStep = 0.002;  // five steady times, and more [s]
+
 constexpr double kLongestStep = 0.1;             // a longer gap restarts the observers [s]
 constexpr double kGreatestAcceleration = 100.0;  // quicker changes are jumps of an estimate [m/s^2]
 constexpr double kGreatestSpinUp = 5000.0;       // alike [rad/s^2]
@@ -99,6 +101,17 @@ const Disturbance& DisturbanceObserver::Update(const estimation::VehicleState& s
 
 void DisturbanceObserver::Command(const Eigen::Vector4d& thrusts) noexcept {
   if (thrusts.allFinite()) commanded_ = thrusts;
+}
+
+void DisturbanceObserver::Hover(const estimation::VehicleState& state,
+                                const Eigen::Vector4d& thrusts) noexcept {
+  thrusts_ = thrusts;
+  Command(thrusts);
+  estimation::VehicleState hover = state;
+  for (int left = std::lround(kHoverTime / kHoverStep); left >= 0; --left) {
+    hover.t = state.t - left * kHoverStep;
+    Update(hover, false);
+  }
 }
 
 void DisturbanceObserver::Predict(double dt) noexcept {

@@ -41,6 +41,10 @@ class DisturbanceObserver {
   /// vehicle cannot give must not be taken for a disturbance.
   void Command(const Eigen::Vector4d& thrusts) noexcept;
 
+  /// As after a long hover that ends now, at state.t: what keeps the vehicle at the state's velocity
+  /// and attitude with these thrusts [N] is learned. Does not allocate.
+  void Hover(const estimation::VehicleState& state, const Eigen::Vector4d& thrusts) noexcept;
+
   const Disturbance& disturbance() const { return disturbance_; }
   /// The force without its quick changes [N]: what plans can reckon with.
   const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }

@@ -13,7 +13,6 @@
 
 #include "touchdown/evaluation/air.h"
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/equilibrium.h"
 #include "touchdown/evaluation/landing_time.h"
 #include "touchdown/evaluation/metrics.h"
 #include "touchdown/evaluation/pad_log.h"
@@ -23,7 +22,9 @@
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/safety_watch.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/sliding_mean.h"
 #include "touchdown/evaluation/stand_watch.h"
+#include "touchdown/sim/trim.h"
 #include "touchdown/sim/true_clearance.h"
 #include "touchdown/solvers/thread_clock.h"
 
@@ -89,7 +90,7 @@ class Trial {
         air_(scenario, draw, seed),
         perception_(scenario, world_, seed),
         pilot_(scenario, world_.model(), world_.pad_motion(), registries, perception_.own().now(),
-               perception_.map()),
+               Eigen::Vector4d(world_.rotor_commands().data()), perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
         follow_(scenario.descent == DescentKind::kNone),
         limits_(scenario.limits),
@@ -235,7 +236,9 @@ class Trial {
       }
     }
     if (in_flight && sample.foot_on_pad) {
-      sample.equilibrium_axis = EquilibriumAxis(world_.plant(), through_air_.Mean());
+      // Tilt is measured from the attitude that steady flight through the air needs.
+      sample.equilibrium_axis =
+          sim::TrimAt(world_.plant(), through_air_.Mean(), 0.0).q_WB * Eigen::Vector3d::UnitZ();
     }
     judge_.Observe(sample);
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");

@@ -102,7 +102,8 @@ planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, do
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
              const sim::PadMotion& truth, const Registries& registries,
-             const estimation::VehicleState& start, const planning::OccupancyMap& map)
+             const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
+             const planning::OccupancyMap& map)
     : scenario_(scenario),
       model_(model),
       shortest_contact_plan_(
@@ -130,7 +131,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
   if (scenario.controller == ControllerKind::kGeometric) {
     lead_.emplace(model);
-    if (scenario.control.disturbance) observer_.emplace(model);
+    if (scenario.control.disturbance) observer_.emplace(model).Hover(start, start_thrusts);
   }
   planner_->Prepare(map);
   planner_->CommitHover(start.p_WB, start.t);

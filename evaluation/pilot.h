@@ -40,10 +40,12 @@ inline constexpr double kLevelTime = 0.15;
 /// oracle prediction is the one exception, on request of the scenario.
 class Pilot {
  public:
+  /// The flight begins with a hover at `start`, for which the rotors are told `start_thrusts` [N].
   /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
   Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
         const sim::PadMotion& truth, const Registries& registries,
-        const estimation::VehicleState& start, const planning::OccupancyMap& map);
+        const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
+        const planning::OccupancyMap& map);
 
   /// Mission and heading, by what the vehicle knows of itself. Call at a fixed rate.
   void StepMission(const OwnEstimate& own, const estimation::PadFilter& filter, double foot_force,

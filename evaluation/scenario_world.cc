@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/air.h"
 #include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/waypoint_file.h"
 #include "touchdown/sim/random_stream.h"
@@ -118,6 +119,9 @@ sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw) {
   config.ground_effect = scenario.air.ground_effect;
   config.start.p_WB = draw.p_WB;
   config.start.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
+  // The flight begins with a hover, in the air that it meets in its first step.
+  config.hover_air_W =
+      sim::Wind(WindOf(scenario, draw), draw.seed).Step(config.start, config.timestep);
   return config;
 }
 

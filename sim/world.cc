@@ -22,6 +22,7 @@
 #include "touchdown/sim/ground_effect.h"
 #include "touchdown/sim/mujoco_model.h"
 #include "touchdown/sim/start_check.h"
+#include "touchdown/sim/trim.h"
 #include "touchdown/sim/vehicle_file.h"
 #include "touchdown/sim/world_mjcf.h"
 
@@ -100,6 +101,7 @@ class World::Impl {
   estimation::VehicleState Vehicle() const;
   estimation::PadState Pad() const;
   std::array<double, 4> RotorThrusts() const;
+  std::array<double, 4> RotorCommands() const;
   double Time() const { return static_cast<double>(steps_) * config_.timestep; }
 
   WorldConfig config_;
@@ -114,7 +116,7 @@ class World::Impl {
  private:
   void FindIndices();
   void AlterPlant();
-  void SetInitialState();
+  void SetInitialState(double thrust);
   void DrivePad();
   void PushByAir(const Eigen::Vector3d& wind_W);
   void ReadContacts();
@@ -144,13 +146,20 @@ World::Impl::Impl(const WorldConfig& config) : config_(config), motion_(config.p
   if (config_.ground_effect) {
     CheckAbove("rotor radius for ground effect [m]", model_.rotor_radius, 0.0, 10.0);
   }
+  double thrust = plant_.HoverThrust();
+  if (config_.hover_air_W) {
+    const Trim trim =
+        TrimAt(plant_, -*config_.hover_air_W, estimation::Yaw(config_.start.q_WB.normalized()));
+    config_.start.q_WB = trim.q_WB;
+    thrust = std::min(trim.thrust, plant_.MaxThrust());
+  }
   CheckStart(config_, model_);
   mujoco_ = CompileMjcf(WorldMjcf(config_), config_.vehicle_mjcf);
   data_ = MakeMujocoData(*mujoco_);
   contacts_.reserve(static_cast<std::size_t>(mujoco_->nconmax));
   FindIndices();
   AlterPlant();
-  SetInitialState();
+  SetInitialState(thrust);
 }
 
 void World::Impl::FindIndices() {
@@ -203,7 +212,7 @@ void World::Impl::AlterPlant() {
   mj_setConst(m, data_.get());  // what the compiler derived from mass and inertia
 }
 
-void World::Impl::SetInitialState() {
+void World::Impl::SetInitialState(double thrust) {
   mjData* d = data_.get();
   const estimation::PadState pad = motion_.At(0.0);
   const std::array<double, 3> position = {pad.p_WP.x(), pad.p_WP.y(), pad.yaw};
@@ -221,8 +230,8 @@ void World::Impl::SetInitialState() {
   Put(start.v_WB, qvel);
   Put(start.w_WB_B, qvel + 3);
   // Activations are what the rotors were told, with its lag.
-  const double hover = plant_.HoverThrust() / 4.0 / config_.plant.thrust;
-  for (const int activation : rotor_activation_) d->act[activation] = hover;
+  const double told = thrust / 4.0 / config_.plant.thrust;
+  for (const int activation : rotor_activation_) d->act[activation] = told;
 }
 
 void World::Impl::DrivePad() {
@@ -349,6 +358,12 @@ std::array<double, 4> World::Impl::RotorThrusts() const {
   return thrusts;
 }
 
+std::array<double, 4> World::Impl::RotorCommands() const {
+  std::array<double, 4> commands{};
+  for (std::size_t i = 0; i < 4; ++i) commands[i] = data_->act[rotor_activation_[i]];
+  return commands;
+}
+
 World::World(const WorldConfig& config) : impl_(std::make_unique<Impl>(config)) {}
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -379,6 +394,7 @@ const WorldConfig& World::config() const { return impl_->config_; }
 estimation::VehicleState World::vehicle() const { return impl_->Vehicle(); }
 estimation::PadState World::pad() const { return impl_->Pad(); }
 std::array<double, 4> World::rotor_thrusts() const { return impl_->RotorThrusts(); }
+std::array<double, 4> World::rotor_commands() const { return impl_->RotorCommands(); }
 Eigen::Vector3d World::drag_force() const { return impl_->drag_; }
 double World::ground_effect_thrust() const { return impl_->ground_effect_; }
 const std::vector<Contact>& World::contacts() const { return impl_->contacts_; }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct WorldConfig {
   PadMotionConfig pad_motion;
   std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
   estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
+  /// Given: the vehicle comes out of a hover in air of this velocity [m/s]. Of the start's attitude
+  /// only the yaw counts then, and the rotors have the thrust that balances the wind.
+  std::optional<Eigen::Vector3d> hover_air_W;
   double timestep = 0.002;         ///< [s], in [1e-4, 0.005]
   PlantFactors plant;              ///< how the simulated vehicle differs from its file
   bool ground_effect = false;      ///< of the rotors over the deck and the ground
@@ -57,7 +61,7 @@ struct Contact {
 /// and commands give the same bits.
 class World {
  public:
-  /// Rotors start at hover thrust, the pad on its path at its speed. Throws std::invalid_argument
+  /// Rotors start at the thrust of a hover, the pad on its path at its speed. Throws std::invalid_argument
   /// naming the thing, its value and the allowed range; also when the vehicle starts in contact
   /// with an obstacle or the ground, or ground effect is wanted of rotors without a radius.
   explicit World(const WorldConfig& config);
@@ -98,6 +102,9 @@ class World {
 
   /// Thrust of each rotor now, after its lag [N].
   std::array<double, 4> rotor_thrusts() const;
+
+  /// What the rotors were told, after their lag [N]: a plant's thrusts are others.
+  std::array<double, 4> rotor_commands() const;
 
   /// Drag applied in the step just taken, in W [N].
   Eigen::Vector3d drag_force() const;

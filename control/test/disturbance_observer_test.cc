@@ -322,5 +322,29 @@ TEST(DisturbanceObserver, OptionsOutOfRangeAreNamed) {
   }
 }
 
+TEST(DisturbanceObserver, KnowsAfterAHoverWhatHeldTheVehicle) {
+  const estimation::VehicleModel model = Vehicle();
+  DisturbanceObserver observer(model);
+  // 20 % lighter than the model, leaning by 0.3 rad against wind along x.
+  constexpr double kTilt = 0.3, kMass = 0.8;
+  estimation::VehicleState state;
+  state.t = 3.0;
+  state.q_WB = Eigen::AngleAxisd(-kTilt, Eigen::Vector3d::UnitY());
+  const double thrust = kMass * model.HoverThrust() / std::cos(kTilt);
+  observer.Hover(state, Eigen::Vector4d::Constant(0.25 * thrust));
+
+  const Disturbance& learnt = observer.disturbance();
+  EXPECT_NEAR(learnt.thrust_gain, 1.0 / kMass, 1e-3);
+  const double wind = model.HoverThrust() * std::tan(kTilt);
+  EXPECT_NEAR(learnt.force_W.x(), wind, 1e-3 * wind);
+  EXPECT_NEAR(learnt.force_W.z(), 0.0, 1e-3 * wind);
+  EXPECT_NEAR(observer.steady_force_W().x(), wind, 1e-3 * wind);
+  EXPECT_LT(learnt.moment_B.norm(), 1e-9);
+  // The flight goes on from there: no step is lost and nothing jumps.
+  const Disturbance before = learnt;
+  state.t += kStep;
+  EXPECT_NEAR(observer.Update(state, false).force_W.x(), before.force_W.x(), 1e-3 * wind);
+}
+
 }  // namespace
 }  // namespace touchdown::control

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/equilibrium.h"
+#include "touchdown/evaluation/sliding_mean.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -110,21 +110,6 @@ TEST(Metrics, ThePadIsComparedAsSeenFromTheVehicle) {
   metrics.Fill(&result);
   EXPECT_NEAR(result.estimator->rmse_position_m, 0.1, 1e-12);
   EXPECT_NEAR(result.estimator->nees_position_mean, 1.0, 1e-12);
-}
-
-TEST(EquilibriumAxis, IsUprightInStillAir) {
-  const estimation::VehicleModel model;
-  EXPECT_TRUE(EquilibriumAxis(model, Eigen::Vector3d::Zero()).isApprox(Eigen::Vector3d::UnitZ()));
-}
-
-TEST(EquilibriumAxis, BalancesQuadraticDrag) {
-  estimation::VehicleModel model;
-  model.rotor_drag.setZero();
-  model.body_drag_area = 0.05;
-  const double drag = 0.5 * 1.225 * model.body_drag_area * 100.0;
-  const Eigen::Vector3d axis = EquilibriumAxis(model, {10.0, 0.0, 0.0});
-  // Flying forward at 10 m/s the thrust leans forward by drag over weight.
-  EXPECT_NEAR(axis.x() / axis.z(), drag / model.HoverThrust(), 1e-9);
 }
 
 TEST(SlidingMean, ForgetsAfterOneSecond) {

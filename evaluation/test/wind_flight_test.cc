@@ -9,8 +9,8 @@
 #include "touchdown/evaluation/air.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/equilibrium.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/sliding_mean.h"
 #include "touchdown/evaluation/trial_json.h"
 #include "touchdown/sim/pad_wake.h"
 
@@ -64,6 +64,21 @@ TEST(WindFlight, SteadyWindLeavesNoSteadyError) {
       Fly(Join(kAbovePad, kNorthWind, Join(wind, {"control.disturbance=false"})));
   ASSERT_TRUE(without.following);
   EXPECT_GT(without.following->mean_error_m, 0.3);
+}
+
+// Set free level instead, knowing neither wind nor mass, the vehicle is blown up to 1.5 m off.
+TEST(WindFlight, BeginsWithAHoverWhateverTheWindAndThePlant) {
+  for (const char* own_state : {"true", "estimated"}) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const TrialResult result =
+          Fly({std::string("own_state=") + own_state, "wind.mean=11", "wind.max=15",
+               "plant.mass=0.8", "plant.thrust=1.2", "plant.drag=1.2", "timeout=1"},
+              nullptr, seed);
+      ASSERT_TRUE(result.safety);
+      EXPECT_LE(result.safety->tracking_max_m, 0.3) << own_state << ", seed " << seed;
+      EXPECT_EQ(result.safety->uncertified_steps, 0) << own_state << ", seed " << seed;
+    }
+  }
 }
 
 TEST(WindFlight, OnACircleTooWithTheEstimatedMomentAndForce) {

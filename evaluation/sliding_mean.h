@@ -2,16 +2,11 @@
 #pragma once
 
 #include <deque>
+#include <utility>
 
 #include <Eigen/Core>
 
-#include "touchdown/estimation/vehicle_model.h"
-
 namespace touchdown::evaluation {
-
-/// Unit thrust axis in W at which the vehicle holds its velocity: thrust, gravity and the drag of
-/// the velocity through air `u_W` [m/s] add up to nothing.
-Eigen::Vector3d EquilibriumAxis(const estimation::VehicleModel& model, const Eigen::Vector3d& u_W);
 
 /// Mean over the last second of what is added, one value per call.
 class SlidingMean {

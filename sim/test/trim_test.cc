@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/sim/trim.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/sim/drag.h"
+#include "touchdown/sim/world.h"
+
+namespace touchdown::sim {
+namespace {
+
+TEST(Trim, IsUprightInStillAir) {
+  const estimation::VehicleModel model;
+  const Trim trim = TrimAt(model, Eigen::Vector3d::Zero(), 0.7);
+  EXPECT_NEAR(estimation::Tilt(trim.q_WB), 0.0, 1e-9);
+  EXPECT_NEAR(estimation::Yaw(trim.q_WB), 0.7, 1e-12);
+  EXPECT_DOUBLE_EQ(trim.thrust, model.HoverThrust());
+}
+
+TEST(Trim, BalancesQuadraticDrag) {
+  estimation::VehicleModel model;
+  model.rotor_drag.setZero();
+  model.body_drag_area = 0.05;
+  const double drag = 0.5 * 1.225 * model.body_drag_area * 100.0;
+  const Eigen::Vector3d axis =
+      TrimAt(model, {10.0, 0.0, 0.0}, 0.0).q_WB * Eigen::Vector3d::UnitZ();
+  // Flying forward at 10 m/s the thrust leans forward by drag over weight.
+  EXPECT_NEAR(axis.x() / axis.z(), drag / model.HoverThrust(), 1e-9);
+}
+
+TEST(Trim, BalancesAllForcesAtEveryYaw) {
+  WorldConfig config;
+  config.start.p_WB.z() = 20.0;
+  const estimation::VehicleModel model = World(config).model();
+  const Eigen::Vector3d u_W(9.0, -6.0, 0.5);
+  for (const double yaw : {-3.0, -1.0, 0.0, 0.4, 2.0}) {
+    const Trim trim = TrimAt(model, u_W, yaw);
+    const Eigen::Matrix3d R_WB = trim.q_WB.toRotationMatrix();
+    const Eigen::Vector3d sum = trim.thrust * R_WB.col(2) + DragForce(model, R_WB, u_W) -
+                                model.HoverThrust() * Eigen::Vector3d::UnitZ();
+    EXPECT_LT(sum.norm(), 1e-8 * model.HoverThrust());
+    EXPECT_NEAR(estimation::Yaw(trim.q_WB), yaw, 1e-12);
+  }
+}
+
+// What the trim is for: with the commands of the start, the vehicle stays where it is.
+TEST(Trim, AWorldThatComesOutOfAHoverStaysInIt) {
+  WorldConfig config;
+  config.start.p_WB = {0.0, 0.0, 20.0};
+  config.plant.mass = 0.8;
+  config.plant.thrust = 1.2;
+  config.plant.drag = 1.2;
+  config.hover_air_W = {9.0, 9.0, 1.0};
+  World world(config);
+  const auto commands = world.rotor_commands();
+  for (int step = 0; step < 100; ++step) world.Step(commands, *config.hover_air_W);
+  EXPECT_LT((world.vehicle().p_WB - config.start.p_WB).norm(), 1e-3);
+  EXPECT_GT(estimation::Tilt(world.vehicle().q_WB), 0.1);
+}
+
+}  // namespace
+}  // namespace touchdown::sim
