@@ -40,7 +40,7 @@ double ClosePlannerRate(const Scenario& scenario);
 planning::TermSettings TermSettingsOf(const std::string& name,
                                       const std::map<std::string, double>& keys);
 
-/// The tracking law may tilt a little more than plans do [rad].
+/// How far the tracking law may tilt: farther than plans, which do not count on all of it [rad].
 double TrackingTilt(const Scenario& scenario);
 
 /// Plans stay above this away from the pad [m].

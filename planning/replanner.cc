@@ -232,6 +232,7 @@ HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
   hull.pad = pad;
   hull.deck_half_size = options_.deck_half_size;
   hull.foot_depth = options_.contact_height;
+  hull.start_proven = !result_.from_odometry && next_.proven;
   return hull;
 }
 

@@ -121,7 +121,9 @@ class Tube {
         // What only the room between two balls reaches into is not in the grown hull.
         const double at_start = Distance(cell, start_);
         if (at_start < hull_.hull_radius - kNearer) {
-          (map_.IsOccupied(cell) ? sweep->start.occupied : sweep->start.unknown) = true;
+          const bool occupied = map_.IsOccupied(cell);
+          sweep->start.occupied |= occupied;
+          sweep->start.unknown |= !occupied && !hull_.start_proven;
         }
         sweep->start.narrow |= at_start < hull_.radius() - kNearer;
       }

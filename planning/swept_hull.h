@@ -23,6 +23,8 @@ struct HullSpace {
   double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
   /// Only what is seen to be occupied blocks: of a way that was proven before.
   bool unseen_passes = false;
+  /// The start is on a pair that was proven: the hull has filled what it starts among.
+  bool start_proven = false;
 
   double radius() const { return hull_radius + margin; }
 };
@@ -30,7 +32,7 @@ struct HullSpace {
 /// Cells that are not observed free among which a sweep starts. It moves away from those alone.
 struct StartCells {
   bool occupied = false;  ///< the hull is among some that are seen to be occupied
-  bool unknown = false;   ///< the hull is among some that are neither
+  bool unknown = false;   ///< ... that are neither, and to which no proven pair has led it
   bool narrow = false;    ///< the grown hull is among either
 
   bool leaves() const { return occupied || unknown; }

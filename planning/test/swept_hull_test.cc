@@ -101,6 +101,23 @@ TEST(SweptHull, FromAmongUnseenCellsItMayOnlyLeave) {
       Look(Between(inside, {{1.5, 0, 0}, {0, 0, 0}, {0, 0, 0}}, 2.0), HullOf(space)).proven);
 }
 
+TEST(SweptHull, WhereAProvenPairHasLedItHadBeenSeen) {
+  OccupancyMap map(NoGround());
+  map.MarkRestFree();
+  map.SetState(CellIndex(-3, 0, 0), CellState::kUnknown);
+  const FreeSpace space = SpaceOf(map);
+  HullSpace hull = HullOf(space);
+  hull.start_proven = true;
+  const UniformBspline away = Between({}, {{1.5, 0, 0}, {0, 0, 0}, {0, 0, 0}}, 2.0);
+  const Sweep leaves = Look(away, hull);
+  EXPECT_TRUE(leaves.proven);
+  EXPECT_FALSE(leaves.start.leaves());
+  EXPECT_TRUE(leaves.start.narrow);
+  // A hit is new, whatever was proven.
+  map.SetState(CellIndex(-3, 0, 0), CellState::kOccupied);
+  EXPECT_TRUE(Look(away, hull).start.occupied);
+}
+
 TEST(SweptHull, LeavesOnlyWhatItReachedAlready) {
   Draw draw(3);
   int leaves = 0, refused = 0;
