@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "touchdown/planning/fallback.h"
 #include "touchdown/planning/replanner.h"
 #include "touchdown/planning/test/replanner_fixtures.h"
 
@@ -191,6 +192,30 @@ TEST(ReplannerFallback, BelowARoofAPartOfTheClimbIsFlownOnce) {
     EXPECT_TRUE(result.certificate.stops_in_observed_space);
   }
   EXPECT_NEAR(replanner.Reference(4.0).p_WB.z(), start.z() + 0.8, 1e-6);
+}
+
+// The clearance of plans is for plans: the hull stops where they would not pass.
+TEST(ReplannerFallback, AStopThatIsProvenNeedsNoMore) {
+  OccupancyMap map = ObservedMap(0.5);
+  for (double x = -1.0; x < 3.0; x += 0.1) {
+    for (double z = 0.05; z < 3.0; z += 0.1) {
+      for (const double y : {-0.45, 0.45}) map.SetOccupied({x, y, z});
+    }
+  }
+  FreeSpace space;
+  space.map = &map;
+  HullSpace hull;
+  hull.space = &space;
+  hull.hull_radius = 0.324;
+  hull.margin = 0.04;
+  const Limits limits;
+  ReplanResult result;
+  const SplineState start{{0.0, 0.0, 1.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+  ASSERT_TRUE(Fallback(limits).Rests(0.0, start, {0.0, 0.0, 0.0}, hull, &result));
+  EXPECT_FALSE(result.certificate.clear);
+  EXPECT_TRUE(result.certificate.stops_in_observed_space);
+  hull.margin = 0.12;
+  EXPECT_FALSE(Fallback(limits).Rests(0.0, start, {0.0, 0.0, 0.0}, hull, &result));
 }
 
 TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
