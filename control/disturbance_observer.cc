@@ -25,7 +25,8 @@ constexpr double kGainTime = 1.0;                         // [s]
 constexpr double kLeastGain = 0.5, kGreatestGain = 2.0;  // mass and thrust off by a third, either way
 constexpr double kLeastLift = 0.3;                        // of the weight: with less the factor is not seen
 
-constexpr double kHoverTime = 20.0, kHoverStep = 0.002;  // five steady times, and more [s]
+constexpr double kHoverTimes = 10.0;  // so many steady times are a long hover ...
+constexpr double kHoverStep = 0.002;  // ... in such steps [s]
 
 constexpr double kLongestStep = 0.1;             // a longer gap restarts the observers [s]
 constexpr double kGreatestAcceleration = 100.0;  // quicker changes are jumps of an estimate [m/s^2]
@@ -105,13 +106,15 @@ void DisturbanceObserver::Command(const Eigen::Vector4d& thrusts) noexcept {
 
 void DisturbanceObserver::Hover(const estimation::VehicleState& state,
                                 const Eigen::Vector4d& thrusts) noexcept {
-  thrusts_ = thrusts;
   Command(thrusts);
+  thrusts_ = commanded_;
   estimation::VehicleState hover = state;
-  for (int left = std::lround(kHoverTime / kHoverStep); left >= 0; --left) {
+  for (long left = std::lround(kHoverTimes * options_.steady_time / kHoverStep); left >= 0; --left) {
     hover.t = state.t - left * kHoverStep;
     Update(hover, false);
   }
+  // Thrusts that are told alike tell nothing of the moment.
+  disturbance_.moment_B.setZero();
 }
 
 void DisturbanceObserver::Predict(double dt) noexcept {

@@ -41,8 +41,9 @@ class DisturbanceObserver {
   /// vehicle cannot give must not be taken for a disturbance.
   void Command(const Eigen::Vector4d& thrusts) noexcept;
 
-  /// As after a long hover that ends now, at state.t: what keeps the vehicle at the state's velocity
-  /// and attitude with these thrusts [N] is learned. Does not allocate.
+  /// As after a long hover that ends now, at state.t: force and factor that keep the vehicle at the
+  /// state's velocity and attitude with these thrusts [N] are learned. Before the first Update. Does not
+  /// allocate.
   void Hover(const estimation::VehicleState& state, const Eigen::Vector4d& thrusts) noexcept;
 
   const Disturbance& disturbance() const { return disturbance_; }

@@ -21,6 +21,10 @@ RotorLead::RotorLead(const estimation::VehicleModel& model)
   commanded_ = given_;
 }
 
+void RotorLead::Hover(const Eigen::Vector4d& thrusts) noexcept {
+  given_ = commanded_ = thrusts;
+}
+
 Eigen::Vector4d RotorLead::Command(const Eigen::Vector4d& thrusts, double t) noexcept {
   if (started_ && lag_ > 0.0) given_ += (1.0 - std::exp(-(t - t_) / lag_)) * (commanded_ - given_);
   started_ = true;

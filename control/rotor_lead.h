@@ -13,8 +13,11 @@ namespace touchdown::control {
 /// That lag is what costs the attitude its damping. Not to be shared between threads.
 class RotorLead {
  public:
-  /// Rotors start at hover thrust.
+  /// Rotors start at the model's hover thrust.
   explicit RotorLead(const estimation::VehicleModel& model);
+
+  /// The rotors have been told `thrusts` [N] for long. Before the first Command.
+  void Hover(const Eigen::Vector4d& thrusts) noexcept;
 
   /// The command with which the rotors are told from time t [s] on to give `thrusts` [N]: within their
   /// limits (Mixer). Once per control step, in time order. Does not allocate.

@@ -237,8 +237,8 @@ class Trial {
     }
     if (in_flight && sample.foot_on_pad) {
       // Tilt is measured from the attitude that steady flight through the air needs.
-      sample.equilibrium_axis =
-          sim::TrimAt(world_.plant(), through_air_.Mean(), 0.0).q_WB * Eigen::Vector3d::UnitZ();
+      const auto trim = sim::TrimAt(world_.plant(), through_air_.Mean(), 0.0);
+      if (trim) sample.equilibrium_axis = trim->q_WB * Eigen::Vector3d::UnitZ();
     }
     judge_.Observe(sample);
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");

@@ -56,7 +56,7 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
   }
   if (!arguments.against.empty()) ReadHostileTimes(arguments.options, arguments.against);
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
-  if (!arguments.html.empty()) CheckOutputPath("--html", arguments.html);
+  if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
 }
 
 int Show(const HostileArguments& arguments, const Registries& registries) {

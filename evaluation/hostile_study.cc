@@ -11,7 +11,6 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 #include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/bad_input.h"
@@ -19,6 +18,7 @@
 #include "touchdown/evaluation/hostile_family.h"
 #include "touchdown/evaluation/hostile_world.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/sim/random_stream.h"
@@ -38,24 +38,17 @@ bool Sets(const HostileOptions& options, const std::string& key) {
                      [&](const std::string& text) { return text.rfind(key + "=", 0) == 0; });
 }
 
+// Single keys alone: what is fixed has to be known by its name. Seeds and obstacles are the study's.
 void ApplySet(const HostileOptions& options, Scenario* scenario) {
   for (const std::string& text : options.set) {
-    const std::size_t equals = text.find('=');
-    const auto key =
-        equals == std::string::npos ? std::nullopt : FindScenarioKey(text.substr(0, equals));
-    if (!key || key->name == "seed") {
-      throw BadInput(
-          fmt::format("--set {}: write KEY=VALUE with a key of docs/scenario.md.", text));
+    ApplyOverride(text, scenario);  // says what is wrong with the name or the value
+    const std::string name = text.substr(0, text.find('='));
+    if (name == "seed" || name.rfind("obstacles", 0) == 0) {
+      throw BadInput(fmt::format("--set {}: this study draws it for each flight.", text));
     }
-    Where where;
-    where.file = "--set " + text;
-    YAML::Node value;
-    try {
-      value = YAML::Load(text.substr(equals + 1));
-    } catch (const YAML::Exception& error) {
-      throw BadInput(fmt::format("{}: {}.", where.file, error.msg));
+    if (!FindScenarioKey(name)) {
+      throw BadInput(fmt::format("--set {}: {} is a group of keys; set them one by one.", text, name));
     }
-    key->set(*scenario, value, where);
   }
 }
 

@@ -63,4 +63,9 @@ void CheckPicturePath(const std::string& option, const std::string& path) {
   }
 }
 
+void CheckPagePath(const std::string& option, const std::string& path) {
+  CheckOutputPath(option, path);
+  if (fs::path(path).extension() != ".html") Refuse(option, path, "the name must end in .html");
+}
+
 }  // namespace touchdown::evaluation

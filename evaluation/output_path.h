@@ -16,4 +16,7 @@ void CheckRecordPath(const std::string& option, const std::string& path);
 /// The same for a picture, whose name says what it is: .png, .pdf or .svg. @throws BadInput
 void CheckPicturePath(const std::string& option, const std::string& path);
 
+/// The same for a page, whose name ends in .html. @throws BadInput
+void CheckPagePath(const std::string& option, const std::string& path);
+
 }  // namespace touchdown::evaluation

@@ -130,7 +130,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   parameters_.turn_time = 1.0 / PlannerRate(scenario) + latency + kAttitudeLag;
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
   if (scenario.controller == ControllerKind::kGeometric) {
-    lead_.emplace(model);
+    lead_.emplace(model).Hover(start_thrusts);
     if (scenario.control.disturbance) observer_.emplace(model).Hover(start, start_thrusts);
   }
   planner_->Prepare(map);

@@ -92,7 +92,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   problem.vehicle.thrust_max = model.MaxThrust() / model.mass_kg;
   problem.vehicle.thrust_min = 4.0 * model.rotor_thrust_min / model.mass_kg;
   problem.vehicle.tilt_max = scenario.limits.tilt_deg * kRadPerDeg;
-  problem.vehicle.tracking_tilt_max = TiltBeyondPlans(scenario, kTiltReserve_deg);
+  problem.vehicle.stop_tilt_max = TiltBeyondPlans(scenario, kTiltReserve_deg);
   options.arrival = scenario.solver.arrival == ArrivalKind::kFree ? planning::ArrivalMode::kFree
                                                                   : planning::ArrivalMode::kFixed;
   options.limits = LimitsOf(scenario);

@@ -103,15 +103,18 @@ std::vector<std::string> BackendNames(const Registries& registries) {
 
 namespace {
 
-// CLI11 answers an unknown first word with "a subcommand is required", without the word.
-void CheckCommand(const CLI::App& app, int argc, const char* const* argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+// CLI11 answers an unknown word with "a subcommand is required", without the word.
+void CheckCommand(const CLI::App& app, const char* const* word, const char* const* end) {
+  if (word == end || (*word)[0] == '-') return;
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), argv[1]) == names.end()) {
-    throw BadInput(
-        fmt::format("unknown command {}; the commands are {}.", argv[1], Enumerate(names)));
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == *word) return CheckCommand(*command, word + 1, end);
+    names.push_back(command->get_name());
   }
+  if (names.empty()) return;
+  const std::string of = app.get_parent() == nullptr ? "" : " of " + app.get_name();
+  throw BadInput(
+      fmt::format("unknown command {}{}; the commands are {}.", *word, of, Enumerate(names)));
 }
 
 }  // namespace
@@ -143,7 +146,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddCheckTermCommand(Command(&app), registries, &run);
   AddListCommand(Command(&app), registries, &run);
   try {
-    CheckCommand(app, argc, argv);
+    CheckCommand(app, argv + std::min(1, argc), argv + argc);
     app.parse(argc, argv);
     return run();
   } catch (const CLI::Success& help) {

@@ -47,7 +47,7 @@ void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margi
   if (!certificate.stops_in_observed_space) ++figures_.uncertified_steps;
   const planning::StartCells& start = certificate.start_cells;
   const bool escapes = start.leaves() || plan.status == planning::ReplanStatus::kEscaping;
-  const bool narrow = start.narrow || certificate.escaping;
+  const bool narrow = start.narrow || !certificate.clear;
   if (escapes) ++figures_.escaping_steps;
   if (start.occupied) ++figures_.escaping_hit_steps;
   if (start.unknown) ++figures_.escaping_unknown_steps;

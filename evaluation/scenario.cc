@@ -206,6 +206,13 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
 
 }  // namespace
 
+void ApplyOverride(const std::string& text, Scenario* scenario) {
+  ScenarioSource source;
+  source.scenario = *scenario;
+  ApplyOverride(text, &source);
+  *scenario = std::move(source.scenario);
+}
+
 Scenario::Scenario() = default;
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,

@@ -252,6 +252,11 @@ Scenario LoadScenario(const std::string& path, const std::vector<std::string>& o
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& file,
                        const std::vector<std::string>& overrides, const Registries& registries);
 
+/// One override ("pad.speed=1.2") of a scenario that is there already. Checks the value alone,
+/// and suits no other key to it.
+/// @throws BadInput.
+void ApplyOverride(const std::string& text, Scenario* scenario);
+
 /// The effective scenario as YAML that LoadScenario reads back to the same values.
 std::string DumpScenario(const Scenario& scenario);
 

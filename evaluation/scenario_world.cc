@@ -119,7 +119,7 @@ sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw) {
   config.ground_effect = scenario.air.ground_effect;
   config.start.p_WB = draw.p_WB;
   config.start.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
-  // The flight begins with a hover, in the air that it meets in its first step.
+  // The flight begins with a hover, in the wind of its first step; wake and ground effect are left out.
   config.hover_air_W =
       sim::Wind(WindOf(scenario, draw), draw.seed).Step(config.start, config.timestep);
   return config;

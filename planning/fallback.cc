@@ -78,14 +78,15 @@ bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, con
 }
 
 bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,
-                     const HullSpace& hull, ReplanResult* result) {
+                     const HullSpace& hull, Room room, ReplanResult* result) {
   StageTimer timer(&result->times.certificate, StageTimer::kWhileLogged);
   MakeRestTrajectory(start, t0, shift, limits_, &pair_.curve);
   const PairProof proof = ProveStop(t0, hull, &pair_);
   Certificate certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
   Enter(proof, &certificate);
-  // What is proven is safe; the clearance of plans is for plans.
-  if (!proof.proven || !certificate.limits_kept) return false;
+  const bool enough = room == Room::kOfPlans ? certificate.passed()
+                                             : proof.proven && certificate.limits_kept;
+  if (!enough) return false;
   result->pair() = pair_;
   result->certificate = certificate;
   return true;
@@ -103,7 +104,8 @@ bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hul
                        ReplanResult* result) {
   CellIndex way_out = hull.space->map->CellOf(start.p);
   return hull.space->Blocked(start.p) && GridSearch::NearestFree(*hull.space, &way_out) &&
-         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull, result);
+         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull,
+               Room::kOfPlans, result);
 }
 
 void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,

@@ -19,9 +19,14 @@ class Fallback {
   bool GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
               ReplanResult* result);
 
+  /// Around a stop.
+  enum class Room {
+    kOfPlans,  ///< the clearance of plans is kept, or what is within it is only left
+    kOfHull,   ///< the pair is proven, and no more
+  };
   /// From `start` at t0 to rest, `shift` away from where braking ends.
   bool Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,
-             const HullSpace& hull, ReplanResult* result);
+             const HullSpace& hull, Room room, ReplanResult* result);
 
   /// From a landing that misses to rest, `climb` higher [m], where nothing is proven.
   void RisesUnproven(double t0, const SplineState& start, double climb, const HullSpace& hull,

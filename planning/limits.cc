@@ -24,7 +24,7 @@ Limits LimitsUnder(const Limits& limits, const VehicleFacts& vehicle,
   };
   const double least = std::min(kLeastAcceleration, limits.acceleration);
   const double reserve =
-      std::max(least, left_by(std::max(vehicle.tilt_max, vehicle.tracking_tilt_max)));
+      std::max(least, left_by(std::max(vehicle.tilt_max, vehicle.stop_tilt_max)));
   const double left =
       std::max(left_by(vehicle.tilt_max), std::min(kShareOfReserve * limits.acceleration, reserve));
   Limits under = limits;

@@ -37,8 +37,7 @@ struct VehicleFacts {
   double thrust_min = 2.0;   ///< least thrust over mass [m/s^2]
   double thrust_max = 23.0;  ///< greatest thrust over mass [m/s^2]
   double tilt_max = 0.611;   ///< of the thrust axis from the vertical [rad]
-  double tracking_tilt_max =
-      0.785;  ///< that stops may count on of the tracking law's tilt [rad]
+  double stop_tilt_max = 0.785;  ///< that stops in wind may count on [rad]
   double camera_half_angle = 0.785;  ///< of the downward camera's cone [rad]
 };
 

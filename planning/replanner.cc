@@ -58,6 +58,7 @@ class Replanner::Impl {
   void Commit(double t0) {
     current_ = next_;
     next_ = result_.pair();
+    from_unknown_ = result_.certificate.start_cells.unknown;
     takes_over_ = t0;
     committed_ = true;
   }
@@ -86,6 +87,7 @@ class Replanner::Impl {
   FlightPair current_, next_;
   double takes_over_ = 0.0;  // next_ does [s]
   bool committed_ = false;   // in this step
+  bool from_unknown_ = true;  // next_ begins among cells that were never proven; the first hover may
   ReplanLog* log_ = nullptr;
 
  private:
@@ -165,6 +167,7 @@ ReplannerState Replanner::Impl::State() const {
 void Replanner::Impl::Restore(const ReplannerState& state) {
   current_ = state.current;
   next_ = state.next;
+  from_unknown_ = true;
   takes_over_ = next_.curve.t0();
   planned_before_ = state.planned;
   around_unseen_ = state.around_unseen;
@@ -232,7 +235,7 @@ HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
   hull.pad = pad;
   hull.deck_half_size = options_.deck_half_size;
   hull.foot_depth = options_.contact_height;
-  hull.start_proven = !result_.from_odometry && next_.proven;
+  hull.start_proven = !result_.from_odometry && next_.proven && !from_unknown_;
   return hull;
 }
 
@@ -305,12 +308,21 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
   if (result_.from_odometry || next_.Lands()) {
     for (const double climb : {0.0, kClimbFromMiss}) {
-      if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, &result_)) continue;
+      if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, Fallback::Room::kOfPlans, &result_)) {
+        continue;
+      }
       result_.status = ReplanStatus::kBraking;
       return Commit(t0);
     }
   }
   if (landing == Fallback::Landing::kMisses) {
+    for (const double climb : {kClimbFromMiss, 0.0}) {
+      if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, Fallback::Room::kOfHull, &result_)) {
+        continue;
+      }
+      result_.status = ReplanStatus::kBraking;
+      return Commit(t0);
+    }
     fallback_.RisesUnproven(t0, start, kClimbFromMiss, hull, &result_);
     result_.status = ReplanStatus::kBraking;
     return Commit(t0);
@@ -332,7 +344,10 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
     climbing_ = -1.0;
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
-      if (!fallback_.Rests(input.t_start, start, {0.0, 0.0, rise}, hull, &result_)) continue;
+      if (!fallback_.Rests(input.t_start, start, {0.0, 0.0, rise}, hull, Fallback::Room::kOfPlans,
+                           &result_)) {
+        continue;
+      }
       // That none came out is no reason to stop trying.
       if (rise > 0.0 || climb == 0.0) climbing_ = climb;
       result_.status = rise > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking;

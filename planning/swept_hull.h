@@ -23,7 +23,8 @@ struct HullSpace {
   double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
   /// Only what is seen to be occupied blocks: of a way that was proven before.
   bool unseen_passes = false;
-  /// The start is on a pair that was proven: the hull has filled what it starts among.
+  /// The start is on a pair that was proven: what the hull starts among was observed free then, or the
+  /// deck's.
   bool start_proven = false;
 
   double radius() const { return hull_radius + margin; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rotor drag depends on the attitude, so the trim is a fixed point; the map contracts by the ratio of
-// rotor drag to weight, a few per cent at the speeds flown.
+// rotor drag to weight, a few per cent at the speeds flown. Where it does not, there is no trim to start from.
 #include "touchdown/sim/trim.h"
 
 #include <cmath>
@@ -10,7 +10,8 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr int kIterations = 8;
+constexpr int kIterations = 12;
+constexpr double kConverged = 1e-6;
 
 Eigen::Matrix3d Attitude(const Eigen::Vector3d& z_B, double yaw) {
   const Eigen::Vector3d x_B =
@@ -22,13 +23,20 @@ Eigen::Matrix3d Attitude(const Eigen::Vector3d& z_B, double yaw) {
 
 }  // namespace
 
-Trim TrimAt(const estimation::VehicleModel& model, const Eigen::Vector3d& u_W, double yaw) {
-  Eigen::Vector3d thrust_W = model.HoverThrust() * Eigen::Vector3d::UnitZ();
+std::optional<Trim> TrimAt(const estimation::VehicleModel& model, const Eigen::Vector3d& u_W,
+                           double yaw) {
+  const Eigen::Vector3d lift_W = model.HoverThrust() * Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d thrust_W = lift_W;
+  double change = 0.0;
   for (int i = 0; i < kIterations; ++i) {
-    const Eigen::Matrix3d R_WB = Attitude(thrust_W.normalized(), yaw);
-    thrust_W = model.HoverThrust() * Eigen::Vector3d::UnitZ() - DragForce(model, R_WB, u_W);
+    const Eigen::Vector3d before = thrust_W;
+    thrust_W = lift_W - DragForce(model, Attitude(before.normalized(), yaw), u_W);
+    if (!(thrust_W.z() > 0.0)) return std::nullopt;
+    change = (thrust_W - before).norm();
   }
-  return {Eigen::Quaterniond(Attitude(thrust_W.normalized(), yaw)), thrust_W.norm()};
+  const double thrust = thrust_W.norm();
+  if (change > kConverged * thrust || thrust > model.MaxThrust()) return std::nullopt;
+  return Trim{Eigen::Quaterniond(Attitude(thrust_W.normalized(), yaw)), thrust};
 }
 
 }  // namespace touchdown::sim

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -15,7 +17,9 @@ struct Trim {
 };
 
 /// Thrust, gravity and the drag of the velocity through air `u_W` [m/s] add up to nothing; B's x
-/// axis points to `yaw` [rad], seen from above. Does not allocate.
-Trim TrimAt(const estimation::VehicleModel& model, const Eigen::Vector3d& u_W, double yaw);
+/// axis points to `yaw` [rad], seen from above. Nothing where the rotors cannot do that. Does not
+/// allocate.
+std::optional<Trim> TrimAt(const estimation::VehicleModel& model, const Eigen::Vector3d& u_W,
+                           double yaw);
 
 }  // namespace touchdown::sim

@@ -148,10 +148,13 @@ World::Impl::Impl(const WorldConfig& config) : config_(config), motion_(config.p
   }
   double thrust = plant_.HoverThrust();
   if (config_.hover_air_W) {
-    const Trim trim =
-        TrimAt(plant_, -*config_.hover_air_W, estimation::Yaw(config_.start.q_WB.normalized()));
-    config_.start.q_WB = trim.q_WB;
-    thrust = std::min(trim.thrust, plant_.MaxThrust());
+    CheckWithin("air of the start [m/s]", config_.hover_air_W->norm(), 0.0, kMaxWind);
+    const auto trim = TrimAt(plant_, config_.start.v_WB - *config_.hover_air_W,
+                             estimation::Yaw(config_.start.q_WB));
+    if (trim) {
+      config_.start.q_WB = trim->q_WB;
+      thrust = trim->thrust;
+    }
   }
   CheckStart(config_, model_);
   mujoco_ = CompileMjcf(WorldMjcf(config_), config_.vehicle_mjcf);

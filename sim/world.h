@@ -28,7 +28,8 @@ struct WorldConfig {
   std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
   estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
   /// Given: the vehicle comes out of a hover in air of this velocity [m/s]. Of the start's attitude
-  /// only the yaw counts then, and the rotors have the thrust that balances the wind.
+  /// only the yaw counts then, and the rotors have the thrust that balances the wind. Where they
+  /// cannot balance it, the start is as it is without.
   std::optional<Eigen::Vector3d> hover_air_W;
   double timestep = 0.002;         ///< [s], in [1e-4, 0.005]
   PlantFactors plant;              ///< how the simulated vehicle differs from its file

@@ -171,7 +171,8 @@ TEST(HostileDraw, WhatIsSetIsTheSameInEveryFlightAndNeverBeyond) {
     EXPECT_THAT(flight.trial.Replay(),
                 HasSubstr("--set depth.drop=0.9 --set planning.rate=20 --show"));
   }
-  for (const char* wrong : {"depth.drp=0.9", "depth.drop", "seed=3", "depth.drop=2"}) {
+  for (const char* wrong : {"depth.drp=0.9", "depth.drop", "seed=3", "depth.drop=2",
+                            "obstacles.boxes=[]", "obstacles={boxes: []}", "depth={drop: 0.9}"}) {
     options.set = {wrong};
     EXPECT_THROW(DrawHostileFlight(options, 0, kRegistries), BadInput) << wrong;
   }

@@ -52,6 +52,20 @@ Ran Call(std::vector<const char*> arguments) {
   return ran;
 }
 
+TEST(Program, UnknownCommandsAreNamedAtEveryLevel) {
+  EXPECT_THAT(Call({"lnad"}).err, HasSubstr("unknown command lnad; the commands are land,"));
+  const Ran ran = Call({"study", "hostel"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, AllOf(HasSubstr("unknown command hostel of study; the commands are "),
+                             HasSubstr("hostile")));
+}
+
+TEST(Program, APageReplacesNoOtherFile) {
+  const Ran ran = Call({"study", "hostile", "--flights", "1", "--html", "hostile.db"});
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--html hostile.db: the name must end in .html."));
+}
+
 TEST(Program, AFaultInFlightIsNoBadInput) {
   const Ran ran = Call({"land", "open", "--backend", "broken"});
   EXPECT_EQ(ran.status, 1);

@@ -52,7 +52,7 @@ TEST(LimitsUnder, TiltIsSharedWithTheWind) {
 // Stops count on what the tracking law's own tilt leaves, and on no more than plans may use in still air.
 TEST(LimitsUnder, StopsAreCountedWithWhatTheTrackingLawHasLeft) {
   VehicleFacts facts = Facts();
-  facts.tracking_tilt_max = facts.tilt_max + 10.0 * std::acos(-1.0) / 180.0;
+  facts.stop_tilt_max = facts.tilt_max + 10.0 * std::acos(-1.0) / 180.0;
   const auto stopping = [&](double pull) {
     const Limits under = LimitsUnder({3.0, 6.0}, facts, {pull, 0.0, 0.0});
     return under.braking_factor * under.acceleration;
@@ -72,7 +72,7 @@ TEST(LimitsUnder, ThrustIsSharedToo) {
 // Before, a third of the limit was always left: more than thrust and tilt had.
 TEST(LimitsUnder, PlansTakeNoMoreThanTheTrackingLawHas) {
   VehicleFacts facts = Facts();
-  facts.tracking_tilt_max = facts.tilt_max + 10.0 * std::acos(-1.0) / 180.0;
+  facts.stop_tilt_max = facts.tilt_max + 10.0 * std::acos(-1.0) / 180.0;
   EXPECT_NEAR(LimitsUnder({3.0, 6.0}, facts, {6.0, 0.0, 0.0}).acceleration, 2.0, 1e-12);
   EXPECT_NEAR(LimitsUnder({3.0, 6.0}, facts, {8.5, 0.0, 0.0}).acceleration, 9.81 - 8.5, 0.01);
 }

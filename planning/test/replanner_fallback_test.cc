@@ -211,11 +211,15 @@ TEST(ReplannerFallback, AStopThatIsProvenNeedsNoMore) {
   const Limits limits;
   ReplanResult result;
   const SplineState start{{0.0, 0.0, 1.5}, {1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-  ASSERT_TRUE(Fallback(limits).Rests(0.0, start, {0.0, 0.0, 0.0}, hull, &result));
+  const auto rests = [&](Fallback::Room room) {
+    return Fallback(limits).Rests(0.0, start, {0.0, 0.0, 0.0}, hull, room, &result);
+  };
+  EXPECT_FALSE(rests(Fallback::Room::kOfPlans));
+  ASSERT_TRUE(rests(Fallback::Room::kOfHull));
   EXPECT_FALSE(result.certificate.clear);
   EXPECT_TRUE(result.certificate.stops_in_observed_space);
   hull.margin = 0.12;
-  EXPECT_FALSE(Fallback(limits).Rests(0.0, start, {0.0, 0.0, 0.0}, hull, &result));
+  EXPECT_FALSE(rests(Fallback::Room::kOfHull));
 }
 
 TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {

@@ -101,7 +101,7 @@ TEST(SweptHull, FromAmongUnseenCellsItMayOnlyLeave) {
       Look(Between(inside, {{1.5, 0, 0}, {0, 0, 0}, {0, 0, 0}}, 2.0), HullOf(space)).proven);
 }
 
-TEST(SweptHull, WhereAProvenPairHasLedItHadBeenSeen) {
+TEST(SweptHull, WhereAProvenPairHasLedIsNoEscape) {
   OccupancyMap map(NoGround());
   map.MarkRestFree();
   map.SetState(CellIndex(-3, 0, 0), CellState::kUnknown);
