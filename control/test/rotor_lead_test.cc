@@ -31,6 +31,16 @@ TEST(RotorLead, RotorsOfTheModelFollowAsIfTheirLagWereAThird) {
   }
 }
 
+TEST(RotorLead, AfterAHoverWhatHeldItGoesOn) {
+  const estimation::VehicleModel model = TestVehicle();
+  RotorLead lead(model);
+  const Eigen::Vector4d held = Eigen::Vector4d::Constant(0.17 * model.HoverThrust());
+  lead.Hover(held);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_LT((lead.Command(held, 3.0 + i * kStep) - held).norm(), 1e-12) << i;
+  }
+}
+
 TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   const estimation::VehicleModel model = TestVehicle();
   RotorLead lead(model);

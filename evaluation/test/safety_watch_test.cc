@@ -10,6 +10,7 @@ planning::ReplanResult Proven() {
   planning::ReplanResult plan;
   plan.status = planning::ReplanStatus::kPlanned;
   plan.certificate.stops_in_observed_space = true;
+  plan.certificate.clear = true;
   return plan;
 }
 
@@ -29,11 +30,14 @@ TEST(SafetyWatch, CountsWhatAPairStartsAmong) {
   plan = Proven();
   plan.status = planning::ReplanStatus::kEscaping;  // out of a zone, among neither
   watch.Step(plan, {});
+  plan = Proven();
+  plan.certificate.clear = false;  // nearer to an obstacle than plans are
+  watch.Step(plan, {});
   const SafetyFigures& figures = watch.figures();
   EXPECT_EQ(figures.escaping_steps, 4);
   EXPECT_EQ(figures.escaping_hit_steps, 2);
   EXPECT_EQ(figures.escaping_unknown_steps, 2);
-  EXPECT_EQ(figures.narrow_steps, 1);
+  EXPECT_EQ(figures.narrow_steps, 2);
   EXPECT_EQ(figures.uncertified_steps, 0);
 }
 

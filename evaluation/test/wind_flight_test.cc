@@ -9,6 +9,7 @@
 #include "touchdown/evaluation/air.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/sliding_mean.h"
 #include "touchdown/evaluation/trial_json.h"
@@ -78,6 +79,36 @@ TEST(WindFlight, BeginsWithAHoverWhateverTheWindAndThePlant) {
       EXPECT_LE(result.safety->tracking_max_m, 0.3) << own_state << ", seed " << seed;
       EXPECT_EQ(result.safety->uncertified_steps, 0) << own_state << ", seed " << seed;
     }
+  }
+}
+
+TEST(WindFlight, InSteadyWindTheHoverGoesOn) {
+  const TrialResult result =
+      Fly({"wind.mean=11", "plant.mass=0.8", "plant.thrust=1.2", "plant.drag=1.2", "timeout=1"});
+  ASSERT_TRUE(result.safety);
+  EXPECT_LE(result.safety->tracking_max_m, 0.03);
+}
+
+TEST(WindFlight, TheLawLeansFartherThanStopsCountOn) {
+  const Scenario scenario = Open({"limits.tilt_deg=35"});
+  constexpr double kDeg = 3.14159265358979323846 / 180.0;
+  EXPECT_NEAR(TrackingTilt(scenario), 55.0 * kDeg, 1e-12);
+  const planning::ReplannerOptions options =
+      PlannerOptions(scenario, estimation::VehicleModel{}, StandardRegistries().terms);
+  EXPECT_NEAR(options.problem.vehicle.stop_tilt_max, 45.0 * kDeg, 1e-12);
+}
+
+// What the farther lean is for: the vehicle is as light and the gusts are as strong as is promised.
+TEST(WindFlight, GustsDoNotBlowALightVehicleOffItsReference) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const TrialResult result =
+        RunTrial(LoadScenario(FindScenario("straight_turn"),
+                              {"wind.mean=11", "wind.max=15", "plant.mass=0.8", "plant.thrust=0.9",
+                               "plant.drag=1.2", "timeout=10"},
+                              StandardRegistries()),
+                 seed, StandardRegistries());
+    ASSERT_TRUE(result.safety);
+    EXPECT_LE(result.safety->tracking_max_m, 0.3) << seed;
   }
 }
 

@@ -45,13 +45,13 @@ TEST(Trim, BalancesAllForcesAtEveryYaw) {
 }
 
 TEST(Trim, IsNothingWhereTheRotorsCannotHoldTheVehicle) {
-  estimation::VehicleModel model;
+  WorldConfig config;
+  config.start.p_WB = {0.0, 0.0, 20.0};
+  estimation::VehicleModel model = World(config).model();
   EXPECT_FALSE(TrimAt(model, {0.0, 0.0, -90.0}, 0.0)) << "air that lifts it away";
   EXPECT_FALSE(TrimAt(model, {90.0, 0.0, 0.0}, 0.0)) << "more drag than thrust";
   model.rotor_drag << 10.0, 10.0, 0.0;
   EXPECT_FALSE(TrimAt(model, {15.0, 0.0, 0.0}, 0.0)) << "no fixed point is near";
-  WorldConfig config;
-  config.start.p_WB = {0.0, 0.0, 20.0};
   config.hover_air_W = {90.0, 0.0, 0.0};
   EXPECT_LT(estimation::Tilt(World(config).vehicle().q_WB), 1e-9);
 }
