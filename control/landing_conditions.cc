@@ -25,7 +25,8 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   // pad_sigma, contact_sigma, tag_age and plan_failed_for may be infinite: never seen, never planned.
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
                       std::isfinite(in.horizontal_speed) && std::isfinite(in.sink_rate) &&
-                      std::isfinite(in.foot_force) && !std::isnan(in.pad_sigma) &&
+                      std::isfinite(in.foot_force) && std::isfinite(in.lean) &&
+                      !std::isnan(in.pad_sigma) &&
                       !std::isnan(in.contact_sigma) && !std::isnan(in.tag_age) &&
                       !std::isnan(in.plan_failed_for) && !std::isnan(in.arrival_in);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
@@ -36,6 +37,7 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   // A bridge is what is foretold in W, and dead reckoning leaves W.
   const bool bridged = in.own_fresh && CanBridge(s, in, p);
   now.gate_open = now.numbers_valid && own_good && in.pad_available && (seen || bridged);
+  now.may_land = now.gate_open && in.lean <= p.lean_max;
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);

@@ -15,6 +15,7 @@ struct Conditions {
   bool numbers_valid;
   bool pad_good;   ///< the pad can be planned to
   bool gate_open;  ///< the pad is known well enough to descend below the gate height
+  bool may_land;   ///< the gate is open, and in the wind felt now the feet would touch first
   bool in_corridor;
   bool in_cone;   ///< of a planned landing: wider, and it opens upwards
   bool touching;  ///< the deck, with some force

@@ -76,7 +76,7 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
                   2.0 * p.height_acceleration * std::max(0.0, s.foot_height - p.gate_height));
     rate_max = std::min(std::max(p.fast_rate, p.slow_rate), rate_max);
     target = -p.press_depth;
-    if (!s.committed && !now.gate_open) {
+    if (!s.committed && !now.may_land) {
       target = s.foot_height > p.gate_height ? p.gate_height : rest;
       if (s.foot_height <= p.gate_height + 0.05) hold = DescentHold::kGate;
     }
@@ -122,7 +122,7 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
   const double sinks = std::max(0.0, in.sink_rate);
   const double turn = sinks * (p.turn_time + 0.5 * sinks / p.turn_acceleration);
   const bool low = in.height < p.gate_height + turn && now.in_cone;
-  s.waits_above = s.waits_above ? !now.gate_open : (due || low) && !now.gate_open;
+  s.waits_above = !now.may_land && (s.waits_above || due || low);
 }
 
 Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Conditions& now) {

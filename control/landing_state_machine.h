@@ -7,7 +7,7 @@
 //   hovering       tracking        align_timeout      pad converged, aligning took too long
 //   tracking       landing         above_pad          descent vertical, near the pad, slow over it
 //   tracking       landing         arriving           descent planned, the plan's contact is near,
-//                                                     gate open, in the cone over the pad
+//                                                     gate open, in the cone over the pad, no gust
 //   tracking       hold            pad_lost           no converged pad for over pad_timeout
 //   tracking       hold            plan_failed        no plan for over plan_timeout
 //   tracking       hold            own_state_lost     own state not usable for over own_timeout
@@ -52,6 +52,9 @@
 // bridge_sigma. Without sightings neither improves, so a descent that pauses, or that lost the tags
 // too high up, closes the gate; and a committed descent is given up where the bridge has ended
 // without contact.
+//
+// Who leans farther than lean_max in a gust waits for a lull as behind a closed gate: the hull would touch
+// before the feet do. A landing that is decided goes on.
 //
 // With descent planned, tracking flies a plan that ends in contact already. decide_time before that
 // the same gate decides: if it is open the landing begins, else the vehicle arrives above the pad
@@ -140,6 +143,7 @@ struct MissionInputs {
   /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
   /// does not lead there.
   double arrival_in = std::numeric_limits<double>::infinity();
+  double lean = 0.0;        ///< that holding still takes in the wind felt now [rad]
   bool yaw_aligned = true;  ///< body heading along the direction of travel
   bool emergency = false;   ///< obstacle too close, operator's stop, …
   DescentStyle descent = DescentStyle::kVertical;
@@ -181,6 +185,7 @@ struct MissionParameters {
   double turn_acceleration = 3.0;     ///< ... above gate_height [m/s^2]
   double contact_speed = 0.8;  ///< horizontal, relative: committed to contact no faster [m/s], ...
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
+  double lean_max = 1.5;    ///< leaning farther a vehicle waits for a lull before it descends to contact [rad]
   double cone_slope = 1.2;  ///< horizontal errors allowed grow by so much per metre of height [-]
 
   double height_lag = 0.15;       ///< the command waits for a vehicle higher than this above it [m]

@@ -47,7 +47,8 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 40> positive = {{
+  const std::array<Named, 41> positive = {{
+      {"lean_max", p.lean_max},
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},

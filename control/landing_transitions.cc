@@ -91,7 +91,7 @@ Transition FromTracking(const MissionState& s, const MissionInputs& in, const Co
       in.horizontal_distance < p.landing_distance && in.horizontal_speed < p.landing_speed) {
     return {MissionMode::kLanding, TransitionReason::kAbovePad};
   }
-  if (now.pad_good && TouchesDown(s, in) && in.arrival_in <= p.decide_time && now.gate_open &&
+  if (now.pad_good && TouchesDown(s, in) && in.arrival_in <= p.decide_time && now.may_land &&
       now.in_cone) {
     return {MissionMode::kLanding, TransitionReason::kArriving};
   }

@@ -18,6 +18,10 @@ double FeetFirstTilt(const estimation::VehicleModel& model) {
                     std::max(1e-9, model.hull_radius - model.foot_radius));
 }
 
+double LeanUnder(double weight, const Eigen::Vector3d& force_W) {
+  return std::atan2(force_W.head<2>().norm(), weight - force_W.z());
+}
+
 double HeadingIntoWind(const estimation::VehicleModel& model, const Eigen::Vector3d& force_W,
                        double wanted) {
   if (!(force_W.head<2>().norm() > 0.0)) return wanted;

@@ -13,6 +13,9 @@ namespace touchdown::control {
 /// does [rad].
 double FeetFirstTilt(const estimation::VehicleModel& model);
 
+/// The tilt at which a vehicle of weight `weight` [N] holds still under `force_W` [N] [rad].
+double LeanUnder(double weight, const Eigen::Vector3d& force_W);
+
 /// Heading [rad] that brings a foot to the side a vehicle leans to under the horizontal part of
 /// `force_W` [N], of all such headings the one nearest to `wanted` [rad]. `wanted` itself without a
 /// force or without feet.

@@ -119,6 +119,8 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
     throw std::invalid_argument(fmt::format("pad.deck_size is {:g}, it must be > {:g} for the feet",
                                             scenario.pad.deck_size, 2.0 * model.foot_radius));
   }
+  const double lean = control::FeetFirstTilt(model);
+  if (lean > 0.0) parameters_.lean_max = lean;
   parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
   // A light vehicle never presses as hard as the default asks.
   parameters_.contact_force =
@@ -163,6 +165,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     inputs.sink_rate = pad.v_WP.z() - vehicle.v_WB.z();
   }
   foot_height_ = inputs.height;
+  inputs.lean = control::LeanUnder(model_.HoverThrust(), disturbance().force_W);
   inputs.tag_age = filter.TagAge(t);
   inputs.pad_sigma = filter.PositionSigma(t);
   inputs.descent = StyleOf(scenario_.descent);

@@ -28,6 +28,22 @@ TEST(LandingGate, GateHoldsAboveOneMetre) {
   }
 }
 
+// The tags are in view: no lull is waited for with a go-around.
+TEST(LandingGate, AGustIsWaitedOutAtTheHeightOfTheGateOrBelow) {
+  for (const double begins : {1.4, 0.7}) {
+    Mission mission;
+    mission.DescendTo(begins);
+    mission.in.lean = mission.parameters.lean_max + 0.1;
+    mission.Run(mission.parameters.gate_timeout + 2.0);
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding) << begins;
+    EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate) << begins;
+    EXPECT_GT(mission.outputs.foot_height, std::min(begins, mission.parameters.gate_height) - 0.1);
+    mission.in.lean = mission.parameters.lean_max - 0.1;
+    mission.Run(1.0);
+    EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone) << begins;
+  }
+}
+
 TEST(LandingGate, GateClosingBelowHoldsTheHeightThenGoesAround) {
   Mission mission;
   mission.DescendTo(0.7);

@@ -30,6 +30,12 @@ TEST(Lean, FootAndRimTouchTogetherAtTheFeetFirstTilt) {
   EXPECT_NEAR(foot.z(), rim.z(), 1e-12);
 }
 
+TEST(Lean, UnderAForceThrustPointsAgainstItAndTheWeight) {
+  EXPECT_DOUBLE_EQ(LeanUnder(10.0, {0.0, 0.0, -3.0}), 0.0);
+  EXPECT_NEAR(LeanUnder(10.0, {6.0, 8.0, 0.0}), std::atan(1.0), 1e-12);
+  EXPECT_GT(LeanUnder(10.0, {6.0, 8.0, 4.0}), std::atan(1.0)) << "lifted, it leans farther";
+}
+
 TEST(Lean, AFootLeadsIntoTheWindByTheShortestTurn) {
   const estimation::VehicleModel model = Vehicle();
   for (double wind = -3.0; wind < 3.1; wind += 0.37) {

@@ -64,6 +64,23 @@ TEST(PlannedDescent, WhatIsFlownToContactEndsByContactInAnyMode) {
   }
 }
 
+TEST(PlannedDescent, InAGustItArrivesAboveThePadAndLandsInALull) {
+  Approach mission;
+  mission.in.lean = mission.parameters.lean_max + 0.1;
+  mission.FlyTo(mission.parameters.decide_time - 0.05);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kTracking);
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
+  mission.in.lean = 0.0;
+  mission.Tick();
+  EXPECT_EQ(mission.outputs.guidance, Guidance::kTouchDown);
+  // Decided, a landing is not put off by a gust.
+  mission.FlyTo(mission.parameters.decide_time - 0.1);
+  ASSERT_EQ(ModeOf(mission), MissionMode::kLanding);
+  mission.in.lean = mission.parameters.lean_max + 0.1;
+  mission.FlyTo(0.1);
+  EXPECT_EQ(ModeOf(mission), MissionMode::kLanding);
+}
+
 TEST(PlannedDescent, IsDecidedWithAnOpenGateAndEndsByContact) {
   Approach mission;
   mission.FlyTo(mission.parameters.decide_time + 0.05);
