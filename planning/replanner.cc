@@ -106,6 +106,8 @@ class Replanner::Impl {
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
   bool LandsSoon(const ReplanInput& input, const HullSpace& hull) const;
   bool GoesOn(const ReplanInput& input, const HullSpace& hull);
+  bool Rises(double t0, const SplineState& start, double climb, const HullSpace& hull,
+             Fallback::Room room);
   void StepDown(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
 
   PlanAttempt attempt_;
@@ -284,6 +286,15 @@ bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull)
          ContactTime(next_.curve, input.t_start, hull) - input.t_start < kLastStretch;
 }
 
+/// Commits a stop that ends `climb` higher than braking does [m], if there is one.
+bool Replanner::Impl::Rises(double t0, const SplineState& start, double climb,
+                            const HullSpace& hull, Fallback::Room room) {
+  if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, room, &result_)) return false;
+  result_.status = ReplanStatus::kBraking;
+  Commit(t0);
+  return true;
+}
+
 /// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,
 /// the stop that is stored; and where that was a landing that misses, up, proven or not.
 void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
@@ -307,21 +318,15 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
   }
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
   if (result_.from_odometry || next_.Lands()) {
-    for (const double climb : {0.0, kClimbFromMiss}) {
-      if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, Fallback::Room::kOfPlans, &result_)) {
-        continue;
-      }
-      result_.status = ReplanStatus::kBraking;
-      return Commit(t0);
+    if (Rises(t0, start, 0.0, hull, Fallback::Room::kOfPlans) ||
+        Rises(t0, start, kClimbFromMiss, hull, Fallback::Room::kOfPlans)) {
+      return;
     }
   }
   if (landing == Fallback::Landing::kMisses) {
-    for (const double climb : {kClimbFromMiss, 0.0}) {
-      if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, Fallback::Room::kOfHull, &result_)) {
-        continue;
-      }
-      result_.status = ReplanStatus::kBraking;
-      return Commit(t0);
+    if (Rises(t0, start, kClimbFromMiss, hull, Fallback::Room::kOfHull) ||
+        Rises(t0, start, 0.0, hull, Fallback::Room::kOfHull)) {
+      return;
     }
     fallback_.RisesUnproven(t0, start, kClimbFromMiss, hull, &result_);
     result_.status = ReplanStatus::kBraking;
@@ -344,14 +349,10 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
     climbing_ = -1.0;
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
-      if (!fallback_.Rests(input.t_start, start, {0.0, 0.0, rise}, hull, Fallback::Room::kOfPlans,
-                           &result_)) {
-        continue;
-      }
+      if (!Rises(input.t_start, start, rise, hull, Fallback::Room::kOfPlans)) continue;
       // That none came out is no reason to stop trying.
       if (rise > 0.0 || climb == 0.0) climbing_ = climb;
-      result_.status = rise > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking;
-      Commit(input.t_start);
+      if (rise > 0.0) result_.status = ReplanStatus::kClimbing;
       return result_;
     }
   }

@@ -353,18 +353,16 @@ estimation::PadState World::Impl::Pad() const {
   return pad;
 }
 
-std::array<double, 4> World::Impl::RotorThrusts() const {
-  std::array<double, 4> thrusts{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    thrusts[i] = config_.plant.thrust * data_->act[rotor_activation_[i]];
-  }
-  return thrusts;
-}
-
 std::array<double, 4> World::Impl::RotorCommands() const {
   std::array<double, 4> commands{};
   for (std::size_t i = 0; i < 4; ++i) commands[i] = data_->act[rotor_activation_[i]];
   return commands;
+}
+
+std::array<double, 4> World::Impl::RotorThrusts() const {
+  std::array<double, 4> thrusts = RotorCommands();
+  for (double& thrust : thrusts) thrust *= config_.plant.thrust;
+  return thrusts;
 }
 
 World::World(const WorldConfig& config) : impl_(std::make_unique<Impl>(config)) {}
