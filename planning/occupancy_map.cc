@@ -182,8 +182,7 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutli
       if (!returned) continue;
       const Eigen::Vector3d end = frame.p_WC + ray_W * along;
       if (end.z() <= options_.ground_height) continue;
-      const double error = kNoiseSigmas * options_.range_noise * along * per_depth;
-      votes_.AddHit(in_window(end), VoteOf(pad.Classify(end, options_.resolution + error)));
+      votes_.AddHit(in_window(end), VoteOf(pad.Classify(end, ToleranceAt(along * per_depth))));
     }
   }
   votes_.Finish();
@@ -256,7 +255,9 @@ void OccupancyMap::Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::
   Set(cell, value);
   if (!value.doubtful) return;
   if (doubts_.size() == doubts_.capacity()) return MakeCertain(cell, false);  // no room: it blocks
-  doubts_.push_back({t, cell});
+  // The cell's centre will stand for the return, which was anywhere in it.
+  const double offset = 0.5 * options_.resolution;
+  doubts_.push_back({t, cell, ToleranceAt((CentreOf(cell) - eye).norm()) + offset});
 }
 
 void OccupancyMap::MakeCertain(const CellIndex& cell, bool explained) {

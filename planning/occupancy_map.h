@@ -195,6 +195,7 @@ class OccupancyMap {
   struct Doubt {
     double t;
     CellIndex cell;
+    double tolerance;  ///< of the return [m]
   };
   /// Offsets (-half..half, y, z) from an obstacle's cell.
   struct BallRow {
@@ -225,6 +226,10 @@ class OccupancyMap {
   bool Blocks(const Cell& cell) const { return cell.log_odds >= occupied_ && !cell.doubtful; }
   void SetObservedFree(const CellIndex& cell, bool free);
   int RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const;
+  /// Error of a return from `range`: the map's, and the camera's [m].
+  double ToleranceAt(double range) const {
+    return options_.resolution + kNoiseSigmas * options_.range_noise * range;
+  }
   void ApplyVotes(const Eigen::Vector3d& eye, double t);
   void Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye, double t);
   void MakeCertain(const CellIndex& cell, bool explained);
@@ -270,7 +275,7 @@ void OccupancyMap::ExplainDoubts(OutlineAt&& outline_at) {
   for (const bool explained : {false, true}) {
     for (const Doubt& doubt : doubts_) {
       if (!IsDoubtful(doubt.cell)) continue;
-      const ReturnKind kind = outline_at(doubt.t).Classify(CentreOf(doubt.cell), resolution());
+      const ReturnKind kind = outline_at(doubt.t).Classify(CentreOf(doubt.cell), doubt.tolerance);
       if ((kind != ReturnKind::kObstacle) == explained) MakeCertain(doubt.cell, explained);
     }
   }

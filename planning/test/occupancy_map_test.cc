@@ -198,6 +198,28 @@ TEST(OccupancyMap, ReturnsThatMayBeThePadsAreKeptUntilThePadIsKnown) {
   ExpectInflationIsConsistent(map);
 }
 
+// Seen from afar, returns of the deck lie above it by the camera's noise. They became obstacles in the way.
+TEST(OccupancyMap, ReturnsThatMayBeThePadsAreExplainedWithTheirNoise) {
+  OccupancyMapOptions options = SmallMap();
+  options.range_noise = 0.02;
+  OccupancyMap map(options);
+  const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+  map.Recentre(p_WC);
+  PadOutline pad;
+  pad.p_WP = {2.6, 0.0, 0.7};
+  pad.half_size = 0.5;
+  pad.sigma = 0.5;
+  map.Integrate(WallFrame(p_WC, 2.0), pad);
+  const CellIndex noisy = map.CellOf({2.01, 0.05, 0.85}), above = map.CellOf({2.01, 0.05, 1.05});
+  EXPECT_TRUE(map.IsDoubtful(noisy));
+  EXPECT_TRUE(map.IsOccupied(above));
+  pad.sigma = 0.01;
+  map.ExplainDoubts([&](double) { return pad; });
+  EXPECT_FALSE(map.IsKnown(noisy));
+  EXPECT_TRUE(map.IsOccupied(above));
+  ExpectInflationIsConsistent(map);
+}
+
 TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
   OccupancyMap map(SmallMap());
   Draw draw(11);
