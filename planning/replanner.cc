@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/fallback.h"
@@ -32,9 +33,12 @@ constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost ho
 constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
-constexpr double kClimbFromMiss = 0.5;   // of a landing whose deck is gone [m]
+const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
+const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
+constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
+constexpr double kAside = 0.6;      // ... at most so far away [m]
 constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
@@ -106,8 +110,9 @@ class Replanner::Impl {
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
   bool LandsSoon(const ReplanInput& input, const HullSpace& hull) const;
   bool GoesOn(const ReplanInput& input, const HullSpace& hull);
-  bool Rises(double t0, const SplineState& start, double climb, const HullSpace& hull,
-             Fallback::Room room);
+  bool StepsAside(double t0, const SplineState& start, const HullSpace& hull);
+  bool Stops(double t0, const SplineState& start, const Eigen::Vector3d& shift,
+             const HullSpace& hull, Fallback::Room room);
   void StepDown(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
 
   PlanAttempt attempt_;
@@ -286,13 +291,29 @@ bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull)
          ContactTime(next_.curve, input.t_start, hull) - input.t_start < kLastStretch;
 }
 
-/// Commits a stop that ends `climb` higher than braking does [m], if there is one.
-bool Replanner::Impl::Rises(double t0, const SplineState& start, double climb,
+/// Commits a stop that ends `shift` from where braking does [m], if there is one.
+bool Replanner::Impl::Stops(double t0, const SplineState& start, const Eigen::Vector3d& shift,
                             const HullSpace& hull, Fallback::Room room) {
-  if (!fallback_.Rests(t0, start, {0.0, 0.0, climb}, hull, room, &result_)) return false;
+  if (!fallback_.Rests(t0, start, shift, hull, room, &result_)) return false;
   result_.status = ReplanStatus::kBraking;
   Commit(t0);
   return true;
+}
+
+/// Who has looked for long and does not see what the way on needs goes aside: from elsewhere, best from
+/// farther away, the camera sees more of what is beside, above and below.
+bool Replanner::Impl::StepsAside(double t0, const SplineState& start, const HullSpace& hull) {
+  if (!result_.unseen_W || t0 - next_.Last().t_end() < kLookTime) return false;
+  const Eigen::Vector3d away = start.p - *result_.unseen_W;
+  const double heading = std::atan2(away.y(), away.x());
+  for (const double turn : {0.0, 0.25, -0.25, 0.5, -0.5}) {
+    const double along = heading + turn * std::numbers::pi;
+    const Eigen::Vector3d aside(std::cos(along), std::sin(along), 0.0);
+    for (const double way : {kAside, 0.5 * kAside, 0.25 * kAside}) {
+      if (Stops(t0, start, way * aside, hull, Fallback::Room::kOfPlans)) return true;
+    }
+  }
+  return false;
 }
 
 /// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,
@@ -316,19 +337,20 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
     result_.status = ReplanStatus::kEscaping;
     return Commit(t0);
   }
+  if (at_rest && result_.reason == ReplanReason::kUnobserved && StepsAside(t0, start, hull)) return;
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
   if (result_.from_odometry || next_.Lands()) {
-    if (Rises(t0, start, 0.0, hull, Fallback::Room::kOfPlans) ||
-        Rises(t0, start, kClimbFromMiss, hull, Fallback::Room::kOfPlans)) {
+    if (Stops(t0, start, kNoShift, hull, Fallback::Room::kOfPlans) ||
+        Stops(t0, start, kUpFromMiss, hull, Fallback::Room::kOfPlans)) {
       return;
     }
   }
   if (landing == Fallback::Landing::kMisses) {
-    if (Rises(t0, start, kClimbFromMiss, hull, Fallback::Room::kOfHull) ||
-        Rises(t0, start, 0.0, hull, Fallback::Room::kOfHull)) {
+    if (Stops(t0, start, kUpFromMiss, hull, Fallback::Room::kOfHull) ||
+        Stops(t0, start, kNoShift, hull, Fallback::Room::kOfHull)) {
       return;
     }
-    fallback_.RisesUnproven(t0, start, kClimbFromMiss, hull, &result_);
+    fallback_.RisesUnproven(t0, start, kUpFromMiss.z(), hull, &result_);
     result_.status = ReplanStatus::kBraking;
     return Commit(t0);
   }
@@ -349,7 +371,7 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
     climbing_ = -1.0;
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
-      if (!Rises(input.t_start, start, rise, hull, Fallback::Room::kOfPlans)) continue;
+      if (!Stops(input.t_start, start, {0.0, 0.0, rise}, hull, Fallback::Room::kOfPlans)) continue;
       // That none came out is no reason to stop trying.
       if (rise > 0.0 || climb == 0.0) climbing_ = climb;
       if (rise > 0.0) result_.status = ReplanStatus::kClimbing;

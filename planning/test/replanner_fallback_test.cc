@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "touchdown/planning/fallback.h"
@@ -46,6 +47,36 @@ TEST(ReplannerFallback, BrakesBeforeSpaceThatStaysUnobserved) {
     braked = replanner.Replan(input, map).status == ReplanStatus::kBraking || braked;
   }
   EXPECT_TRUE(braked);
+}
+
+TEST(ReplannerFallback, WhoWaitsInVainLooksFromElsewhere) {
+  OccupancyMap map{OccupancyMapOptions{}};
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  const double radius = 0.8;
+  map.MarkFree(start, radius);
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  double stood_at = start.x(), back = 0.0;
+  int waited = 0, longest = 0;
+  for (int step = 0; step < 100; ++step) {
+    const double t = 0.1 * step;
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    EXPECT_TRUE(result.certificate.passed()) << t;
+    EXPECT_TRUE(result.proven) << t;
+    EXPECT_LE((at.p_WB - start).norm(), radius - replanner.options().hull_radius) << t;
+    const bool holds = result.status == ReplanStatus::kHolding;
+    waited = holds ? waited + 1 : 0;
+    longest = std::max(longest, waited);
+    if (waited == 10) stood_at = at.p_WB.x();
+    back = std::max(back, stood_at - at.p_WB.x());
+  }
+  EXPECT_GE(longest, 15);
+  EXPECT_LE(longest, 25);
+  EXPECT_GT(back, 0.2);
 }
 
 TEST(ReplannerFallback, APadThatBecomesNanBringsItToRest) {
