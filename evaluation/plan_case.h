@@ -25,7 +25,8 @@ struct SolvedStep {
   RecordPlan recorded;         ///< the question; of a record the answer, too
   std::optional<bool> same;    ///< as recorded, bit for bit; of a record
   ReplanOutcome outcome;       ///< of the step solved again
-  planning::StageTimes times;  ///< without the log
+  std::optional<Eigen::Vector3d> unseen_W;  ///< cell that this step's pairs lack, or the next's [m]
+  planning::StageTimes times;               ///< without the log
   planning::ReplanLog log;
   planning::Limits limits;
   std::vector<std::string> terms;             ///< of the objective, in the order of the log's costs

@@ -145,6 +145,7 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   Json& paths = json["guide_paths"] = Json::array();
   for (const auto& path : solved.outcome.guide_paths) paths.push_back(PathJson(path));
   json["result"] = OutcomeJson(solved.outcome);
+  json["unseen_W"] = solved.unseen_W ? VectorJson(*solved.unseen_W) : Json();
   json["same_as_record"] = solved.same ? Json(*solved.same) : Json();
   Json& stages = json["wall_clock"]["stages"] = Json::object();
   const auto add = [&stages](const planning::StageTimes::Span& span) {

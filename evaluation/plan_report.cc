@@ -127,6 +127,9 @@ std::string PlanText(const SolvedStep& solved) {
     text += fmt::format("  no new plan: {}: {}\n", planning::ToString(out.reason),
                         planning::Explain(out.reason));
   }
+  if (solved.unseen_W) {
+    text += fmt::format("  to be seen next: the cell at {} m\n", Vector(*solved.unseen_W));
+  }
   if (out.from_odometry) text += "  it starts at the vehicle: tracking had lost the reference\n";
   text += fmt::format("  flown from t = {:.3f} s to {:.3f} s: {} control points every {:.4f} s\n",
                       out.curve.t0(), out.curve.t_end(), out.curve.control_points().cols(),
