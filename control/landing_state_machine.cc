@@ -85,7 +85,7 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
       hold = DescentHold::kCorridor;
     }
     // A vehicle that had to stop would dive after a command that went on, and meet the deck hard.
-    if (hold == DescentHold::kNone && now.numbers_valid &&
+    if (hold == DescentHold::kNone && !in.at_goal && now.numbers_valid &&
         in.height > s.foot_height + p.height_lag) {
       target = rest;
       hold = DescentHold::kLag;

@@ -139,6 +139,7 @@ struct MissionInputs {
   bool has_plan = false;    ///< a certified plan exists
   bool lands =
       false;  ///< what is flown ends in contact, whatever the mode: nothing else was certified
+  bool at_goal = false;  ///< the planner takes what was commanded as reached: no use to wait for it
   double plan_failed_for = 0.0;  ///< time since planning last succeeded, 0 if it did [s]
   /// Until the committed plan touches the deck [s], negative when that is overdue; infinite where it
   /// does not lead there.

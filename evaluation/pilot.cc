@@ -178,6 +178,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   own_usable_ = inputs.own_usable;
   inputs.foot_force = foot_force_ = foot_force;
   inputs.has_plan = has_plan_;
+  inputs.at_goal = at_goal_;
   inputs.lands = lands_;
   // Between replans the last one counts: no plan has failed since it succeeded.
   if (requested_t_ && !last_planned_) {
@@ -238,8 +239,9 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   lands_ = scenario_.planner == PlannerKind::kLanding && result.Lands();
   const bool lands_as_wanted = wants_plan && input.endpoint.leads_to_contact() && kept && lands_ &&
                                result.reason != planning::ReplanReason::kInvalidInput;
-  last_planned_ = result.status == planning::ReplanStatus::kPlanned ||
-                  result.reason == planning::ReplanReason::kAtGoal || lands_as_wanted;
+  at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
+  last_planned_ =
+      result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
   if (!kept && !Levelled(vehicle.t)) {

@@ -118,6 +118,7 @@ class Pilot {
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
+  bool at_goal_ = false;                  ///< the last step made no plan: the goal is near
   const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
   bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;

@@ -101,10 +101,17 @@ TEST(LandingStateMachine, TheCommandWaitsForAVehicleThatLags) {
   EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kLag);
   mission.Run(1.0);
   EXPECT_NEAR(mission.outputs.foot_height, held, 1e-6);
-  mission.in.height = held + 0.1;
+  // Who takes a goal so near as reached does not come: the command goes on.
+  mission.in.at_goal = true;
+  mission.Run(0.2);
+  EXPECT_LT(mission.outputs.foot_height, held);
+  mission.in.at_goal = false;
+  mission.Run(1.0);
+  const double again = mission.outputs.foot_height;
+  mission.in.height = again + 0.1;
   mission.Run(0.2);
   EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone);
-  EXPECT_LT(mission.outputs.foot_height, held);
+  EXPECT_LT(mission.outputs.foot_height, again);
 }
 
 TEST(LandingStateMachine, CorridorHoldsTheHeight) {
