@@ -101,7 +101,9 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
 // From here on the landing goes on by prediction.
 void Commit(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
             MissionState& s) {
-  if (s.mode != MissionMode::kLanding || s.committed || !now.gate_open) return;
+  // A planned landing was decided on when it began.
+  const bool open = Planned(in) ? now.gate_open : now.may_land;
+  if (s.mode != MissionMode::kLanding || s.committed || !open) return;
   // Both the command and the vehicle must be low: a vehicle that lags behind is not committed.
   const bool low =
       now.in_corridor && s.foot_height < p.commit_height && in.height < p.commit_height;
