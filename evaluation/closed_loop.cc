@@ -186,7 +186,8 @@ class Trial {
     }
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
     if (safety_watch_ && !judge_.touchdown())
-      safety_watch_->Step(*plan, pilot_.last_replan().request.input.margins);
+      safety_watch_->Step(*plan, pilot_.last_replan().request.input.margins,
+                          pilot_.last_replan().late);
     const planning::StageTimes::Span& total = plan->times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);

@@ -254,7 +254,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
 // A measured step that took longer than was reckoned with: its plan is flown from when it was there, and
 // no other step is begun before.
 void Pilot::DeliverLate(double t) {
-  if (!scenario_.planning.latency.measured || measured_latency_ <= replan_.latency_s) return;
+  replan_.late = scenario_.planning.latency.measured && measured_latency_ > replan_.latency_s;
+  if (!replan_.late) return;
   busy_until_ = t + measured_latency_;
   planner_->TakeOverAt(busy_until_);
 }

@@ -28,6 +28,7 @@ struct PilotReplan {
   ReplanRequest request;
   estimation::PadState pad;  ///< the prediction at t_now
   double latency_s = 0.0;    ///< with which the plan is flown
+  bool late = false;         ///< it came later than that, or too late
 };
 
 /// A plan that is to end in contact: `level_time` before it [s], level, sinking with `touchdown_rate` [m/s].

@@ -36,15 +36,14 @@ int CountFreeInside(const planning::OccupancyMap& map, const sim::Obstacle& obst
 
 }  // namespace
 
-void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margins& margins) {
-  // A stop that is flown keeps to the margins that it was proven with.
-  const bool stored = plan.status == planning::ReplanStatus::kBraking ||
-                      plan.status == planning::ReplanStatus::kHolding;
-  if (!stored) margins_ = margins;
+void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margins& margins,
+                       bool late) {
+  // What is flown on keeps to the margins that it was proven with.
+  if (plan.committed) margins_ = margins;
   figures_.margin_max_m = std::max(figures_.margin_max_m, margins.Sum());
   figures_.margin_mean_m += (margins.Sum() - figures_.margin_mean_m) / ++steps_;
   const planning::Certificate& certificate = plan.certificate;
-  if (!certificate.stops_in_observed_space) ++figures_.uncertified_steps;
+  if (!certificate.stops_in_observed_space || late) ++figures_.uncertified_steps;
   const planning::StartCells& start = certificate.start_cells;
   const bool escapes = start.leaves() || plan.status == planning::ReplanStatus::kEscaping;
   const bool narrow = start.narrow || !certificate.clear;
@@ -53,7 +52,7 @@ void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margi
   if (start.unknown) ++figures_.escaping_unknown_steps;
   if (!escapes && narrow) ++figures_.narrow_steps;
   if (plan.map_error) ++figures_.map_errors;
-  const bool stops = plan.status == planning::ReplanStatus::kBraking;
+  const bool stops = plan.status == planning::ReplanStatus::kBraking && !plan.committed;
   if (stops && !stopping_) ++figures_.stops_flown;
   stopping_ = stops;
 }

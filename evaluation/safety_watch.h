@@ -40,7 +40,9 @@ class SafetyWatch {
  public:
   explicit SafetyWatch(const sim::ObstacleField& obstacles) : obstacles_(obstacles) {}
 
-  void Step(const planning::ReplanResult& plan, const planning::Margins& margins);
+  /// `late`: the answer came after it was to take over, so that the reference jumps.
+  void Step(const planning::ReplanResult& plan, const planning::Margins& margins,
+            bool late = false);
   /// Where the vehicle takes itself to be, where it is, and where it is to be.
   void Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_true_WB,
                const Eigen::Vector3d& p_reference_W);
@@ -52,7 +54,7 @@ class SafetyWatch {
 
  private:
   sim::ObstacleField obstacles_;
-  planning::Margins margins_;  // of the latest step
+  planning::Margins margins_;  // of the pair that is flown
   int steps_ = 0;
   bool stopping_ = false;
   bool off_ = false, drifted_ = false;

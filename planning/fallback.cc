@@ -60,7 +60,8 @@ Sweep Fallback::SweepAgain(const FlightPair& committed, double t0, const HullSpa
   const double t_from = std::max(t0, last.t0());
   const double t_contact = committed.Lands() ? ContactTime(last, t_from, hull) : last.t_end();
   const double t_to = std::max(t_from, std::isfinite(t_contact) ? t_contact : last.t_end());
-  return SweepHull(last, t_from, t_to, {last.EvaluateOnward(t_from).p_WB, t_from}, bare);
+  return SweepHull(last, t_from, t_to, {last.EvaluateOnward(t_from).p_WB, t_from}, bare,
+                   kAnyTime);
 }
 
 bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
@@ -123,8 +124,9 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
       LookAtLanding(committed, t0, hull) != Landing::kMisses;
   // A landing is looked at against the deck, or not at all.
   const bool looked_at = hull.space != nullptr && (hull.pad != nullptr || !committed.Lands());
-  if (result->status != ReplanStatus::kHolding && looked_at) {
-    result->map_error = !SweepAgain(committed, t0, hull, false).proven;
+  if (looked_at) {
+    const Sweep now = SweepAgain(committed, t0, hull, false);
+    result->map_error = !now.proven || now.start.occupied;
   }
 }
 

@@ -147,11 +147,13 @@ struct ReplanResult : FlightPair {
   std::string_view detail;
   bool ends_in_contact = false;  ///< what is asked for is a plan that does
   bool idle = false;             ///< the planner had nothing to do: there is no answer
+  bool committed = false;        ///< a pair was proven in this step and takes over at t_start
   bool from_odometry = false;    ///< started at the vehicle, not at the old plan
   FlightPair& pair() { return *this; }
   const FlightPair& pair() const { return *this; }
   Certificate certificate;
-  /// The stored stop is flown, and a cell of its tube is not free any more: the map was wrong.
+  /// The stored stop is flown, and a cell of its tube is not free any more, or the hull is in one that is
+  /// occupied: the map was wrong.
   bool map_error = false;
   /// The first cell that is not observed free and that the next stops will need: of the plan beyond its
   /// own stop, or of the first that was not proven for want of it. In W [m].

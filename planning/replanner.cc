@@ -38,7 +38,9 @@ const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
 constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAside = 0.6;      // ... at most so far away [m]
+constexpr double kAside = 0.6;      // ... at most so far away [m] ...
+constexpr double kAsideFrom = 1.5;  // ... from a cell no farther than this [m] ...
+constexpr double kAboveLane = 0.1;  // ... with the feet so much above the deck [m]
 constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
@@ -64,12 +66,12 @@ class Replanner::Impl {
     next_ = result_.pair();
     from_unknown_ = result_.certificate.start_cells.unknown;
     takes_over_ = t0;
-    committed_ = true;
+    result_.committed = true;
   }
 
   /// A pair that comes after the older one's stop has begun comes too late: it does not start there.
   void TakeOverAt(double t) {
-    if (!committed_ || t <= takes_over_) return;
+    if (!result_.committed || t <= takes_over_) return;
     if (t > current_.t_stop) {
       next_ = current_;
       planned_before_ = false;
@@ -90,7 +92,6 @@ class Replanner::Impl {
   const ReplannerOptions options_;
   FlightPair current_, next_;
   double takes_over_ = 0.0;  // next_ does [s]
-  bool committed_ = false;   // in this step
   bool from_unknown_ = true;  // next_ begins among cells that were never proven; the first hover may
   ReplanLog* log_ = nullptr;
 
@@ -110,7 +111,7 @@ class Replanner::Impl {
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
   bool LandsSoon(const ReplanInput& input, const HullSpace& hull) const;
   bool GoesOn(const ReplanInput& input, const HullSpace& hull);
-  bool StepsAside(double t0, const SplineState& start, const HullSpace& hull);
+  bool StepsAside(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
   bool Stops(double t0, const SplineState& start, const Eigen::Vector3d& shift,
              const HullSpace& hull, Fallback::Room room);
   void StepDown(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
@@ -196,7 +197,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.times = {};
   result_.guide_paths.Clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
-  result_.from_odometry = result_.map_error = committed_ = false;
+  result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
   // A level stretch at the end of a landing, or a vertical descent, may go below the height of contact.
   result_.ends_in_contact =
@@ -277,7 +278,8 @@ std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& in
   const double t_from = input.t_start + options_.reaction;
   const double t_to = std::min(t_from + kLookAhead, curve.t_end());
   if (t_to <= t_from) return std::nullopt;
-  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull).unseen_W;
+  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime)
+      .unseen_W;
 }
 
 /// The committed curve, with a newer stop.
@@ -301,10 +303,19 @@ bool Replanner::Impl::Stops(double t0, const SplineState& start, const Eigen::Ve
 }
 
 /// Who has looked for long and does not see what the way on needs goes aside: from elsewhere, best from
-/// farther away, the camera sees more of what is beside, above and below.
-bool Replanner::Impl::StepsAside(double t0, const SplineState& start, const HullSpace& hull) {
+/// farther away, the camera sees more of what is beside, above and below. But not low, where the pad may come
+/// by, nor from where a landing goes on.
+bool Replanner::Impl::StepsAside(const ReplanInput& input, const SplineState& start,
+                                 const HullSpace& hull) {
+  const double t0 = input.t_start;
   if (!result_.unseen_W || t0 - next_.Last().t_end() < kLookTime) return false;
   const Eigen::Vector3d away = start.p - *result_.unseen_W;
+  if (away.norm() > kAsideFrom) return false;
+  if (hull.pad != nullptr) {
+    const double deck = hull.pad->At(t0).p_WP.z();
+    if (start.p.z() - options_.contact_height < deck + kAboveLane) return false;
+    if (input.endpoint.leads_to_contact() && hull.space->OverPad(start.p)) return false;
+  }
   const double heading = std::atan2(away.y(), away.x());
   for (const double turn : {0.0, 0.25, -0.25, 0.5, -0.5}) {
     const double along = heading + turn * std::numbers::pi;
@@ -337,7 +348,10 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
     result_.status = ReplanStatus::kEscaping;
     return Commit(t0);
   }
-  if (at_rest && result_.reason == ReplanReason::kUnobserved && StepsAside(t0, start, hull)) return;
+  if (at_rest && result_.reason == ReplanReason::kUnobserved &&
+      StepsAside(input, start, hull)) {
+    return;
+  }
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
   if (result_.from_odometry || next_.Lands()) {
     if (Stops(t0, start, kNoShift, hull, Fallback::Room::kOfPlans) ||
@@ -363,7 +377,10 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState(input);
   const SplineState start = Start(input);
-  const FreeSpace space = SpaceWithoutPad(input, map);
+  const bool remembered = input.t_start - strip_t_ <= kStripMemory || !TargetValid(input);
+  const FreeSpace space = remembered
+                              ? SpaceWithoutPad(input, map)
+                              : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
   planned_before_ = false;
   const bool under_way = climbing_ == climb && !result_.from_odometry;

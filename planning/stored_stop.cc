@@ -55,8 +55,8 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   PairProof proof;
   const UniformBspline& curve = pair->curve;
   const HullStart start{curve.EvaluateOnward(t_from).p_WB, t_from};
-  const DeckContact until_then = ends == PairEnd::kRest ? DeckContact::kMayNot : DeckContact::kMay;
-  const Sweep until = SweepHull(curve, t_from, t_handover, start, hull, until_then);
+  const double t_contact = ends == PairEnd::kRest ? kNever : ContactTime(curve, t_from, hull);
+  const Sweep until = SweepHull(curve, t_from, t_handover, start, hull, t_contact);
   const auto note = [&](const Sweep& sweep) {
     proof.start = until.start | sweep.start;
     if (!sweep.proven && !proof.unseen_W) proof.unseen_W = sweep.unseen_W;
@@ -66,20 +66,19 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   const FlatState from = curve.EvaluateOnward(t_handover);
   const SplineState state{from.p_WB, from.v_WB, from.a_WB};
   const Limits stops = LimitsOfStops(limits);
-  const double t_contact = ContactTime(curve, t_from, hull);
   const auto rests = [&](double climb) {
     MakeRestTrajectory(state, t_handover, {0.0, 0.0, climb}, stops, &pair->stop);
     const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
     if (TooLow(p_rest, pair->stop.t_end(), hull) > 1e-6) return false;
     const Sweep sweep =
-        SweepHull(pair->stop, t_handover, pair->stop.t_end(), start, hull, DeckContact::kMayNot);
+        SweepHull(pair->stop, t_handover, pair->stop.t_end(), start, hull, kNever);
     return note(sweep);
   };
   const auto touches_down = [&] {
-    if (ends == PairEnd::kRest || !std::isfinite(t_contact)) return false;
+    if (!std::isfinite(t_contact)) return false;
     if (!TouchesSoftly(curve, t_contact, kRoom, hull)) return false;
     const double t_end = std::max(t_handover, t_contact) + kPressing;
-    const Sweep sweep = SweepHull(curve, t_handover, t_end, start, hull);
+    const Sweep sweep = SweepHull(curve, t_handover, t_end, start, hull, t_contact);
     return note(sweep);
   };
   // Shortly before contact braking over the deck is the more dangerous end.
@@ -105,7 +104,6 @@ bool TouchesSoftly(const UniformBspline& curve, double t, double share, const Hu
 }
 
 double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull) {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   if (hull.pad == nullptr) return kNever;
   const auto over_deck = [&](double t) {
     return OutlineOf(hull.pad->At(t), hull.deck_half_size)
@@ -134,7 +132,7 @@ PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair) {
   const double t_rest = curve.t_end();
   if (TooLow(curve.Position(t_rest), t_rest, hull) > 1e-6) return {};
   const HullStart start{curve.EvaluateOnward(t_from).p_WB, t_from};
-  const Sweep sweep = SweepHull(curve, t_from, t_rest, start, hull, DeckContact::kMayNot);
+  const Sweep sweep = SweepHull(curve, t_from, t_rest, start, hull, kNever);
   return {sweep.proven, sweep.start, false, sweep.unseen_W};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hull's tube through the observed-free cells. The hull at every tilt is a ball, and so is the hull
-// grown by its margins. The curve is sampled so densely that the ball, larger by kSampling, holds the
+// grown by its margins. The curve is sampled so densely that the ball, larger by kSweepRoom, holds the
 // tube between two samples; the cells that a ball touches are asked row by row, 64 along x at a time.
 
 #include "touchdown/planning/swept_hull.h"
@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kStep = 0.01;     // between looks at the position [s] ...
 constexpr double kSpacing = 0.06;  // ... and the way between two balls [m]
-constexpr double kSampling =
-    0.01;                         // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s [m]
+static_assert(kSweepRoom >= 0.01);  // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s
 constexpr double kNearer = 1e-6;  // rounding of a hull that leaves a cell: it comes no nearer [m]
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
+constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
 constexpr double kLevel = 2e-3;     // rounding of floor and ceiling: kChordSagitta [m]
 
 /// Distance of a coordinate from the cell i.
@@ -35,7 +35,7 @@ class Tube {
       : hull_(hull),
         map_(*hull.space->map),
         start_(start.p_W),
-        radius_(hull.radius() + kSampling),
+        radius_(hull.radius() + kSweepRoom),
         face_noise_(OccupancyMap::kNoiseSigmas * map_.options().range_noise * kFaceRange +
                     kRounding),
         start_deck_(DeckBelow(start.p_W, start.t)) {}
@@ -159,41 +159,43 @@ class Tube {
   Deck start_deck_;    // below the start, when it was there
 };
 
-/// Feet above the deck, as far as the hull may be over it.
-bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t,
+/// Feet no more than `below` the deck [m], as far as the hull may be over it.
+bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double below,
                const Eigen::Vector3d& start) {
   if (hull.pad == nullptr) return true;
   PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   const double feet = p.z() - hull.foot_depth;
-  if (feet >= deck.p_WP.z() || p.z() >= start.z()) return true;
+  if (feet >= deck.p_WP.z() - below || p.z() >= start.z()) return true;
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 
 /// Between floor and ceiling; who starts beyond one of them does not go farther. Where the deck may be
 /// touched it is the floor itself.
 bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Vector3d& start,
-               DeckContact contact) {
+               bool may_touch) {
   const double ceiling = std::max(space.ceiling, start.z());
   if (p.z() > ceiling + kLevel) return false;
-  if (contact == DeckContact::kMay && space.OverPad(p)) return true;
+  if (may_touch && space.OverPad(p)) return true;
   return p.z() >= std::min(space.FloorAt(p), start.z()) - kLevel;
 }
 
 }  // namespace
 
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
-                const HullStart& start, const HullSpace& hull, DeckContact contact) {
+                const HullStart& start, const HullSpace& hull, double t_contact) {
   Sweep sweep;
   const Tube tube(hull, start);
   Eigen::Vector3d ball = start.p_W;  // where the hull was looked at last,
   Eigen::Vector3d before = ball;     // and the place after it that was passed over
   double t_before = t_from;
+  const double below = std::isfinite(t_contact) ? kFaceSlack : 0.0;
   const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / kStep)));
   for (int i = 0; i <= steps; ++i) {
     const double t = t_from + (t_to - t_from) * i / steps;
     const Eigen::Vector3d p = t <= curve.t_end() ? curve.Position(t) : curve.EvaluateOnward(t).p_WB;
-    if (!LevelKept(*hull.space, p, start.p_W, contact)) return sweep;
-    if (contact == DeckContact::kMayNot && !AboveDeck(hull, p, t, start.p_W)) return sweep;
+    const bool may_touch = t >= t_contact;
+    if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
+    if (!may_touch && !AboveDeck(hull, p, t, below, start.p_W)) return sweep;
     const bool first_or_last = i == 0 || i == steps;
     const double away = (p - ball).norm(), away_before = (before - ball).norm();
     // A way that turns back was at its farthest just before.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
@@ -56,11 +57,12 @@ struct HullStart {
   double t = 0.0;                                 ///< [s]
 };
 
-/// Whether the hull may touch the deck along a curve.
-enum class DeckContact {
-  kMay,
-  kMayNot,  ///< while it may be over the deck the feet are above it; who starts lower only rises
-};
+/// What SweepHull adds to the grown hull for the way between two places that it looks at [m].
+inline constexpr double kSweepRoom = 0.01;
+
+/// At any time, and at none: when the hull may touch the deck [s].
+inline constexpr double kAnyTime = -std::numeric_limits<double>::infinity();
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Looks whether the hull, grown by the margins, stays in observed-free cells along the curve from t_from
 /// to t_to [s], past the curve's end at its end's velocity, and the body's origin between floor and
@@ -68,9 +70,10 @@ enum class DeckContact {
 /// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
 /// upper face, and those over the deck where its returns lie by
 /// their noise, unless occupied; and, at the start, cells around `start` that the hull reached there already and
-/// does not come nearer to. Does not allocate.
+/// does not come nearer to. Before `t_contact` [s] the feet are above the deck while the hull may be over it,
+/// but for a start that is lower and rises. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
                 const HullStart& start, const HullSpace& hull,
-                DeckContact contact = DeckContact::kMay);
+                double t_contact);
 
 }  // namespace touchdown::planning

@@ -52,6 +52,28 @@ TEST(SafetyWatch, CountsStopsOnceAndEveryStepWithoutAProof) {
   for (int i = 0; i < 2; ++i) watch.Step(stop, {});
   EXPECT_EQ(watch.figures().stops_flown, 2);
   EXPECT_EQ(watch.figures().uncertified_steps, 2);
+  // A stop that is wanted is a new pair; an answer that comes late is none.
+  stop = Proven();
+  stop.status = planning::ReplanStatus::kBraking;
+  stop.committed = true;
+  watch.Step(Proven(), {});
+  watch.Step(stop, {}, true);
+  EXPECT_EQ(watch.figures().stops_flown, 2);
+  EXPECT_EQ(watch.figures().uncertified_steps, 3);
+}
+
+// A margin that has grown since pays for nothing that was proven with a smaller one.
+TEST(SafetyWatch, TheErrorCountsAgainstTheMarginsOfThePairThatIsFlown) {
+  const sim::ObstacleField nothing;
+  SafetyWatch watch(nothing);
+  planning::ReplanResult plan = Proven();
+  plan.committed = true;
+  watch.Step(plan, {0.0, 0.0, 0.05});
+  plan.committed = false;
+  plan.status = planning::ReplanStatus::kKept;
+  watch.Step(plan, {0.0, 0.0, 0.5});
+  watch.Tracked({0.1, 0, 0}, {0.1, 0, 0}, {0, 0, 0});
+  EXPECT_EQ(watch.figures().tracking_events, 1);
 }
 
 }  // namespace

@@ -79,6 +79,46 @@ TEST(ReplannerFallback, WhoWaitsInVainLooksFromElsewhere) {
   EXPECT_GT(back, 0.2);
 }
 
+// Low, where the pad may come by, it stays.
+TEST(ReplannerFallback, WhoWaitsLowStays) {
+  for (const double deck : {0.3, 2.2}) {
+    OccupancyMap map{OccupancyMapOptions{}};
+    const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+    map.MarkFree(start, 0.8);
+    const ArcPad pad({5.0, 0.0, deck}, 0.0, 0.0, 0.0);
+    Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+    replanner.CommitHover(start, 0.0);
+    double foremost = start.x(), back = 0.0;  // towards the pad it goes as far as it sees
+    for (int step = 0; step < 60; ++step) {
+      const FlatState at = replanner.Reference(0.1 * step);
+      ReplanInput input = Input(at.p_WB, pad, 0.1 * step);
+      input.vehicle.v_WB = at.v_WB;
+      replanner.Replan(input, map);
+      foremost = std::max(foremost, at.p_WB.x());
+      back = std::max(back, foremost - at.p_WB.x());
+    }
+    EXPECT_EQ(back > 0.2, deck < 1.0) << deck << ": " << back;
+  }
+}
+
+TEST(ReplannerFallback, WhoHoldsWithTheHullInHitCellsSaysSo) {
+  OccupancyMap map{OccupancyMapOptions{}};
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5);
+  map.Recentre(start);
+  map.MarkRestFree();
+  const ArcPad pad({5.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-0.25, 0.25}) {
+      map.SetOccupied(start + side * Eigen::Vector3d::Unit(axis));
+    }
+  }
+  const ReplanResult& result = replanner.Replan(Input(start, pad, 0.1), map);
+  EXPECT_EQ(result.status, ReplanStatus::kHolding);
+  EXPECT_TRUE(result.map_error);
+}
+
 TEST(ReplannerFallback, APadThatBecomesNanBringsItToRest) {
   class BrokenPad : public ArcPad {
    public:

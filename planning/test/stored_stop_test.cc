@@ -240,6 +240,27 @@ TEST_F(StopOverDeck, ContactThatIsNotSoftIsNone) {
   }
 }
 
+// A deck that drives up is seen as free space: cells alone do not forbid to pass through its edge.
+TEST_F(StopOverDeck, ALandingMeetsTheDeckOnlyWhereItIsToTouchIt) {
+  map_.MarkRestFree();
+  const SplineState end{{0, 0, 0.60}, {0, 0, -0.3}, {0, 0, 0}};
+  FlightPair pair;
+  const auto lands = [&](double dip) {
+    pair.curve = Between({{-0.7, 0, 0.8}, {0.8, 0, -dip}, {0, 0, 0}}, end, 0.8);
+    return ProvePair(0.0, 0.1, PairEnd::kRestOrContact, kLimits, hull_, &pair).contact;
+  };
+  const auto lowest_feet = [&] {
+    double feet = 1.0;
+    for (double t = 0.0; t < 0.7; t += 0.01) feet = std::min(feet, pair.curve.Position(t).z() - 0.12);
+    return feet - 0.45;
+  };
+  EXPECT_TRUE(lands(0.3));
+  EXPECT_GT(lowest_feet(), 0.02);
+  EXPECT_FALSE(lands(1.5));
+  EXPECT_LT(lowest_feet(), -0.03);
+  EXPECT_GT(ContactTime(pair.curve, 0.0, hull_), 0.8) << "it touches softly, but later";
+}
+
 TEST_F(StopOverDeck, WhereItIsToLandNoStopIsAnAnswer) {
   map_.SetState({3, 0, 5}, CellState::kOccupied);
   FlightPair pair;

@@ -18,7 +18,8 @@ UniformBspline RandomCurve(Draw* draw) {
 }
 
 Sweep Look(const UniformBspline& curve, const HullSpace& hull) {
-  return SweepHull(curve, curve.t0(), curve.t_end(), {curve.Position(curve.t0()), curve.t0()}, hull);
+  return SweepHull(curve, curve.t0(), curve.t_end(), {curve.Position(curve.t0()), curve.t0()}, hull,
+                   kAnyTime);
 }
 
 TEST(SweptHull, AgreesWithEveryCellOfEveryBall) {
