@@ -12,10 +12,13 @@
 #include "touchdown/evaluation/degrees.h"
 #include "touchdown/evaluation/map_file.h"
 #include "touchdown/evaluation/output_path.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/record.h"
 #include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/statistics.h"
 #include "touchdown/evaluation/trial_json.h"
+#include "touchdown/sim/vehicle_file.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -27,6 +30,10 @@ struct LandArguments {
   std::string save_map;
   bool json = false;
 };
+
+double ClearanceOf(const Scenario& scenario) {
+  return PlanClearance(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)));
+}
 
 std::string Summary(const Scenario& scenario, const TrialResult& r) {
   std::string text;
@@ -70,6 +77,12 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
         "beyond a margin\n",
         safety.uncertified_steps, safety.stops_flown, safety.map_errors,
         safety.tracking_events + safety.drift_events);
+  }
+  if (const double kept = ClearanceOf(scenario); kept > scenario.planning.clearance) {
+    text += fmt::format(
+        "  planning.clearance     raised from {:g} to {:.3f} m, the hull at every tilt and its "
+        "margins\n",
+        scenario.planning.clearance, kept);
   }
   text += fmt::format("  replans                {}", r.replans);
   for (const auto& [status, count] : r.replans_by_status) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "touchdown/evaluation/map_file.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/truth_map.h"
 #include "touchdown/planning/stage_timer.h"
 #include "touchdown/solvers/thread_clock.h"
@@ -59,9 +60,10 @@ estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
   return options;
 }
 
-planning::OccupancyMapOptions MapOptions(const Scenario& scenario) {
+planning::OccupancyMapOptions MapOptions(const Scenario& scenario,
+                                         const estimation::VehicleModel& model) {
   planning::OccupancyMapOptions options;
-  options.inflation_radius = scenario.planning.clearance;
+  options.inflation_radius = PlanClearance(scenario, model);
   options.range_noise = scenario.depth.noise;
   options.thinnest_obstacle = scenario.map_thinnest_obstacle;
   return options;
@@ -73,7 +75,7 @@ Perception::Perception(const Scenario& scenario, const sim::World& world, std::u
       pad_eye_(MakePadEye(scenario, world.config(), seed)),
       depth_eye_(MakeDepthEye(scenario, world.config(), seed)),
       pad_filter_(PadFilterOptionsOf(scenario)),
-      map_(MapOptions(scenario)),
+      map_(MapOptions(scenario, world.model())),
       persistent_map_(map_.options()),
       deck_half_size_(0.5 * scenario.pad.deck_size) {
   const bool prior = scenario.map_prior != "none";

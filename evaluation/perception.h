@@ -24,7 +24,8 @@ namespace touchdown::evaluation {
 estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario);
 
 /// The map that a scenario's planner asks.
-planning::OccupancyMapOptions MapOptions(const Scenario& scenario);
+planning::OccupancyMapOptions MapOptions(const Scenario& scenario,
+                                         const estimation::VehicleModel& model);
 
 /// What one depth image cost, from the simulated camera to the map.
 struct FrameTimes {

@@ -35,8 +35,9 @@ planning::EndpointTarget FirstTarget(const Scenario& scenario,
   return target;
 }
 
-MapChange KnownObstacles(const Scenario& scenario, const TrialDraw& draw) {
-  planning::OccupancyMap map(MapOptions(scenario));
+MapChange KnownObstacles(const Scenario& scenario, const estimation::VehicleModel& model,
+                         const TrialDraw& draw) {
+  planning::OccupancyMap map(MapOptions(scenario, model));
   map.Recentre(draw.p_WB);
   std::vector<sim::Obstacle> obstacles;
   for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
@@ -92,7 +93,7 @@ RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registr
     flight.scenario = scenario;
     RecordPlan& plan = flight.plans.emplace_back();
     plan.before = replanner.state();
-    plan.map_change = KnownObstacles(scenario, draw);
+    plan.map_change = KnownObstacles(scenario, model, draw);
     planning::ReplanInput& input = plan.request.input;
     input.t_start = scenario.planning.latency.measured ? LongestLatency(scenario)
                                                        : 1e-3 * scenario.planning.latency.ms;

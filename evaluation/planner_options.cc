@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "touchdown/planning/margins.h"
+#include "touchdown/planning/swept_hull.h"
 #include "touchdown/sim/world.h"
 
 namespace touchdown::evaluation {
@@ -35,6 +37,10 @@ planning::Limits LimitsOf(const Scenario& scenario) {
   return {scenario.limits.speed, std::min(scenario.limits.acceleration, of_tilt)};
 }
 
+double HullAtEveryTilt(const estimation::VehicleModel& model) {
+  return std::hypot(model.hull_radius, model.foot_depth);
+}
+
 double TiltBeyondPlans(const Scenario& scenario, double reserve_deg) {
   return std::min(kSteepest, (scenario.limits.tilt_deg + reserve_deg) * kRadPerDeg);
 }
@@ -59,6 +65,12 @@ planning::TermSettings TermSettingsOf(const std::string& name,
 
 double TrackingTilt(const Scenario& scenario) {
   return TiltBeyondPlans(scenario, kTiltReserve_deg + kGustReserve_deg);
+}
+
+double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model) {
+  if (scenario.planner != PlannerKind::kLanding) return scenario.planning.clearance;
+  const planning::Margins calm = planning::MarginsOf(0.0, 0.0, 0.0, Eigen::Vector3d::Zero());
+  return std::max(scenario.planning.clearance, HullAtEveryTilt(model) + calm.Sum() + planning::kSweepRoom);
 }
 
 double LowestPlan(const estimation::VehicleModel& model) {
@@ -106,7 +118,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                      (scenario.planning.latency.measured ? LongestLatency(scenario) : 0.0);
   options.floor_height = LowestPlan(model);
   options.contact_height = model.foot_depth;
-  options.hull_radius = std::hypot(model.hull_radius, model.foot_depth);
+  options.hull_radius = HullAtEveryTilt(model);
   options.deck_half_size = 0.5 * scenario.pad.deck_size;
   return options;
 }

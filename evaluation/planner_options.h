@@ -43,6 +43,10 @@ planning::TermSettings TermSettingsOf(const std::string& name,
 /// How far the tracking law may tilt: farther than plans, which do not count on all of it [rad].
 double TrackingTilt(const Scenario& scenario);
 
+/// How far plans stay from obstacles: planning.clearance, but no less than what the landing planner's pairs
+/// keep in calm air, the hull at every tilt and its margins [m].
+double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model);
+
 /// Plans stay above this away from the pad [m].
 double LowestPlan(const estimation::VehicleModel& model);
 

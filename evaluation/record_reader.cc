@@ -14,6 +14,7 @@
 #include "touchdown/evaluation/record.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/table_rows.h"
+#include "touchdown/sim/vehicle_file.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -251,9 +252,10 @@ Meta ReadMeta(SqliteDb& db) {
   return meta;
 }
 
-// The grid that this build makes for the scenario must be the one that was recorded.
+// Nor may the grid that this build makes for the scenario differ from the one that was recorded.
 void CheckMap(const Meta& meta, const Scenario& scenario) {
-  const planning::OccupancyMap map(MapOptions(scenario));
+  const planning::OccupancyMap map(
+      MapOptions(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario))));
   const std::string resolution = fmt::format("{}", map.resolution());
   const std::string size = fmt::format("{} {} {}", map.size().x(), map.size().y(), map.size().z());
   if (meta.at("map_resolution") != resolution || meta.at("map_size") != size) {
@@ -263,7 +265,7 @@ void CheckMap(const Meta& meta, const Scenario& scenario) {
   }
 }
 
-// Nor may the files that the scenario names have become others: a step would be solved against
+// The files that the scenario names may not have become others: a step would be solved against
 // another pad or vehicle.
 void CheckOutsideFiles(const Meta& meta, const Scenario& scenario) {
   const OutsideFiles now = OutsideFilesOf(scenario);
@@ -311,8 +313,8 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   all.insert(all.end(), overrides.begin(), overrides.end());
   flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),
                                   path + " (scenario_yaml)", all, registries);
-  CheckMap(meta, flight.scenario);
   CheckOutsideFiles(meta, flight.scenario);
+  CheckMap(meta, flight.scenario);
   flight.build_hash = meta.at("build_hash");
   flight.revision = meta.at("revision");
   ReadResults(db, &flight.plans);

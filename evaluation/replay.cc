@@ -19,6 +19,10 @@ sim::PadMotion TruthOf(const Scenario& scenario) {
   return sim::PadMotion(PadMotionOf(scenario, draw.phase, draw.seed));
 }
 
+estimation::VehicleModel ModelOf(const RecordedFlight& flight) {
+  return sim::LoadVehicleModel(VehicleMjcf(flight.scenario));
+}
+
 // What a backend or the vehicle's file refuses is the user's to mend.
 planning::Replanner MakeReplanner(const RecordedFlight& flight, const Registries& registries) {
   if (flight.scenario.planner != PlannerKind::kLanding) {
@@ -26,8 +30,7 @@ planning::Replanner MakeReplanner(const RecordedFlight& flight, const Registries
         fmt::format("{}: only steps of the planner landing can be asked again.", flight.path));
   }
   try {
-    const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(flight.scenario));
-    return {PlannerOptions(flight.scenario, model, registries.terms), registries.backends};
+    return {PlannerOptions(flight.scenario, ModelOf(flight), registries.terms), registries.backends};
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: its planner cannot be set up: {}.", flight.path, error.what()));
   }
@@ -39,13 +42,13 @@ Replay::Replay(const RecordedFlight& flight, const Registries& registries)
     : flight_(flight),
       oracle_(TruthOf(flight.scenario)),
       replanner_(MakeReplanner(flight, registries)),
-      map_(MapOptions(flight.scenario)) {
+      map_(MapOptions(flight.scenario, ModelOf(flight))) {
   replanner_.Prepare(map_);
 }
 
 void Replay::Seek(int step) {
   if (step < step_) {
-    map_ = planning::OccupancyMap(MapOptions(flight_.scenario));
+    map_ = planning::OccupancyMap(map_.options());
     step_ = -1;
   }
   while (step_ < step) {

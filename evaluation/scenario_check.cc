@@ -91,11 +91,12 @@ void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel&
         source.WhereOf(chosen ? "planning.latency" : "planning.rate").ToString(), longest,
         s.planning.rate, latency.ms));
   }
-  if (s.planning.clearance < model.hull_radius) {
+  const double most = 10.0 * planning::OccupancyMapOptions{}.resolution;
+  if (const double kept = PlanClearance(s, model); kept > most) {
     throw BadInput(fmt::format(
-        "{}: planning.clearance must be in [{:.4g}, 1] m, from the radius of the vehicle's hull "
-        "on, not '{}'.",
-        source.WhereOf("planning.clearance").ToString(), model.hull_radius, s.planning.clearance));
+        "{}: vehicle {}: its hull at every tilt and the margins of the landing planner are {:.2f} m, "
+        "they must be at most {:g} m.",
+        source.WhereOf("vehicle").ToString(), s.vehicle, kept, most));
   }
   CheckCeiling(source, model);
 }

@@ -44,8 +44,8 @@ void AddPlanningKeys(KeyList& keys) {
                                                        : WriteNumber(s.planning.latency.ms);
                   }});
   keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 1, "m"),
-                                  "obstacles are grown by this in the map; no less than the "
-                                  "radius of the vehicle's hull",
+                                  "obstacles are grown by this in the map; planner landing: "
+                                  "raised to the hull at every tilt and its margins in calm air",
                                   TOUCHDOWN_AT(planning.clearance)));
   keys.push_back(Number<Scenario>("planning.ceiling", Above(0, 1000, "m"),
                                   "flight ceiling of the vehicle's centre above the ground; above "

@@ -8,8 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/trial_json.h"
+#include "touchdown/planning/swept_hull.h"
 #include "touchdown/sim/vehicle_file.h"
 
 namespace touchdown::evaluation {
@@ -123,6 +125,20 @@ TEST(ClosedLoop, PlansAccelerateNoMoreThanTheTiltAllows) {
   EXPECT_NEAR(PlannerOptions(scenario, {}, planning::StandardTerms()).limits.acceleration,
               9.81 * 0.17633, 1e-3);
   EXPECT_EQ(PlannerOptions(Scenario{}, {}, planning::StandardTerms()).limits.acceleration, 6.0);
+}
+
+TEST(ClosedLoop, AClearanceBelowWhatPairsKeepIsRaised) {
+  const estimation::VehicleModel model = sim::LoadVehicleModel(sim::DefaultVehicleMjcf());
+  const auto clearance = [&](const std::vector<std::string>& sets) {
+    return PlanClearance(Shipped("open", sets), model);
+  };
+  const double least = std::hypot(model.hull_radius, model.foot_depth) + 0.04 + planning::kSweepRoom;
+  EXPECT_NEAR(clearance({"planning.clearance=0.2"}), least, 1e-9);
+  EXPECT_EQ(clearance({"planning.clearance=0.5"}), 0.5);
+  // The baselines prove no pairs.
+  EXPECT_EQ(clearance({"planning.clearance=0.2", "planner=ego"}), 0.2);
+  EXPECT_NEAR(MapOptions(Shipped("open", {"planning.clearance=0.2"}), model).inflation_radius,
+              least, 1e-9);
 }
 
 TEST(ClosedLoop, TheSameSeedGivesTheSameBitsRecordedOrNot) {

@@ -32,7 +32,7 @@ def test_help_lists_what_is_built(run):
         (("land", "no/such/file.yaml"), ["no/such/file.yaml"]),
         (("land", "/"), ["/", "directory"]),
         (("land", "--set", "planning.latency=101"), ["planning.latency", "[0, 100] ms", "101"]),
-        (("land", "--set", "planning.clearance=0.2"), ["planning.clearance", "[0.3, 1] m"]),
+        (("land", "--set", "planning.clearance=0.05"), ["planning.clearance", "[0.1, 1] m"]),
         (("land", "--set", "planning.ceiling=1"), ["planning.ceiling", "1000] m"]),
         (("land", "--set", "start.position=[7, 6.5, 0.6]"), ["start.position", "1.36 m"]),
         (("land", "--set", "pad.sped=1"), ["pad.sped", "pad.speed"]),
