@@ -317,8 +317,13 @@ class Trial {
       if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
       if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
       result_.cause = touched_;
+      const bool too_late = result_.outcome == Outcome::kStood ||
+                            result_.outcome == Outcome::kTimeout ||
+                            result_.outcome == Outcome::kInfeasible;
+      if (too_late && !no_plan_reason_.empty()) {
+        result_.detail += " Reason: " + no_plan_reason_ + ".";
+      }
       if (result_.outcome == Outcome::kStood) {
-        if (!no_plan_reason_.empty()) result_.detail += " Reason: " + no_plan_reason_ + ".";
         result_.cause = no_plan_reason_.empty()
                             ? std::string(control::ToString(pilot_.mission().mode))
                             : no_plan_reason_;

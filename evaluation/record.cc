@@ -53,7 +53,8 @@ CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t RE
   noise_turn REAL);
 CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, cov2 REAL, cov3 REAL,
   cov4 REAL, PRIMARY KEY(plan, i));
-CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, climb REAL, strip_t REAL,
+CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, look_x REAL,
+  look_y REAL, look_z REAL, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
   next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL,
@@ -170,7 +171,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const RecordPlan& row : plans) {
@@ -184,7 +185,10 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       belief.Run(id, i, p.belief.mean(i), c(i, 0), c(i, 1), c(i, 2), c(i, 3), c(i, 4));
     }
     const planning::ReplannerState& s = row.before;
-    state.Run(id, s.planned, s.around_unseen, s.climb, s.strip_t, s.strip_from.x(),
+    const auto look = [&s](int axis) -> std::optional<double> {
+      return s.looks_at_W ? std::optional<double>((*s.looks_at_W)[axis]) : std::nullopt;
+    };
+    state.Run(id, s.planned, s.around_unseen, look(0), look(1), look(2), s.climb, s.strip_t, s.strip_from.x(),
               s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor, s.current.curve.t0(),
               s.current.curve.interval(), s.current.stop.t0(), s.current.stop.interval(),
               s.next.curve.t0(), s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),

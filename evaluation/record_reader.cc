@@ -186,7 +186,7 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   ReadEach(
       TableRows(
           db, "replanner_state",
-          "plan, planned, around_unseen, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
+          "plan, planned, around_unseen, look_x, look_y, look_z, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
           "strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
           "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
           "current_t_stop, current_proven, next_t_stop, next_proven",
@@ -195,6 +195,8 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
         planning::ReplannerState& s = plan->before;
         s.planned = row.Flag();
         s.around_unseen = row.Flag();
+        const std::optional<double> x = row.Optional(), y = row.Optional(), z = row.Optional();
+        if (x && y && z) s.looks_at_W = Eigen::Vector3d(*x, *y, *z);
         s.climb = row.Optional();
         s.strip_t = row.Optional();
         s.strip_from = row.Vector2();

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <optional>
 
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/fallback.h"
@@ -17,6 +17,7 @@
 #include "touchdown/planning/plan_attempt.h"
 #include "touchdown/planning/replan_checks.h"
 #include "touchdown/planning/stage_timer.h"
+#include "touchdown/planning/vantage.h"
 
 namespace touchdown::planning {
 
@@ -38,8 +39,7 @@ const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
 constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAside = 0.6;      // ... at most so far away [m] ...
-constexpr double kAsideFrom = 1.5;  // ... from a cell no farther than this [m] ...
+constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m] ...
 constexpr double kAboveLane = 0.1;  // ... with the feet so much above the deck [m]
 constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
 
@@ -111,6 +111,7 @@ class Replanner::Impl {
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
   bool LandsSoon(const ReplanInput& input, const HullSpace& hull) const;
   bool GoesOn(const ReplanInput& input, const HullSpace& hull);
+  bool StillLooks(const OccupancyMap& map);
   bool StepsAside(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
   bool Stops(double t0, const SplineState& start, const Eigen::Vector3d& shift,
              const HullSpace& hull, Fallback::Room room);
@@ -126,6 +127,7 @@ class Replanner::Impl {
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
   bool around_unseen_ = false;  // ... and it led around cells that were not seen
+  std::optional<Eigen::Vector3d> looks_at_W_;  // the committed curve leads to where it is in sight
   double climbing_ = -1.0;      // the committed curve is the caller's rest with this climb
 };
 
@@ -164,6 +166,7 @@ ReplannerState Replanner::Impl::State() const {
   state.next = next_;
   state.planned = planned_before_;
   state.around_unseen = around_unseen_;
+  state.looks_at_W = looks_at_W_;
   if (climbing_ >= 0.0) state.climb = climbing_;
   if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
   state.strip_from = strip_.pad_from;
@@ -179,6 +182,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   takes_over_ = next_.curve.t0();
   planned_before_ = state.planned;
   around_unseen_ = state.around_unseen;
+  looks_at_W_ = state.looks_at_W;
   climbing_ = state.climb.value_or(-1.0);
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
   strip_.floor = options_.floor_height;
@@ -254,7 +258,9 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   const SplineState start = Start(input);
   climbing_ = -1.0;
   const bool target_valid = TargetValid(input);
-  result_.reason = target_valid ? Plan(input, start, map) : ReplanReason::kInvalidInput;
+  result_.reason = !target_valid   ? ReplanReason::kInvalidInput
+                   : StillLooks(map) ? ReplanReason::kUnobserved
+                                     : Plan(input, start, map);
   if (target_valid) {
     strip_ = SpaceOverPad(input, start, WatchedUntil(input), map);
     strip_t_ = input.t_start;
@@ -302,27 +308,36 @@ bool Replanner::Impl::Stops(double t0, const SplineState& start, const Eigen::Ve
   return true;
 }
 
-/// Who has looked for long and does not see what the way on needs goes aside: from elsewhere, best from
-/// farther away, the camera sees more of what is beside, above and below. But not low, where the pad may come
-/// by, nor from where a landing goes on.
+/// Who went to where a cell is in sight makes no plan before it is known, or there is no better place.
+bool Replanner::Impl::StillLooks(const OccupancyMap& map) {
+  if (!looks_at_W_) return false;
+  const CellIndex cell = map.CellOf(*looks_at_W_);
+  if (result_.from_odometry || map.IsObservedFree(cell) || map.IsOccupied(cell)) {
+    looks_at_W_.reset();
+  }
+  result_.unseen_W = looks_at_W_;
+  return looks_at_W_.has_value();
+}
+
+/// Who has looked for long and does not see what the way on needs goes to where it is better in sight. But not
+/// low, where the pad may come by, nor from where a landing goes on.
 bool Replanner::Impl::StepsAside(const ReplanInput& input, const SplineState& start,
                                  const HullSpace& hull) {
   const double t0 = input.t_start;
   if (!result_.unseen_W || t0 - next_.Last().t_end() < kLookTime) return false;
-  const Eigen::Vector3d away = start.p - *result_.unseen_W;
-  if (away.norm() > kAsideFrom) return false;
+  looks_at_W_.reset();
+  const Eigen::Vector3d unseen = *result_.unseen_W;
+  if ((start.p - unseen).norm() > kAsideFrom) return false;
+  double lowest = -std::numeric_limits<double>::infinity();
   if (hull.pad != nullptr) {
-    const double deck = hull.pad->At(t0).p_WP.z();
-    if (start.p.z() - options_.contact_height < deck + kAboveLane) return false;
+    lowest = hull.pad->At(t0).p_WP.z() + options_.contact_height + kAboveLane;
     if (input.endpoint.leads_to_contact() && hull.space->OverPad(start.p)) return false;
   }
-  const double heading = std::atan2(away.y(), away.x());
-  for (const double turn : {0.0, 0.25, -0.25, 0.5, -0.5}) {
-    const double along = heading + turn * std::numbers::pi;
-    const Eigen::Vector3d aside(std::cos(along), std::sin(along), 0.0);
-    for (const double way : {kAside, 0.5 * kAside, 0.25 * kAside}) {
-      if (Stops(t0, start, way * aside, hull, Fallback::Room::kOfPlans)) return true;
-    }
+  for (const Eigen::Vector3d& shift : Vantages(start.p, unseen, input.pull_W)) {
+    if (start.p.z() + shift.z() < lowest) continue;
+    if (!Stops(t0, start, shift, hull, Fallback::Room::kOfPlans)) continue;
+    looks_at_W_ = unseen;
+    return true;
   }
   return false;
 }
@@ -383,6 +398,7 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
                               : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
   planned_before_ = false;
+  looks_at_W_.reset();
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (!under_way) {
     climbing_ = -1.0;

@@ -20,6 +20,7 @@ struct ReplannerState {
   FlightPair next;              ///< committed
   bool planned = false;         ///< `next` is a plan to the pad: its arrival is kept ...
   bool around_unseen = false;   ///< ... and it led around cells that were not seen
+  std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
   std::optional<double> climb;  ///< `next` is the caller's rest with this climb [m]
   std::optional<double>
       strip_t;  ///< when the strip over the pad was last known [s], and the strip:

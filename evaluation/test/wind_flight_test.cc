@@ -55,6 +55,20 @@ std::string Refusal(const Overrides& overrides) {
   return "";
 }
 
+// In open sky, with a hull that is wide by its margins and a nose that the wind lifts, it stood for ever: cells in
+// front and below were never in the image.
+TEST(WindFlight, WhoDoesNotSeeTheWayForItsLeanLooksFromElsewhere) {
+  const TrialResult result =
+      Fly({"pad.motion=circle", "pad.heading_deg=-90", "pad.turn_rate=-0.07", "pad.speed=0.23",
+           "pad.start=[-3.5, -12.8]", "start.position=[1.7, -9.2, 2.48]", "start.yaw_deg=-165",
+           "depth.rate=14.6", "depth.noise=0.016", "own_state=estimated", "wind.mean=8.6",
+           "wind.max=10", "plant.mass=0.87", "plant.drag=1.14", "plant.thrust=0.9",
+           "limits.acceleration=0.7", "descent=vertical", "timeout=60"},
+          nullptr, 2);
+  EXPECT_EQ(result.outcome, Outcome::kLanded) << result.detail;
+  EXPECT_EQ(result.safety->uncertified_steps, 0);
+}
+
 TEST(WindFlight, SteadyWindLeavesNoSteadyError) {
   const Overrides wind = {"wind.mean=11", "timeout=18"};
   const TrialResult with = Fly(Join(kAbovePad, kNorthWind, wind));
