@@ -15,7 +15,8 @@ namespace touchdown::planning {
 namespace {
 
 constexpr int kHeadings = 8;
-constexpr double kBetter = 0.1;  // nearer to the middle of the image, or it is not worth the way [rad]
+constexpr double kBetter =
+    0.1;  // nearer to the middle of the image, or it is not worth the way [rad]
 
 }  // namespace
 
