@@ -233,7 +233,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (result.from_odometry) meets_vehicle_at_ = input.t_start;
   measured_latency_ =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  DeliverLate(vehicle.t);
+  replan_.late = DeliverLate(vehicle.t) && result.committed;
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
   lands_ = scenario_.planner == PlannerKind::kLanding && result.Lands();
@@ -253,11 +253,11 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
 
 // A measured step that took longer than was reckoned with: its plan is flown from when it was there, and
 // no other step is begun before.
-void Pilot::DeliverLate(double t) {
-  replan_.late = scenario_.planning.latency.measured && measured_latency_ > replan_.latency_s;
-  if (!replan_.late) return;
+bool Pilot::DeliverLate(double t) {
+  if (!scenario_.planning.latency.measured || measured_latency_ <= replan_.latency_s) return false;
   busy_until_ = t + measured_latency_;
   planner_->TakeOverAt(busy_until_);
+  return true;
 }
 
 // Longer, and the shortest plan would end too early to be decided on.

@@ -28,7 +28,7 @@ struct PilotReplan {
   ReplanRequest request;
   estimation::PadState pad;  ///< the prediction at t_now
   double latency_s = 0.0;    ///< with which the plan is flown
-  bool late = false;         ///< it came later than that, or too late
+  bool late = false;         ///< a new pair took over later than that
 };
 
 /// A plan that is to end in contact: `level_time` before it [s], level, sinking with `touchdown_rate` [m/s].
@@ -84,7 +84,7 @@ class Pilot {
   double DesiredHeading();
   planning::EndpointTarget Endpoint(double t) const;
   double Latency() const;
-  void DeliverLate(double t);
+  bool DeliverLate(double t);
   bool Levelled(double t) const;
   bool Landing() const;
   Eigen::Vector3d WayAt(double t) const;

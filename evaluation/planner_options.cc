@@ -70,7 +70,8 @@ double TrackingTilt(const Scenario& scenario) {
 double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model) {
   if (scenario.planner != PlannerKind::kLanding) return scenario.planning.clearance;
   const planning::Margins calm = planning::MarginsOf(0.0, 0.0, 0.0, Eigen::Vector3d::Zero());
-  return std::max(scenario.planning.clearance, HullAtEveryTilt(model) + calm.Sum() + planning::kSweepRoom);
+  const double kept = HullAtEveryTilt(model) + calm.Sum() + planning::kSweepRoom;
+  return std::max(scenario.planning.clearance, kept);
 }
 
 double LowestPlan(const estimation::VehicleModel& model) {

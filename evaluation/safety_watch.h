@@ -40,7 +40,7 @@ class SafetyWatch {
  public:
   explicit SafetyWatch(const sim::ObstacleField& obstacles) : obstacles_(obstacles) {}
 
-  /// `late`: the answer came after it was to take over, so that the reference jumps.
+  /// `late`: a new pair took over later than it was proven for, and the reference jumped.
   void Step(const planning::ReplanResult& plan, const planning::Margins& margins,
             bool late = false);
   /// Where the vehicle takes itself to be, where it is, and where it is to be.

@@ -91,6 +91,13 @@ void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel&
         source.WhereOf(chosen ? "planning.latency" : "planning.rate").ToString(), longest,
         s.planning.rate, latency.ms));
   }
+  if (s.planner != PlannerKind::kLanding && s.planning.clearance < model.hull_radius) {
+    throw BadInput(fmt::format(
+        "{}: planning.clearance must be in [{:.4g}, 1] m, from the radius of the vehicle's hull "
+        "on, with planner {}, not '{}'.",
+        source.WhereOf("planning.clearance").ToString(), model.hull_radius,
+        FindScenarioKey("planner")->get(s), s.planning.clearance));
+  }
   const double most = 10.0 * planning::OccupancyMapOptions{}.resolution;
   if (const double kept = PlanClearance(s, model); kept > most) {
     throw BadInput(fmt::format(

@@ -72,12 +72,13 @@ class Replanner::Impl {
   /// A pair that comes after the older one's stop has begun comes too late: it does not start there.
   void TakeOverAt(double t) {
     if (!result_.committed || t <= takes_over_) return;
+    takes_over_ = t;
     if (t > current_.t_stop) {
       next_ = current_;
-      planned_before_ = false;
+      result_.committed = planned_before_ = false;
+      looks_at_W_.reset();
       climbing_ = -1.0;
     }
-    takes_over_ = t;
   }
 
   /// The pair that is flown at time t.

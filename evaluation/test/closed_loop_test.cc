@@ -136,7 +136,7 @@ TEST(ClosedLoop, AClearanceBelowWhatPairsKeepIsRaised) {
   EXPECT_NEAR(clearance({"planning.clearance=0.2"}), least, 1e-9);
   EXPECT_EQ(clearance({"planning.clearance=0.5"}), 0.5);
   // The baselines prove no pairs.
-  EXPECT_EQ(clearance({"planning.clearance=0.2", "planner=ego"}), 0.2);
+  EXPECT_EQ(clearance({"planning.clearance=0.35", "planner=ego"}), 0.35);
   EXPECT_NEAR(MapOptions(Shipped("open", {"planning.clearance=0.2"}), model).inflation_radius,
               least, 1e-9);
 }

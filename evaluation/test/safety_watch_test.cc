@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/safety_watch.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace touchdown::evaluation {
@@ -46,6 +48,7 @@ TEST(SafetyWatch, CountsStopsOnceAndEveryStepWithoutAProof) {
   SafetyWatch watch(nothing);
   planning::ReplanResult stop = Proven();
   stop.status = planning::ReplanStatus::kBraking;
+  stop.t_stop = 1.0;
   for (int i = 0; i < 3; ++i) watch.Step(stop, {});
   watch.Step(Proven(), {});
   stop.certificate.stops_in_observed_space = false;
@@ -55,9 +58,12 @@ TEST(SafetyWatch, CountsStopsOnceAndEveryStepWithoutAProof) {
   // A stop that is wanted is a new pair; an answer that comes late is none.
   stop = Proven();
   stop.status = planning::ReplanStatus::kBraking;
+  stop.t_stop = std::numeric_limits<double>::infinity();
   stop.committed = true;
   watch.Step(Proven(), {});
   watch.Step(stop, {}, true);
+  stop.committed = false;  // it goes on
+  watch.Step(stop, {});
   EXPECT_EQ(watch.figures().stops_flown, 2);
   EXPECT_EQ(watch.figures().uncertified_steps, 3);
 }

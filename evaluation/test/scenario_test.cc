@@ -319,7 +319,10 @@ TEST_F(ScenarioTest, AClearanceBeyondTheMapIsRefused) {
   EXPECT_THAT(Refusal("planning: {clearance: 1.2}\n"),
               HasSubstr("planning.clearance must be a number in [0.1, 1] m"));
   EXPECT_EQ(Refusal("planning: {clearance: 1}\n"), "accepted");
-  EXPECT_EQ(Refusal("planning: {clearance: 0.1}\n"), "accepted");
+  EXPECT_EQ(Refusal("planning: {clearance: 0.1}\n"), "accepted") << "it is raised";
+  EXPECT_THAT(Refusal("planning:\n  clearance: 0.25\nplanner: ego\n"),
+              AllOf(HasSubstr(path_ + ":2"), HasSubstr("planning.clearance must be in [0.3, 1] m"),
+                    HasSubstr("with planner ego, not '0.25'")));
 }
 
 TEST_F(ScenarioTest, AWholeNumberIsWholeAndInItsRange) {
