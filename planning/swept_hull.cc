@@ -44,6 +44,11 @@ class Tube {
   bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
     const double cell = map_.resolution();
     const int z_low = Index(p.z() - radius_), z_high = Index(p.z() + radius_);
+    const CellIndex low(Index(p.x() - radius_), Index(p.y() - radius_), z_low);
+    const CellIndex high(Index(p.x() + radius_), Index(p.y() + radius_), z_high);
+    const int count = high.x() - low.x() + 1;
+    const bool in_window = count <= 64 && map_.InWindow(low) && map_.InWindow(high);
+    const std::uint64_t all = ~std::uint64_t{0} >> (64 - std::min(count, 64));
     const Deck deck = DeckBelow(p, t);
     for (int z = z_low; z <= z_high; ++z) {
       if ((z + 1) * cell <= deck.exempt_below + kRounding) continue;
@@ -54,6 +59,8 @@ class Tube {
       const double reach = std::sqrt(left);
       const int y_high = Index(p.y() + reach);
       for (int y = Index(p.y() - reach); y <= y_high; ++y) {
+        // Most rows are free beyond the ball, too.
+        if (in_window && map_.ObservedFreeRow({low.x(), y, z}, count) == all) continue;
         const double dy = Gap(p.y(), y, cell);
         const double half2 = left - dy * dy;
         if (half2 <= 0.0) continue;
@@ -162,10 +169,10 @@ class Tube {
 /// Feet no more than `below` the deck [m], as far as the hull may be over it.
 bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double below,
                const Eigen::Vector3d& start) {
-  if (hull.pad == nullptr) return true;
-  PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
+  if (hull.pad == nullptr || p.z() >= start.z()) return true;
+  const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   const double feet = p.z() - hull.foot_depth;
-  if (feet >= deck.p_WP.z() - below || p.z() >= start.z()) return true;
+  if (feet >= deck.p_WP.z() - below) return true;
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 
