@@ -189,7 +189,8 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       return s.looks_at_W ? std::optional<double>((*s.looks_at_W)[axis]) : std::nullopt;
     };
     state.Run(id, s.planned, s.around_unseen, look(0), look(1), look(2), s.climb, s.strip_t,
-              s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor, s.current.curve.t0(),
+              s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor,
+              s.current.curve.t0(),
               s.current.curve.interval(), s.current.stop.t0(), s.current.stop.interval(),
               s.next.curve.t0(), s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
               FiniteOrNone(s.current.t_stop), s.current.proven, FiniteOrNone(s.next.t_stop),

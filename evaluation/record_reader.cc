@@ -186,8 +186,8 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   ReadEach(
       TableRows(
           db, "replanner_state",
-          "plan, planned, around_unseen, look_x, look_y, look_z, climb, strip_t, strip_from_x, strip_from_y, strip_to_x, "
-          "strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
+          "plan, planned, around_unseen, look_x, look_y, look_z, climb, strip_t, strip_from_x, "
+          "strip_from_y, strip_to_x, strip_to_y, strip_floor, current_t0, current_h, current_stop_t0, "
           "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
           "current_t_stop, current_proven, next_t_stop, next_proven",
           "plan"),

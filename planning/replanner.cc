@@ -39,8 +39,7 @@ const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
 constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m] ...
-constexpr double kAboveLane = 0.1;  // ... with the feet so much above the deck [m]
+constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
 constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
@@ -331,7 +330,7 @@ bool Replanner::Impl::StepsAside(const ReplanInput& input, const SplineState& st
   if ((start.p - unseen).norm() > kAsideFrom) return false;
   double lowest = -std::numeric_limits<double>::infinity();
   if (hull.pad != nullptr) {
-    lowest = hull.pad->At(t0).p_WP.z() + options_.contact_height + kAboveLane;
+    lowest = LowestRest(t0, hull);
     if (input.endpoint.leads_to_contact() && hull.space->OverPad(start.p)) return false;
   }
   for (const Eigen::Vector3d& shift : Vantages(start.p, unseen, input.pull_W)) {

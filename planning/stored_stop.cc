@@ -34,8 +34,7 @@ Limits LimitsOfStops(const Limits& limits) {
 /// How far a vehicle that rests at p has to rise so that the pad may drive on below it [m].
 double TooLow(const Eigen::Vector3d& p, double t, const HullSpace& hull) {
   if (hull.pad == nullptr || !hull.space->OverPad(p)) return 0.0;
-  const double lowest = hull.pad->At(t).p_WP.z() + hull.foot_depth + kAboveDeck;
-  return std::max(0.0, lowest - p.z());
+  return std::max(0.0, LowestRest(t, hull) - p.z());
 }
 
 /// Of the feet above the deck, wherever that is [m].
@@ -44,6 +43,10 @@ double FeetAbove(const UniformBspline& curve, double t, const HullSpace& hull) {
 }
 
 }  // namespace
+
+double LowestRest(double t, const HullSpace& hull) {
+  return hull.pad->At(t).p_WP.z() + hull.foot_depth + kAboveDeck;
+}
 
 void Enter(const PairProof& proof, Certificate* certificate) {
   certificate->stops_in_observed_space = proof.proven;

@@ -41,6 +41,10 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
 /// The same of a curve that ends at rest: all of it is the stop. Fills t_stop.
 PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair);
 
+/// How high a vehicle that rests in the pad's way has to be at time t [s], so that the pad may drive on below it;
+/// in W [m]. @pre there is a pad.
+double LowestRest(double t, const HullSpace& hull);
+
 /// The deck is met with at most `share` of the sink rate and of the drift that the landing rule allows a
 /// touchdown at (docs/landing.md): the curve at time t [s], relative to the pad's centre as it is predicted.
 bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull);
