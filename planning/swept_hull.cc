@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hull's tube through the observed-free cells. The hull at every tilt is a ball, and so is the hull
 // grown by its margins. The curve is sampled so densely that the ball, larger by kSweepRoom, holds the
-// tube between two samples; the cells that a ball touches are asked row by row, 64 along x at a time.
+// tube between two samples; the cells that a ball touches are asked row by row, 64 along x at a time. Most
+// tubes are free with all that is around them: a box that holds many balls is asked first.
 
 #include "touchdown/planning/swept_hull.h"
 
@@ -9,6 +10,7 @@
 #include <bit>
 #include <cmath>
 
+#include "touchdown/planning/cell_box.h"
 #include "touchdown/planning/pad_outline.h"
 
 namespace touchdown::planning {
@@ -17,12 +19,50 @@ namespace {
 
 constexpr double kStep = 0.01;     // between looks at the position [s] ...
 constexpr double kSpacing = 0.06;  // ... and the way between two balls [m]
+constexpr double kAhead = 0.25;    // whose balls are asked for in one box [s]
 static_assert(kSweepRoom >= 0.01);  // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s
 constexpr double kNearer = 1e-6;  // rounding of a hull that leaves a cell: it comes no nearer [m]
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
 constexpr double kLevel = 2e-3;     // rounding of floor and ceiling: kChordSagitta [m]
+
+/// Positions along a curve, which cost less from one piece of it than one by one; past its end at its end's
+/// velocity.
+class Path {
+ public:
+  explicit Path(const UniformBspline& curve)
+      : curve_(curve),
+        t_end_(curve.t_end()),
+        per_second_(1.0 / curve.interval()),
+        last_(curve.segments() - 1) {}
+
+  Eigen::Vector3d At(double t) {
+    if (t > t_end_) return curve_.EvaluateOnward(t).p_WB;
+    const double s = std::max(0.0, (t - curve_.t0()) * per_second_);
+    const int piece = std::min(static_cast<int>(s), last_);
+    if (piece != piece_) Enter(piece);
+    const double u = s - piece;
+    return c0_ + u * (c1_ + u * (c2_ + u * c3_));
+  }
+
+ private:
+  void Enter(int piece) {
+    piece_ = piece;
+    const Eigen::Map<const ControlPoints> q = curve_.control_points();
+    const auto q0 = q.col(piece), q1 = q.col(piece + 1), q2 = q.col(piece + 2);
+    c0_ = (q0 + 4.0 * q1 + q2) / 6.0;
+    c1_ = (q2 - q0) / 2.0;
+    c2_ = (q0 - 2.0 * q1 + q2) / 2.0;
+    c3_ = (q.col(piece + 3) - 3.0 * q2 + 3.0 * q1 - q0) / 6.0;
+  }
+
+  const UniformBspline& curve_;
+  const double t_end_, per_second_;
+  const int last_;
+  int piece_ = -1;
+  Eigen::Vector3d c0_, c1_, c2_, c3_;  // of the piece as a polynomial in u
+};
 
 /// Distance of a coordinate from the cell i.
 double Gap(double x, int i, double resolution) {
@@ -38,19 +78,34 @@ class Tube {
         radius_(hull.radius() + kSweepRoom),
         face_noise_(OccupancyMap::kNoiseSigmas * map_.options().range_noise * kFaceRange +
                     kRounding),
+        first_above_ground_(Index(map_.options().ground_height + kRounding)),
         start_deck_(DeckBelow(start.p_W, start.t)) {}
+
+  /// The ball at p is in the box that was found free last.
+  bool InFreeBox(const Eigen::Vector3d& p) const {
+    return (p.array() >= free_from_.array()).all() && (p.array() <= free_to_.array()).all();
+  }
+
+  /// Makes it the box around the balls at p and at `ahead`, if all of it was observed free.
+  bool FindFreeBox(const Eigen::Vector3d& p, const Eigen::Vector3d& ahead) {
+    CellBox box = BoxAround(p);
+    const CellBox there = BoxAround(ahead);
+    box = {box.low.cwiseMin(there.low), box.high.cwiseMax(there.high)};
+    const bool is_free = AllFree(box);
+    const double inside = radius_ + kRounding;
+    free_from_ = (box.low.cast<double>() * map_.resolution()).array() + inside;
+    free_to_ = (box.high.cast<double>() * map_.resolution()).array() - inside;
+    if (!is_free) free_to_ = free_from_.array() - 1.0;
+    return is_free;
+  }
 
   /// Whether all cells that the ball at p touches at time t are observed free, or excepted.
   bool Holds(const Eigen::Vector3d& p, double t, Sweep* sweep) const {
+    const CellBox box = BoxAround(p);
     const double cell = map_.resolution();
-    const int z_low = Index(p.z() - radius_), z_high = Index(p.z() + radius_);
-    const CellIndex low(Index(p.x() - radius_), Index(p.y() - radius_), z_low);
-    const CellIndex high(Index(p.x() + radius_), Index(p.y() + radius_), z_high);
-    const int count = high.x() - low.x() + 1;
-    const bool in_window = count <= 64 && map_.InWindow(low) && map_.InWindow(high);
-    const std::uint64_t all = ~std::uint64_t{0} >> (64 - std::min(count, 64));
+    const bool has_rows = HasRows(box);
     const Deck deck = DeckBelow(p, t);
-    for (int z = z_low; z <= z_high; ++z) {
+    for (int z = box.low.z(); z < box.high.z(); ++z) {
       if ((z + 1) * cell <= deck.exempt_below + kRounding) continue;
       const bool holds_deck = HoldsFace(z, deck);
       const double dz = Gap(p.z(), z, cell);
@@ -60,7 +115,7 @@ class Tube {
       const int y_high = Index(p.y() + reach);
       for (int y = Index(p.y() - reach); y <= y_high; ++y) {
         // Most rows are free beyond the ball, too.
-        if (in_window && map_.ObservedFreeRow({low.x(), y, z}, count) == all) continue;
+        if (has_rows && RowIsFree(box, y, z)) continue;
         const double dy = Gap(p.y(), y, cell);
         const double half2 = left - dy * dy;
         if (half2 <= 0.0) continue;
@@ -75,6 +130,35 @@ class Tube {
 
  private:
   int Index(double x) const { return static_cast<int>(std::floor(x / map_.resolution())); }
+
+  /// All cells that the ball may touch, but for those that are ground.
+  CellBox BoxAround(const Eigen::Vector3d& p) const {
+    const CellIndex low(Index(p.x() - radius_), Index(p.y() - radius_),
+                        std::max(Index(p.z() - radius_), first_above_ground_));
+    const CellIndex last(Index(p.x() + radius_), Index(p.y() + radius_), Index(p.z() + radius_));
+    return {low, last + CellIndex::Ones()};
+  }
+
+  /// The box's rows can be asked for whole.
+  bool HasRows(const CellBox& box) const {
+    return box.high.x() - box.low.x() <= 64 && map_.InWindow(box.low) &&
+           map_.InWindow(box.high - CellIndex::Ones());
+  }
+
+  bool RowIsFree(const CellBox& box, int y, int z) const {
+    const int count = box.high.x() - box.low.x();
+    return map_.ObservedFreeRow({box.low.x(), y, z}, count) == ~std::uint64_t{0} >> (64 - count);
+  }
+
+  bool AllFree(const CellBox& box) const {
+    if (!HasRows(box)) return false;
+    for (int z = box.low.z(); z < box.high.z(); ++z) {
+      for (int y = box.low.y(); y < box.high.y(); ++y) {
+        if (!RowIsFree(box, y, z)) return false;
+      }
+    }
+    return true;
+  }
 
   /// The deck below the ball.
   struct Deck {
@@ -163,6 +247,9 @@ class Tube {
   Eigen::Vector3d start_;
   double radius_;
   double face_noise_;  // of returns from the deck [m]
+  int first_above_ground_;  // level of cells
+  Eigen::Vector3d free_from_ = Eigen::Vector3d::Ones();  // of balls in a box of free cells [m]
+  Eigen::Vector3d free_to_ = Eigen::Vector3d::Zero();    // ... none yet
   Deck start_deck_;    // below the start, when it was there
 };
 
@@ -182,6 +269,8 @@ bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Ve
                bool may_touch) {
   const double ceiling = std::max(space.ceiling, start.z());
   if (p.z() > ceiling + kLevel) return false;
+  const double above_both = std::max(space.floor, space.pad_floor);
+  if (p.z() >= std::min(above_both, start.z()) - kLevel) return true;
   if (may_touch && space.OverPad(p)) return true;
   return p.z() >= std::min(space.FloorAt(p), start.z()) - kLevel;
 }
@@ -191,30 +280,39 @@ bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Ve
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
                 const HullStart& start, const HullSpace& hull, double t_contact) {
   Sweep sweep;
-  const Tube tube(hull, start);
+  Tube tube(hull, start);
+  Path path(curve), ahead(curve);
   Eigen::Vector3d ball = start.p_W;  // where the hull was looked at last,
   Eigen::Vector3d before = ball;     // and the place after it that was passed over
-  double t_before = t_from;
+  double t_before = t_from, away2_before = 0.0;
   const double below = std::isfinite(t_contact) ? kFaceSlack : 0.0;
+  const auto holds = [&](const Eigen::Vector3d& p, double t) {
+    return tube.InFreeBox(p) || tube.FindFreeBox(p, ahead.At(std::min(t + kAhead, t_to))) ||
+           tube.Holds(p, t, &sweep);
+  };
   const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / kStep)));
   for (int i = 0; i <= steps; ++i) {
     const double t = t_from + (t_to - t_from) * i / steps;
-    const Eigen::Vector3d p = t <= curve.t_end() ? curve.Position(t) : curve.EvaluateOnward(t).p_WB;
+    const Eigen::Vector3d p = path.At(t);
     const bool may_touch = t >= t_contact;
     if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
     if (!may_touch && !AboveDeck(hull, p, t, below, start.p_W)) return sweep;
     const bool first_or_last = i == 0 || i == steps;
-    const double away = (p - ball).norm(), away_before = (before - ball).norm();
+    double away2 = (p - ball).squaredNorm();
     // A way that turns back was at its farthest just before.
-    if (!first_or_last && away < away_before) {
-      if (!tube.Holds(before, t_before, &sweep)) return sweep;
+    if (!first_or_last && away2 < away2_before) {
+      if (!holds(before, t_before)) return sweep;
       ball = before;
+      away2 = (p - ball).squaredNorm();
+    }
+    if (first_or_last || away2 >= kSpacing * kSpacing) {
+      if (!holds(p, t)) return sweep;
+      ball = p;
+      away2 = 0.0;
     }
     before = p;
     t_before = t;
-    if (!first_or_last && (p - ball).norm() < kSpacing) continue;
-    if (!tube.Holds(p, t, &sweep)) return sweep;
-    ball = p;
+    away2_before = away2;
   }
   sweep.proven = true;
   return sweep;

@@ -107,29 +107,31 @@ SplineState UniformBspline::AtKnot(int k) const {
 DerivativeBounds BoundDerivatives(const UniformBspline& curve, const Eigen::Vector3d& pull_W) {
   const Eigen::Map<const ControlPoints> q = curve.control_points();
   const double h = curve.interval();
-  const int n = static_cast<int>(q.cols());
   DerivativeBounds bounds;
-  // Bezier points of the velocity on segment i: v at knot i, V_{i+1}, v at knot i + 1. The first
-  // and the last derivative control point, V_0 and V_{N-2}, are no Bezier points.
-  for (int k = 0; k <= curve.segments(); ++k) {
-    const SplineState knot = curve.AtKnot(k);
-    bounds.speed = std::max(bounds.speed, knot.v.norm());
-    bounds.acceleration = std::max(bounds.acceleration, knot.a.norm());
-  }
-  for (int i = 1; i + 2 < n; ++i) {
-    bounds.speed = std::max(bounds.speed, (q.col(i + 1) - q.col(i)).norm() / h);
-  }
   // The specific thrust f = a + g e_z - pull is linear on a segment, so that f x j is constant there, and the axis
   // turns with |f x j| / |f|^2: fastest where f is shortest.
   const Eigen::Vector3d hover_W = estimation::kGravity * Eigen::Vector3d::UnitZ() - pull_W;
+  SplineState from = curve.AtKnot(0);
+  double speed2 = from.v.squaredNorm(), acceleration2 = from.a.squaredNorm();
   for (int i = 0; i < curve.segments(); ++i) {
-    const Eigen::Vector3d from = curve.AtKnot(i).a + hover_W;
-    const Eigen::Vector3d change = curve.AtKnot(i + 1).a + hover_W - from;
-    const double turn = from.cross(change).norm() / h;
-    if (turn == 0.0) continue;
-    const double nearest = std::clamp(-from.dot(change) / change.squaredNorm(), 0.0, 1.0);
-    bounds.body_rate = std::max(bounds.body_rate, turn / (from + nearest * change).squaredNorm());
+    const SplineState to = curve.AtKnot(i + 1);
+    speed2 = std::max(speed2, to.v.squaredNorm());
+    acceleration2 = std::max(acceleration2, to.a.squaredNorm());
+    // Bezier points of the velocity on segment i: v at knot i, V_{i+1}, v at knot i + 1. The first
+    // and the last derivative control point, V_0 and V_{N-2}, are no Bezier points.
+    bounds.speed = std::max(bounds.speed, (q.col(i + 2) - q.col(i + 1)).norm() / h);
+    const Eigen::Vector3d thrust = from.a + hover_W;
+    const Eigen::Vector3d change = to.a + hover_W - thrust;
+    const double turn = thrust.cross(change).norm() / h;
+    if (turn != 0.0) {
+      const double nearest = std::clamp(-thrust.dot(change) / change.squaredNorm(), 0.0, 1.0);
+      const double least2 = (thrust + nearest * change).squaredNorm();
+      bounds.body_rate = std::max(bounds.body_rate, turn / least2);
+    }
+    from = to;
   }
+  bounds.speed = std::max(bounds.speed, std::sqrt(speed2));
+  bounds.acceleration = std::sqrt(acceleration2);
   return bounds;
 }
 
