@@ -26,9 +26,9 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   now.numbers_valid = std::isfinite(in.horizontal_distance) && std::isfinite(in.height) &&
                       std::isfinite(in.horizontal_speed) && std::isfinite(in.sink_rate) &&
                       std::isfinite(in.foot_force) && std::isfinite(in.lean) &&
-                      !std::isnan(in.pad_sigma) &&
-                      !std::isnan(in.contact_sigma) && !std::isnan(in.tag_age) &&
-                      !std::isnan(in.plan_failed_for) && !std::isnan(in.arrival_in);
+                      !std::isnan(in.pad_sigma) && !std::isnan(in.contact_sigma) &&
+                      !std::isnan(in.tag_age) && !std::isnan(in.plan_failed_for) &&
+                      !std::isnan(in.arrival_in);
   now.pad_good = now.numbers_valid && in.own_usable && in.pad_available && in.pad_converged;
   // Dead reckoning only gets worse: one that lasts is not waited out while tags show the pad.
   const bool own_good =
@@ -59,7 +59,9 @@ double ContactIn(const MissionState& state, const MissionInputs& in,
   const double way = std::max({0.0, in.height, state.foot_height});
   const double faster = std::max(0.0, p.slow_rate + state.foot_height_rate);  // yet to be gained
   const double speeding_up = 0.5 * faster * faster / (p.height_acceleration * p.slow_rate);
-  return way / p.slow_rate + speeding_up + p.contact_reserve;
+  const double slower = std::max(0.0, p.slow_rate - p.contact_rate);  // yet to be lost
+  const double braking = 0.5 * slower * slower / (p.contact_deceleration * p.slow_rate);
+  return way / p.slow_rate + speeding_up + braking + p.contact_reserve;
 }
 
 }  // namespace touchdown::control

@@ -50,6 +50,11 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
   Track(lands && (now.touching || bounces), t, state.contact_since);
 }
 
+// So far before the place where the rate is to be no more than `rate`.
+double RateBefore(double distance, double rate, double deceleration) {
+  return std::sqrt(rate * rate + 2.0 * deceleration * std::max(0.0, distance));
+}
+
 // Moves the commanded foot height by dt; returns why a descent pauses.
 DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, const Conditions& now,
                        double dt, MissionState& s) {
@@ -70,11 +75,11 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
     // Where the present rate can be brought to rest: holding means no farther than this.
     const double rest = s.foot_height + 0.5 * s.foot_height_rate * std::abs(s.foot_height_rate) /
                                             p.height_acceleration;
-    // Arrives at the gate height with the slow rate.
+    // Arrives at the gate height with the slow rate, and at the deck with the contact rate.
     rate_max =
-        std::sqrt(p.slow_rate * p.slow_rate +
-                  2.0 * p.height_acceleration * std::max(0.0, s.foot_height - p.gate_height));
-    rate_max = std::min(std::max(p.fast_rate, p.slow_rate), rate_max);
+        std::min({std::max(p.fast_rate, p.slow_rate),
+                  RateBefore(s.foot_height - p.gate_height, p.slow_rate, p.height_acceleration),
+                  RateBefore(s.foot_height, p.contact_rate, p.contact_deceleration)});
     target = -p.press_depth;
     if (!s.committed && !now.may_land) {
       target = s.foot_height > p.gate_height ? p.gate_height : rest;

@@ -47,13 +47,15 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 41> positive = {{
+  const std::array<Named, 43> positive = {{
       {"lean_max", p.lean_max},
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
       {"landing_speed", p.landing_speed},
       {"fast_rate", p.fast_rate},
       {"slow_rate", p.slow_rate},
+      {"contact_rate", p.contact_rate},
+      {"contact_deceleration", p.contact_deceleration},
       {"climb_rate", p.climb_rate},
       {"height_acceleration", p.height_acceleration},
       {"gate_height", p.gate_height},

@@ -17,15 +17,15 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStep = 0.01;     // between looks at the position [s] ...
-constexpr double kSpacing = 0.06;  // ... and the way between two balls [m]
-constexpr double kAhead = 0.25;    // whose balls are asked for in one box [s]
+constexpr double kStep = 0.01;      // between looks at the position [s] ...
+constexpr double kSpacing = 0.06;   // ... and the way between two balls [m]
+constexpr double kAhead = 0.25;     // whose balls are asked for in one box [s]
 static_assert(kSweepRoom >= 0.01);  // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s
-constexpr double kNearer = 1e-6;  // rounding of a hull that leaves a cell: it comes no nearer [m]
+constexpr double kNearer = 1e-6;    // rounding of a hull that leaves a cell: it comes no nearer [m]
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
-constexpr double kLevel = 2e-3;     // rounding of floor and ceiling: kChordSagitta [m]
+constexpr double kLevel = 2e-3;      // rounding of floor and ceiling: kChordSagitta [m]
 
 /// Positions along a curve, which cost less from one piece of it than one by one; past its end at its end's
 /// velocity.
@@ -246,11 +246,11 @@ class Tube {
   const OccupancyMap& map_;
   Eigen::Vector3d start_;
   double radius_;
-  double face_noise_;  // of returns from the deck [m]
-  int first_above_ground_;  // level of cells
+  double face_noise_;                                    // of returns from the deck [m]
+  int first_above_ground_;                               // level of cells
   Eigen::Vector3d free_from_ = Eigen::Vector3d::Ones();  // of balls in a box of free cells [m]
   Eigen::Vector3d free_to_ = Eigen::Vector3d::Zero();    // ... none yet
-  Deck start_deck_;    // below the start, when it was there
+  Deck start_deck_;                                      // below the start, when it was there
 };
 
 /// Feet no more than `below` the deck [m], as far as the hull may be over it.
@@ -277,8 +277,8 @@ bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Ve
 
 }  // namespace
 
-Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
-                const HullStart& start, const HullSpace& hull, double t_contact) {
+Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const HullStart& start,
+                const HullSpace& hull, double t_contact) {
   Sweep sweep;
   Tube tube(hull, start);
   Path path(curve), ahead(curve);

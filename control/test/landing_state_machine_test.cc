@@ -305,6 +305,7 @@ TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
     MissionInputs in = Fine();
     in.descent = GetParam();
     double touching_for = 0.0, lifted_for = -1.0, contact_for = 0.0;
+    double passed = 0.0;  // since the last sample that has a time
     for (int k = 0; k < 4000; ++k) {
       const double dt = uniform(random) < 0.02 ? 0.2 * uniform(random) : 0.01;
       if (uniform(random) < 0.05) in.pad_available = uniform(random) < 0.9;
@@ -333,11 +334,14 @@ TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
                             fed.horizontal_distance <= parameters.contact_distance;
       const MissionMode before = state.mode;
       const MissionStep step = Step(state, fed, parameters);
+      passed += dt;
       if (std::isfinite(fed.t)) {
-        touching_for = touching ? touching_for + dt : 0.0;
+        touching_for = touching ? touching_for + passed : 0.0;
         // Nothing is known of the time between two samples.
-        lifted_for = touching ? -1.0 : std::max(0.0, lifted_for + (lifted_for < 0.0 ? 0.0 : dt));
-        contact_for = lifted_for <= parameters.contact_break + 1e-9 ? contact_for + dt : 0.0;
+        lifted_for =
+            touching ? -1.0 : std::max(0.0, lifted_for + (lifted_for < 0.0 ? 0.0 : passed));
+        contact_for = lifted_for <= parameters.contact_break + 1e-9 ? contact_for + passed : 0.0;
+        passed = 0.0;
       }
       state = step.state;
       ASSERT_TRUE(std::isfinite(state.foot_height) && std::isfinite(state.foot_height_rate));
@@ -355,6 +359,14 @@ TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
     }
   }
   EXPECT_GT(disarmed, 30);
+}
+
+TEST(LandingStateMachine, TheCommandMeetsTheDeckWithTheContactRate) {
+  Mission mission;
+  mission.DescendTo(0.3);
+  EXPECT_NEAR(mission.outputs.foot_height_rate, -mission.parameters.slow_rate, 1e-9);
+  mission.DescendTo(0.0);
+  EXPECT_NEAR(mission.outputs.foot_height_rate, -mission.parameters.contact_rate, 2e-3);
 }
 
 // Feet that bounce have come to stay, but the rotors stop only when they rest.
