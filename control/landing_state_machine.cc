@@ -50,7 +50,7 @@ void UpdateTimers(const MissionInputs& in, const MissionParameters& p, const Con
   Track(lands && (now.touching || bounces), t, state.contact_since);
 }
 
-// So far before the place where the rate is to be no more than `rate`.
+// The largest rate at `distance` before a place that is to be reached with `rate`.
 double RateBefore(double distance, double rate, double deceleration) {
   return std::sqrt(rate * rate + 2.0 * deceleration * std::max(0.0, distance));
 }

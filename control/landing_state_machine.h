@@ -159,8 +159,8 @@ struct MissionParameters {
 
   double fast_rate = 0.5;            ///< descent above gate_height [m/s]
   double slow_rate = 0.3;            ///< descent below it [m/s] ...
-  double contact_rate = 0.2;         ///< ... and at the deck [m/s], ...
-  double contact_deceleration = 0.1; ///< ... reached by so much [m/s^2]: gusts add to it
+  double contact_rate = 0.2;         ///< ... and at the deck, where gusts add to it [m/s], ...
+  double contact_deceleration = 0.1; ///< ... reached by so much [m/s^2]
   double climb_rate = 0.8;           ///< go-around [m/s]
   double height_acceleration = 1.0;  ///< of the commanded height [m/s^2]
 

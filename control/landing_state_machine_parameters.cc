@@ -109,6 +109,9 @@ void Validate(const MissionParameters& p) {
   for (const Named& item : not_negative) {
     require(item.value >= 0.0 && std::isfinite(item.value), item.name, item.value, ">= 0");
   }
+  require(p.contact_rate <= p.slow_rate, "contact_rate", p.contact_rate, "at most slow_rate");
+  require(p.contact_deceleration <= p.height_acceleration, "contact_deceleration",
+          p.contact_deceleration, "at most height_acceleration");
   require(p.commit_height < p.gate_height, "commit_height", p.commit_height, "below gate_height");
   require(p.gate_height < p.follow_height, "gate_height", p.gate_height, "below follow_height");
   require(p.gate_sigma <= p.bridge_sigma, "gate_sigma", p.gate_sigma, "at most bridge_sigma");

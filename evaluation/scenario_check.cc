@@ -91,7 +91,8 @@ void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel&
         source.WhereOf(chosen ? "planning.latency" : "planning.rate").ToString(), longest,
         s.planning.rate, latency.ms));
   }
-  if (s.planner != PlannerKind::kLanding && s.planning.clearance < model.hull_radius) {
+  if (s.planner != PlannerKind::kLanding && s.planner != PlannerKind::kPid &&
+      s.planning.clearance < model.hull_radius) {
     throw BadInput(fmt::format(
         "{}: planning.clearance must be in [{:.4g}, 1] m, from the radius of the vehicle's hull "
         "on, with planner {}, not '{}'.",
@@ -100,10 +101,11 @@ void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel&
   }
   const double most = 10.0 * planning::OccupancyMapOptions{}.resolution;
   if (const double kept = PlanClearance(s, model); kept > most) {
-    throw BadInput(fmt::format(
-        "{}: vehicle {}: its hull at every tilt and the margins of the landing planner are {:.2f} m, "
-        "they must be at most {:g} m.",
-        source.WhereOf("vehicle").ToString(), s.vehicle, kept, most));
+    throw BadInput(
+        fmt::format("{}: vehicle {}: its hull at every tilt and the margins of the landing planner "
+                    "are {:.2f} m, "
+                    "they must be at most {:g} m.",
+                    source.WhereOf("vehicle").ToString(), s.vehicle, kept, most));
   }
   CheckCeiling(source, model);
 }

@@ -45,7 +45,8 @@ void AddPlanningKeys(KeyList& keys) {
                   }});
   keys.push_back(Number<Scenario>("planning.clearance", In(0.1, 1, "m"),
                                   "obstacles are grown by this in the map; planner landing: "
-                                  "raised to the hull at every tilt and its margins in calm air",
+                                  "raised to the hull at every tilt and its margins in calm air; "
+                                  "ego and ego-velocity: at least the hull's radius",
                                   TOUCHDOWN_AT(planning.clearance)));
   keys.push_back(Number<Scenario>("planning.ceiling", Above(0, 1000, "m"),
                                   "flight ceiling of the vehicle's centre above the ground; above "

@@ -16,6 +16,8 @@ struct FlightPair {
                                                             ///< curve is a stop itself
   UniformBspline stop;
   bool proven = true;  ///< false: the least that could be done, and not a proven pair
+  /// It begins among cells that no proven pair has led to; the first hover may.
+  bool from_unknown = true;
 
   /// The reference at time t (yaw fields zero). Does not allocate.
   FlatState At(double t) const {

@@ -33,14 +33,14 @@ constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter repla
 constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;         // room for those of one step
 constexpr int kUsualPathPoints = 512;
-constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kClockRounding = 1e-6;            // [s]
 const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
-constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
-constexpr double kUnseenReach = 1.0;     // around a start a plan keeps to what was seen [m] ...
-constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
-constexpr double kLeastReach = 0.5;      // ... and where nothing leads out of that
+constexpr double kLookAhead = 2.0;    // of the cells that the next stops need [s]
+constexpr double kUnseenReach = 1.0;  // around a start a plan keeps to what was seen [m] ...
+constexpr double kLeastReach = 0.5;   // ... and where nothing leads out of that
+constexpr double kLookTime = 2.0;     // at rest, before a vehicle looks from elsewhere [s] ...
+constexpr double kAsideFrom = 1.5;    // ... at a cell no farther than this [m]
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
@@ -63,7 +63,7 @@ class Replanner::Impl {
   void Commit(double t0) {
     current_ = next_;
     next_ = result_.pair();
-    from_unknown_ = result_.certificate.start_cells.unknown;
+    next_.from_unknown = result_.certificate.start_cells.unknown;
     takes_over_ = t0;
     result_.committed = true;
   }
@@ -77,6 +77,7 @@ class Replanner::Impl {
       result_.committed = planned_before_ = false;
       looks_at_W_.reset();
       climbing_ = -1.0;
+      Fallback::FlyStop(next_, t, HullSpace{}, &result_);
     }
   }
 
@@ -92,7 +93,6 @@ class Replanner::Impl {
   const ReplannerOptions options_;
   FlightPair current_, next_;
   double takes_over_ = 0.0;  // next_ does [s]
-  bool from_unknown_ = true;  // next_ begins among cells that were never proven; the first hover may
   ReplanLog* log_ = nullptr;
 
  private:
@@ -124,11 +124,11 @@ class Replanner::Impl {
   ReplanResult result_;
   UnseenZone unseen_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
+  bool around_unseen_ = false;   // ... and it led around cells that were not seen
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
-  bool around_unseen_ = false;  // ... and it led around cells that were not seen
   std::optional<Eigen::Vector3d> looks_at_W_;  // the committed curve leads to where it is in sight
-  double climbing_ = -1.0;      // the committed curve is the caller's rest with this climb
+  double climbing_ = -1.0;  // the committed curve is the caller's rest with this climb
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -178,7 +178,6 @@ ReplannerState Replanner::Impl::State() const {
 void Replanner::Impl::Restore(const ReplannerState& state) {
   current_ = state.current;
   next_ = state.next;
-  from_unknown_ = true;
   takes_over_ = next_.curve.t0();
   planned_before_ = state.planned;
   around_unseen_ = state.around_unseen;
@@ -247,7 +246,7 @@ HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
   hull.pad = pad;
   hull.deck_half_size = options_.deck_half_size;
   hull.foot_depth = options_.contact_height;
-  hull.start_proven = !result_.from_odometry && next_.proven && !from_unknown_;
+  hull.start_proven = !result_.from_odometry && next_.proven && !next_.from_unknown;
   return hull;
 }
 
@@ -258,7 +257,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   const SplineState start = Start(input);
   climbing_ = -1.0;
   const bool target_valid = TargetValid(input);
-  result_.reason = !target_valid   ? ReplanReason::kInvalidInput
+  result_.reason = !target_valid     ? ReplanReason::kInvalidInput
                    : StillLooks(map) ? ReplanReason::kUnobserved
                                      : Plan(input, start, map);
   if (target_valid) {
@@ -284,8 +283,7 @@ std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& in
   const double t_from = input.t_start + options_.reaction;
   const double t_to = std::min(t_from + kLookAhead, curve.t_end());
   if (t_to <= t_from) return std::nullopt;
-  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime)
-      .unseen_W;
+  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
 }
 
 /// The committed curve, with a newer stop.
@@ -363,8 +361,7 @@ void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& star
     result_.status = ReplanStatus::kEscaping;
     return Commit(t0);
   }
-  if (at_rest && result_.reason == ReplanReason::kUnobserved &&
-      StepsAside(input, start, hull)) {
+  if (at_rest && result_.reason == ReplanReason::kUnobserved && StepsAside(input, start, hull)) {
     return;
   }
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
@@ -393,9 +390,8 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   if (!StateValid(input) || !InTime(input)) return RefuseState(input);
   const SplineState start = Start(input);
   const bool remembered = input.t_start - strip_t_ <= kStripMemory || !TargetValid(input);
-  const FreeSpace space = remembered
-                              ? SpaceWithoutPad(input, map)
-                              : SpaceOverPad(input, start, WatchedUntil(input), map);
+  const FreeSpace space = remembered ? SpaceWithoutPad(input, map)
+                                     : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
   planned_before_ = false;
   looks_at_W_.reset();

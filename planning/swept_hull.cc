@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hull's tube through the observed-free cells. The hull at every tilt is a ball, and so is the hull
-// grown by its margins. The curve is sampled so densely that the ball, larger by kSweepRoom, holds the
-// tube between two samples; the cells that a ball touches are asked row by row, 64 along x at a time. Most
-// tubes are free with all that is around them: a box that holds many balls is asked first.
+// grown by its margins. Balls larger by kSweepRoom are placed along the curve, so that two after each other
+// hold what the hull sweeps between them; the cells that a ball touches are asked row by row, 64 along x at a time.
+// Most tubes are free with all that is around them: a box that holds several balls is asked first.
 
 #include "touchdown/planning/swept_hull.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "touchdown/planning/cell_box.h"
 #include "touchdown/planning/pad_outline.h"
@@ -17,10 +18,10 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStep = 0.01;      // between looks at the position [s] ...
-constexpr double kSpacing = 0.06;   // ... and the way between two balls [m]
-constexpr double kAhead = 0.25;     // whose balls are asked for in one box [s]
-static_assert(kSweepRoom >= 0.01);  // g^2 / 8 r of the longest gap g, 0.06 m and 0.01 s at 10 m/s
+constexpr double kStep =
+    0.01;  // between looks at the position, at most [s]; a bend of 10 m/s^2 is 0.1 mm off
+constexpr double kAhead =
+    0.25;  // the box of free cells is to reach the ball that comes so much later [s]
 constexpr double kNearer = 1e-6;    // rounding of a hull that leaves a cell: it comes no nearer [m]
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
@@ -64,6 +65,55 @@ class Path {
   Eigen::Vector3d c0_, c1_, c2_, c3_;  // of the piece as a polynomial in u
 };
 
+/// The places since the last ball, of which two balls are to hold the hull.
+///
+/// A hull of radius r midway between two balls that are g apart is in their union if these are larger by
+/// g^2 / 8 r, and one that is e off the line between them if they are larger by e more. Places that are no farther
+/// than e / 2 from the axis along which the way left the first ball are within e of that line, wherever on the way the
+/// second one is.
+class Stretch {
+ public:
+  explicit Stretch(double radius) : radius_(radius) {}
+
+  void Begin(const Eigen::Vector3d& ball) {
+    ball_ = ball;
+    axis_.setZero();
+    away2_ = off2_ = 0.0;
+  }
+
+  /// Adds a place, unless balls at the beginning and there would not hold what is between.
+  bool Add(const Eigen::Vector3d& p) {
+    const Eigen::Vector3d way = p - ball_;
+    const double away2 = way.squaredNorm();
+    if (away2 < away2_) return false;  // turned back: it was at its farthest just before
+    // So near the ball holds the hull alone, whatever the axis will be.
+    if (away2 > kOwn * kOwn && axis_.isZero(0.0)) axis_ = way / std::sqrt(away2);
+    const double off2 = std::max(off2_, (way - way.dot(axis_) * axis_).squaredNorm());
+    if (2.0 * std::sqrt(off2) + away2 / (8.0 * radius_) > kSweepRoom) return false;
+    away2_ = away2;
+    if (!axis_.isZero(0.0)) off2_ = off2;
+    return true;
+  }
+
+ private:
+  static constexpr double kOwn = 0.45 * kSweepRoom;
+
+  double radius_;
+  Eigen::Vector3d ball_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis_ = Eigen::Vector3d::Zero();  // zero: the way has not left the ball
+  double away2_ = 0.0, off2_ = 0.0;                 // largest, of the places since the ball
+};
+
+/// So fast a curve may be anywhere, and past its end [m/s].
+double FastestLeg(const UniformBspline& curve) {
+  const Eigen::Map<const ControlPoints> q = curve.control_points();
+  double longest2 = 0.0;
+  for (int i = 0; i + 1 < q.cols(); ++i) {
+    longest2 = std::max(longest2, (q.col(i + 1) - q.col(i)).squaredNorm());
+  }
+  return std::sqrt(longest2) / curve.interval();
+}
+
 /// Distance of a coordinate from the cell i.
 double Gap(double x, int i, double resolution) {
   return std::max({0.0, i * resolution - x, x - (i + 1) * resolution});
@@ -94,8 +144,11 @@ class Tube {
     const bool is_free = AllFree(box);
     const double inside = radius_ + kRounding;
     free_from_ = (box.low.cast<double>() * map_.resolution()).array() + inside;
+    if (box.low.z() == first_above_ground_) {
+      free_from_.z() = -std::numeric_limits<double>::infinity();
+    }
     free_to_ = (box.high.cast<double>() * map_.resolution()).array() - inside;
-    if (!is_free) free_to_ = free_from_.array() - 1.0;
+    if (!is_free) free_to_.setConstant(-std::numeric_limits<double>::infinity());
     return is_free;
   }
 
@@ -256,7 +309,7 @@ class Tube {
 /// Feet no more than `below` the deck [m], as far as the hull may be over it.
 bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double below,
                const Eigen::Vector3d& start) {
-  if (hull.pad == nullptr || p.z() >= start.z()) return true;
+  if (hull.pad == nullptr || p.z() >= start.z() - kRounding) return true;
   const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   const double feet = p.z() - hull.foot_depth;
   if (feet >= deck.p_WP.z() - below) return true;
@@ -282,37 +335,33 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
   Sweep sweep;
   Tube tube(hull, start);
   Path path(curve), ahead(curve);
-  Eigen::Vector3d ball = start.p_W;  // where the hull was looked at last,
-  Eigen::Vector3d before = ball;     // and the place after it that was passed over
-  double t_before = t_from, away2_before = 0.0;
+  Stretch stretch(hull.radius());
+  Eigen::Vector3d before = start.p_W;
+  double t_before = t_from;
   const double below = std::isfinite(t_contact) ? kFaceSlack : 0.0;
   const auto holds = [&](const Eigen::Vector3d& p, double t) {
     return tube.InFreeBox(p) || tube.FindFreeBox(p, ahead.At(std::min(t + kAhead, t_to))) ||
            tube.Holds(p, t, &sweep);
   };
-  const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / kStep)));
+  // One step is a stretch that two balls hold.
+  const double longest = std::sqrt(8.0 * hull.radius() * kSweepRoom);
+  const double step = std::min(kStep, 0.9 * longest / std::max(FastestLeg(curve), 1e-9));
+  const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / step)));
   for (int i = 0; i <= steps; ++i) {
     const double t = t_from + (t_to - t_from) * i / steps;
     const Eigen::Vector3d p = path.At(t);
     const bool may_touch = t >= t_contact;
     if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
     if (!may_touch && !AboveDeck(hull, p, t, below, start.p_W)) return sweep;
-    const bool first_or_last = i == 0 || i == steps;
-    double away2 = (p - ball).squaredNorm();
-    // A way that turns back was at its farthest just before.
-    if (!first_or_last && away2 < away2_before) {
+    if (i == 0) stretch.Begin(p);
+    if (!stretch.Add(p)) {
       if (!holds(before, t_before)) return sweep;
-      ball = before;
-      away2 = (p - ball).squaredNorm();
+      stretch.Begin(before);
+      stretch.Add(p);
     }
-    if (first_or_last || away2 >= kSpacing * kSpacing) {
-      if (!holds(p, t)) return sweep;
-      ball = p;
-      away2 = 0.0;
-    }
+    if ((i == 0 || i == steps) && !holds(p, t)) return sweep;
     before = p;
     t_before = t;
-    away2_before = away2;
   }
   sweep.proven = true;
   return sweep;

@@ -305,7 +305,8 @@ TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
     MissionInputs in = Fine();
     in.descent = GetParam();
     double touching_for = 0.0, lifted_for = -1.0, contact_for = 0.0;
-    double passed = 0.0;  // since the last sample that has a time
+    double passed = 0.0;   // since the last sample that has a time
+    bool touched = false;  // at that
     for (int k = 0; k < 4000; ++k) {
       const double dt = uniform(random) < 0.02 ? 0.2 * uniform(random) : 0.01;
       if (uniform(random) < 0.05) in.pad_available = uniform(random) < 0.9;
@@ -336,11 +337,15 @@ TEST_P(EachDescent, FuzzNeverDisarmsInTheAir) {
       const MissionStep step = Step(state, fed, parameters);
       passed += dt;
       if (std::isfinite(fed.t)) {
-        touching_for = touching ? touching_for + passed : 0.0;
+        touching_for = touching && touched ? touching_for + passed : 0.0;
         // Nothing is known of the time between two samples.
         lifted_for =
             touching ? -1.0 : std::max(0.0, lifted_for + (lifted_for < 0.0 ? 0.0 : passed));
-        contact_for = lifted_for <= parameters.contact_break + 1e-9 ? contact_for + passed : 0.0;
+        // Two touches far apart are none that lasts.
+        const bool lasts = lifted_for <= parameters.contact_break + 1e-9 &&
+                           passed <= parameters.contact_gap && (touched || contact_for > 0.0);
+        contact_for = lasts ? contact_for + passed : 0.0;
+        touched = touching;
         passed = 0.0;
       }
       state = step.state;

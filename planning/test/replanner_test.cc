@@ -350,8 +350,8 @@ TEST(Replanner, APlanThatEndsInACreepIsNotFlownPastItsEnd) {
     const FlatState at = replanner.Reference(t);
     ReplanInput input = Input(at.p_WB, creeping, t);
     input.vehicle.v_WB = at.v_WB;
-    const ReplanStatus status = replanner.Replan(input, map).status;
-    EXPECT_NE(status, ReplanStatus::kUnsafe) << "at " << t;
+    const ReplanResult& result = replanner.Replan(input, map);
+    EXPECT_TRUE(result.proven && result.certificate.stops_in_observed_space) << "at " << t;
     EXPECT_FALSE(map.IsBlocked(at.p_WB)) << "at " << t;
   }
   EXPECT_LT(replanner.Reference(40.0).v_WB.norm(), 1e-9);

@@ -66,8 +66,8 @@ TEST(StoredStop, NoProvenPairMeetsWhatIsNotObservedFree) {
     EXPECT_LT((before.a_WB - after.a_WB).norm(), 1e-8);
     EXPECT_LT(pair.At(pair.stop.t_end() + 5.0).v_WB.norm(), 1e-9) << "it stays at rest";
     const auto place = [&](double t) { return pair.At(t).p_WB; };
-    EXPECT_TRUE(TubeInFree(map, t_from, RestOf(pair) + 0.5, kHull, proof.start.leaves() ? &start : nullptr,
-                           kHullRoom, place))
+    EXPECT_TRUE(TubeInFree(map, t_from, RestOf(pair) + 0.5, kHull,
+                           proof.start.leaves() ? &start : nullptr, kHullRoom, place))
         << trial;
   }
   EXPECT_GT(proven, 100);
@@ -228,8 +228,9 @@ TEST_F(StopOverDeck, ContactThatIsNotSoftIsNone) {
   const double t = ContactTime(pair.curve, 0.0, hull_);
   EXPECT_TRUE(TouchesSoftly(pair.curve, t, 0.9, hull_));
   map_.MarkRestFree();  // so that softness alone decides
-  for (const auto& [speed, share, soft] : {std::tuple(0.5, 0.9, true), std::tuple(0.57, 1.0, true),
-                                           std::tuple(0.57, 0.9, false), std::tuple(0.63, 1.0, false)}) {
+  for (const auto& [speed, share, soft] :
+       {std::tuple(0.5, 0.9, true), std::tuple(0.57, 1.0, true), std::tuple(0.57, 0.9, false),
+        std::tuple(0.63, 1.0, false)}) {
     const ArcPad drives(Eigen::Vector3d(-speed * t, 0, 0.45), speed, 0.0, 0.0);
     hull_.pad = &drives;
     EXPECT_TRUE(std::isfinite(ContactTime(pair.curve, 0.0, hull_))) << "it is below by then";
@@ -251,7 +252,8 @@ TEST_F(StopOverDeck, ALandingMeetsTheDeckOnlyWhereItIsToTouchIt) {
   };
   const auto lowest_feet = [&] {
     double feet = 1.0;
-    for (double t = 0.0; t < 0.7; t += 0.01) feet = std::min(feet, pair.curve.Position(t).z() - 0.12);
+    for (double t = 0.0; t < 0.7; t += 0.01)
+      feet = std::min(feet, pair.curve.Position(t).z() - 0.12);
     return feet - 0.45;
   };
   EXPECT_TRUE(lands(0.3));
@@ -359,12 +361,21 @@ TEST(StoredStop, TheCertifiedStopIsFlownWhereNoNewerPlanComes) {
     input.vehicle.p_WB.setConstant(std::numeric_limits<double>::quiet_NaN());
     const ReplanResult& result = replanner.Replan(input, map);
     EXPECT_EQ(result.reason, ReplanReason::kInvalidInput);
-    EXPECT_NE(result.status, ReplanStatus::kUnsafe);
+    EXPECT_TRUE(result.proven && result.certificate.stops_in_observed_space);
   }
   ExpectFlown(replanner, pair, 0.0, 3.0);
   const FlatState rest = replanner.Reference(10.0);
   EXPECT_EQ(rest.p_WB, pair.stop.Position(pair.stop.t_end()));
   EXPECT_LT(rest.v_WB.norm(), 1e-9);
+}
+
+bool Same(const FlightPair& a, const FlightPair& b) {
+  const auto same = [](const UniformBspline& c, const UniformBspline& d) {
+    return c.t0() == d.t0() && c.interval() == d.interval() &&
+           c.control_points().cols() == d.control_points().cols() &&
+           c.control_points() == d.control_points();
+  };
+  return a.t_stop == b.t_stop && same(a.curve, b.curve) && same(a.stop, b.stop);
 }
 
 class InFlight : public ::testing::Test {
@@ -380,11 +391,13 @@ class InFlight : public ::testing::Test {
     const FlatState at = replanner_.Reference(t);
     ReplanInput input = Input(at.p_WB, pad_, t);
     input.vehicle.v_WB = at.v_WB;
-    return replanner_.Replan(input, map_).status;
+    result_ = &replanner_.Replan(input, map_);
+    return result_->status;
   }
   OccupancyMap map_;
   ArcPad pad_;
   Replanner replanner_;
+  const ReplanResult* result_ = nullptr;
 };
 
 TEST_F(InFlight, AnAnswerThatComesAfterTheStopHasBegunIsDropped) {
@@ -392,6 +405,11 @@ TEST_F(InFlight, AnAnswerThatComesAfterTheStopHasBegunIsDropped) {
   ASSERT_TRUE(std::isfinite(before.t_stop));
   ASSERT_EQ(Ask(1.1), ReplanStatus::kPlanned);
   replanner_.TakeOverAt(before.t_stop + 0.05);
+  // What it says now is what is flown.
+  EXPECT_FALSE(result_->committed);
+  EXPECT_EQ(result_->status, ReplanStatus::kBraking);
+  EXPECT_EQ(result_->curve.control_points(), before.stop.control_points());
+  EXPECT_TRUE(result_->proven);
   ExpectFlown(replanner_, before, 1.05, 4.0);
   // The next step starts from the stop that is flown, and goes on.
   EXPECT_EQ(Ask(1.4), ReplanStatus::kPlanned);
@@ -422,15 +440,6 @@ TEST_F(InFlight, InvalidInputChangesNothing) {
   input = Input({0, 0, 1.5}, pad_, std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(replanner_.Rest(input, 0.0, map_).reason, ReplanReason::kInvalidInput);
   ExpectFlown(replanner_, last, 1.02, 4.0);
-}
-
-bool Same(const FlightPair& a, const FlightPair& b) {
-  const auto same = [](const UniformBspline& c, const UniformBspline& d) {
-    return c.t0() == d.t0() && c.interval() == d.interval() &&
-           c.control_points().cols() == d.control_points().cols() &&
-           c.control_points() == d.control_points();
-  };
-  return a.t_stop == b.t_stop && same(a.curve, b.curve) && same(a.stop, b.stop);
 }
 
 /// A pair that was committed, and what was known when it was.
@@ -492,7 +501,7 @@ TEST(StoredStop, TheReferencesHullStaysInWhatWasObservedFree) {
         const Eigen::Vector3d start_W = replanner.Reference(input.t_start).p_WB;
         const ReplanResult& result =
             luck < 0.35 ? replanner.Rest(input, 0.0, map) : replanner.Replan(input, map);
-        EXPECT_NE(result.status, ReplanStatus::kUnsafe);
+        EXPECT_TRUE(result.proven && result.certificate.stops_in_observed_space);
         plans += result.status == ReplanStatus::kPlanned;
         kept += result.status == ReplanStatus::kKept;
         stops += result.status == ReplanStatus::kBraking;

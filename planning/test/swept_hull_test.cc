@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "touchdown/planning/rest_trajectory.h"
 #include "touchdown/planning/test/hull_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
@@ -47,6 +48,38 @@ TEST(SweptHull, AgreesWithEveryCellOfEveryBall) {
   }
   EXPECT_GT(proven, 100);
   EXPECT_GT(refused, 100);
+}
+
+// However slowly and tightly the way turns: a single cell that the hull reaches into anywhere is found.
+TEST(SweptHull, TightTurnsAreSeen) {
+  Draw draw(3);
+  int looked = 0;
+  for (int trial = 0; trial < 8000; ++trial) {
+    SplineState from = draw.State(0.0, 0.6, 3.0), to = draw.State(0.3, 0.4, 2.0);
+    from.p.setZero();
+    UniformBspline curve = Between(from, to, draw.Uniform(0.3, 1.2));
+    if (trial % 2 == 0) {  // a stop that climbs from a descent
+      from.v = {draw.Uniform(0.0, 0.4), 0.0, draw.Uniform(-0.4, 0.0)};
+      from.a.setZero();
+      curve = MakeRestTrajectory(from, 0.0, {0.0, 0.0, 1.0}, {.speed = 3.0, .acceleration = 6.0});
+    }
+    OccupancyMap map(NoGround());
+    map.MarkRestFree();
+    const double t = draw.Uniform(0.0, 0.4) * curve.duration();
+    const Eigen::Vector3d direction = draw.Vector(1.0).normalized();
+    const CellIndex cell = map.CellOf(curve.Position(t) + (kHull + 0.04) * direction);
+    double nearest = 10.0;
+    for (double s = 0.0; s <= curve.duration(); s += 1e-3) {
+      nearest = std::min(nearest, DistanceToCell(map, cell, curve.Position(s)));
+    }
+    const bool there_at_start = DistanceToCell(map, cell, from.p) < kHull + kHullRoom;
+    if (there_at_start || nearest > kHull - 5e-4 || nearest < kHull - 0.03) continue;
+    map.SetState(cell, CellState::kUnknown);
+    const FreeSpace space = SpaceOf(map);
+    EXPECT_FALSE(Look(curve, HullOf(space)).proven) << trial << ": " << kHull - nearest << " m";
+    ++looked;
+  }
+  EXPECT_GT(looked, 200);
 }
 
 // From one sample to the next it may turn back: the farthest point counts too.
