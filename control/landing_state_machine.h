@@ -179,7 +179,7 @@ struct MissionParameters {
   double abort_distance = 1.0;         ///< horizontal error that ends a landing [m]
   double commit_abort_distance = 0.5;  ///< the same below commit_height [m]
 
-  double touchdown_rate = 0.3;        ///< with which a planned landing meets the deck [m/s]
+  double touchdown_rate = 0.2;        ///< with which a planned landing meets the deck [m/s]
   double decide_time = 1.2;           ///< so long before contact it is decided on [s]
   double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
