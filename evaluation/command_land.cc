@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -72,9 +73,8 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
   if (r.safety) {
     const SafetyFigures& safety = *r.safety;
     text += fmt::format(
-        "  safety                 {} steps without a proven pair, {} stops flown, {} map errors, "
-        "{} "
-        "beyond a margin\n",
+        "  safety                 steps without a proven pair {}, stops flown {}, map errors {}, "
+        "errors beyond a margin {}\n",
         safety.uncertified_steps, safety.stops_flown, safety.map_errors,
         safety.tracking_events + safety.drift_events);
   }
@@ -88,8 +88,10 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
   for (const auto& [status, count] : r.replans_by_status) {
     text += fmt::format(", {} {}", count, status);
   }
+  // Of the steps that made no new plan.
+  const char* separator = "; without a plan: ";
   for (const auto& [reason, count] : r.replans_by_reason) {
-    text += fmt::format(" ({} {})", count, reason);
+    text += fmt::format("{}{} {}", std::exchange(separator, ", "), count, reason);
   }
   if (const auto median = Quantile(r.timing.replan_wall_ms, 0.5)) {
     text += fmt::format("\n  replanning             median {:.2f} ms, p95 {:.2f} ms", *median,

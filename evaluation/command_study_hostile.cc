@@ -17,6 +17,7 @@
 #include "touchdown/evaluation/hostile_family.h"
 #include "touchdown/evaluation/hostile_report.h"
 #include "touchdown/evaluation/hostile_study.h"
+#include "touchdown/evaluation/hostile_tally.h"
 #include "touchdown/evaluation/output_path.h"
 
 namespace touchdown::evaluation {
@@ -120,7 +121,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
   }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
                                 [](const SweepRow& row) { return IsLost(row.result.outcome); });
-  return lost ? kFellShort : kDone;
+  return lost || BreaksThePromise(result.rows) ? kFellShort : kDone;
 }
 
 int Run(HostileArguments arguments, const Registries& registries, const Command& command) {

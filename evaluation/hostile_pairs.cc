@@ -18,15 +18,15 @@ HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& 
     Manifest manifest = ReadManifest(db, path);
     if (manifest["campaign"] != "study hostile" ||
         manifest["sweep_seed"] != std::to_string(options.seed)) {
-      throw BadInput(
-          fmt::format("{}: it is no file of `study hostile --seed {}`.", path, options.seed));
+      throw BadInput(fmt::format("--against {}: it is no file of `study hostile --seed {}`.", path,
+                                 options.seed));
     }
     SqliteStatement rows = db.Prepare("SELECT seed, time_to_land_s FROM trial WHERE landed");
     while (rows.Step()) {
       times.emplace(static_cast<std::uint64_t>(rows.Integer(0)), rows.Real(1));
     }
   } catch (const SqliteError& error) {
-    throw BadInput(fmt::format("{}: {}.", path, error.what()));
+    throw BadInput(fmt::format("--against {}.", error.what()));
   }
   return times;
 }

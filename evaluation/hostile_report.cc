@@ -154,6 +154,7 @@ std::string HostileText(const HostileOptions& options, const std::vector<SweepRo
   text += ListText("Collisions with what stands", rows, HitWhatStands);
   text += ListText("Other contacts", rows, WrongContact);
   text += ListText("Not flown to an outcome", rows, lost);
+  text += fmt::format("Flight N again: {} --only N\n", HostileCommand(options));
   return text;
 }
 

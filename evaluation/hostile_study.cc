@@ -134,17 +134,23 @@ HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
     DrawBeyond(flight.beyond, beyond, &scenario);
   }
   ApplySet(options, &scenario);
-  SuitConditions(options, &scenario);
-  DrawWorld(HostileFamilyNamed(flight.family), flight.beyond, options, seed, &scenario);
-
+  try {
+    SuitConditions(options, &scenario);
+    DrawWorld(HostileFamilyNamed(flight.family), flight.beyond, options, seed, &scenario);
+    flight.trial.scenario = ParseScenario(DumpScenario(scenario), scenario.name,
+                                          fmt::format("flight {}", index), {}, registries);
+    flight.way = FindWay(flight.trial.scenario, kCatchTime);
+  } catch (const std::exception& error) {
+    if (options.set.empty()) throw;
+    throw BadInput(fmt::format("--set {} does not go with what is drawn for flight {} ({}): {}",
+                               fmt::join(options.set, " --set "), index, flight.family,
+                               error.what()));
+  }
   flight.trial.index = index;
   flight.trial.seed = seed;
-  flight.trial.scenario = ParseScenario(DumpScenario(scenario), scenario.name,
-                                        fmt::format("flight {}", index), {}, registries);
   flight.trial.command =
       fmt::format("{0} --show {1} > flight_{1}.yaml && touchdown land flight_{1}.yaml",
                   HostileCommand(options), index);
-  flight.way = FindWay(flight.trial.scenario, kCatchTime);
   flight.trial.varied = {
       {"family", flight.family},
       {"assumptions", flight.beyond.empty() ? "within" : "beyond"},

@@ -46,6 +46,14 @@ bool WrongContact(const TrialResult& result) {
   }
 }
 
+bool BreaksThePromise(const std::vector<SweepRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
+    if (row.trial.scenario.planner != PlannerKind::kLanding) return false;
+    const bool unproven = row.result.safety && row.result.safety->uncertified_steps > 0;
+    return LabelOf(row.trial, "beyond") == "none" && (HitWhatStands(row.result) || unproven);
+  });
+}
+
 std::string ContactKind(const TrialResult& result) {
   if (result.outcome != Outcome::kCollision) return ToString(result.outcome);
   return result.cause.substr(0, result.cause.find(' '));

@@ -45,6 +45,9 @@ struct HostileTally {
 };
 
 /// The rows of one family, and of all; within or beyond.
+/// A flight within the assumptions collided, or made a step without a proven pair: a defect.
+bool BreaksThePromise(const std::vector<SweepRow>& rows);
+
 HostileTally TallyOf(const std::vector<SweepRow>& rows, const std::string& family, bool within);
 
 }  // namespace touchdown::evaluation

@@ -12,6 +12,7 @@
 
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/sqlite_db.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -53,6 +54,13 @@ void CheckRecordPath(const std::string& option, const std::string& path) {
   std::ifstream(path, std::ios::binary)
       .read(head.data(), static_cast<std::streamsize>(head.size()));
   if (head != kMagic) Refuse(option, path, "a file that is no SQLite file is in its place");
+  try {
+    SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+    SqliteStatement trials = db.Prepare("SELECT 1 FROM sqlite_master WHERE name = 'manifest'");
+    if (trials.Step()) Refuse(option, path, "a file of trials is in its place");
+  } catch (const SqliteError&) {
+    // What cannot be read is no campaign.
+  }
 }
 
 void CheckPicturePath(const std::string& option, const std::string& path) {

@@ -44,7 +44,7 @@ void AddDepthKeys(KeyList& keys) {
                        "farthest that the depth camera sees; what it has to see to brake "
                        "bounds the speed of the vehicle",
                        TOUCHDOWN_AT(depth.range)));
-  keys.push_back(Number<Scenario>("depth.noise", In(0, 0.5, ""),
+  keys.push_back(Number<Scenario>("depth.noise", In(0, 0.3, ""),
                                   "standard deviation of a range over the range",
                                   TOUCHDOWN_AT(depth.noise)));
   keys.push_back(Number<Scenario>("depth.latency_ms", In(0, 400, "ms"),

@@ -48,7 +48,7 @@ TEST(OwnStateLost, NoBridgeBeginsOnDeadReckoning) {
   for (const bool fresh : {true, false}) {
     Mission mission;
     mission.in.contact_sigma = 0.02;
-    mission.DescendTo(0.6);
+    mission.DescendTo(0.5);
     mission.in.own_fresh = fresh;
     bool committed = false;
     for (int k = 0; k < 150; ++k) {  // the tags are lost

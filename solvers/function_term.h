@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "touchdown/solvers/dual.h"
+#include "touchdown/solvers/term.h"
+
+namespace touchdown::solvers {
+
+/// Sizes and windows of a FunctionTerm.
+struct FunctionShape {
+  int block_size = 1;  ///< scalars in a block, d
+  int window = 1;      ///< consecutive blocks that the function sees, w
+  int outputs = 1;     ///< m
+  int first = 0;       ///< block at which the first window starts
+  int windows = 1;     ///< they start at consecutive blocks
+};
+
+/// A term whose sizes are known at run time: for small problems, and where a WindowTerm for every size would
+/// take long to compile. Its function is written once,
+///
+///   [](const auto* q, auto* u) { u[0] = q[0] * q[1] - 1.0; }
+///
+/// on the w d scalars of a window, and is differentiated twice, exactly. It does not see the interval. Some
+/// ten times slower than a WindowTerm of the same size.
+class FunctionTerm : public Term {
+ public:
+  static constexpr int kMostVariables = 10;  ///< w d
+  static constexpr int kMostOutputs = 10;    ///< m
+  using Loss = std::variant<SquareLoss, HingeLoss, RangeLoss, LinearLoss>;
+
+  /// Throws std::invalid_argument on a size out of range.
+  template <class Function>
+  FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Function function)
+      : FunctionTerm(std::move(info), shape, std::move(loss),
+                     Functions{function, function, function}) {}
+
+  const TermInfo& info() const override { return info_; }
+  const TermShape& shape() const override { return shape_; }
+  LossBounds bounds() const override;
+  double nominal_row_weight() const override;
+  void Place(TermBlock* block) const override;
+  void Evaluate(const TermInput& input, const TermRequest& request, TermBlock* block,
+                const TermSums& sums) const override;
+
+ private:
+  using First = Dual<double, kMostVariables>;
+  using Second = Dual<First, kMostVariables>;
+  struct Functions {
+    std::function<void(const double*, double*)> value;
+    std::function<void(const First*, First*)> first;
+    std::function<void(const Second*, Second*)> second;
+  };
+
+  FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Functions functions);
+  void EvaluateFunction(const double* q, bool derivatives, double* u, double* du) const;
+  void EvaluateLoss(int window, const TermRequest& request, TermBlock* block) const;
+  void AddGradient(int window, const TermRequest& request, const TermBlock& block,
+                   const TermSums& sums) const;
+  void AddHessian(int window, const double* q, const TermRequest& request, const TermBlock& block,
+                  BorderedBandMatrix* hessian) const;
+
+  TermInfo info_;
+  TermShape shape_;
+  int first_;
+  int windows_;
+  int variables_;  // of a window
+  Loss loss_;
+  Functions functions_;
+};
+
+}  // namespace touchdown::solvers
