@@ -183,11 +183,17 @@ auto Dispatch(int d, int half, Visit&& visit) {
 
 }  // namespace
 
+bool BorderedCholesky::Takes(const BorderedBandMatrix& shape) {
+  const int size = shape.block_size();
+  return size == 3 ? shape.half_bandwidth() <= 5
+                   : size * (shape.half_bandwidth() + 1) - 1 <= kWidestScalarBand;
+}
+
 void BorderedCholesky::Prepare(const BorderedBandMatrix& shape) {
   const int size = shape.block_size();
   d_ = size == 3 ? 3 : 1;
   half_ = size == 3 ? shape.half_bandwidth() : size * (shape.half_bandwidth() + 1) - 1;
-  if (half_ > (d_ == 3 ? 5 : kWidestScalarBand)) {
+  if (!Takes(shape)) {
     throw std::invalid_argument("BorderedCholesky: a band of " + std::to_string(half_) +
                                 " beside the diagonal, it must be at most " +
                                 std::to_string(d_ == 3 ? 5 : kWidestScalarBand));

@@ -19,6 +19,9 @@ class BorderedCholesky {
     kIndefinite,        ///< B is not: no factor
   };
 
+  /// Matrices of this shape can be prepared for.
+  static bool Takes(const BorderedBandMatrix& shape);
+
   /// Allocates for matrices of this shape. Throws std::invalid_argument if blocks of another size
   /// than 3 reach further than 31 scalars beside the diagonal.
   void Prepare(const BorderedBandMatrix& shape);

@@ -28,6 +28,8 @@ class ConstraintRows {
 
   /// Nonzeros of the Jacobian, row by row; the columns of a row ascend.
   int nonzeros() const { return static_cast<int>(column_.size()); }
+  /// The most that there can be, in views of the prepared structure.
+  int most_nonzeros() const { return static_cast<int>(column_.capacity()); }
   /// First nonzero of a row; of size(): nonzeros().
   int start(int row) const { return start_[row]; }
   int column(int nonzero) const { return column_[nonzero]; }

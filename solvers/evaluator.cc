@@ -111,7 +111,10 @@ Share Evaluator::SwitchShare(Share share) {
 
 bool Evaluator::CheckStop() {
   if (must_stop()) return true;
-  if (iterations_ >= stop_->max_iterations || evaluations_ >= stop_->max_evaluations) {
+  const bool spent = iterations_ >= stop_->max_iterations ||
+                     evaluations_ >= stop_->max_evaluations ||
+                     evaluations_ / kMostPerIteration > stop_->max_iterations;
+  if (spent) {
     stop_status_ = SolveStatus::kIterationLimit;
   } else if (stop_->wall_limit_s < std::numeric_limits<double>::infinity() &&
              elapsed_s() >= stop_->wall_limit_s) {
@@ -132,6 +135,7 @@ void Evaluator::AskCallback() {
 }
 
 void Evaluator::Track() {
+  if (!has_best_) first_cost_ = storage_.full.value;
   const double violation = std::max(storage_.full.max_violation, kFeasible);
   const double best_violation = std::max(best_violation_, kFeasible);
   const double cost = storage_.full.value;

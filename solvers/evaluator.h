@@ -20,6 +20,9 @@ class Evaluator {
   /// A point counts as feasible up to this constraint violation.
   static constexpr double kFeasible = 1e-6;
 
+  /// Libraries count iterations as they like: so many evaluations stand for one at least.
+  static constexpr int kMostPerIteration = 20;
+
   /// Sizes all storage for views of this structure. The only call that allocates.
   void Prepare(const View& view);
   /// Starts a solve. Both arguments outlive it.
@@ -60,6 +63,8 @@ class Evaluator {
   bool has_best() const { return has_best_; }
   const Eigen::VectorXd& best() const { return best_; }
   double best_cost() const { return best_cost_; }
+  /// Of the first point that could be evaluated.
+  double first_cost() const { return first_cost_; }
   double best_violation() const { return best_violation_; }
   const std::vector<double>& best_cost_by_term() const { return best_cost_by_term_; }
 
@@ -88,6 +93,7 @@ class Evaluator {
   Eigen::VectorXd best_;
   std::vector<double> best_cost_by_term_;
   double best_cost_ = 0.0;
+  double first_cost_ = 0.0;
   double best_violation_ = 0.0;
   std::vector<IterationRecord> trace_;
   SolveShares shares_;

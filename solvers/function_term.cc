@@ -13,7 +13,9 @@ namespace touchdown::solvers {
 namespace {
 
 template <class Loss>
-constexpr bool kHasResidual = requires(const Loss& loss) { loss.Residual(0.0); };
+constexpr bool kHasResidual = requires(const Loss& loss) {
+  loss.Residual(0.0);
+};
 
 }  // namespace
 
@@ -116,8 +118,8 @@ void FunctionTerm::AddGradient(int window, const TermRequest& request, const Ter
   const double* weights = cost ? &block.drho[window * m] : nullptr;
   if (!cost && request.rows.multiplier) weights = request.rows.multiplier + window * m;
   if (!weights) return;
-  double* out = (cost ? sums.gradient : sums.row_gradient) +
-                block.first_block[window] * shape_.block_size;
+  double* out =
+      (cost ? sums.gradient : sums.row_gradient) + block.first_block[window] * shape_.block_size;
   for (int c = 0; c < m; ++c) {
     if (weights[c] == 0.0) continue;
     const double* du = &block.du[(window * m + c) * variables_];

@@ -14,6 +14,7 @@ namespace touchdown::solvers {
 namespace {
 
 constexpr double kUnbounded = 2e19;  // beyond Ipopt's nlp_upper_bound_inf
+constexpr double kNarrow = 1e-9;     // half the width of an equality that is given as a row of two sides
 
 double Bound(double bound) { return std::clamp(bound, -kUnbounded, kUnbounded); }
 
@@ -91,9 +92,14 @@ bool IpoptNlp::get_bounds_info(Index n, Number* x_l, Number* x_u, Index m, Numbe
     x_l[n - 1] = point_.interval_scale() * shape.interval_min;
     x_u[n - 1] = point_.interval_scale() * shape.interval_max;
   }
+  int equalities = 0;
+  for (int r = 0; r < m; ++r) equalities += rows_.lo(r) == rows_.hi(r);
+  // More equalities than variables are refused, though they may agree: as narrow rows they are solved.
+  const double room = equalities > n ? kNarrow : 0.0;
   for (int r = 0; r < m; ++r) {
-    g_l[r] = Bound(rows_.lo(r));
-    g_u[r] = Bound(rows_.hi(r));
+    const bool equality = rows_.lo(r) == rows_.hi(r);
+    g_l[r] = Bound(rows_.lo(r)) - (equality ? room : 0.0);
+    g_u[r] = Bound(rows_.hi(r)) + (equality ? room : 0.0);
   }
   return true;
 }
@@ -182,8 +188,12 @@ bool IpoptNlp::eval_h(Index /*n*/, const Number* x, bool /*new_x*/, Number objec
   if (rows_.size() > 0) rows_.Spread(lambda, &multipliers_);
   const Lagrangian lagrangian{.objective_factor = objective_factor, .rows = row_weights_.data()};
   if (!point_.EvaluateLagrangian(x, lagrangian)) return false;
-  ForEachLower(evaluator_->last().hessian, [&](int, int, double value) { *values++ = value; });
-  return true;
+  bool finite = true;
+  ForEachLower(evaluator_->last().hessian, [&](int, int, double value) {
+    finite = finite && std::isfinite(value);
+    *values++ = value;
+  });
+  return finite;
 }
 
 bool IpoptNlp::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration, Number /*value*/,
@@ -194,6 +204,7 @@ bool IpoptNlp::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration,
                                      Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
   const ShareScope scope(evaluator_, Share::kAdapter);
   if (mode == Ipopt::RegularMode) {  // the restoration phase solves another problem
+    report_.told = true;
     report_.primal_infeasibility = primal_infeasibility;
     report_.dual_infeasibility = dual_infeasibility;
   }

@@ -20,6 +20,7 @@ class IpoptNlp : public Ipopt::TNLP {
 
   /// What Ipopt told at its end or, where it was ended, after its last iteration.
   struct Report {
+    bool told = false;  ///< it has made an iteration
     double primal_infeasibility = 0.0;
     double dual_infeasibility = 0.0;
     double interval_multiplier = 0.0;

@@ -144,10 +144,13 @@ class IpoptSolver : public SolverBackend {
         return SolveStatus::kIterationLimit;
       case Ipopt::Invalid_Number_Detected:
         return SolveStatus::kEvaluationFailed;
+      case Ipopt::Diverging_Iterates:
+        return SolveStatus::kUnbounded;
       default:
         break;
     }
     const IpoptNlp::Report& last = nlp_->report();
+    if (!last.told) return SolveStatus::kNumericalFailure;
     const double scale = std::max(1.0, std::abs(evaluator.best_cost()));
     const bool stationary = last.primal_infeasibility <= Evaluator::kFeasible &&
                             last.dual_infeasibility <= kStationary * scale;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Square, cubic-quadratic hinge and linear losses. The hinge is the collision penalty of X. Zhou et al.,
+// Square, cubic-quadratic hinge, two-sided and linear losses. The hinge is the collision penalty of X. Zhou et al.,
 // "EGO-Planner: An ESDF-free gradient-based local planner for quadrotors", RA-L 2020, eq. 5.
 
 #include "touchdown/solvers/loss.h"
@@ -41,6 +41,26 @@ LossResidual HingeLoss::Residual(double u) const {
   if (value.rho == 0.0) return {};
   const double r = std::sqrt(2.0 * value.rho);
   return {r, value.drho / r};
+}
+
+RangeLoss::RangeLoss(LossBounds bounds, double weight, double width)
+    : bounds_(bounds), hinge_(weight, width) {
+  if (!(bounds.lo <= bounds.hi)) {
+    throw std::invalid_argument("RangeLoss: bounds are [" + std::to_string(bounds.lo) + ", " +
+                                std::to_string(bounds.hi) + "], they must satisfy lo <= hi");
+  }
+}
+
+LossValue RangeLoss::Value(double u) const {
+  if (!(u < bounds_.lo)) return hinge_.Value(u - bounds_.hi);
+  const LossValue below = hinge_.Value(bounds_.lo - u);
+  return {below.rho, -below.drho, below.d2rho};
+}
+
+LossResidual RangeLoss::Residual(double u) const {
+  if (!(u < bounds_.lo)) return hinge_.Residual(u - bounds_.hi);
+  const LossResidual below = hinge_.Residual(bounds_.lo - u);
+  return {-below.r, below.dr};
 }
 
 LinearLoss::LinearLoss(double weight) : w_(weight) {

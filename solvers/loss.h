@@ -6,6 +6,7 @@
 // allocates.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 namespace touchdown::solvers {
@@ -69,6 +70,29 @@ class HingeLoss {
  private:
   double w_;
   double s_;
+};
+
+/// A hinge on either side of an interval: zero for lo <= u <= hi, HingeLoss of what is beyond. A bound may be
+/// infinite; lo = hi is an equality where the term is made hard.
+class RangeLoss {
+ public:
+  static constexpr bool kQuadratic = false;
+
+  /// Throws std::invalid_argument unless lo <= hi, neither of which may be NaN, and as HingeLoss does.
+  RangeLoss(LossBounds bounds, double weight, double width);
+
+  LossValue Value(double u) const;
+  /// Negative below the interval.
+  LossResidual Residual(double u) const;
+  double NominalCurvature(double u) const {
+    return std::max(hinge_.NominalCurvature(bounds_.lo - u),
+                    hinge_.NominalCurvature(u - bounds_.hi));
+  }
+  LossBounds bounds() const { return bounds_; }
+
+ private:
+  LossBounds bounds_;
+  HingeLoss hinge_;
 };
 
 /// rho(u) = w u: a cost that is its inner map. It may be negative, so it has no residual.

@@ -35,6 +35,12 @@ void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
         " blocks of " + std::to_string(t.block_size) + ", it must be 1 to " +
         std::to_string(longest) + " blocks of " + std::to_string(shape_.block_size));
   }
+  const LossBounds bounds = term->bounds();
+  if (role == Role::kConstraint && !(bounds.lo <= bounds.hi)) {
+    throw std::invalid_argument("Problem: rows of term " + term->info().name + " have bounds [" +
+                                std::to_string(bounds.lo) + ", " + std::to_string(bounds.hi) +
+                                "], they must satisfy lo <= hi");
+  }
   half_bandwidth_ = std::max(half_bandwidth_, t.window - 1);
   terms_.push_back({std::move(term), role});
 }
@@ -46,9 +52,9 @@ bool Problem::convex() const {
 
 namespace {
 
-bool IsFinite(const std::vector<double>& numbers) {
+bool IsFinite(const double* numbers, std::size_t count) {
   double sum = 0.0;
-  for (const double number : numbers) sum += 0.0 * number;  // NaN if one is not finite
+  for (std::size_t i = 0; i < count; ++i) sum += 0.0 * numbers[i];  // NaN if one is not finite
   return sum == 0.0;
 }
 
@@ -113,13 +119,15 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
       if (lagrangian.rows && want.hessian) request.rows = lagrangian.rows[i];
       entry.term->Evaluate(input, request, &evaluation->terms[i], sums);
       const bool cost = entry.role == Role::kCost;
-      if (!(cost ? AddCost(i, evaluation) : AddViolation(i, evaluation))) return false;
+      if (!(cost ? AddCost(i, evaluation) : AddViolation(i, want.gradient, evaluation))) {
+        return false;
+      }
     }
   } catch (...) {
     return false;  // a term that throws cannot be evaluated here: the caller sees a status
   }
   if (want.gradient || want.residual) evaluation->constant_jacobian_ = evaluation->hold_;
-  return !want.gradient || IsFinite(evaluation->gradient);
+  return !want.gradient || IsFinite(evaluation->gradient.data(), evaluation->gradient.size());
 }
 
 bool Problem::Place(Evaluation* evaluation) const {
@@ -179,16 +187,20 @@ bool Problem::AddCost(std::size_t i, Evaluation* evaluation) const {
   return std::isfinite(sum);
 }
 
-bool Problem::AddViolation(std::size_t i, Evaluation* evaluation) const {
+bool Problem::AddViolation(std::size_t i, bool gradient, Evaluation* evaluation) const {
   const TermBlock& block = evaluation->terms[i];
-  const int outputs = block.windows * terms_[i].term->shape().outputs;
+  const TermShape& shape = terms_[i].term->shape();
+  const int outputs = block.windows * shape.outputs;
   const LossBounds bounds = terms_[i].term->bounds();
   for (int j = 0; j < outputs; ++j) {
     const double violation = std::max(bounds.lo - block.u[j], block.u[j] - bounds.hi);
-    if (std::isnan(violation)) return false;
+    if (!std::isfinite(block.u[j])) return false;
     evaluation->max_violation = std::max(evaluation->max_violation, violation);
   }
-  return true;
+  // A row may have a value where its slope has none.
+  const auto rows = static_cast<std::size_t>(outputs);
+  const std::size_t slopes = rows * static_cast<std::size_t>(shape.window * shape.block_size);
+  return !gradient || (IsFinite(block.du.data(), slopes) && IsFinite(block.du_dh.data(), rows));
 }
 
 }  // namespace touchdown::solvers

@@ -27,7 +27,7 @@ struct Lagrangian {
 
 /// Result storage of one evaluation; one per thread. Sized by Problem::Resize.
 struct Evaluation {
-  bool ok = false;                   ///< false: a term returned NaN or threw
+  bool ok = false;                   ///< false: a value or a slope is not finite, or a term threw
   double value = 0.0;                ///< sum of the cost terms
   double max_violation = 0.0;        ///< worst violation of a constraint row
   std::vector<double> gradient;      ///< of the objective: blocks x d, then h if free
@@ -62,8 +62,8 @@ class Problem {
   /// Throws std::invalid_argument if a size or an interval bound is out of range.
   explicit Problem(const ProblemShape& shape);
 
-  /// Adds a term. Throws std::invalid_argument if its block size differs or its window is longer
-  /// than the problem.
+  /// Adds a term. Throws std::invalid_argument if its block size differs, its window is longer than the
+  /// problem, or the bounds of its rows are not lo <= hi.
   void AddTerm(std::shared_ptr<const Term> term, Role role);
 
   const ProblemShape& shape() const { return shape_; }
@@ -102,7 +102,7 @@ class Problem {
                     Evaluation* evaluation) const;
   bool HeldConstant(const Entry& entry, const Evaluation& evaluation) const;
   bool AddCost(std::size_t i, Evaluation* evaluation) const;
-  bool AddViolation(std::size_t i, Evaluation* evaluation) const;
+  bool AddViolation(std::size_t i, bool gradient, Evaluation* evaluation) const;
 
   ProblemShape shape_;
   std::vector<Entry> terms_;

@@ -13,6 +13,13 @@
 
 namespace touchdown::solvers {
 
+namespace {
+
+/// A cost that has fallen by so many times its first value, and 1, has no end.
+constexpr double kEndless = 1e12;
+
+}  // namespace
+
 std::string SolverBackend::Refusal(const View& view) const {
   const Capabilities can = capabilities();
   if (!can.compiled) {
@@ -88,6 +95,7 @@ void SolverBackend::Prepare(const View& view) {
   if (!refusal.empty()) throw std::invalid_argument(refusal);
   prepared_.clear();  // what follows may throw with half of it sized
   evaluator_.Prepare(view);
+  check_.Prepare(view);
   DoPrepare(view);
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
 }
@@ -133,6 +141,9 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   if (evaluator_.must_stop() && result->usable()) result->status = evaluator_.stop_status();
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
 
+  result->optimality = {};
+  if (n > 0 && result->status == SolveStatus::kConverged) Judge(view, result);
+
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();
   result->max_violation = evaluator_.best_violation();
@@ -150,6 +161,22 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->cpu_s = ThreadCpuSeconds() - cpu_start;
 }
 
+/// What becomes of a backend's claim to have converged.
+void SolverBackend::Judge(const View& view, SolverResult* result) {
+  const ShareScope scope(&evaluator_, Share::kEvaluation);
+  const double first = evaluator_.first_cost();
+  result->optimality =
+      check_.Look(view, evaluator_.best(), result->multipliers, first, evaluator_.mutable_last());
+  const Optimality& at = result->optimality;
+  if (evaluator_.best_cost() < -kEndless * (1.0 + std::abs(first))) {
+    result->status = SolveStatus::kUnbounded;
+  } else if (!at.feasible() || !at.stationary()) {
+    result->status = SolveStatus::kUnconfirmed;
+  } else if (at.saddle) {
+    result->status = SolveStatus::kSaddle;
+  }
+}
+
 const char* ToString(SolveStatus status) {
   switch (status) {
     case SolveStatus::kConverged:
@@ -160,6 +187,12 @@ const char* ToString(SolveStatus status) {
       return "time_limit";
     case SolveStatus::kStopped:
       return "stopped";
+    case SolveStatus::kUnconfirmed:
+      return "unconfirmed";
+    case SolveStatus::kSaddle:
+      return "saddle";
+    case SolveStatus::kUnbounded:
+      return "unbounded";
     case SolveStatus::kInfeasible:
       return "infeasible";
     case SolveStatus::kEvaluationFailed:

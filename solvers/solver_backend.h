@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/solvers/evaluator.h"
+#include "touchdown/solvers/optimality.h"
 #include "touchdown/solvers/solver_options.h"
 #include "touchdown/solvers/solver_result.h"
 #include "touchdown/solvers/stop.h"
@@ -57,14 +58,17 @@ class SolverBackend {
  private:
   virtual void DoPrepare(const View& view) = 0;
   /// Runs the solver from `warm`, evaluating only through `evaluator`, and tells it of every finished
-  /// iteration. Sets status, native_status and message, multipliers if it has them; charges the time
+  /// iteration. Sets status (converged is a claim that the base checks), native_status and message, multipliers if it has them; charges the time
   /// inside its library to Share::kNative. The base fills in the rest from the evaluator.
   virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 
   std::string name_;
   SolverOptions options_;
+  void Judge(const View& view, SolverResult* result);
+
   Evaluator evaluator_;
+  OptimalityCheck check_;
   WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the interval's bounds
   std::vector<double> prepared_;         // signature of the prepared structure
 };

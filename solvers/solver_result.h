@@ -11,11 +11,14 @@ namespace touchdown::solvers {
 
 /// How a solve ended. "Did not converge" is a status, never an exception.
 enum class SolveStatus {
-  kConverged,         ///< the backend's own stop test was met
+  kConverged,         ///< an optimum: the backend says so, and its point passes OptimalityCheck
   kIterationLimit,    ///< iteration or evaluation budget used up
   kTimeLimit,         ///< the wall-clock deadline passed
   kStopped,           ///< the caller's callback asked to stop
-  kInfeasible,        ///< constraints cannot be met from here
+  kUnconfirmed,       ///< the backend says converged, and the check does not find it so
+  kSaddle,            ///< stationary, but the cost falls on both sides: no minimum
+  kUnbounded,         ///< the cost seems to fall without end
+  kInfeasible,        ///< constraints cannot be met from here, or so it seems
   kEvaluationFailed,  ///< a term returned NaN or threw
   kNumericalFailure,  ///< the backend gave up
 };
@@ -57,6 +60,30 @@ struct WarmStart {
   std::vector<std::vector<double>> multipliers;
 };
 
+/// What the conditions of Karush, Kuhn and Tucker say of a point. The numbers do not change with a constant in
+/// the cost, with a factor of the cost or of a row, or with the unit of all variables where these are large
+/// beside 1: a point is as large as its largest variable, and 1 at least; a cost is as large as what
+/// the solve has gained, and as its slope times the point's size.
+struct Optimality {
+  bool evaluated = false;  ///< false: a term or its derivatives are not finite there
+  double violation = 0.0;  ///< way to the bound of the worst row along its slope, share of the point's size
+  double step = 0.0;       ///< Newton's, of the Lagrangian, share of the point's size
+  double gain = 0.0;       ///< what it promises, share of the cost's size
+  double gap = 0.0;        ///< multipliers times the way to their bounds, share of the cost's size
+  /// The Lagrangian falls on both sides along a direction that leaves every row at its bound there.
+  bool saddle = false;
+
+  bool feasible() const { return evaluated && violation <= kFeasible; }
+  bool stationary() const {
+    return evaluated && (step <= kStep || gain <= kGain) && gap <= kGap;
+  }
+
+  static constexpr double kFeasible = 1e-6;
+  static constexpr double kStep = 1e-6;
+  static constexpr double kGain = 1e-8;
+  static constexpr double kGap = 1e-7;  // rows that are met to kFeasible leave as much
+};
+
 /// What a solve came to, without its point: of one size for all problems.
 struct SolverSummary {
   SolveStatus status = SolveStatus::kNumericalFailure;
@@ -68,11 +95,13 @@ struct SolverSummary {
   double wall_s = 0.0;
   double cpu_s = 0.0;     ///< thread CPU time
   int native_status = 0;  ///< the backend's own code
+  Optimality optimality;  ///< of the point, where the backend says converged
 
   /// The point may be used: it was evaluated, whether or not the solve converged.
   bool usable() const {
     return status == SolveStatus::kConverged || status == SolveStatus::kIterationLimit ||
-           status == SolveStatus::kTimeLimit || status == SolveStatus::kStopped;
+           status == SolveStatus::kTimeLimit || status == SolveStatus::kStopped ||
+           status == SolveStatus::kUnconfirmed || status == SolveStatus::kSaddle;
   }
 };
 

@@ -10,7 +10,7 @@ namespace {
 class EveryRowBackend : public EveryBackend {};
 
 TEST_P(EveryRowBackend, ConstrainedProblemsHaveTheirKnownOptima) {
-  int solved = 0;
+  int solved = 0, confirmed = 0;
   for (const StandardProblem& standard : ConstrainedProblems()) {
     SCOPED_TRACE(standard.name);
     const View view(*standard.problem, AffineLift::Identity(standard.problem->shape().blocks));
@@ -20,13 +20,17 @@ TEST_P(EveryRowBackend, ConstrainedProblemsHaveTheirKnownOptima) {
     backend->Prepare(view);
     SolverResult result;
     backend->Solve(view, standard.start, {.max_iterations = 10000}, &result);
-    EXPECT_EQ(result.status, SolveStatus::kConverged)
+    // Loose default tolerances may leave more than the check confirms.
+    EXPECT_TRUE(result.status == SolveStatus::kConverged ||
+                result.status == SolveStatus::kUnconfirmed)
         << ToString(result.status) << ": " << result.message;
+    confirmed += result.status == SolveStatus::kConverged;
     EXPECT_NEAR(result.cost, standard.cost, 1e-6 * std::max(1.0, std::abs(standard.cost)));
     EXPECT_LE(result.max_violation, 1e-6);
     EXPECT_LT((result.x - standard.optimum).norm(), 1e-3);
   }
   EXPECT_GT(solved, 0);  // whoever takes rows takes some of these
+  EXPECT_GT(2 * confirmed, solved);
 }
 
 TEST_P(EveryRowBackend, InfeasibleIsAStatus) {

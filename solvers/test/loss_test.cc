@@ -29,6 +29,8 @@ void ExpectConsistent(const Loss& loss) {
 TEST(Loss, DerivativesResidualsAndConvexity) {
   ExpectConsistent(SquareLoss(3.0));
   ExpectConsistent(HingeLoss(2.0, 0.5));
+  ExpectConsistent(RangeLoss({-0.7, 0.4}, 2.0, 0.5));
+  ExpectConsistent(RangeLoss({0.3, 0.3}, 2.0, 0.5));
 }
 
 TEST(Loss, LinearMayBeNegativeAndHasNoResidual) {
@@ -56,6 +58,8 @@ TEST(Loss, RefusesBadParameters) {
   EXPECT_THROW(SquareLoss(std::nan("")), std::invalid_argument);
   EXPECT_THROW(HingeLoss(1.0, 0.0), std::invalid_argument);
   EXPECT_THROW(LinearLoss(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(RangeLoss({1.0, 0.5}, 1.0, 1.0), std::invalid_argument);
+  EXPECT_THROW(RangeLoss({0.0, std::nan("")}, 1.0, 1.0), std::invalid_argument);
 }
 
 }  // namespace

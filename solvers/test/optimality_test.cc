@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The check of optimality, and what becomes of claims that it does not confirm.
+
+#include "touchdown/solvers/optimality.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/solvers/problems/hock_schittkowski.h"
+#include "touchdown/solvers/test/every_backend.h"
+
+namespace touchdown::solvers {
+namespace {
+
+Optimality LookAt(const ReferenceProblem& p, const std::vector<double>& point) {
+  const View view(*p.problem, AffineLift::Identity(1));
+  OptimalityCheck check;
+  check.Prepare(view);
+  ViewEvaluation storage;
+  view.Resize(&storage);
+  view.Evaluate(p.start.data(), {}, {}, &storage);
+  const double first = storage.full.value;
+  const Eigen::Map<const Eigen::VectorXd> y(point.data(), static_cast<Eigen::Index>(point.size()));
+  return check.Look(view, y, {}, first, &storage);
+}
+
+/// 100 (x1 - x0^2)^2 + (1 - x0)^2, times a factor and with a constant.
+ReferenceProblem ScaledRosenbrock(double factor, double constant) {
+  return SmallProblem("rosenbrock", {-1.2, 1.0}, constant, EqualityForm::kRows)
+      .Cost([=](const auto* x, auto* u) {
+        const auto a = x[1] - x[0] * x[0], b = 1.0 - x[0];
+        u[0] = factor * (100.0 * a * a + b * b) + constant;
+      });
+}
+
+TEST(Optimality, DoesNotChangeWithTheCostsUnitOrAConstant) {
+  for (const auto& [factor, constant] :
+       {std::pair(1.0, 0.0), {1e-12, 0.0}, {1e9, 0.0}, {1.0, 1e6}}) {
+    const ReferenceProblem p = ScaledRosenbrock(factor, constant);
+    EXPECT_TRUE(LookAt(p, {1.0, 1.0}).stationary()) << factor;
+    EXPECT_TRUE(LookAt(p, {1.0 + 1e-7, 1.0 + 2e-7}).stationary()) << factor;
+    EXPECT_FALSE(LookAt(p, {0.99, 0.98}).stationary()) << factor;
+    EXPECT_FALSE(LookAt(p, {-1.2, 1.0}).stationary()) << factor;
+  }
+}
+
+TEST(Optimality, ARowsUnitDoesNotChangeWhatCountsAsFeasible) {
+  for (const double unit : {1e-7, 1.0, 1e7}) {
+    const ReferenceProblem p =
+        SmallProblem("row", {3.0}, 1.0, EqualityForm::kRows)
+            .Squares(1, [](const auto* x, auto* u) { u[0] = x[0]; })
+            .AtLeastZero(1, [=](const auto* x, auto* u) { u[0] = unit * (x[0] - 1.0); });
+    EXPECT_TRUE(LookAt(p, {1.0}).feasible() && LookAt(p, {1.0}).stationary()) << unit;
+    EXPECT_FALSE(LookAt(p, {0.99}).feasible()) << unit;
+    EXPECT_FALSE(LookAt(p, {1.01}).stationary()) << unit;
+  }
+}
+
+TEST(Optimality, ASaddleIsNoMinimum) {
+  const ReferenceProblem p = SmallProblem("saddle", {0.5, 0.5}, -1.0, EqualityForm::kRows)
+                                 .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[1]; })
+                                 .BoundAll(-1.0, 1.0);
+  EXPECT_TRUE(LookAt(p, {0.0, 0.0}).saddle);
+  const Optimality corner = LookAt(p, {1.0, -1.0});
+  EXPECT_TRUE(corner.stationary() && !corner.saddle);
+  EXPECT_FALSE(LookAt(p, {1.0, 1.0}).stationary()) << "its multipliers have the wrong sign";
+}
+
+TEST(Optimality, KnownOptimaOfTheSetPass) {
+  // The optimum by the most exact backend there is; what it finds has the published cost.
+  const BackendRegistry backends = StandardBackends();
+  const auto ipopt = MakeBackend(backends, "ipopt");
+  if (!ipopt->capabilities().compiled) GTEST_SKIP() << "without Ipopt there is nobody to ask";
+  int found = 0;
+  for (const EqualityForm form : {EqualityForm::kRows, EqualityForm::kPairs}) {
+    for (const ReferenceProblem& p : HockSchittkowski(form)) {
+      const View view(*p.problem, AffineLift::Identity(1));
+      ipopt->Prepare(view);
+      SolverResult result;
+      ipopt->Solve(view, p.start, {.max_iterations = 1000}, &result);
+      if (result.status != SolveStatus::kConverged) continue;
+      ++found;
+      double nearest = std::abs(result.cost - p.cost) / std::max(1.0, std::abs(p.cost));
+      for (const double other : p.others) {
+        nearest = std::min(nearest, std::abs(result.cost - other) / std::max(1.0, std::abs(other)));
+      }
+      EXPECT_LT(nearest, 2e-6) << p.name << ": " << result.cost;
+    }
+  }
+  EXPECT_GT(found, 115);  // of 136
+}
+
+class ClaimsOfEveryBackend : public EveryBackend {
+ protected:
+  SolverResult SolveReference(const ReferenceProblem& p) {
+    const View view(*p.problem, AffineLift::Identity(1));
+    auto backend = Make();
+    SolverResult result;
+    if (!backend->Refusal(view).empty()) return result;  // numerical failure: no claim
+    backend->Prepare(view);
+    backend->Solve(view, p.start, {.max_iterations = 300}, &result);
+    return result;
+  }
+};
+
+TEST_P(ClaimsOfEveryBackend, NobodyClaimsWhatIsNone) {
+  const auto line = [](const auto* x, auto* u) { u[0] = x[0]; };
+  const ReferenceProblem unbounded =
+      SmallProblem("unbounded", {0.0}, 0.0, EqualityForm::kRows).Cost(line);
+  EXPECT_NE(SolveReference(unbounded).status, SolveStatus::kConverged);
+  const ReferenceProblem hill = SmallProblem("hill", {0.0}, -4.0, EqualityForm::kRows)
+                                    .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[0]; })
+                                    .Bound(0, -1.0, 2.0);
+  const SolverResult top = SolveReference(hill);
+  if (top.status == SolveStatus::kConverged) {
+    EXPECT_LT(top.cost, -1.0 + 1e-6);
+  }
+  // Three times the same equality, one of them moved: nothing meets all.
+  for (const double other : {1.0, 2.0}) {
+    const ReferenceProblem thrice = SmallProblem("thrice", {0.3, 0.0}, 0.5, EqualityForm::kRows)
+                                        .Squares(2,
+                                                 [](const auto* x, auto* u) {
+                                                   u[0] = x[0];
+                                                   u[1] = x[1];
+                                                 })
+                                        .Zero(3, [=](const auto* x, auto* u) {
+                                          u[0] = x[0] + x[1] - 1.0;
+                                          u[1] = x[0] + x[1] - 1.0;
+                                          u[2] = x[0] + x[1] - other;
+                                        });
+    const SolverResult result = SolveReference(thrice);
+    if (result.status == SolveStatus::kConverged) {
+      EXPECT_EQ(other, 1.0);
+      EXPECT_NEAR(result.cost, 0.5, 1e-6);
+    }
+  }
+}
+
+TEST_P(ClaimsOfEveryBackend, AnInfiniteSlopeIsAStatus) {
+  const ReferenceProblem root = SmallProblem("root", {0.0}, 0.0, EqualityForm::kRows)
+                                    .Squares(1, [](const auto* x, auto* u) { u[0] = x[0]; })
+                                    .AtLeastZero(1, [](const auto* x, auto* u) {
+                                      using std::sqrt;
+                                      u[0] = 1.0 - sqrt(x[0]);
+                                    });
+  EXPECT_FALSE(SolveReference(root).status == SolveStatus::kConverged);
+}
+
+TEST_P(ClaimsOfEveryBackend, EvaluationsCountAgainstTheBudget) {
+  for (const ReferenceProblem& p : HockSchittkowski()) {
+    if (p.name != "HS38" && p.name != "HS16") continue;
+    const View view(*p.problem, AffineLift::Identity(1));
+    auto backend = Make();
+    if (!backend->Refusal(view).empty()) continue;
+    backend->Prepare(view);
+    SolverResult result;
+    backend->Solve(view, p.start, {.max_iterations = 10}, &result);
+    EXPECT_LE(result.evaluations, 11 * Evaluator::kMostPerIteration) << p.name;
+  }
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ClaimsOfEveryBackend);
+INSTANTIATE_TEST_SUITE_P(Backends, ClaimsOfEveryBackend, ::testing::ValuesIn(CompiledBackends()),
+                         TestName);
+
+TEST(Problem, RefusesRowsWithoutAnInterval) {
+  struct Crossed : FunctionTerm {
+    using FunctionTerm::FunctionTerm;
+    LossBounds bounds() const override { return {2.0, 1.0}; }
+  };
+  Problem problem({.blocks = 1, .block_size = 1});
+  const auto term = std::make_shared<Crossed>(TermInfo{"crossed"}, FunctionShape{}, SquareLoss(1.0),
+                                              [](const auto* q, auto* u) { u[0] = q[0]; });
+  EXPECT_THROW(problem.AddTerm(term, Role::kConstraint), std::invalid_argument);
+  EXPECT_NO_THROW(problem.AddTerm(term, Role::kCost));
+}
+
+}  // namespace
+}  // namespace touchdown::solvers
