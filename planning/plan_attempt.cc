@@ -305,6 +305,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   problem.SetLimitWeightScale(pressure_.limits);
   solvers::Stop stop;
   stop.max_iterations = options_.max_iterations;
+  stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
   {
     StageTimer timer(&result->times.solve, StageTimer::kWhileLogged);

@@ -142,7 +142,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
 
   result->optimality = {};
-  if (n > 0 && result->status == SolveStatus::kConverged) Judge(view, result);
+  if (n > 0 && stop.confirm && result->status == SolveStatus::kConverged) Judge(view, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();

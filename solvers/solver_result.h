@@ -12,6 +12,7 @@ namespace touchdown::solvers {
 /// How a solve ended. "Did not converge" is a status, never an exception.
 enum class SolveStatus {
   kConverged,         ///< an optimum: the backend says so, and its point passes OptimalityCheck
+                      ///< (unless Stop::confirm is false)
   kIterationLimit,    ///< iteration or evaluation budget used up
   kTimeLimit,         ///< the wall-clock deadline passed
   kStopped,           ///< the caller's callback asked to stop
