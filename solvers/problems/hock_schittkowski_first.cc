@@ -7,37 +7,28 @@ namespace touchdown::solvers {
 
 namespace {
 
-template <class T>
-T Square(const T& x) {
-  return x * x;
-}
-
 constexpr double kInfinity = SmallProblem::kInfinity;
+
+/// The cost of HS1, 2, 15 to 17 and 20.
+constexpr auto kRosenbrock = [](const auto* x, auto* u) {
+  u[0] = 10.0 * (x[1] - x[0] * x[0]);
+  u[1] = 1.0 - x[0];
+};
 
 }  // namespace
 
 void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* all) {
   all->push_back(SmallProblem("HS1", {-2.0, 1.0}, 0.0, form)
-                     .Squares(2,
-                              [](const auto* x, auto* u) {
-                                u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                u[1] = 1.0 - x[0];
-                              })
+                     .Squares(2, kRosenbrock)
                      .Bound(1, -1.5, kInfinity));
   all->push_back(SmallProblem("HS2", {-2.0, 1.0}, 0.0504261879, form)
-                     .Squares(2,
-                              [](const auto* x, auto* u) {
-                                u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                u[1] = 1.0 - x[0];
-                              })
+                     .Squares(2, kRosenbrock)
                      .Bound(1, 1.5, kInfinity)
                      .Other(4.9412293));
   all->push_back(SmallProblem("HS3", {10.0, 1.0}, 0.0, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = x[1] + 1e-5 * Square(x[1] - x[0]); })
                      .Bound(1, 0.0, kInfinity));
   all->push_back(SmallProblem("HS4", {1.125, 0.125}, 8.0 / 3.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] + 1.0) * Square(x[0] + 1.0) / 3.0 + x[1];
                      })
@@ -45,7 +36,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(1, 0.0, kInfinity));
   all->push_back(
       SmallProblem("HS5", {0.0, 0.0}, -0.5 * std::sqrt(3.0) - std::acos(-1.0) / 3.0, form)
-
           .Cost([](const auto* x, auto* u) {
             using std::sin;
             u[0] = sin(x[0] + x[1]) + Square(x[0] - x[1]) - 1.5 * x[0] + 2.5 * x[1] + 1.0;
@@ -56,7 +46,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Squares(1, [](const auto* x, auto* u) { u[0] = 1.0 - x[0]; })
                      .Zero(1, [](const auto* x, auto* u) { u[0] = 10.0 * (x[1] - x[0] * x[0]); }));
   all->push_back(SmallProblem("HS7", {2.0, 2.0}, -std::sqrt(3.0), form)
-
                      .Cost([](const auto* x, auto* u) {
                        using std::log;
                        u[0] = log(1.0 + x[0] * x[0]) - x[1];
@@ -65,14 +54,12 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[0] = Square(1.0 + x[0] * x[0]) + x[1] * x[1] - 4.0;
                      }));
   all->push_back(SmallProblem("HS8", {2.0, 1.0}, -1.0, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = 0.0 * x[0] - 1.0; })
                      .Zero(2, [](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] + x[1] * x[1] - 25.0;
                        u[1] = x[0] * x[1] - 9.0;
                      }));
   all->push_back(SmallProblem("HS9", {0.0, 0.0}, -0.5, form)
-
                      .Cost([](const auto* x, auto* u) {
                        using std::cos, std::sin;
                        u[0] =
@@ -80,18 +67,15 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      })
                      .Zero(1, [](const auto* x, auto* u) { u[0] = 4.0 * x[0] - 3.0 * x[1]; }));
   all->push_back(SmallProblem("HS10", {-10.0, 10.0}, -1.0, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = x[0] - x[1]; })
                      .AtLeastZero(1, [](const auto* x, auto* u) {
                        u[0] = -3.0 * x[0] * x[0] + 2.0 * x[0] * x[1] - x[1] * x[1] + 1.0;
                      }));
   all->push_back(
       SmallProblem("HS11", {4.9, 0.1}, -8.498464223, form)
-
           .Cost([](const auto* x, auto* u) { u[0] = Square(x[0] - 5.0) + x[1] * x[1] - 25.0; })
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = x[1] - x[0] * x[0]; }));
   all->push_back(SmallProblem("HS12", {0.0, 0.0}, -30.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] =
                            0.5 * x[0] * x[0] + x[1] * x[1] - x[0] * x[1] - 7.0 * x[0] - 7.0 * x[1];
@@ -109,11 +93,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                         auto* u) { u[0] = 1.0 - 0.25 * x[0] * x[0] - x[1] * x[1]; })
                      .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] - 2.0 * x[1] + 1.0; }));
   all->push_back(SmallProblem("HS15", {-2.0, 1.0}, 306.5, form)
-                     .Squares(2,
-                              [](const auto* x, auto* u) {
-                                u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                u[1] = 1.0 - x[0];
-                              })
+                     .Squares(2, kRosenbrock)
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
                                     u[0] = x[0] * x[1] - 1.0;
@@ -122,11 +102,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(0, -kInfinity, 0.5)
                      .Other(360.379767));
   all->push_back(SmallProblem("HS16", {-2.0, 1.0}, 0.25, form)
-                     .Squares(2,
-                              [](const auto* x, auto* u) {
-                                u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                u[1] = 1.0 - x[0];
-                              })
+                     .Squares(2, kRosenbrock)
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
                                     u[0] = x[0] + x[1] * x[1];
@@ -137,11 +113,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Other(3.9820605)
                      .Other(23.1446609));
   all->push_back(SmallProblem("HS17", {-2.0, 1.0}, 1.0, form)
-                     .Squares(2,
-                              [](const auto* x, auto* u) {
-                                u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                u[1] = 1.0 - x[0];
-                              })
+                     .Squares(2, kRosenbrock)
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
                                     u[0] = x[1] * x[1] - x[0];
@@ -163,7 +135,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(0, 2.0, 50.0)
                      .Bound(1, 0.0, 50.0));
   all->push_back(SmallProblem("HS19", {20.1, 5.84}, -6961.81387558, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] - 10.0) * Square(x[0] - 10.0) +
                               (x[1] - 20.0) * Square(x[1] - 20.0);
@@ -176,11 +147,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(0, 13.0, 100.0)
                      .Bound(1, 0.0, 100.0));
   all->push_back(SmallProblem("HS20", {-2.0, 1.0}, 81.5 - 25.0 * std::sqrt(3.0), form)
-                     .Squares(2,
-                              [](const auto* x, auto* u) {
-                                u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                u[1] = 1.0 - x[0];
-                              })
+                     .Squares(2, kRosenbrock)
                      .AtLeastZero(3,
                                   [](const auto* x, auto* u) {
                                     u[0] = x[0] + x[1] * x[1];
@@ -191,7 +158,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Other(40.1987298));
   all->push_back(
       SmallProblem("HS21", {-1.0, -1.0}, -99.96, form)
-
           .Cost([](const auto* x, auto* u) { u[0] = 0.01 * x[0] * x[0] + x[1] * x[1] - 100.0; })
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = 10.0 * x[0] - x[1] - 10.0; })
           .Bound(0, 2.0, 50.0)
@@ -222,7 +188,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                   })
                      .BoundAll(-50.0, 50.0));
   all->push_back(SmallProblem("HS24", {1.0, 0.5}, -1.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        using std::sqrt;
                        u[0] = (Square(x[0] - 3.0) - 9.0) * x[1] * x[1] * x[1] /
@@ -262,7 +227,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                    })
           .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] + 2.0 * x[1] + 3.0 * x[2] - 1.0; }));
   all->push_back(SmallProblem("HS29", {1.0, 1.0, 1.0}, -16.0 * std::sqrt(2.0), form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
                      .AtLeastZero(1,
                                   [](const auto* x, auto* u) {

@@ -6,6 +6,11 @@
 
 namespace touchdown::solvers {
 
+template <class T>
+T Square(const T& x) {
+  return x * x;
+}
+
 void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* all);
 void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>* all);
 void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* all);

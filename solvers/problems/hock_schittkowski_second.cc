@@ -7,12 +7,30 @@ namespace touchdown::solvers {
 
 namespace {
 
-template <class T>
-T Square(const T& x) {
-  return x * x;
-}
-
 constexpr double kInfinity = SmallProblem::kInfinity;
+
+/// The cost of HS46 and 49.
+constexpr auto kFlat = [](const auto* x, auto* u) {
+  u[0] = x[0] - x[1];
+  u[1] = x[2] - 1.0;
+  u[2] = Square(x[3] - 1.0);
+  u[3] = (x[4] - 1.0) * Square(x[4] - 1.0);
+};
+
+/// The cost of HS51 and 53.
+constexpr auto kNear = [](const auto* x, auto* u) {
+  u[0] = x[0] - x[1];
+  u[1] = x[1] + x[2] - 2.0;
+  u[2] = x[3] - 1.0;
+  u[3] = x[4] - 1.0;
+};
+
+/// The rows of HS52 and 53.
+constexpr auto kPlanes = [](const auto* x, auto* u) {
+  u[0] = x[0] + 3.0 * x[1];
+  u[1] = x[2] + x[3] - 2.0 * x[4];
+  u[2] = x[1] - x[4];
+};
 
 }  // namespace
 
@@ -53,7 +71,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Zero(1, [](const auto* x, auto* u) { u[0] = 1.0 - x[0] - x[1] - x[2]; })
                      .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS33", {0.0, 0.0, 3.0}, std::sqrt(2.0) - 6.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] - 1.0) * (x[0] - 2.0) * (x[0] - 3.0) + x[2];
                      })
@@ -67,7 +84,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Bound(2, 0.0, 5.0)
                      .Other(-4.0));
   all->push_back(SmallProblem("HS34", {0.0, 1.05, 2.9}, -std::log(std::log(10.0)), form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0]; })
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
@@ -80,7 +96,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Bound(2, 0.0, 10.0));
   all->push_back(
       SmallProblem("HS35", {0.5, 0.5, 0.5}, 1.0 / 9.0, form)
-
           .Cost([](const auto* x, auto* u) {
             u[0] = 9.0 - 8.0 * x[0] - 6.0 * x[1] - 4.0 * x[2] + 2.0 * x[0] * x[0] +
                    2.0 * x[1] * x[1] + x[2] * x[2] + 2.0 * x[0] * x[1] + 2.0 * x[0] * x[2];
@@ -88,7 +103,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = 3.0 - x[0] - x[1] - 2.0 * x[2]; })
           .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS36", {10.0, 10.0, 10.0}, -3300.0, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
                      .AtLeastZero(1, [](const auto* x,
                                         auto* u) { u[0] = 72.0 - x[0] - 2.0 * x[1] - 2.0 * x[2]; })
@@ -97,7 +111,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Bound(2, 0.0, 42.0)
                      .Other(0.0));
   all->push_back(SmallProblem("HS37", {10.0, 10.0, 10.0}, -3456.0, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
@@ -107,7 +120,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .BoundAll(0.0, 42.0)
                      .Other(0.0));
   all->push_back(SmallProblem("HS38", {-3.0, -1.0, -3.0, -1.0}, 0.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = 100.0 * Square(x[1] - x[0] * x[0]) + Square(1.0 - x[0]) +
                               90.0 * Square(x[3] - x[2] * x[2]) + Square(1.0 - x[2]) +
@@ -116,14 +128,12 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      })
                      .BoundAll(-10.0, 10.0));
   all->push_back(SmallProblem("HS39", {2.0, 2.0, 2.0, 2.0}, -1.0, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0]; })
                      .Zero(2, [](const auto* x, auto* u) {
                        u[0] = x[1] - x[0] * x[0] * x[0] - x[2] * x[2];
                        u[1] = x[0] * x[0] - x[1] - x[3] * x[3];
                      }));
   all->push_back(SmallProblem("HS40", {0.8, 0.8, 0.8, 0.8}, -0.25, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2] * x[3]; })
                      .Zero(3, [](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] * x[0] + x[1] * x[1] - 1.0;
@@ -132,7 +142,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      }));
   all->push_back(
       SmallProblem("HS41", {2.0, 2.0, 2.0, 2.0}, 52.0 / 27.0, form)
-
           .Cost([](const auto* x, auto* u) { u[0] = 2.0 - x[0] * x[1] * x[2]; })
           .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] + 2.0 * x[1] + 2.0 * x[2] - x[3]; })
           .Bound(0, 0.0, 1.0)
@@ -153,7 +162,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                        u[1] = x[2] * x[2] + x[3] * x[3] - 2.0;
                      }));
   all->push_back(SmallProblem("HS43", {0.0, 0.0, 0.0, 0.0}, -44.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] + x[1] * x[1] + 2.0 * x[2] * x[2] + x[3] * x[3] -
                               5.0 * x[0] - 5.0 * x[1] - 21.0 * x[2] + 7.0 * x[3];
@@ -167,7 +175,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                               x[1] + x[3];
                      }));
   all->push_back(SmallProblem("HS44", {0.0, 0.0, 0.0, 0.0}, -15.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = x[0] - x[1] - x[2] - x[0] * x[2] + x[0] * x[3] + x[1] * x[2] -
                               x[1] * x[3];
@@ -184,7 +191,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .BoundAll(0.0, kInfinity)
                      .Other(-13.0));
   all->push_back(SmallProblem("HS45", {2.0, 2.0, 2.0, 2.0, 2.0}, 1.0, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = 2.0 - x[0] * x[1] * x[2] * x[3] * x[4] / 120.0;
                      })
@@ -195,13 +201,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Bound(4, 0.0, 5.0)
                      .Other(2.0));
   all->push_back(SmallProblem("HS46", {std::sqrt(0.5), 1.75, 0.5, 2.0, 2.0}, 0.0, form)
-                     .Squares(4,
-                              [](const auto* x, auto* u) {
-                                u[0] = x[0] - x[1];
-                                u[1] = x[2] - 1.0;
-                                u[2] = Square(x[3] - 1.0);
-                                u[3] = (x[4] - 1.0) * Square(x[4] - 1.0);
-                              })
+                     .Squares(4, kFlat)
                      .Zero(2, [](const auto* x, auto* u) {
                        using std::sin;
                        u[0] = x[0] * x[0] * x[3] + sin(x[3] - x[4]) - 1.0;
@@ -219,13 +219,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                        u[1] = x[2] - 2.0 * (x[3] + x[4]) + 3.0;
                      }));
   all->push_back(SmallProblem("HS49", {10.0, 7.0, 2.0, -3.0, 0.8}, 0.0, form)
-                     .Squares(4,
-                              [](const auto* x, auto* u) {
-                                u[0] = x[0] - x[1];
-                                u[1] = x[2] - 1.0;
-                                u[2] = Square(x[3] - 1.0);
-                                u[3] = (x[4] - 1.0) * Square(x[4] - 1.0);
-                              })
+                     .Squares(4, kFlat)
                      .Zero(2, [](const auto* x, auto* u) {
                        u[0] = x[0] + x[1] + x[2] + 4.0 * x[3] - 7.0;
                        u[1] = x[2] + 5.0 * x[4] - 6.0;
@@ -244,13 +238,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                        u[2] = x[2] + 2.0 * x[3] + 3.0 * x[4] - 6.0;
                      }));
   all->push_back(SmallProblem("HS51", {2.5, 0.5, 2.0, -1.0, 0.5}, 0.0, form)
-                     .Squares(4,
-                              [](const auto* x, auto* u) {
-                                u[0] = x[0] - x[1];
-                                u[1] = x[1] + x[2] - 2.0;
-                                u[2] = x[3] - 1.0;
-                                u[3] = x[4] - 1.0;
-                              })
+                     .Squares(4, kNear)
                      .Zero(3, [](const auto* x, auto* u) {
                        u[0] = x[0] + 3.0 * x[1] - 4.0;
                        u[1] = x[2] + x[3] - 2.0 * x[4];
@@ -264,25 +252,10 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                 u[2] = x[3] - 1.0;
                                 u[3] = x[4] - 1.0;
                               })
-                     .Zero(3, [](const auto* x, auto* u) {
-                       u[0] = x[0] + 3.0 * x[1];
-                       u[1] = x[2] + x[3] - 2.0 * x[4];
-                       u[2] = x[1] - x[4];
-                     }));
+                     .Zero(3, kPlanes));
   all->push_back(SmallProblem("HS53", {2.0, 2.0, 2.0, 2.0, 2.0}, 176.0 / 43.0, form)
-                     .Squares(4,
-                              [](const auto* x, auto* u) {
-                                u[0] = x[0] - x[1];
-                                u[1] = x[1] + x[2] - 2.0;
-                                u[2] = x[3] - 1.0;
-                                u[3] = x[4] - 1.0;
-                              })
-                     .Zero(3,
-                           [](const auto* x, auto* u) {
-                             u[0] = x[0] + 3.0 * x[1];
-                             u[1] = x[2] + x[3] - 2.0 * x[4];
-                             u[2] = x[1] - x[4];
-                           })
+                     .Squares(4, kNear)
+                     .Zero(3, kPlanes)
                      .BoundAll(-10.0, 10.0));
 }
 

@@ -7,12 +7,14 @@ namespace touchdown::solvers {
 
 namespace {
 
-template <class T>
-T Square(const T& x) {
-  return x * x;
-}
-
 constexpr double kInfinity = SmallProblem::kInfinity;
+
+/// The rows of HS78, 80 and 81.
+constexpr auto kSurfaces = [](const auto* x, auto* u) {
+  u[0] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] - 10.0;
+  u[1] = x[1] * x[2] - 5.0 * x[3] * x[4];
+  u[2] = x[0] * x[0] * x[0] + x[1] * x[1] * x[1] + 1.0;
+};
 
 }  // namespace
 
@@ -32,7 +34,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                            })
                      .BoundAll(-10.0, 10.0));
   all->push_back(SmallProblem("HS61", {0.0, 0.0, 0.0}, -143.6461422, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = 4.0 * x[0] * x[0] + 2.0 * x[1] * x[1] + 2.0 * x[2] * x[2] -
                               33.0 * x[0] + 16.0 * x[1] - 24.0 * x[2];
@@ -42,7 +43,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[1] = 4.0 * x[0] - x[2] * x[2] - 11.0;
                      }));
   all->push_back(SmallProblem("HS63", {2.0, 2.0, 2.0}, 961.7151721, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = 1000.0 - x[0] * x[0] - 2.0 * x[1] * x[1] - x[2] * x[2] - x[0] * x[1] -
                               x[0] * x[2];
@@ -55,7 +55,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      .BoundAll(0.0, kInfinity));
   all->push_back(
       SmallProblem("HS64", {1.0, 1.0, 1.0}, 6299.842428, form)
-
           .Cost([](const auto* x, auto* u) {
             u[0] = 5.0 * x[0] + 50000.0 / x[0] + 20.0 * x[1] + 72000.0 / x[1] + 10.0 * x[2] +
                    144000.0 / x[2];
@@ -77,7 +76,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
           .Bound(1, -4.5, 4.5)
           .Bound(2, -5.0, 5.0));
   all->push_back(SmallProblem("HS66", {0.0, 1.05, 2.9}, 0.5181632741, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = 0.2 * x[2] - 0.8 * x[0]; })
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
@@ -90,7 +88,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(2, 0.0, 10.0));
   all->push_back(
       SmallProblem("HS71", {1.0, 5.0, 5.0, 1.0}, 17.0140173, form)
-
           .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2]; })
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = x[0] * x[1] * x[2] * x[3] - 25.0; })
           .Zero(1,
@@ -100,7 +97,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
           .BoundAll(1.0, 5.0));
   all->push_back(
       SmallProblem("HS72", {1.0, 1.0, 1.0, 1.0}, 727.67937, form)
-
           .Cost([](const auto* x, auto* u) { u[0] = 1.0 + x[0] + x[1] + x[2] + x[3]; })
           .AtLeastZero(2,
                        [](const auto* x, auto* u) {
@@ -113,7 +109,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
           .Bound(3, 0.001, 1e5));
   all->push_back(
       SmallProblem("HS73", {1.0, 1.0, 1.0, 1.0}, 29.89437816, form)
-
           .Cost([](const auto* x, auto* u) {
             u[0] = 24.55 * x[0] + 26.75 * x[1] + 39.0 * x[2] + 40.5 * x[3];
           })
@@ -128,7 +123,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
           .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] + x[1] + x[2] + x[3] - 1.0; })
           .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS76", {0.5, 0.5, 0.5, 0.5}, -4.681818181, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] + 0.5 * x[1] * x[1] + x[2] * x[2] + 0.5 * x[3] * x[3] -
                               x[0] * x[2] + x[2] * x[3] - x[0] - 3.0 * x[1] + x[2] - x[3];
@@ -155,14 +149,8 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[1] = x[1] + Square(x[2] * x[2]) * x[3] * x[3] - 8.0 - std::sqrt(2.0);
                      }));
   all->push_back(SmallProblem("HS78", {-2.0, 1.5, 2.0, -1.0, -1.0}, -2.91970041, form)
-
                      .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[1] * x[2] * x[3] * x[4]; })
-                     .Zero(3, [](const auto* x, auto* u) {
-                       u[0] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] -
-                              10.0;
-                       u[1] = x[1] * x[2] - 5.0 * x[3] * x[4];
-                       u[2] = x[0] * x[0] * x[0] + x[1] * x[1] * x[1] + 1.0;
-                     }));
+                     .Zero(3, kSurfaces));
   all->push_back(SmallProblem("HS79", {2.0, 2.0, 2.0, 2.0, 2.0}, 0.0787768209, form)
                      .Squares(5,
                               [](const auto* x, auto* u) {
@@ -179,44 +167,29 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[2] = x[0] * x[4] - 2.0;
                      }));
   all->push_back(SmallProblem("HS80", {-2.0, 2.0, 2.0, -1.0, -1.0}, 0.0539498478, form)
-
                      .Cost([](const auto* x, auto* u) {
                        using std::exp;
                        u[0] = exp(x[0] * x[1] * x[2] * x[3] * x[4]);
                      })
-                     .Zero(3,
-                           [](const auto* x, auto* u) {
-                             u[0] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] +
-                                    x[4] * x[4] - 10.0;
-                             u[1] = x[1] * x[2] - 5.0 * x[3] * x[4];
-                             u[2] = x[0] * x[0] * x[0] + x[1] * x[1] * x[1] + 1.0;
-                           })
+                     .Zero(3, kSurfaces)
                      .Bound(0, -2.3, 2.3)
                      .Bound(1, -2.3, 2.3)
                      .Bound(2, -3.2, 3.2)
                      .Bound(3, -3.2, 3.2)
                      .Bound(4, -3.2, 3.2));
   all->push_back(SmallProblem("HS81", {-2.0, 2.0, 2.0, -1.0, -1.0}, 0.0539498478, form)
-
                      .Cost([](const auto* x, auto* u) {
                        using std::exp;
                        u[0] = exp(x[0] * x[1] * x[2] * x[3] * x[4]) -
                               0.5 * Square(x[0] * x[0] * x[0] + x[1] * x[1] * x[1] + 1.0);
                      })
-                     .Zero(3,
-                           [](const auto* x, auto* u) {
-                             u[0] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] +
-                                    x[4] * x[4] - 10.0;
-                             u[1] = x[1] * x[2] - 5.0 * x[3] * x[4];
-                             u[2] = x[0] * x[0] * x[0] + x[1] * x[1] * x[1] + 1.0;
-                           })
+                     .Zero(3, kSurfaces)
                      .Bound(0, -2.3, 2.3)
                      .Bound(1, -2.3, 2.3)
                      .Bound(2, -3.2, 3.2)
                      .Bound(3, -3.2, 3.2)
                      .Bound(4, -3.2, 3.2));
   all->push_back(SmallProblem("HS100", {1.0, 2.0, 0.0, 4.0, 0.0, 1.0, 1.0}, 680.6300573, form)
-
                      .Cost([](const auto* x, auto* u) {
                        u[0] = Square(x[0] - 10.0) + 5.0 * Square(x[1] - 12.0) +
                               Square(x[2] * x[2]) + 3.0 * Square(x[3] - 11.0) +
@@ -233,7 +206,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      }));
   all->push_back(
       SmallProblem("HS110", {9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0, 9.0}, -45.77846971, form)
-
           .Cost([](const auto* x, auto* u) {
             using std::exp, std::log;
             u[0] = 0.0 * x[0];
@@ -246,7 +218,6 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
           .BoundAll(2.001, 9.999));
   all->push_back(
       SmallProblem("HS113", {2.0, 3.0, 5.0, 5.0, 1.0, 2.0, 7.0, 3.0, 6.0, 10.0}, 24.3062091, form)
-
           .Cost([](const auto* x, auto* u) {
             u[0] = x[0] * x[0] + x[1] * x[1] + x[0] * x[1] - 14.0 * x[0] - 16.0 * x[1] +
                    Square(x[2] - 10.0) + 4.0 * Square(x[3] - 5.0) + Square(x[4] - 3.0) +
