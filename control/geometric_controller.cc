@@ -4,15 +4,33 @@
 // derivative would need the snap, which a cubic spline does not have, and is left out. Known linear
 // rotor drag is fed forward on the reference's velocity (as M. Faessler, A. Franchi, D. Scaramuzza,
 // RA-L 2018, section III model it), and the disturbance that was estimated is
-// taken from force and moment.
+// taken from force and moment. Rotors give the heading what roll and pitch leave, and so does the law: with a
+// heading far off, the error on SO(3) would turn the thrust axis about the wrong axes.
 
 #include "touchdown/control/geometric_controller.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "touchdown/control/tracking_law.h"
 
 namespace touchdown::control {
+
+namespace {
+
+constexpr double kFarthestHeading = 0.5;  // of the desired attitude from the vehicle's [rad]
+
+/// The heading from which AttitudeFromThrust would make R_WB.
+double HeadingOf(const Eigen::Matrix3d& R_WB) { return std::atan2(-R_WB(0, 1), R_WB(1, 1)); }
+
+/// `yaw`, or as far towards it as kFarthestHeading leads.
+double NearerHeading(double yaw, double heading) {
+  const double off = estimation::WrapAngle(yaw - heading);
+  return std::abs(off) <= kFarthestHeading ? yaw
+                                           : heading + std::copysign(kFarthestHeading, off);
+}
+
+}  // namespace
 
 GeometricController::GeometricController(const estimation::VehicleModel& model,
                                          const ControllerOptions& options)
@@ -33,6 +51,7 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
 
   // Flatness at the force that is really asked for, so that attitude and rate belong together.
   planning::FlatState flat = reference;
+  flat.yaw = NearerHeading(reference.yaw, HeadingOf(R_WB));
   flat.a_WB = force.f_W / model_.mass_kg - estimation::kGravity * Eigen::Vector3d::UnitZ();
   // A force held at its limit does not follow the jerk any more.
   if (force.tilt_limited || force.thrust_limited) flat.j_WB.setZero();

@@ -216,6 +216,22 @@ TEST(GeometricController, BodyRateFollowsTheReference) {
 }
 
 // Rotors that give more are told less: of the thrust, and of its limit.
+// Rotors that have no thrust to spare leave the heading behind; the thrust axis must not turn with that.
+TEST(GeometricController, AHeadingFarOffDoesNotTurnTheThrustAxisAside) {
+  const auto model = TestVehicle();
+  const auto controller = MakeController("geometric", model);
+  estimation::VehicleState state;
+  state.q_WB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
+  for (double yaw = -3.1; yaw < 3.14; yaw += 0.25) {
+    const ControlOutput output = controller->Update(state, Hover(0.0, 0.0, 0.0, yaw));
+    const Eigen::Vector3d turn = output.wrench.moment_B.cwiseQuotient(model.inertia);
+    // Upright again about -x, with hardly anything about y.
+    EXPECT_LT(turn.x(), 0.0) << yaw;
+    EXPECT_GT(-turn.x(), 0.9 * turn.head<2>().norm()) << yaw;
+    EXPECT_EQ(turn.z() > 0.0, yaw > 0.0) << yaw;
+  }
+}
+
 TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
   const estimation::VehicleModel model = TestVehicle();
   const auto controller = MakeController("geometric", model);
