@@ -47,8 +47,13 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
         throw BadInput(fmt::format("{} does not go with {}.", other, alone));
     }
   }
-  if (command.Given("--only") && command.Given("--show")) {
-    throw BadInput("--only and --show do not go together.");
+  const std::pair<const char*, const char*> apart[] = {
+      {"--only", "--show"}, {"--ways", "--only"}, {"--ways", "--show"}, {"--ways", "--json"},
+      {"--show", "--json"}};
+  for (const auto& [one, other] : apart) {
+    if (command.Given(one) && command.Given(other)) {
+      throw BadInput(fmt::format("{} and {} do not go together.", one, other));
+    }
   }
   if (arguments.retry && arguments.db.empty())
     throw BadInput("--retry has no effect without --db.");

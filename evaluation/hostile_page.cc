@@ -103,7 +103,7 @@ std::string Row(const std::string& name, const HostileTally& t) {
       "<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
       "td>"
       "<td>{}</td><td>{}</td></tr>\n",
-      t.collisions > 0 ? " class='bad'" : "", name, t.flights, t.ways,
+      t.collisions + t.safety.uncertified_steps > 0 ? " class='bad'" : "", name, t.flights, t.ways,
       RateText(t.collisions, t.flights), t.all_contacts(), t.landed,
       RateText(t.seeing_landed, t.seeing), t.all_stood(), t.timeouts, t.lost + t.other);
 }
@@ -154,6 +154,18 @@ std::string CountTable(const std::string& title, const std::map<std::string, int
   return html + "</table>\n";
 }
 
+std::string Safety(const HostileTally& within, const HostileTally& beyond) {
+  std::string html =
+      "<h2>The safety rule</h2>\n<table><tr><th></th><th>within</th><th>beyond</th></tr>\n";
+  const SafetyLines first = SafetyFacts(within), second = SafetyFacts(beyond);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", first[i].first,
+                        within.flights > 0 ? first[i].second : "-",
+                        beyond.flights > 0 ? second[i].second : "-");
+  }
+  return html + "</table>\n";
+}
+
 std::string Worlds(const std::vector<SweepRow>& rows) {
   std::string html =
       "<h2>The worlds</h2>\n<p>The first flight of each family from above. Dark: walls; light: "
@@ -200,10 +212,12 @@ std::string HostilePage(const HostileOptions& options, const std::vector<SweepRo
       "flights</h1>\n<p><code>{}</code><br>{}. "
       "Rates stand with their 95 % Clopper-Pearson interval.</p>\n",
       kStyle, rows.size(), Escaped(HostileCommand(options)), Escaped(build));
-  html += Table(rows, true) + Table(rows, false);
+  html += Table(rows, true) + Table(rows, false) + Safety(within, beyond);
   html += List("Collisions with what stands", rows, HitWhatStands);
   html += CountTable("Other contacts, by kind", within.contacts, beyond.contacts);
+  html += List("Other contacts", rows, WrongContact);
   html += CountTable("Why flights stood", within.stood, beyond.stood);
+  html += List("Stood, or out of time", rows, CameToNothing);
   html +=
       List("Not flown to an outcome", rows, [](const TrialResult& r) { return IsLost(r.outcome); });
   return html + Worlds(rows) + Conditions() + "</body></html>\n";

@@ -55,21 +55,9 @@ std::string TableText(const std::vector<SweepRow>& rows, bool within) {
                       RateText(all.ways, all.flights), RateText(all.seeing_landed, all.seeing));
   text +=
       fmt::format("  contacts: {}; stood: {}\n", CountsText(all.contacts), CountsText(all.stood));
-  const SafetyFigures& s = all.safety;
-  text += fmt::format(
-      "  steps without a proven pair {}; flights that escaped {}, in occupied cells {}, in unknown "
-      "ones {}\n",
-      s.uncertified_steps, RateText(all.escaping_flights, all.flights), all.escaping_hit_flights,
-      all.escaping_unknown_flights);
-  text += fmt::format("  stops flown {}; map errors {}; steps with less than the margins {}\n",
-                      s.stops_flown, s.map_errors, s.narrow_steps);
-  text += fmt::format(
-      "  margins: median of flights {:.2f} m, p95 {:.2f}, largest {:.2f}; tracking beyond its "
-      "share {} times, at most "
-      "{:.2f} m; own state beyond its share {} times, at most {:.2f} m\n",
-      Quantile(all.margins_m, 0.5).value_or(0.0), Quantile(all.margins_m, 0.95).value_or(0.0),
-      s.margin_max_m, s.tracking_events, s.tracking_max_m, s.drift_events, s.drift_max_m);
-  text += fmt::format("  falsely free {} of {} cells\n", s.falsely_free_cells, s.free_cells);
+  for (const auto& [what, value] : SafetyFacts(all)) {
+    text += fmt::format("  {}: {}\n", what, value);
+  }
   return text + "\n";
 }
 
@@ -147,12 +135,37 @@ std::string RateText(int count, int of) {
                      100.0 * interval.hi);
 }
 
+SafetyLines SafetyFacts(const HostileTally& tally) {
+  const SafetyFigures& s = tally.safety;
+  const auto margin = [&](double share) {
+    return Quantile(tally.margins_m, share).value_or(0.0);
+  };
+  return {
+      {"steps without a proven pair", fmt::format("{}", s.uncertified_steps)},
+      {"flights that escaped",
+       fmt::format("{}; from occupied cells {}, from unknown ones {}",
+                   RateText(tally.escaping_flights, tally.flights), tally.escaping_hit_flights,
+                   tally.escaping_unknown_flights)},
+      {"stops flown", fmt::format("{}", s.stops_flown)},
+      {"map errors", fmt::format("{}", s.map_errors)},
+      {"steps with less than the margins", fmt::format("{}", s.narrow_steps)},
+      {"margin of a flight", fmt::format("median {:.2f} m, p95 {:.2f} m, largest at any step {:.2f} m",
+                                         margin(0.5), margin(0.95), s.margin_max_m)},
+      {"tracking beyond its share",
+       fmt::format("{} times, at most {:.2f} m", s.tracking_events, s.tracking_max_m)},
+      {"own state beyond its share",
+       fmt::format("{} times, at most {:.2f} m", s.drift_events, s.drift_max_m)},
+      {"falsely free", fmt::format("{} of {} cells", s.falsely_free_cells, s.free_cells)},
+  };
+}
+
 std::string HostileText(const HostileOptions& options, const std::vector<SweepRow>& rows) {
   std::string text = fmt::format("{}: {} flights\n\n", HostileCommand(options), rows.size());
   text += TableText(rows, true) + TableText(rows, false);
   const auto lost = [](const TrialResult& r) { return IsLost(r.outcome); };
   text += ListText("Collisions with what stands", rows, HitWhatStands);
   text += ListText("Other contacts", rows, WrongContact);
+  text += ListText("Stood, or out of time", rows, CameToNothing);
   text += ListText("Not flown to an outcome", rows, lost);
   text += fmt::format("Flight N again: {} --only N\n", HostileCommand(options));
   return text;

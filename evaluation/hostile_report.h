@@ -4,17 +4,19 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/campaign.h"
 #include "touchdown/evaluation/hostile_study.h"
+#include "touchdown/evaluation/hostile_tally.h"
 
 namespace touchdown::evaluation {
 
 /// What `touchdown study hostile` prints: two tables by family, within and beyond the assumptions, then
-/// every collision with the command that flies it again, other contacts, and why flights stood.
+/// every flight that did not land, with the command that flies it again.
 std::string HostileText(const HostileOptions& options, const std::vector<SweepRow>& rows);
 
 /// The same as JSON. Nothing in it depends on who flew the flights.
@@ -35,6 +37,10 @@ HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& 
 
 /// Ratios of times to land, flight by flight, to those of the same flights in another campaign, by family.
 std::string HostilePairsText(const std::vector<SweepRow>& rows, const HostileTimes& others);
+
+/// What became of the safety rule: names and values, in the order in which reports print them.
+using SafetyLines = std::vector<std::pair<std::string, std::string>>;
+SafetyLines SafetyFacts(const HostileTally& tally);
 
 /// "3 of 120 [0.5, 7.1] %", with the 95 % Clopper-Pearson interval; "0 of 0" without any.
 std::string RateText(int count, int of);

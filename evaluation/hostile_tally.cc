@@ -46,6 +46,19 @@ bool WrongContact(const TrialResult& result) {
   }
 }
 
+bool CameToNothing(const TrialResult& result) {
+  switch (result.outcome) {
+    case Outcome::kStood:
+    case Outcome::kTimeout:
+    case Outcome::kLostPad:
+    case Outcome::kInfeasible:
+    case Outcome::kFollowed:
+      return true;
+    default:
+      return false;
+  }
+}
+
 bool BreaksThePromise(const std::vector<SweepRow>& rows) {
   return std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
     if (row.trial.scenario.planner != PlannerKind::kLanding) return false;
@@ -79,8 +92,7 @@ void HostileTally::Add(const SweepRow& row) {
     ++stood[result.cause];
   } else if (IsLost(result.outcome)) {
     ++lost;
-  } else if (result.outcome == Outcome::kTimeout || result.outcome == Outcome::kLostPad ||
-             result.outcome == Outcome::kInfeasible || result.outcome == Outcome::kFollowed) {
+  } else if (CameToNothing(result)) {
     ++timeouts;
   } else {
     ++other;

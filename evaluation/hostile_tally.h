@@ -16,7 +16,9 @@ const std::string& LabelOf(const SweepTrial& trial, const std::string& key);
 bool HitWhatStands(const TrialResult& result);
 /// It touched the pad outside of the landing rule, or came down beside it.
 bool WrongContact(const TrialResult& result);
-/// Its kind in one word: the outcome, of a collision what was touched.
+/// It stood, or its time ran out.
+bool CameToNothing(const TrialResult& result);
+/// The kind of a wrong contact in one word: the outcome, of a collision what was touched.
 std::string ContactKind(const TrialResult& result);
 
 /// What a number of flights came to.
@@ -44,10 +46,10 @@ struct HostileTally {
   int all_stood() const;
 };
 
-/// The rows of one family, and of all; within or beyond.
 /// A flight within the assumptions collided, or made a step without a proven pair: a defect.
 bool BreaksThePromise(const std::vector<SweepRow>& rows);
 
+/// The rows of one family, of all if it is empty; within or beyond.
 HostileTally TallyOf(const std::vector<SweepRow>& rows, const std::string& family, bool within);
 
 }  // namespace touchdown::evaluation

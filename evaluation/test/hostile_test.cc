@@ -328,6 +328,23 @@ TEST(HostileReport, PageAndDocumentNameWhatWasFlown) {
   EXPECT_THAT(HostileText(options, {row}), HasSubstr("Collisions with what stands: 1"));
 }
 
+// What did not land is found again, and the page has the same safety figures as the text.
+TEST(HostileReport, WhatStoodIsListed) {
+  const HostileOptions options = Of("roof");
+  SweepRow row;
+  row.trial = HostileCampaign(options, {DrawHostileFlight(options, 3, kRegistries)}).trials.front();
+  row.result.outcome = Outcome::kStood;
+  row.result.cause = "search_failed";
+  row.result.safety.emplace().uncertified_steps = 7;
+  for (const std::string& report :
+       {HostileText(options, {row}), HostilePage(options, {row})}) {
+    EXPECT_THAT(report, HasSubstr("Stood, or out of time"));
+    EXPECT_THAT(report, HasSubstr("--show 3"));
+    EXPECT_THAT(report, HasSubstr("steps without a proven pair"));
+  }
+  EXPECT_TRUE(BreaksThePromise({row}));
+}
+
 TEST(HostileReport, TheDocumentHasTheFamiliesAndTheConditions) {
   std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/hostile.md");
   std::ostringstream text;
