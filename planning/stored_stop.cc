@@ -18,9 +18,6 @@ namespace {
 constexpr double kAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
 constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
 constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
-constexpr double kSoftSink = 0.5;   // what the landing rule allows, relative to the deck [m/s]
-constexpr double kSoftDrift = 0.6;  // alike [m/s]
-constexpr double kRoom = 0.9;       // of it, for a landing that is to be committed
 constexpr double kContactClock = 0.01;  // of the time at which contact is expected [s]
 constexpr double kOnward = kLatestContact - kPressing;  // from a curve's end to contact at most [s]
 
@@ -79,7 +76,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
   };
   const auto touches_down = [&] {
     if (!std::isfinite(t_contact)) return false;
-    if (!TouchesSoftly(curve, t_contact, kRoom, hull)) return false;
+    if (!TouchesSoftly(curve, t_contact, kLandingRoom, hull)) return false;
     const double t_end = std::max(t_handover, t_contact) + kPressing;
     const Sweep sweep = SweepHull(curve, t_handover, t_end, start, hull, t_contact);
     return note(sweep);

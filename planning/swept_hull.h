@@ -60,6 +60,12 @@ struct HullStart {
 /// What SweepHull adds to the grown hull for the way between two places that it looks at [m].
 inline constexpr double kSweepRoom = 0.01;
 
+/// What the landing rule allows at contact, relative to the deck [m/s], and the share of it that a landing may use
+/// that is to be committed.
+inline constexpr double kSoftSink = 0.5;
+inline constexpr double kSoftDrift = 0.6;
+inline constexpr double kLandingRoom = 0.9;
+
 /// At any time, and at none: when the hull may touch the deck [s].
 inline constexpr double kAnyTime = -std::numeric_limits<double>::infinity();
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -71,7 +77,7 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 /// upper face, and those over the deck where its returns lie by
 /// their noise, unless occupied; and, at the start, cells around `start` that the hull reached there already and
 /// does not come nearer to. Before `t_contact` [s] the feet are above the deck while the hull may be over it,
-/// but for a start that is lower and rises. Does not allocate.
+/// and sink softly close to it, but for a start that is lower and rises. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
                 const HullStart& start, const HullSpace& hull,
                 double t_contact);

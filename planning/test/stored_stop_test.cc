@@ -269,6 +269,32 @@ TEST_F(StopOverDeck, ALandingMeetsTheDeckOnlyWhereItIsToTouchIt) {
       << "cells alone allow it";
 }
 
+// A foot of who leans touches before it is expected: nothing dives close over the deck, to level out there.
+TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
+  map_.MarkRestFree();
+  Draw draw(8);
+  int dives = 0, lands = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const SplineState from{{0, 0, 0.57 + draw.Uniform(0.15, 0.5)},
+                           {0, 0, -draw.Uniform(0.0, 1.5)}, {0, 0, 0}};
+    const SplineState end{{0, 0, 0.57 + draw.Uniform(0.01, 0.1)}, {0, 0, -0.2}, {0, 0, 0}};
+    FlightPair pair;
+    pair.curve = Between(from, end, draw.Uniform(0.3, 1.2));
+    const double t_contact = ContactTime(pair.curve, 0.0, hull_);
+    bool dives_low = false;
+    for (double t = 0.0; t < std::min(t_contact, pair.curve.t_end()) - 0.01; t += 0.01) {
+      const FlatState at = pair.curve.Evaluate(t);
+      dives_low |= at.p_WB.z() - 0.57 < 0.045 && at.v_WB.z() < -0.47;
+    }
+    const bool contact = ProvePair(0.0, 0.1, PairEnd::kContact, kLimits, hull_, &pair).contact;
+    EXPECT_FALSE(contact && dives_low) << trial;
+    dives += dives_low ? 1 : 0;
+    lands += contact ? 1 : 0;
+  }
+  EXPECT_GT(dives, 20);
+  EXPECT_GT(lands, 50);
+}
+
 TEST_F(StopOverDeck, WhereItIsToLandNoStopIsAnAnswer) {
   map_.SetState({3, 0, 5}, CellState::kOccupied);
   FlightPair pair;
