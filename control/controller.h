@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string_view>
 
@@ -65,9 +66,11 @@ class Controller {
 
   /// Does not allocate. Inputs that are not finite give an output that is not finite.
   /// @param disturbance to compensate; the law "paper", as published, does not look at it.
-  virtual ControlOutput Update(const estimation::VehicleState& state,
-                               const planning::FlatState& reference,
-                               const Disturbance& disturbance = {}) const noexcept = 0;
+  /// @param tilt_most of the desired thrust, besides the options' tilt_max, > 0 [rad].
+  virtual ControlOutput Update(
+      const estimation::VehicleState& state, const planning::FlatState& reference,
+      const Disturbance& disturbance = {},
+      double tilt_most = std::numeric_limits<double>::infinity()) const noexcept = 0;
 };
 
 /// "geometric" or "paper". Throws std::invalid_argument for any other name.

@@ -41,13 +41,14 @@ GeometricController::GeometricController(const estimation::VehicleModel& model,
 
 ControlOutput GeometricController::Update(const estimation::VehicleState& state,
                                           const planning::FlatState& reference,
-                                          const Disturbance& disturbance) const noexcept {
+                                          const Disturbance& disturbance,
+                                          double tilt_most) const noexcept {
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
   const Eigen::Vector3d drag_W =
       R_WB * model_.rotor_drag.asDiagonal() * R_WB.transpose() * reference.v_WB;
   const LimitedForce force =
       LimitForce(PositionLoop(state, reference, model_, options_) + drag_W - disturbance.force_W,
-                 model_, options_, disturbance.thrust_gain);
+                 model_, options_, disturbance.thrust_gain, tilt_most);
 
   // Flatness at the force that is really asked for, so that attitude and rate belong together.
   planning::FlatState flat = reference;

@@ -10,6 +10,8 @@
 namespace touchdown::control {
 namespace {
 
+constexpr double kHeightError = 0.02;  // of the feet above the deck, as it is estimated [m]
+
 // Whether what is known now lasts until contact, were nothing measured on the way.
 bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
   const bool on_the_way = Planned(in) || s.foot_height <= p.gate_height;
@@ -18,6 +20,11 @@ bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionPara
 }
 
 }  // namespace
+
+double TurnHeight(const MissionInputs& in, const MissionParameters& p) noexcept {
+  const double sinks = std::max(0.0, in.sink_rate);
+  return sinks * (p.turn_time + 0.5 * sinks / p.turn_acceleration);
+}
 
 Conditions Assess(const MissionState& s, const MissionInputs& in,
                   const MissionParameters& p) noexcept {
@@ -47,6 +54,9 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
                  std::abs(in.height) <= p.contact_height &&
                  in.horizontal_distance <= p.contact_distance;
+  now.will_touch = now.numbers_valid &&
+                   std::abs(in.height - in.foot_drop) <= TurnHeight(in, p) + kHeightError &&
+                   in.horizontal_distance <= p.foothold;
   return now;
 }
 

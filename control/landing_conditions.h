@@ -18,8 +18,12 @@ struct Conditions {
   bool may_land;   ///< the gate is open, and in the wind felt now the feet would touch first
   bool in_corridor;
   bool in_cone;   ///< of a planned landing: wider, and it opens upwards
-  bool touching;  ///< the deck, with some force
+  bool touching;    ///< the deck, with some force
+  bool will_touch;  ///< a foot is so low over the deck that a climb would come too late
 };
+
+/// The height that is lost until a new plan has ended the present descent [m].
+double TurnHeight(const MissionInputs& inputs, const MissionParameters& parameters) noexcept;
 
 Conditions Assess(const MissionState& state, const MissionInputs& inputs,
                   const MissionParameters& parameters) noexcept;

@@ -96,8 +96,11 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
       hold = DescentHold::kLag;
     }
   }
+  // A climb that began gently would let the feet touch first.
+  const double acceleration =
+      s.mode == MissionMode::kGoAround ? p.turn_acceleration : p.height_acceleration;
   const RateStep step =
-      StepTowards(target - s.foot_height, s.foot_height_rate, rate_max, p.height_acceleration, dt);
+      StepTowards(target - s.foot_height, s.foot_height_rate, rate_max, acceleration, dt);
   s.foot_height += step.advance;
   s.foot_height_rate = step.rate;
   return hold;
@@ -126,9 +129,7 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
     return;
   }
   const bool due = in.arrival_in <= p.decide_time;
-  const double sinks = std::max(0.0, in.sink_rate);
-  const double turn = sinks * (p.turn_time + 0.5 * sinks / p.turn_acceleration);
-  const bool low = in.height < p.gate_height + turn && now.in_cone;
+  const bool low = in.height < p.gate_height + TurnHeight(in, p) && now.in_cone;
   s.waits_above = !now.may_land && (s.waits_above || due || low);
 }
 

@@ -21,6 +21,8 @@
 //   landing        go_around       error_too_large    horizontal error beyond abort_distance (descent
 //                                                     planned: outside the cone)
 //   landing        go_around       too_fast           committed, but the pad moves otherwise
+//   landing        go_around       gust               committed (descent planned: at all), and
+//                                                     leans farther than lean_max
 //   landing        go_around       plan_failed        no plan for over plan_timeout (descent
 //                                                     planned: arrival_plan_timeout)
 //   landing        go_around       no_contact         committed for over commit_timeout, or the
@@ -41,7 +43,7 @@
 // ends on the deck.
 // (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance (or outside the cone), too_fast, the end of the bridge before the feet touch, no_contact,
+// error beyond commit_abort_distance (or outside the cone), too_fast, gust, the end of the bridge before the feet touch, no_contact,
 // own_state_lost, invalid_input or emergency. A pad counts as converged only while the vehicle's
 // own state is usable. Dead reckoning closes the gate for own_patience: a short outage of position
 // and velocity is waited out.
@@ -53,8 +55,8 @@
 // too high up, closes the gate; and a committed descent is given up where the bridge has ended
 // without contact.
 //
-// Who leans farther than lean_max in a gust waits for a lull as behind a closed gate: the hull would touch
-// before the feet do. A landing that is decided goes on.
+// Who leans farther than lean_max in a gust waits for a lull as behind a closed gate, and gives up a landing before
+// it touches: the hull would touch before the feet do, or the vehicle would be blown off.
 //
 // With descent planned, tracking flies a plan that ends in contact already. decide_time before that
 // the same gate decides: if it is open the landing begins, else the vehicle arrives above the pad
@@ -89,6 +91,7 @@ enum class TransitionReason {
   kTagsLost,
   kErrorTooLarge,
   kTooFast,
+  kGust,
   kPlanFailed,
   kNoContact,
   kClimbComplete,
@@ -127,6 +130,7 @@ struct MissionInputs {
   bool pad_converged = false;        ///< and is good enough to plan with
   double horizontal_distance = 0.0;  ///< vehicle to pad centre, estimated [m]
   double height = 0.0;               ///< feet above the deck, estimated [m]
+  double foot_drop = 0.0;            ///< the lowest foot of a leaning vehicle, below `height` [m]
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
   double sink_rate = 0.0;            ///< towards the deck, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
@@ -179,13 +183,13 @@ struct MissionParameters {
   double abort_distance = 1.0;         ///< horizontal error that ends a landing [m]
   double commit_abort_distance = 0.5;  ///< the same below commit_height [m]
 
-  double touchdown_rate = 0.2;        ///< with which a planned landing meets the deck [m/s]
+  double touchdown_rate = 0.3;  ///< with which a planned landing meets the deck in calm [m/s]
   double decide_time = 1.2;           ///< so long before contact it is decided on [s]
   double arrival_commit_time = 0.4;   ///< ... and from then on it goes on by prediction [s]
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
   double arrival_timeout = 1.5;       ///< contact overdue for longer: go around [s]
   double turn_time = 0.2;             ///< until a new plan ends a planned descent [s] ...
-  double turn_acceleration = 3.0;     ///< ... above gate_height [m/s^2]
+  double turn_acceleration = 3.0;     ///< ... with so much, as climbs begin [m/s^2]
   double contact_speed = 0.8;  ///< horizontal, relative: committed to contact no faster [m/s], ...
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double lean_max = 1.5;    ///< leaning farther a vehicle waits for a lull before it descends to contact [rad]
@@ -197,6 +201,7 @@ struct MissionParameters {
   double contact_time = 0.4;      ///< [s]: so long it takes to stand upright (settling.h)
   double contact_height = 0.15;   ///< |height| must be below it for contact to count [m] ...
   double contact_distance = 1.2;  ///< ... and the horizontal distance, by the size of the deck [m]
+  double foothold = 0.57;         ///< horizontal distance at which all feet are over the deck [m]
   double contact_gap = 0.05;      ///< samples farther apart do not count as lasting contact [s]
   double contact_rest = 0.15;     ///< at the end of contact_time without a break [s]
   double contact_break = 0.2;     ///< feet that bounce lose it for so long without an end [s]

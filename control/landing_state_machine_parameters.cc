@@ -17,11 +17,11 @@ std::string_view ToString(MissionMode mode) {
 }
 
 std::string_view ToString(TransitionReason reason) {
-  static constexpr std::array<std::string_view, 19> kNames = {
-      "none",          "pad_converged", "align_timeout",     "above_pad",       "arriving",
-      "contact",       "pad_lost",      "tags_lost",         "error_too_large", "too_fast",
-      "plan_failed",   "no_contact",    "climb_complete",    "climb_timeout",   "recovered",
-      "invalid_input", "emergency",     "emergency_cleared", "own_state_lost"};
+  static constexpr std::array<std::string_view, 20> kNames = {
+      "none",           "pad_converged", "align_timeout", "above_pad",         "arriving",
+      "contact",        "pad_lost",      "tags_lost",     "error_too_large",   "too_fast",
+      "gust",           "plan_failed",   "no_contact",    "climb_complete",    "climb_timeout",
+      "recovered",      "invalid_input", "emergency",     "emergency_cleared", "own_state_lost"};
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 43> positive = {{
+  const std::array<Named, 44> positive = {{
       {"lean_max", p.lean_max},
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
@@ -85,6 +85,7 @@ void Validate(const MissionParameters& p) {
       {"contact_time", p.contact_time},
       {"contact_height", p.contact_height},
       {"contact_distance", p.contact_distance},
+      {"foothold", p.foothold},
       {"contact_gap", p.contact_gap},
       {"pad_timeout", p.pad_timeout},
       {"plan_timeout", p.plan_timeout},

@@ -45,13 +45,16 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Con
   if (LastedLonger(s.own_lost_since, s.t, p.own_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kOwnStateLost};
   }
-  // Feet that touch are not pulled off again: the contact is about to be confirmed.
-  const bool touches = s.contact_since != kNever;
+  // Feet that touch are not pulled off again, and those that will touch anyway had better stay.
+  const bool touches = s.contact_since != kNever || now.will_touch;
   if (!touches && TooFarOff(s, in, now, p)) {
     return {MissionMode::kGoAround, TransitionReason::kErrorTooLarge};
   }
   if (s.committed && !touches && TooFast(in, p)) {
     return {MissionMode::kGoAround, TransitionReason::kTooFast};
+  }
+  if ((s.committed || Planned(in)) && !touches && in.lean > p.lean_max) {
+    return {MissionMode::kGoAround, TransitionReason::kGust};
   }
   if (s.committed) {  // blind last part: no tags needed, but it must end
     if (!touches && (in.tag_age > p.bridge_time || in.pad_sigma > p.bridge_sigma)) {

@@ -13,9 +13,39 @@
 
 namespace touchdown::control {
 
-double FeetFirstTilt(const estimation::VehicleModel& model) {
+namespace {
+
+/// With the nearest foot at `reach` towards the low side [m].
+double FeetFirstTilt(const estimation::VehicleModel& model, double reach) {
   return std::atan2(model.foot_depth - model.hull_bottom,
-                    std::max(1e-9, model.hull_radius - model.foot_radius));
+                    std::max(1e-9, model.hull_radius - reach));
+}
+
+}  // namespace
+
+double FeetFirstTilt(const estimation::VehicleModel& model) {
+  return FeetFirstTilt(model, model.foot_radius);
+}
+
+double FeetFirstTilt(const estimation::VehicleModel& model, const Eigen::Quaterniond& q_WB) {
+  const Eigen::Vector3d down_B = q_WB.conjugate() * -Eigen::Vector3d::UnitZ();
+  const double low = std::atan2(down_B.y(), down_B.x());
+  double reach = model.foot_azimuths.empty() ? model.foot_radius : -model.foot_radius;
+  for (const double azimuth : model.foot_azimuths) {
+    reach = std::max(reach, model.foot_radius * std::cos(azimuth - low));
+  }
+  return FeetFirstTilt(model, reach);
+}
+
+double FootDrop(const estimation::VehicleModel& model, const Eigen::Quaterniond& q_WB) {
+  const Eigen::Vector3d up_B = q_WB.conjugate() * Eigen::Vector3d::UnitZ();
+  double drop = 0.0;
+  for (const double azimuth : model.foot_azimuths) {
+    const Eigen::Vector3d p_BF(model.foot_radius * std::cos(azimuth),
+                               model.foot_radius * std::sin(azimuth), -model.foot_depth);
+    drop = std::max(drop, -model.foot_depth - up_B.dot(p_BF));
+  }
+  return drop;
 }
 
 double LeanUnder(double weight, const Eigen::Vector3d& force_W) {

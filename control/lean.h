@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "touchdown/estimation/vehicle_model.h"
 
@@ -12,6 +13,12 @@ namespace touchdown::control {
 /// The greatest lean towards a foot at which the foot touches a level deck before the hull's rim
 /// does [rad].
 double FeetFirstTilt(const estimation::VehicleModel& model);
+
+/// The same towards where a vehicle of attitude q_WB leans, which may be between two feet.
+double FeetFirstTilt(const estimation::VehicleModel& model, const Eigen::Quaterniond& q_WB);
+
+/// How much lower the lowest foot is than with a level vehicle [m]; 0 without azimuths.
+double FootDrop(const estimation::VehicleModel& model, const Eigen::Quaterniond& q_WB);
 
 /// The tilt at which a vehicle of weight `weight` [N] holds still under `force_W` [N] [rad].
 double LeanUnder(double weight, const Eigen::Vector3d& force_W);

@@ -23,10 +23,11 @@ PaperController::PaperController(const estimation::VehicleModel& model,
 
 ControlOutput PaperController::Update(const estimation::VehicleState& state,
                                       const planning::FlatState& reference,
-                                      const Disturbance& /*disturbance*/) const noexcept {
+                                      const Disturbance& /*disturbance*/,
+                                      double tilt_most) const noexcept {
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
-  const LimitedForce force =
-      LimitForce(PositionLoop(state, reference, model_, options_), model_, options_, 1.0);
+  const LimitedForce force = LimitForce(PositionLoop(state, reference, model_, options_), model_,
+                                        options_, 1.0, tilt_most);
 
   ControlOutput output;
   output.R_WB_desired = planning::AttitudeFromThrust(force.f_W, reference.yaw);

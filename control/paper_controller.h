@@ -16,7 +16,7 @@ class PaperController final : public Controller {
                            const ControllerOptions& options = {});
 
   ControlOutput Update(const estimation::VehicleState& state, const planning::FlatState& reference,
-                       const Disturbance& disturbance) const noexcept override;
+                       const Disturbance& disturbance, double tilt_most) const noexcept override;
 
  private:
   estimation::VehicleModel model_;

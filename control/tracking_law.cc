@@ -11,7 +11,8 @@
 namespace touchdown::control {
 
 LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleModel& model,
-                        const ControllerOptions& options, double thrust_gain) {
+                        const ControllerOptions& options, double thrust_gain,
+                        double tilt_most) {
   LimitedForce limited;
   limited.f_W = f_W;
   // Thrust cannot pull down: a hard demand to fall becomes the least upward force, so that the
@@ -22,7 +23,7 @@ LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleMod
     limited.thrust_limited = true;
   }
   const double horizontal = limited.f_W.head<2>().norm();
-  const double horizontal_max = limited.f_W.z() * std::tan(options.tilt_max);
+  const double horizontal_max = limited.f_W.z() * std::tan(std::min(options.tilt_max, tilt_most));
   if (horizontal > horizontal_max) {
     limited.f_W.head<2>() *= horizontal_max / horizontal;
     limited.tilt_limited = true;

@@ -33,12 +33,13 @@ constexpr double kLeaning = 0.1;          // of steady force over weight: a foot
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
 constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's sector and more
 constexpr double kUpright = 0.07;                // ... until it is less than that
-constexpr double kFlareHeight = 0.15;            // feet above the deck: they are to touch first [m]
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
 constexpr double kFlareBegins = 0.2;      // from there on the position loop is softened ...
-constexpr double kFlareSoftness = 0.8;    // ... until its frequency is so many times the usual one
+constexpr double kFlareHeight = 0.15;     // ... until here its frequency is ...
+constexpr double kFlareSoftness = 0.8;    // ... so many times the usual one
 constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
+constexpr double kSofterInPull = 0.05;    // contact in wind [m/s per m/s^2]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
@@ -74,20 +75,10 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   return options;
 }
 
-// Leaning farther, the hull's rim would touch the deck before the feet do.
-control::ControllerOptions LowOptions(const Scenario& scenario,
-                                      const estimation::VehicleModel& model) {
-  control::ControllerOptions options = TrackingOptions(scenario);
-  const double lean = control::FeetFirstTilt(model) - kFlareMargin;
-  if (lean > 0.0) options.tilt_max = std::min(options.tilt_max, lean);
-  return options;
-}
-
 std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
-                                             const estimation::VehicleModel& model,
-                                             const control::ControllerOptions& options) {
+                                             const estimation::VehicleModel& model) {
   const bool paper = scenario.controller == ControllerKind::kPaper;
-  return control::MakeController(paper ? "paper" : "geometric", model, options);
+  return control::MakeController(paper ? "paper" : "geometric", model, TrackingOptions(scenario));
 }
 
 }  // namespace
@@ -110,16 +101,16 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
           PlannerOptions(scenario, model, registries.terms).min_contact_duration),
       oracle_(truth),
       planner_(MakePlanner(scenario, model, registries)),
-      controller_(MakeLaw(scenario, model, TrackingOptions(scenario))),
-      low_controller_(MakeLaw(scenario, model, LowOptions(scenario, model))),
+      controller_(MakeLaw(scenario, model)),
       mixer_(model) {
-  // The pad off by three standard deviations, and feet led to its middle are still on the deck.
-  parameters_.bridge_sigma = (0.5 * scenario.pad.deck_size - model.foot_radius) / 3.0;
-  if (!(parameters_.bridge_sigma > 0.0)) {
+  parameters_.foothold = 0.5 * scenario.pad.deck_size - model.foot_radius;
+  if (!(parameters_.foothold > 0.0)) {
     throw std::invalid_argument(fmt::format("pad.deck_size is {:g}, it must be > {:g} for the feet",
                                             scenario.pad.deck_size, 2.0 * model.foot_radius));
   }
-  const double lean = control::FeetFirstTilt(model);
+  // The pad off by three standard deviations, and feet led to its middle are still on the deck.
+  parameters_.bridge_sigma = parameters_.foothold / 3.0;
+  const double lean = control::FeetFirstTilt(model) - kFlareMargin;  // what TiltMost leaves
   if (lean > 0.0) parameters_.lean_max = lean;
   parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
   // A light vehicle never presses as hard as the default asks.
@@ -161,6 +152,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     const estimation::PadState pad = filter.Estimate(t);
     inputs.horizontal_distance = (vehicle.p_WB - pad.p_WP).head<2>().norm();
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
+    inputs.foot_drop = control::FootDrop(model_, vehicle.q_WB);
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
     inputs.sink_rate = pad.v_WP.z() - vehicle.v_WB.z();
   }
@@ -195,9 +187,9 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
   const bool landing = Landing();
-  const bool at_deck = std::abs(foot_height_) <= parameters_.contact_height &&
-                       inputs.horizontal_distance <= parameters_.contact_distance;
-  settling_.Note(t, at_deck && foot_force > kTouchForce, landing);
+  at_deck_ = std::abs(foot_height_) <= parameters_.contact_height &&
+             inputs.horizontal_distance <= parameters_.contact_distance;
+  settling_.Note(t, at_deck_ && foot_force > kTouchForce, landing);
 
   yaw_ = control::StepYaw(yaw_, heading, dt);
   yaw_t_ = t + dt;
@@ -219,7 +211,10 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (observer_) input.pull_W = observer_->steady_force_W() / model_.mass_kg;
   input.margins = planning::MarginsOf(own_position_sigma_, own_attitude_sigma_,
                                       recent_error_.value(), input.pull_W);
-  if (!arriving()) level_time_ = LevelTime(input.pull_W);
+  if (!arriving()) {
+    touchdown_rate_ = TouchdownRate(input.pull_W);
+    level_time_ = LevelTime(input.pull_W);
+  }
   input.endpoint = Endpoint(vehicle.t);
 
   const bool wants_plan = WantsPlan(filter, vehicle.t);
@@ -260,10 +255,16 @@ bool Pilot::DeliverLate(double t) {
   return true;
 }
 
+// Gusts add to it. But a pad that brakes is not seen any more in the last decimetre.
+double Pilot::TouchdownRate(const Eigen::Vector3d& pull_W) const {
+  const double gusts = kSofterInPull * pull_W.head<2>().norm();
+  return std::max(parameters_.contact_rate, parameters_.touchdown_rate - gusts);
+}
+
 // Longer, and the shortest plan would end too early to be decided on.
 double Pilot::LevelTime(const Eigen::Vector3d& pull_W) const {
   const double gusts = kLevelTimeInPull * pull_W.head<2>().norm();
-  const double errors = recent_error_.value() / parameters_.touchdown_rate;
+  const double errors = recent_error_.value() / touchdown_rate_;
   return std::min(kLevelTime + std::max(gusts, errors),
                   parameters_.decide_time - 1.3 * shortest_contact_plan_);
 }
@@ -308,8 +309,6 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   planning::FlatState reference = Reference(vehicle.t);
   control::Disturbance compensated = disturbance();
   const bool landing = Landing();
-  const bool low = landing && foot_height_ < kFlareHeight;
-  const control::Controller& law = low ? *low_controller_ : *controller_;
   // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
   // errors of position are what holds the vehicle against it.
   if (landing && observer_) {
@@ -318,10 +317,17 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
                                 &reference);
   }
   settling_.Apply(&told, &reference, &compensated);
-  control::MixerOutput mix = mixer_.Mix(law.Update(told, reference, compensated).wrench);
+  control::MixerOutput mix = mixer_.Mix(
+      controller_->Update(told, reference, compensated, TiltMost(vehicle)).wrench);
   if (lead_) mix.thrusts = lead_->Command(mix.thrusts, vehicle.t);
   if (observer_) observer_->Command(mix.thrusts);
   return mix;
+}
+
+// Leaning farther so close to the deck, the hull's rim would touch it before the feet do.
+double Pilot::TiltMost(const estimation::VehicleState& vehicle) const {
+  const double lean = control::FeetFirstTilt(model_, vehicle.q_WB) - kFlareMargin;
+  return at_deck_ && lean > 0.0 ? lean : std::numeric_limits<double>::infinity();
 }
 
 control::Disturbance Pilot::disturbance() const {
@@ -346,6 +352,13 @@ bool Pilot::Levelled(double t) const {
 // Whatever the mission wants: where nothing else is proven, a landing that has begun is flown to its end.
 bool Pilot::Landing() const { return mission_.mode == control::MissionMode::kLanding || lands_; }
 
+// A landing that is given up is turned away from the deck at once.
+bool Pilot::hurries() const {
+  return arriving() || (mission_.mode == control::MissionMode::kGoAround &&
+                        foot_height_ < parameters_.gate_height);
+}
+
+// A planned landing that is decided.
 bool Pilot::arriving() const {
   return mission_.mode == control::MissionMode::kLanding &&
          mission_.guidance == control::Guidance::kTouchDown;
@@ -409,7 +422,7 @@ double Pilot::DesiredHeading() {
 planning::EndpointTarget Pilot::Endpoint(double t) const {
   const bool contact = mission_.guidance == control::Guidance::kTouchDown;
   planning::EndpointTarget target;
-  if (contact) target = ContactTarget(model_, parameters_.touchdown_rate, level_time_);
+  if (contact) target = ContactTarget(model_, touchdown_rate_, level_time_);
   target.t_reference = t;
   target.at_rest = scenario_.planning.endpoint_velocity == EndpointVelocityKind::kRest;
   if (contact) {

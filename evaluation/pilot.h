@@ -54,7 +54,7 @@ class Pilot {
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at
-  /// PlannerRate, or at ClosePlannerRate where `arriving`. The result
+  /// PlannerRate, or at ClosePlannerRate where it `hurries`. The result
   /// is the planner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
@@ -74,10 +74,12 @@ class Pilot {
   /// What the landing planner remembers before its next step; empty with the baseline. Allocates.
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;
-  /// A planned landing that is decided: from now on Replan is to be called at ClosePlannerRate.
-  bool arriving() const;
+  /// To contact, or away from a deck that is near: Replan is to be called at ClosePlannerRate.
+  bool hurries() const;
 
  private:
+  bool arriving() const;
+  double TiltMost(const estimation::VehicleState& vehicle) const;
   double HeadingAhead(const estimation::VehicleState& vehicle,
                       const estimation::PadFilter& filter) const;
   double Seeing(double heading, const Eigen::Vector3d& p_WB) const;
@@ -89,6 +91,7 @@ class Pilot {
   bool Landing() const;
   Eigen::Vector3d WayAt(double t) const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
+  double TouchdownRate(const Eigen::Vector3d& pull_W) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
   const planning::ReplanResult& Ask(bool for_plan, const estimation::PadFilter& filter,
@@ -100,7 +103,6 @@ class Pilot {
   sim::OraclePadPrediction oracle_;
   std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
-  std::unique_ptr<control::Controller> low_controller_;  ///< close over the deck: leans less
   control::Mixer mixer_;
   std::optional<control::RotorLead> lead_;  ///< the paper's law has none
   std::optional<control::DisturbanceObserver> observer_;
@@ -112,6 +114,7 @@ class Pilot {
   double yaw_t_ = 0.0;                     ///< time of yaw_
   double foot_force_ = 0.0;                ///< as it was last told [N]
   double foot_height_ = 0.0;               ///< of the feet above the deck, as last estimated [m]
+  bool at_deck_ = false;                   ///< the feet are close over the deck, or on it
   double heading_ahead_ = 0.0;             ///< of the way that is flown [rad]
   std::optional<Eigen::Vector3d> look_W_;  ///< what the next stops need to have seen
   double heading_ = 0.0;                   ///< that is steered for [rad]
@@ -130,6 +133,7 @@ class Pilot {
   std::optional<double> requested_t_;  ///< since when plans are asked for without a break
   /// When the committed plan that leads to contact ends [s]; infinite if there is none.
   double plan_end_t_ = std::numeric_limits<double>::infinity();
+  double touchdown_rate_ = 0.0;    ///< with which a planned landing meets the deck [m/s]
   double level_time_ = 0.0;        ///< from there to contact [s]
   double measured_latency_ = 0.0;  ///< of the last replanning step [s]
   double busy_until_ = -std::numeric_limits<double>::infinity();  ///< with a late step [s]

@@ -30,6 +30,32 @@ TEST(Lean, FootAndRimTouchTogetherAtTheFeetFirstTilt) {
   EXPECT_NEAR(foot.z(), rim.z(), 1e-12);
 }
 
+// Leaning anywhere, at that tilt the lowest point of the feet is as low as the rim's.
+TEST(Lean, BetweenTwoFeetTheRimTouchesSooner) {
+  const estimation::VehicleModel model = Vehicle();
+  for (double azimuth = -3.0; azimuth < 3.0; azimuth += 0.3) {
+    const Eigen::Vector3d axis(-std::sin(azimuth), std::cos(azimuth), 0.0);
+    const Eigen::AngleAxisd yaw(0.7, Eigen::Vector3d::UnitZ());
+    const double tilt = FeetFirstTilt(model, yaw * Eigen::Quaterniond(Eigen::AngleAxisd(0.1, axis)));
+    const Eigen::Quaterniond q_WB = yaw * Eigen::Quaterniond(Eigen::AngleAxisd(tilt, axis));
+    double foot = 0.0;
+    for (const double at : model.foot_azimuths) {
+      const Eigen::Vector3d p_BF(model.foot_radius * std::cos(at),
+                                 model.foot_radius * std::sin(at), -model.foot_depth);
+      foot = std::min(foot, (q_WB * p_BF).z());
+    }
+    const Eigen::Vector3d p_rim = q_WB * Eigen::Vector3d(model.hull_radius * std::cos(azimuth),
+                                                         model.hull_radius * std::sin(azimuth),
+                                                         -model.hull_bottom);
+    EXPECT_NEAR(foot, p_rim.z(), 1e-12) << azimuth;
+    EXPECT_NEAR(FootDrop(model, q_WB), -model.foot_depth - foot, 1e-12);
+    EXPECT_LE(tilt, FeetFirstTilt(model) + 1e-12);
+  }
+  const Eigen::Quaterniond towards_a_foot(
+      Eigen::AngleAxisd(0.1, Eigen::Vector3d(-1.0, 1.0, 0.0).normalized()));
+  EXPECT_NEAR(FeetFirstTilt(model, towards_a_foot), FeetFirstTilt(model), 1e-12);
+}
+
 TEST(Lean, UnderAForceThrustPointsAgainstItAndTheWeight) {
   EXPECT_DOUBLE_EQ(LeanUnder(10.0, {0.0, 0.0, -3.0}), 0.0);
   EXPECT_NEAR(LeanUnder(10.0, {6.0, 8.0, 0.0}), std::atan(1.0), 1e-12);

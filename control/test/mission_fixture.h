@@ -62,7 +62,8 @@ class Mission {
     if (state.started &&
         !led) {  // the commanded height is continuous and its rate is its derivative
       const double dt = step.state.t - state.t;
-      const double a = parameters.height_acceleration;
+      const double a = step.state.mode == MissionMode::kGoAround ? parameters.turn_acceleration
+                                                                 : parameters.height_acceleration;
       const double advance = step.state.foot_height - state.foot_height;
       EXPECT_LE(
           std::abs(advance),
