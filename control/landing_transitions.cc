@@ -11,11 +11,11 @@ namespace {
 
 // A planned landing that is decided does not pause: what a pause would have to wait for ends it.
 Transition FromArriving(const MissionState& s, const MissionInputs& in, const Conditions& now,
-                        const MissionParameters& p) {
-  if (!now.gate_open && in.own_usable) {  // else it is not the tags, and own_timeout decides
+                        bool touches, const MissionParameters& p) {
+  if (!touches && !now.gate_open && in.own_usable) {  // else it is not the tags, and own_timeout decides
     return {MissionMode::kGoAround, TransitionReason::kTagsLost};
   }
-  if (in.plan_failed_for > p.arrival_plan_timeout) {
+  if (!touches && in.plan_failed_for > p.arrival_plan_timeout) {
     return {MissionMode::kGoAround, TransitionReason::kPlanFailed};
   }
   // Contact that every new plan puts off would never be overdue.
@@ -69,7 +69,7 @@ Transition FromLanding(const MissionState& s, const MissionInputs& in, const Con
   if (LastedLonger(s.pad_missing_since, s.t, p.pad_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kPadLost};
   }
-  if (Planned(in)) return FromArriving(s, in, now, p);
+  if (Planned(in)) return FromArriving(s, in, now, touches, p);
   if (LastedLonger(s.gate_closed_since, s.t, p.gate_timeout)) {
     return {MissionMode::kGoAround, TransitionReason::kTagsLost};
   }

@@ -34,6 +34,7 @@ constexpr double kTurnTime = 2.0;         // ... so long before a planned contac
 constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's sector and more
 constexpr double kUpright = 0.07;                // ... until it is less than that
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
+constexpr double kBlownOff = 0.15;        // of the reference [m]
 constexpr double kFlareBegins = 0.2;      // from there on the position loop is softened ...
 constexpr double kFlareHeight = 0.15;     // ... until here its frequency is ...
 constexpr double kFlareSoftness = 0.8;    // ... so many times the usual one
@@ -324,10 +325,12 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   return mix;
 }
 
-// Leaning farther so close to the deck, the hull's rim would touch it before the feet do.
+// Leaning farther so close to the deck, the hull's rim would touch it before the feet do. But who is blown off
+// the way that is not to end there needs all the lean there is.
 double Pilot::TiltMost(const estimation::VehicleState& vehicle) const {
   const double lean = control::FeetFirstTilt(model_, vehicle.q_WB) - kFlareMargin;
-  return at_deck_ && lean > 0.0 ? lean : std::numeric_limits<double>::infinity();
+  const bool blown_off = !Landing() && recent_error_.value() > kBlownOff;
+  return at_deck_ && lean > 0.0 && !blown_off ? lean : std::numeric_limits<double>::infinity();
 }
 
 control::Disturbance Pilot::disturbance() const {

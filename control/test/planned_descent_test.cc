@@ -305,8 +305,7 @@ TEST(PlannedDescent, FeetThatWillTouchAnywayArriveOverTheDeckAlone) {
   for (const bool over_deck : {true, false}) {
     for (const double above : {0.01, 0.03}) {
       Approach mission;
-      mission.FlyTo(0.3);
-      ASSERT_TRUE(mission.outputs.committed);
+      mission.FlyTo(over_deck ? 0.6 : 0.3);  // decided, and committed
       const MissionParameters& p = mission.parameters;
       mission.Tick([&](MissionInputs& in) {
         in.sink_rate = 0.3;
@@ -314,6 +313,7 @@ TEST(PlannedDescent, FeetThatWillTouchAnywayArriveOverTheDeckAlone) {
                     in.sink_rate * in.sink_rate / (2.0 * p.turn_acceleration) + above;
         in.horizontal_distance = over_deck ? p.foothold - 0.01 : p.foothold + 0.01;
         in.lean = 1.6;
+        in.tag_age = 5.0;
       });
       const bool arrives = over_deck && above < 0.02;
       EXPECT_EQ(ModeOf(mission), arrives ? MissionMode::kLanding : MissionMode::kGoAround);
