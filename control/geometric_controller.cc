@@ -18,16 +18,18 @@ namespace touchdown::control {
 
 namespace {
 
-constexpr double kFarthestHeading = 0.5;  // of the desired attitude from the vehicle's [rad]
+/// Of the desired attitude from the vehicle's [rad]: half of it is by how much the tilt's error is turned; flights that
+/// keep up with their heading stay below.
+constexpr double kFarthestHeading = 0.5;
 
-/// The heading from which AttitudeFromThrust would make R_WB.
+/// The heading from which AttitudeFromThrust would make R_WB, while its thrust axis points up.
 double HeadingOf(const Eigen::Matrix3d& R_WB) { return std::atan2(-R_WB(0, 1), R_WB(1, 1)); }
 
-/// `yaw`, or as far towards it as kFarthestHeading leads.
-double NearerHeading(double yaw, double heading) {
-  const double off = estimation::WrapAngle(yaw - heading);
-  return std::abs(off) <= kFarthestHeading ? yaw
-                                           : heading + std::copysign(kFarthestHeading, off);
+/// `yaw`, or as far towards it as kFarthestHeading leads. Who is upside down has no heading to keep.
+double NearerHeading(double yaw, const Eigen::Matrix3d& R_WB) {
+  const double heading = HeadingOf(R_WB), off = estimation::WrapAngle(yaw - heading);
+  if (R_WB(2, 2) <= 0.0 || std::abs(off) <= kFarthestHeading) return yaw;
+  return heading + std::copysign(kFarthestHeading, off);
 }
 
 }  // namespace
@@ -52,7 +54,7 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
 
   // Flatness at the force that is really asked for, so that attitude and rate belong together.
   planning::FlatState flat = reference;
-  flat.yaw = NearerHeading(reference.yaw, HeadingOf(R_WB));
+  flat.yaw = NearerHeading(reference.yaw, R_WB);
   flat.a_WB = force.f_W / model_.mass_kg - estimation::kGravity * Eigen::Vector3d::UnitZ();
   // A force held at its limit does not follow the jerk any more.
   if (force.tilt_limited || force.thrust_limited) flat.j_WB.setZero();

@@ -10,7 +10,7 @@
 namespace touchdown::control {
 namespace {
 
-constexpr double kHeightError = 0.02;  // of the feet above the deck, as it is estimated [m]
+constexpr double kHeightError = 0.02;  // one sigma of an estimated own height (docs/own_state.md) [m]
 
 // Whether what is known now lasts until contact, were nothing measured on the way.
 bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
@@ -21,9 +21,9 @@ bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionPara
 
 }  // namespace
 
-double TurnHeight(const MissionInputs& in, const MissionParameters& p) noexcept {
+double HeightLost(const MissionInputs& in, const MissionParameters& p, double time) noexcept {
   const double sinks = std::max(0.0, in.sink_rate);
-  return sinks * (p.turn_time + 0.5 * sinks / p.turn_acceleration);
+  return sinks * (time + 0.5 * sinks / p.turn_acceleration);
 }
 
 Conditions Assess(const MissionState& s, const MissionInputs& in,
@@ -54,9 +54,10 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   now.touching = now.numbers_valid && in.foot_force >= p.contact_force &&
                  std::abs(in.height) <= p.contact_height &&
                  in.horizontal_distance <= p.contact_distance;
-  now.will_touch = now.numbers_valid &&
-                   std::abs(in.height - in.foot_drop) <= TurnHeight(in, p) + kHeightError &&
-                   in.horizontal_distance <= p.foothold;
+  const double lowest_foot = in.height - in.foot_drop;
+  now.will_touch = now.numbers_valid && in.pad_available && in.pad_sigma <= p.bridge_sigma &&
+                   in.horizontal_distance <= p.foothold && lowest_foot >= -p.contact_height &&
+                   lowest_foot <= HeightLost(in, p, p.climb_time) + kHeightError;
   return now;
 }
 

@@ -19,11 +19,12 @@ struct Conditions {
   bool in_corridor;
   bool in_cone;   ///< of a planned landing: wider, and it opens upwards
   bool touching;    ///< the deck, with some force
-  bool will_touch;  ///< a foot is so low over the deck that a climb would come too late
+  bool will_touch;  ///< a foot is so low over the deck, wherever that may be, that a climb comes too late
 };
 
-/// The height that is lost until a new plan has ended the present descent [m].
-double TurnHeight(const MissionInputs& inputs, const MissionParameters& parameters) noexcept;
+/// The height that is lost until the present descent is ended by what takes hold after `time` [s] [m].
+double HeightLost(const MissionInputs& inputs, const MissionParameters& parameters,
+                  double time) noexcept;
 
 Conditions Assess(const MissionState& state, const MissionInputs& inputs,
                   const MissionParameters& parameters) noexcept;

@@ -97,8 +97,8 @@ DescentHold MoveHeight(const MissionInputs& in, const MissionParameters& p, cons
     }
   }
   // A climb that began gently would let the feet touch first.
-  const double acceleration =
-      s.mode == MissionMode::kGoAround ? p.turn_acceleration : p.height_acceleration;
+  const bool begins = s.mode == MissionMode::kGoAround && s.foot_height < p.gate_height;
+  const double acceleration = begins ? p.turn_acceleration : p.height_acceleration;
   const RateStep step =
       StepTowards(target - s.foot_height, s.foot_height_rate, rate_max, acceleration, dt);
   s.foot_height += step.advance;
@@ -129,7 +129,7 @@ void DecideToWait(const MissionInputs& in, const MissionParameters& p, const Con
     return;
   }
   const bool due = in.arrival_in <= p.decide_time;
-  const bool low = in.height < p.gate_height + TurnHeight(in, p) && now.in_cone;
+  const bool low = in.height < p.gate_height + HeightLost(in, p, p.turn_time) && now.in_cone;
   s.waits_above = !now.may_land && (s.waits_above || due || low);
 }
 

@@ -189,7 +189,8 @@ struct MissionParameters {
   double arrival_plan_timeout = 0.4;  ///< deciding and later: no plan for longer: go around [s]
   double arrival_timeout = 1.5;       ///< contact overdue for longer: go around [s]
   double turn_time = 0.2;             ///< until a new plan ends a planned descent [s] ...
-  double turn_acceleration = 3.0;     ///< ... with so much, as climbs begin [m/s^2]
+  double climb_time = 0.2;            ///< ... and until a climb ends any [s], ...
+  double turn_acceleration = 3.0;     ///< ... with so much [m/s^2]
   double contact_speed = 0.8;  ///< horizontal, relative: committed to contact no faster [m/s], ...
   double closing_rate = 4.0;   ///< ... or than can be taken off until it is due [m/s^2]
   double lean_max = 1.5;    ///< leaning farther a vehicle waits for a lull before it descends to contact [rad]

@@ -47,7 +47,7 @@ void Validate(const MissionParameters& p) {
     const char* name;
     double value;
   };
-  const std::array<Named, 44> positive = {{
+  const std::array<Named, 45> positive = {{
       {"lean_max", p.lean_max},
       {"follow_height", p.follow_height},
       {"landing_distance", p.landing_distance},
@@ -75,6 +75,7 @@ void Validate(const MissionParameters& p) {
       {"arrival_plan_timeout", p.arrival_plan_timeout},
       {"arrival_timeout", p.arrival_timeout},
       {"turn_time", p.turn_time},
+      {"climb_time", p.climb_time},
       {"turn_acceleration", p.turn_acceleration},
       {"contact_speed", p.contact_speed},
       {"closing_rate", p.closing_rate},

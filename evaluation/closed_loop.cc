@@ -146,7 +146,7 @@ class Trial {
 
   bool ReplanDue(double t) {
     const bool usual = replan_clock_.Due(t), close = close_clock_.Due(t);
-    return pilot_.hurries() ? close : usual;
+    return pilot_.plans_often() ? close : usual;
   }
 
   // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.

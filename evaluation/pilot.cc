@@ -34,13 +34,12 @@ constexpr double kTurnTime = 2.0;         // ... so long before a planned contac
 constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's sector and more
 constexpr double kUpright = 0.07;                // ... until it is less than that
 constexpr double kFlareMargin = 5.0 * kRadPerDeg;
-constexpr double kBlownOff = 0.15;        // of the reference [m]
+constexpr double kBlownOff = 0.15;        // of the reference [m]: far below the 0.5 m that lose it
 constexpr double kFlareBegins = 0.2;      // from there on the position loop is softened ...
-constexpr double kFlareHeight = 0.15;     // ... until here its frequency is ...
-constexpr double kFlareSoftness = 0.8;    // ... so many times the usual one
+constexpr double kFlareSoftness = 0.8;    // ... to so many times its frequency at contact_height
 constexpr double kTouchForce = 0.2;       // on the feet: something holds them [N]
 constexpr double kLevelTimeInPull = 0.2;  // more level time in wind [s per m/s^2 of its force]
-constexpr double kSofterInPull = 0.05;    // contact in wind [m/s per m/s^2]
+constexpr double kSofterInPull = 0.05;    // contact in wind: 0.2 m/s from 7 m/s on [m/s per m/s^2]
 constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with this factor
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
@@ -111,7 +110,8 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   }
   // The pad off by three standard deviations, and feet led to its middle are still on the deck.
   parameters_.bridge_sigma = parameters_.foothold / 3.0;
-  const double lean = control::FeetFirstTilt(model) - kFlareMargin;  // what TiltMost leaves
+  // What TiltMost leaves towards a foot, which the heading turns there.
+  const double lean = control::FeetFirstTilt(model) - kFlareMargin;
   if (lean > 0.0) parameters_.lean_max = lean;
   parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
   // A light vehicle never presses as hard as the default asks.
@@ -122,6 +122,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   // the attitude is there.
   const double latency = scenario.planning.latency.measured ? LongestLatency(scenario) : Latency();
   parameters_.turn_time = 1.0 / PlannerRate(scenario) + latency + kAttitudeLag;
+  parameters_.climb_time = 1.0 / ClosePlannerRate(scenario) + latency + kAttitudeLag;
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
   if (scenario.controller == ControllerKind::kGeometric) {
     lead_.emplace(model).Hover(start_thrusts);
@@ -188,8 +189,10 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
   const bool landing = Landing();
-  at_deck_ = std::abs(foot_height_) <= parameters_.contact_height &&
+  at_deck_ = inputs.pad_available && std::abs(foot_height_) <= parameters_.contact_height &&
              inputs.horizontal_distance <= parameters_.contact_distance;
+  const double off = (planner_->Reference(t).p_WB - vehicle.p_WB).head<2>().norm();
+  blown_off_ = at_deck_ && !landing && (blown_off_ || off > kBlownOff);
   settling_.Note(t, at_deck_ && foot_force > kTouchForce, landing);
 
   yaw_ = control::StepYaw(yaw_, heading, dt);
@@ -259,7 +262,8 @@ bool Pilot::DeliverLate(double t) {
 // Gusts add to it. But a pad that brakes is not seen any more in the last decimetre.
 double Pilot::TouchdownRate(const Eigen::Vector3d& pull_W) const {
   const double gusts = kSofterInPull * pull_W.head<2>().norm();
-  return std::max(parameters_.contact_rate, parameters_.touchdown_rate - gusts);
+  const double least = std::min(parameters_.contact_rate, parameters_.touchdown_rate);
+  return std::max(least, parameters_.touchdown_rate - gusts);
 }
 
 // Longer, and the shortest plan would end too early to be decided on.
@@ -313,7 +317,7 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
   // errors of position are what holds the vehicle against it.
   if (landing && observer_) {
-    const double share = (kFlareBegins - foot_height_) / (kFlareBegins - kFlareHeight);
+    const double share = (kFlareBegins - foot_height_) / (kFlareBegins - parameters_.contact_height);
     control::SoftenHorizontally(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told,
                                 &reference);
   }
@@ -326,11 +330,10 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
 }
 
 // Leaning farther so close to the deck, the hull's rim would touch it before the feet do. But who is blown off
-// the way that is not to end there needs all the lean there is.
+// a way that is not to end there needs all the lean there is. The margin is also for a lean that turns meanwhile.
 double Pilot::TiltMost(const estimation::VehicleState& vehicle) const {
   const double lean = control::FeetFirstTilt(model_, vehicle.q_WB) - kFlareMargin;
-  const bool blown_off = !Landing() && recent_error_.value() > kBlownOff;
-  return at_deck_ && lean > 0.0 && !blown_off ? lean : std::numeric_limits<double>::infinity();
+  return at_deck_ && lean > 0.0 && !blown_off_ ? lean : std::numeric_limits<double>::infinity();
 }
 
 control::Disturbance Pilot::disturbance() const {
@@ -356,7 +359,7 @@ bool Pilot::Levelled(double t) const {
 bool Pilot::Landing() const { return mission_.mode == control::MissionMode::kLanding || lands_; }
 
 // A landing that is given up is turned away from the deck at once.
-bool Pilot::hurries() const {
+bool Pilot::plans_often() const {
   return arriving() || (mission_.mode == control::MissionMode::kGoAround &&
                         foot_height_ < parameters_.gate_height);
 }

@@ -54,7 +54,7 @@ class Pilot {
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at
-  /// PlannerRate, or at ClosePlannerRate where it `hurries`. The result
+  /// PlannerRate, or at ClosePlannerRate where it `plans_often`. The result
   /// is the planner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
@@ -75,7 +75,7 @@ class Pilot {
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;
   /// To contact, or away from a deck that is near: Replan is to be called at ClosePlannerRate.
-  bool hurries() const;
+  bool plans_often() const;
 
  private:
   bool arriving() const;
@@ -115,6 +115,7 @@ class Pilot {
   double foot_force_ = 0.0;                ///< as it was last told [N]
   double foot_height_ = 0.0;               ///< of the feet above the deck, as last estimated [m]
   bool at_deck_ = false;                   ///< the feet are close over the deck, or on it
+  bool blown_off_ = false;                 ///< ... and the vehicle far off a way that does not land
   double heading_ahead_ = 0.0;             ///< of the way that is flown [rad]
   std::optional<Eigen::Vector3d> look_W_;  ///< what the next stops need to have seen
   double heading_ = 0.0;                   ///< that is steered for [rad]

@@ -26,7 +26,7 @@ constexpr double kNearer = 1e-6;    // rounding of a hull that leaves a cell: it
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
-constexpr double kLow = 0.05;        // a foot of who leans is so much lower [m] ...
+constexpr double kLow = 0.07;        // the lowest foot of a vehicle that leans by 30 degrees hangs so much lower [m]
 constexpr double kLevel = 2e-3;      // rounding of floor and ceiling: kChordSagitta [m]
 
 /// Positions along a curve, which cost less from one piece of it than one by one; past its end at its end's
@@ -309,12 +309,15 @@ class Tube {
 
 /// Feet no more than `below` the deck [m], and close over it sinking [m/s] no faster than they may touch it, as far as
 /// the hull may be over it.
+/// A start that is so close already need not.
 bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double sinks,
                double below, const Eigen::Vector3d& start) {
   if (hull.pad == nullptr || p.z() >= start.z() - kRounding) return true;
-  const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
-  const double above = p.z() - hull.foot_depth - deck.p_WP.z();
-  if (above >= kLow || (above >= -below && sinks <= kLandingRoom * kSoftSink)) return true;
+  const estimation::PadState pad = hull.pad->At(t);
+  const double deck_feet = pad.p_WP.z() + hull.foot_depth, above = p.z() - deck_feet;
+  const bool softly = sinks + pad.v_WP.z() <= kLandingRoom * kSoftSink;
+  if (above >= kLow || (above >= -below && (softly || start.z() < deck_feet + kLow))) return true;
+  const PadOutline deck = OutlineOf(pad, hull.deck_half_size);
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 
@@ -354,7 +357,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
     const Eigen::Vector3d p = path.At(t);
     const bool may_touch = t >= t_contact;
     if (!LevelKept(*hull.space, p, start.p_W, may_touch)) return sweep;
-    const double sinks = i == 0 ? 0.0 : (before.z() - p.z()) / (t - t_before);
+    const double sinks = t > t_before ? (before.z() - p.z()) / (t - t_before) : 0.0;
     if (!may_touch && !AboveDeck(hull, p, t, sinks, below, start.p_W)) return sweep;
     if (i == 0) stretch.Begin(p);
     if (!stretch.Add(p)) {

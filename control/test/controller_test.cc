@@ -216,22 +216,6 @@ TEST(GeometricController, BodyRateFollowsTheReference) {
 }
 
 // Rotors that give more are told less: of the thrust, and of its limit.
-// Rotors that have no thrust to spare leave the heading behind; the thrust axis must not turn with that.
-TEST(GeometricController, AHeadingFarOffDoesNotTurnTheThrustAxisAside) {
-  const auto model = TestVehicle();
-  const auto controller = MakeController("geometric", model);
-  estimation::VehicleState state;
-  state.q_WB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
-  for (double yaw = -3.1; yaw < 3.14; yaw += 0.25) {
-    const ControlOutput output = controller->Update(state, Hover(0.0, 0.0, 0.0, yaw));
-    const Eigen::Vector3d turn = output.wrench.moment_B.cwiseQuotient(model.inertia);
-    // Upright again about -x, with hardly anything about y.
-    EXPECT_LT(turn.x(), 0.0) << yaw;
-    EXPECT_GT(-turn.x(), 0.9 * turn.head<2>().norm()) << yaw;
-    EXPECT_EQ(turn.z() > 0.0, yaw > 0.0) << yaw;
-  }
-}
-
 TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
   const estimation::VehicleModel model = TestVehicle();
   const auto controller = MakeController("geometric", model);
@@ -248,6 +232,45 @@ TEST(GeometricController, AnswersWithTheThrustThatTheRotorsHave) {
     EXPECT_TRUE(most.thrust_limited);
     EXPECT_LE(most.wrench.thrust, model.MaxThrust());
   }
+}
+
+// Rotors that have no thrust to spare leave the heading behind; the thrust axis must not turn with that.
+TEST(GeometricController, AHeadingFarOffDoesNotTurnTheThrustAxisAside) {
+  const auto model = TestVehicle();
+  const auto controller = MakeController("geometric", model);
+  estimation::VehicleState state;
+  for (const double roll : {0.3, 1.0, 1.4}) {
+    state.q_WB = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+    for (double yaw = -3.1; yaw < 3.14; yaw += 0.25) {
+      const ControlOutput output = controller->Update(state, Hover(0.0, 0.0, 0.0, yaw));
+      const Eigen::Vector3d turn = output.wrench.moment_B.cwiseQuotient(model.inertia);
+      // Upright again about -x, with hardly anything about y.
+      EXPECT_LT(turn.x(), 0.0) << roll << " " << yaw;
+      EXPECT_GT(-turn.x(), 0.6 * turn.head<2>().norm()) << roll << " " << yaw;
+      EXPECT_EQ(turn.z() > 0.0, yaw > 0.0) << roll << " " << yaw;
+    }
+  }
+}
+
+TEST(GeometricController, WhoIsUpsideDownTurnsUprightTheShortWay) {
+  const auto model = TestVehicle();
+  const auto controller = MakeController("geometric", model);
+  for (double roll = 1.0; roll < 3.1; roll += 0.1) {
+    estimation::VehicleState state;
+    state.q_WB = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+    const ControlOutput output = controller->Update(state, Hover());
+    EXPECT_LT(output.wrench.moment_B.x(), 0.0) << roll;
+    EXPECT_NEAR(output.wrench.moment_B.tail<2>().norm(), 0.0, 1e-9) << roll;
+  }
+}
+
+TEST_P(BothLaws, TheTiltAskedForIsTheLeastOfBothLimits) {
+  const auto tilt = [&](double most) {
+    return estimation::Tilt(Eigen::Quaterniond(
+        controller_->Update({}, Hover(50.0, 20.0, 0.0), {}, most).R_WB_desired));
+  };
+  EXPECT_NEAR(tilt(0.3), 0.3, 1e-9);
+  EXPECT_NEAR(tilt(1.2), ControllerOptions{}.tilt_max, 1e-9);
 }
 
 TEST(Controller, BadArgumentsAreNamed) {

@@ -44,6 +44,16 @@ TEST(LandingGate, AGustIsWaitedOutAtTheHeightOfTheGateOrBelow) {
   }
 }
 
+TEST(LandingGate, CommittedItIsGivenUpInAGust) {
+  Mission mission;
+  mission.DescendTo(0.2);
+  ASSERT_TRUE(mission.outputs.committed);
+  mission.in.lean = mission.parameters.lean_max + 0.1;
+  mission.Tick();
+  EXPECT_EQ(mission.outputs.mode, MissionMode::kGoAround);
+  EXPECT_EQ(mission.outputs.reason, TransitionReason::kGust);
+}
+
 TEST(LandingGate, GateClosingBelowHoldsTheHeightThenGoesAround) {
   Mission mission;
   mission.DescendTo(0.7);

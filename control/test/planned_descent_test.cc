@@ -301,23 +301,39 @@ TEST(PlannedDescent, SpeedThatCanStillBeTakenOffIsNotTooFast) {
 }
 
 // A climb that begins so late ends with feet that bounce off the deck.
-TEST(PlannedDescent, FeetThatWillTouchAnywayArriveOverTheDeckAlone) {
-  for (const bool over_deck : {true, false}) {
-    for (const double above : {0.01, 0.03}) {
-      Approach mission;
-      mission.FlyTo(over_deck ? 0.6 : 0.3);  // decided, and committed
-      const MissionParameters& p = mission.parameters;
-      mission.Tick([&](MissionInputs& in) {
-        in.sink_rate = 0.3;
-        in.height = in.sink_rate * p.turn_time +
-                    in.sink_rate * in.sink_rate / (2.0 * p.turn_acceleration) + above;
-        in.horizontal_distance = over_deck ? p.foothold - 0.01 : p.foothold + 0.01;
-        in.lean = 1.6;
-        in.tag_age = 5.0;
-      });
-      const bool arrives = over_deck && above < 0.02;
-      EXPECT_EQ(ModeOf(mission), arrives ? MissionMode::kLanding : MissionMode::kGoAround);
-    }
+TEST(PlannedDescent, FeetThatWillTouchAnywayArriveOverAKnownDeckAlone) {
+  struct Case {
+    bool committed, over_deck, known;
+    double above;  // where a climb would come just in time, by the lowest foot [m]
+    double drop;   // of that foot [m]
+    bool arrives;
+  };
+  for (const Case& c : {Case{true, true, true, -0.01, 0.0, true},
+                        Case{false, true, true, -0.01, 0.0, true},
+                        Case{true, true, true, 0.01, 0.0, false},
+                        Case{false, true, true, 0.01, 0.0, false},
+                        Case{true, false, true, -0.01, 0.0, false},
+                        Case{true, true, false, -0.01, 0.0, false},
+                        Case{true, true, true, 0.03, 0.04, true},
+                        Case{true, true, true, -0.30, 0.0, false}}) {
+    Approach mission;
+    mission.FlyTo(c.committed ? 0.3 : 0.6);
+    ASSERT_EQ(mission.outputs.committed, c.committed);
+    const MissionParameters& p = mission.parameters;
+    mission.Tick([&](MissionInputs& in) {
+      in.sink_rate = 0.3;
+      in.height = in.sink_rate * p.climb_time +
+                  in.sink_rate * in.sink_rate / (2.0 * p.turn_acceleration) + 0.02 + c.above;
+      in.foot_drop = c.drop;
+      in.horizontal_distance = p.foothold + (c.over_deck ? -0.01 : 0.01);
+      in.lean = 1.6;
+      if (!c.known) in.pad_sigma = p.bridge_sigma + 0.01;
+      if (c.committed) return;
+      in.tag_age = 5.0;
+      in.contact_sigma = 1.0;
+    });
+    EXPECT_EQ(ModeOf(mission), c.arrives ? MissionMode::kLanding : MissionMode::kGoAround)
+        << c.committed << c.over_deck << c.known << " " << c.above;
   }
 }
 
