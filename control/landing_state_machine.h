@@ -41,6 +41,8 @@
 //
 // Contact counts in every mode in which what is flown leads to it: a go-around for which nothing is certified
 // ends on the deck.
+// A foot so low over a known deck that a climb would come too late keeps a landing from all go-arounds but those for pad_lost, no_contact
+// and own_state_lost: it touches anyway, and would bounce off.
 // (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
 // is no way out of it, and none into it but contact. A committed landing ends only by contact, an
 // error beyond commit_abort_distance (or outside the cone), too_fast, gust, the end of the bridge before the feet touch, no_contact,

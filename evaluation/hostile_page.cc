@@ -218,8 +218,7 @@ std::string HostilePage(const HostileOptions& options, const std::vector<SweepRo
   html += List("Other contacts", rows, WrongContact);
   html += CountTable("Why flights stood", within.stood, beyond.stood);
   html += List("Stood, or out of time", rows, CameToNothing);
-  html +=
-      List("Not flown to an outcome", rows, [](const TrialResult& r) { return IsLost(r.outcome); });
+  html += List("Ended otherwise", rows, EndedOtherwise);
   return html + Worlds(rows) + Conditions() + "</body></html>\n";
 }
 

@@ -162,11 +162,10 @@ SafetyLines SafetyFacts(const HostileTally& tally) {
 std::string HostileText(const HostileOptions& options, const std::vector<SweepRow>& rows) {
   std::string text = fmt::format("{}: {} flights\n\n", HostileCommand(options), rows.size());
   text += TableText(rows, true) + TableText(rows, false);
-  const auto lost = [](const TrialResult& r) { return IsLost(r.outcome); };
   text += ListText("Collisions with what stands", rows, HitWhatStands);
   text += ListText("Other contacts", rows, WrongContact);
   text += ListText("Stood, or out of time", rows, CameToNothing);
-  text += ListText("Not flown to an outcome", rows, lost);
+  text += ListText("Ended otherwise", rows, EndedOtherwise);
   text += fmt::format("Flight N again: {} --only N\n", HostileCommand(options));
   return text;
 }

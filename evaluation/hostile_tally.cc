@@ -59,6 +59,11 @@ bool CameToNothing(const TrialResult& result) {
   }
 }
 
+bool EndedOtherwise(const TrialResult& result) {
+  return !result.landed() && !HitWhatStands(result) && !WrongContact(result) &&
+         !CameToNothing(result);
+}
+
 bool BreaksThePromise(const std::vector<SweepRow>& rows) {
   return std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
     if (row.trial.scenario.planner != PlannerKind::kLanding) return false;

@@ -18,6 +18,8 @@ bool HitWhatStands(const TrialResult& result);
 bool WrongContact(const TrialResult& result);
 /// It stood, or its time ran out.
 bool CameToNothing(const TrialResult& result);
+/// None of these, and no landing: the program or the physics failed, the rotors were stopped in the air.
+bool EndedOtherwise(const TrialResult& result);
 /// The kind of a wrong contact in one word: the outcome, of a collision what was touched.
 std::string ContactKind(const TrialResult& result);
 

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Primal-dual interior point for  min f(y)  s.t.  g(y) <= 0,  g a row with one of its bounds:
-//   g + s = e,  s z = mu,  grad f + G^T z = 0,  s, z > 0,
-// where e = 0, or in the elastic mode e > 0 costs a price p each: e w = mu, w = p - z > 0. With s, z,
-// e, w eliminated a Newton step is
-//   (H + G^T W G) dy = -grad f - G^T (z + W k),   W = 1 / (s/z + e/w),   k = g + mu/z - mu/w,
+//   g + s = e,  s v = mu,  grad f + G^T z = 0,  s, v > 0,  v = z,
+// where e = 0, or in the elastic mode e > 0 costs a price p each: e w = mu, w = p - z > 0. The slack of an equality costs
+// that price, too: v = p + z; and outside of the elastic mode it has neither s nor e. With s, z, e, w eliminated a
+// Newton step is
+//   (H + G^T W G) dy = -grad f - G^T (z + W k),   W = 1 / (s/v + e/w),   k = g + mu/v - mu/w,
 //   dz = W (G dy + k),
 // with H the Lagrangian's Hessian, curvature of the rows included. Every row is a window, so that
 // G^T W G fills nothing: the matrix stays an arrowhead of the band, and one factor serves Mehrotra's
-// predictor and corrector. A merit function guards the step where rows are curved or not convex;
+// predictor and corrector. For an equality without s and e the same is a proximal step of the method of multipliers, with a W so large that
+// each meets the linear row to 1e-8, and that the matrix is definite where H is along the rows. A merit function guards the step where rows are curved or not convex;
 // where these fast steps stall, the barrier method's careful ones take over.
 // Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical Optimization,
-// 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev. 47 (2005) 99.
+// 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev. 47 (2005) 99; equalities: M. Friedlander, D. Orban,
+// Math. Prog. Comp. 4 (2012) 71.
 
 #include "touchdown/solvers/banded_interior_point.h"
 
@@ -29,6 +32,7 @@ namespace {
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
 constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
+constexpr double kNoCost = 1e-6;     // a cost that is less has not begun
 /// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N. Maratos,
 /// 1978); but so do steps that go round in circles: later ones may lose hardly anything.
 constexpr double kFastSlack = 1.0;
@@ -46,6 +50,13 @@ constexpr double kRounding = 1e-8;
 constexpr double kLeastTarget = 0.1;  // of the gap asked for
 constexpr double kBarrierDecrease = 0.2;
 constexpr double kBarrierSolved = 1e-2;  // errors at which its own problem counts as solved
+// Where rows are equalities.
+constexpr double kEqualityWeight = 1e8;   // of a row of unit slope, times the cost's curvature
+constexpr double kLeastCurvature = 1e-3;  // of the cost, share of its slope
+constexpr double kLongestStep = 10.0;     // over the point's size
+constexpr double kLeastShift = 1e-3;      // that makes a step shorter, share of the curvature
+constexpr double kRaisedShift = 10.0;
+constexpr int kLateEqualityStep = 8;  // steps that rows bend go round in circles sooner
 // Prices of a unit of violation, times the cost it starts from.
 constexpr double kElasticPrice = 100.0;
 constexpr double kElasticPriceRaised = 1e5;
@@ -67,11 +78,12 @@ void BandedInteriorPoint::Prepare(const View& view) {
   const Problem& problem = view.problem();
   const auto terms = static_cast<std::size_t>(problem.num_terms());
   sides_.clear();
+  has_equalities_ = false;
   for (auto* arrays : {&multiplier_, &weight_, &product_}) arrays->assign(terms, {});
   row_weights_.assign(terms, {});
   products_in_.assign(terms, nullptr);
   products_out_.assign(terms, nullptr);
-  std::size_t total = 0;
+  std::size_t total = 0, all_rows = 0;
   for (int i = 0; i < problem.num_terms(); ++i) {
     if (problem.role(i) != Role::kConstraint) continue;
     const TermShape& term = problem.term(i).shape();
@@ -79,15 +91,25 @@ void BandedInteriorPoint::Prepare(const View& view) {
     for (auto* arrays : {&multiplier_, &weight_, &product_}) (*arrays)[i].assign(rows, 0.0);
     row_weights_[i] = {multiplier_[i].data(), weight_[i].data()};
     products_in_[i] = products_out_[i] = product_[i].data();
+    all_rows += rows;
     const LossBounds bounds = problem.term(i).bounds();
+    const bool equality = bounds.lo == bounds.hi;
+    has_equalities_ |= equality;
     for (const auto& [sign, bound] : {std::pair{1.0, bounds.hi}, std::pair{-1.0, bounds.lo}}) {
-      if (!std::isfinite(bound)) continue;
-      sides_.push_back({i, term.outputs, sign, bound});
+      if (!std::isfinite(bound) || (equality && sign < 0.0)) continue;
+      sides_.push_back({i, term.outputs, sign, bound, equality});
       total += rows;
     }
   }
-  for (auto* array : {&now_.s, &now_.z, &now_.e, &now_.w, &next_.s, &next_.z, &next_.e, &next_.w,
-                      &g_, &k_, &ds_, &dz_, &de_, &correction_s_, &correction_e_}) {
+  if (has_equalities_) {
+    rows_.Prepare(view);
+    ConstraintRows::Size(view, &norm_by_term_);
+    jacobian_.reserve(static_cast<std::size_t>(rows_.most_nonzeros()));
+    norm_.reserve(all_rows);
+    equality_give_.assign(total, 0.0);
+  }
+  for (auto* array : {&now_.s, &now_.z, &now_.e, &now_.w, &now_.v, &next_.s, &next_.z,
+                      &next_.e, &next_.w, &next_.v, &g_, &k_, &ds_, &dz_, &de_, &correction_s_, &correction_e_}) {
     array->assign(total, 0.0);
   }
 }
@@ -96,6 +118,7 @@ SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
                                      const std::vector<std::vector<double>>& multipliers,
                                      const Tolerances& tolerances, Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
+  invariant_ = tolerances.invariant;
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
   // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by the
   // fast steps, then by the careful ones. A violation that remains at one price is believed at a
@@ -122,6 +145,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
   mode_ = mode;
   if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
   price_ = mode.price * std::max(std::abs(evaluator->last().full.value), 1.0);
+  PlaceRows(evaluator->last());
+  if (has_equalities_ && !WeighEqualities(view, evaluator)) return SolveStatus::kEvaluationFailed;
   StartRows(evaluator->last(), multipliers);
   if (!EvaluateAt(y_.data(), now_, evaluator)) return SolveStatus::kEvaluationFailed;
   double barrier = Complementarity({0.0, 0.0});
@@ -129,7 +154,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
   const int most_steps = mode.careful ? kMostCarefulSteps : kMostFastSteps;
   for (int step = 0; step < most_steps && !evaluator->must_stop(); ++step) {
     ReadRows(evaluator->last());
-    if (!FactorDefinite(evaluator->last().hessian, &factor_)) break;
+    double shift = 0.0;
+    if (!FactorDefinite(evaluator->last().hessian, &factor_, curvature_, &shift)) break;
     const Errors errors = MeasureErrors(view, evaluator);
     if (errors.gap <= tolerances.gap && errors.dual <= tolerances.gap &&
         errors.primal <= Evaluator::kFeasible &&
@@ -148,9 +174,18 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     }
     const double least =
         kLeastTarget * tolerances.gap / std::max(errors.gap, 1e-300) * Complementarity({0.0, 0.0});
-    const double target = mode.careful ? CarefulDirection(view, errors, least, &barrier, evaluator)
-                                       : FastDirection(view, errors, least, evaluator);
-    const double slack = mode.careful ? kCarefulSlack : step < kLateStep ? kFastSlack : kLateSlack;
+    const auto direction = [&] {
+      return mode.careful ? CarefulDirection(view, errors, least, &barrier, evaluator)
+                          : FastDirection(view, errors, least, evaluator);
+    };
+    double target = direction();
+    while (has_equalities_ && StepIsTooLong()) {
+      shift = std::max(kRaisedShift * shift, kLeastShift * curvature_);
+      if (!FactorDefinite(evaluator->last().hessian, &factor_, curvature_, &shift)) break;
+      target = direction();
+    }
+    const int late = has_equalities_ ? kLateEqualityStep : kLateStep;
+    const double slack = mode.careful ? kCarefulSlack : step < late ? kFastSlack : kLateSlack;
     const StepLengths length = LineSearch(target, LongestStep(errors.gap), slack, evaluator);
     if (evaluator->must_stop()) break;
     if (length.primal < kShortestStep) {
@@ -175,6 +210,7 @@ double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors
   const double mu = Complementarity({0.0, 0.0});
   SetCorrection(false);
   Direction(view, 0.0, evaluator);
+  if (pairs_ == 0) return 0.0;
   const double ratio = Complementarity(LongestStep(errors.gap)) / mu;
   const double target = std::max(mu * std::clamp(ratio * ratio * ratio, 1e-6, 1.0), least);
   SetCorrection(true);
@@ -216,12 +252,16 @@ BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, 
 BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
                                                                Evaluator* evaluator) {
   Errors errors;
-  const double cost = std::max(std::abs(evaluator->last().full.value), kSmallestCost);
-  errors.gap = Complementarity({0.0, 0.0}) * (mode_.elastic ? 2 : 1) * active_ / cost;
-  for (int i = 0; i < active_; ++i) {
-    errors.row = std::max(errors.row, g_[i]);
-    errors.primal =
-        std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (mode_.elastic ? now_.e[i] : 0.0)));
+  const ViewEvaluation& at = evaluator->last();
+  const double cost = invariant_ ? CostSize(at, evaluator->first_cost())
+                                 : std::max(std::abs(at.full.value), kSmallestCost);
+  errors.gap = Complementarity({0.0, 0.0}) * pairs_ / cost;
+  for (const Side& side : sides_) {
+    for (int i = side.first; i < side.first + side.rows; ++i) {
+      errors.row = std::max(errors.row, side.equality ? std::abs(g_[i]) : g_[i]);
+      errors.primal =
+          std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (mode_.elastic ? now_.e[i] : 0.0)));
+    }
   }
   DualResidual(view, evaluator);
   NewtonStep(view, y_.data(), right_.data(), factor_, step_.data());
@@ -229,41 +269,115 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
   return errors;
 }
 
+/// Where rows leave directions without curvature nothing tells how far a step may go.
+bool BandedInteriorPoint::StepIsTooLong() const {
+  double longest = 0.0;
+  for (const double step : step_) longest = std::max(longest, std::abs(step));
+  return longest > kLongestStep * PointSize();
+}
+
+double BandedInteriorPoint::PointSize() const {
+  double size = 1.0;
+  for (const double y : y_) size = std::max(size, 1.0 + std::abs(y));
+  return size;
+}
+
+/// Whatever constant is in the cost: what has been gained, and the slope times the point's size.
+double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) const {
+  double slope = 0.0;
+  for (const double part : at.gradient) slope = std::max(slope, std::abs(part));
+  return std::max({std::abs(first - at.full.value), slope * PointSize(), kSmallestCost});
+}
+
+/// Of an equality also what the latest direction leads to: they may begin with none.
 double BandedInteriorPoint::LargestMultiplier() const {
   double largest = 0.0;
-  for (int i = 0; i < active_; ++i) largest = std::max(largest, now_.z[i]);
+  for (const Side& side : sides_) {
+    for (int i = side.first; i < side.first + side.rows; ++i) {
+      largest = std::max(largest, std::abs(now_.z[i]));
+      if (side.equality) largest = std::max(largest, std::abs(now_.z[i] + dz_[i]));
+    }
+  }
   return largest;
 }
 
+double BandedInteriorPoint::Give(const Side& side, const Rows& rows, int i) const {
+  if (!HasSlack(side)) return equality_give_[i];
+  return rows.s[i] / rows.v[i] + (mode_.elastic ? rows.e[i] / rows.w[i] : 0.0);
+}
+
+/// How far equalities give, by the cost's curvature and their slopes here.
+bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator) {
+  if (!evaluator->EvaluateLagrangian(y_.data(), {})) return false;
+  const ViewEvaluation& at = evaluator->last();
+  double slope = 0.0, steepest = 0.0;
+  for (const double part : at.gradient) slope = std::max(slope, std::abs(part));
+  curvature_ = std::max({LargestDiagonal(at.hessian), kLeastCurvature * slope, kSmallestCost});
+  rows_.Set(view, at);
+  jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);
+  norm_.assign(static_cast<std::size_t>(rows_.size()), 0.0);
+  rows_.Jacobian(at, jacobian_.data());
+  for (int row = 0; row < rows_.size(); ++row) {
+    for (int k = rows_.start(row); k < rows_.start(row + 1); ++k) {
+      norm_[row] += jacobian_[k] * jacobian_[k];
+    }
+    steepest = std::max(steepest, norm_[row]);
+  }
+  rows_.Spread(norm_.data(), &norm_by_term_);
+  for (const Side& side : sides_) {
+    for (int j = 0; side.equality && j < side.rows; ++j) {
+      const double norm2 = norm_by_term_[side.term][j];
+      const double size2 = norm2 > 0.0 ? norm2 : steepest > 0.0 ? steepest : 1.0;
+      equality_give_[side.first + j] = size2 / (kEqualityWeight * curvature_);
+    }
+  }
+  return true;
+}
+
 void BandedInteriorPoint::PlaceRows(const ViewEvaluation& at) {
-  active_ = 0;
+  active_ = pairs_ = 0;
   for (Side& side : sides_) {
     side.first = active_;
     side.rows = at.full.terms[side.term].windows * side.outputs;
     active_ += side.rows;
+    pairs_ += side.rows * ((HasSlack(side) ? 1 : 0) + (mode_.elastic ? 1 : 0));
   }
 }
 
 void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
                                     const std::vector<std::vector<double>>& multipliers) {
-  PlaceRows(at);
   ReadRows(at);
   double size = 1e-6;
   for (int i = 0; i < active_; ++i) size = std::max(size, std::abs(g_[i]));
   for (auto* array : {&ds_, &dz_, &de_}) std::fill(array->begin(), array->end(), 0.0);
-  const double mu = kFirstMu * std::max(std::abs(at.full.value), 1e-6) / std::max(active_, 1);
+  // A cost of zero says nothing of its size.
+  const double value = std::abs(at.full.value);
+  double cost = value > kNoCost ? value : std::max(CostSize(at, at.full.value), kNoCost);
+  if (has_equalities_) cost = std::max(cost, curvature_ * PointSize() * PointSize());
+  const double mu = kFirstMu * cost / std::max(active_, 1);
   for (const Side& side : sides_) {
     const bool known = static_cast<int>(multipliers.size()) > side.term &&
                        static_cast<int>(multipliers[side.term].size()) >= side.rows;
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
+      if (side.equality) {
+        now_.z[i] = known && !mode_.elastic ? multipliers[side.term][j] : 0.0;
+        now_.s[i] = now_.e[i] = 0.0;
+        if (!mode_.elastic) continue;
+        now_.v[i] = now_.w[i] = price_;
+        now_.s[i] = std::max(-g_[i], 0.0) + mu / price_;
+        now_.e[i] = std::max(g_[i], 0.0) + mu / price_;
+        continue;
+      }
       now_.s[i] = std::max(-g_[i], kFirstSlack * size);
       now_.z[i] = mu / now_.s[i];
       if (known) now_.z[i] = std::max(now_.z[i], side.sign * multipliers[side.term][j]);
-      if (!mode_.elastic) continue;
-      now_.z[i] = std::min(now_.z[i], 0.5 * price_);
-      now_.w[i] = price_ - now_.z[i];
-      now_.e[i] = std::max(g_[i] + now_.s[i], mu / now_.w[i]);
+      if (mode_.elastic) {
+        now_.z[i] = std::min(now_.z[i], 0.5 * price_);
+        now_.w[i] = price_ - now_.z[i];
+        now_.e[i] = std::max(g_[i] + now_.s[i], mu / now_.w[i]);
+      }
+      now_.v[i] = now_.z[i];
     }
   }
 }
@@ -283,8 +397,7 @@ bool BandedInteriorPoint::EvaluateAt(const double* y, const Rows& rows, Evaluato
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
       multiplier_[side.term][j] += side.sign * rows.z[i];
-      const double give = rows.s[i] / rows.z[i] + (mode_.elastic ? rows.e[i] / rows.w[i] : 0.0);
-      weight_[side.term][j] += 1.0 / give;
+      weight_[side.term][j] += 1.0 / Give(side, rows, i);
     }
   }
   return evaluator->EvaluateLagrangian(y, {.rows = row_weights_.data()});
@@ -308,13 +421,10 @@ void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* eval
   for (const Side& side : sides_) {
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
-      double give = now_.s[i] / now_.z[i];
-      k_[i] = g_[i] + (mu - correction_s_[i]) / now_.z[i];
-      if (mode_.elastic) {
-        give += now_.e[i] / now_.w[i];
-        k_[i] -= (mu - correction_e_[i]) / now_.w[i];
-      }
-      product_[side.term][j] += side.sign * (now_.z[i] + k_[i] / give);
+      k_[i] = g_[i];
+      if (HasSlack(side)) k_[i] += (mu - correction_s_[i]) / now_.v[i];
+      if (mode_.elastic) k_[i] -= (mu - correction_e_[i]) / now_.w[i];
+      product_[side.term][j] += side.sign * (now_.z[i] + k_[i] / Give(side, now_, i));
     }
   }
   view.MultiplyRowsTransposed(products_in_.data(), evaluator->mutable_last(), right_.data());
@@ -325,10 +435,10 @@ void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* eval
   for (const Side& side : sides_) {
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
-      const double s = now_.s[i], z = now_.z[i];
-      const double give = s / z + (mode_.elastic ? now_.e[i] / now_.w[i] : 0.0);
-      dz_[i] = (side.sign * product_[side.term][j] + k_[i]) / give;
-      ds_[i] = (mu - correction_s_[i] - s * dz_[i]) / z - s;
+      dz_[i] = (side.sign * product_[side.term][j] + k_[i]) / Give(side, now_, i);
+      if (!HasSlack(side)) continue;
+      const double s = now_.s[i];
+      ds_[i] = (mu - correction_s_[i] - s * dz_[i]) / now_.v[i] - s;
       if (!mode_.elastic) continue;
       const double e = now_.e[i], w = now_.w[i];
       de_[i] = (mu - correction_e_[i] + e * dz_[i]) / w - e;
@@ -350,12 +460,15 @@ BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) co
   const auto limit = [share](double from, double step, double* length) {
     if (step < 0.0) *length = std::min(*length, -share * from / step);
   };
-  for (int i = 0; i < active_; ++i) {
-    limit(now_.s[i], ds_[i], &primal);
-    limit(now_.z[i], dz_[i], &dual);
-    if (!mode_.elastic) continue;
-    limit(now_.e[i], de_[i], &primal);
-    limit(now_.w[i], -dz_[i], &dual);
+  for (const Side& side : sides_) {
+    if (!HasSlack(side)) continue;
+    for (int i = side.first; i < side.first + side.rows; ++i) {
+      limit(now_.s[i], ds_[i], &primal);
+      limit(now_.v[i], dz_[i], &dual);
+      if (!mode_.elastic) continue;
+      limit(now_.e[i], de_[i], &primal);
+      limit(now_.w[i], -dz_[i], &dual);
+    }
   }
   return {primal, dual};
 }
@@ -363,13 +476,16 @@ BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) co
 /// Mean of s z (and e w) after a step of these lengths.
 double BandedInteriorPoint::Complementarity(const StepLengths& length) const {
   double sum = 0.0;
-  for (int i = 0; i < active_; ++i) {
-    const double z = now_.z[i] + length.dual * dz_[i];
-    sum += (now_.s[i] + length.primal * ds_[i]) * z;
-    if (mode_.elastic)
-      sum += (now_.e[i] + length.primal * de_[i]) * (now_.w[i] - length.dual * dz_[i]);
+  for (const Side& side : sides_) {
+    if (!HasSlack(side)) continue;
+    for (int i = side.first; i < side.first + side.rows; ++i) {
+      const double v = now_.v[i] + length.dual * dz_[i];
+      sum += (now_.s[i] + length.primal * ds_[i]) * v;
+      if (mode_.elastic)
+        sum += (now_.e[i] + length.primal * de_[i]) * (now_.w[i] - length.dual * dz_[i]);
+    }
   }
-  return sum / std::max(mode_.elastic ? 2 * active_ : active_, 1);
+  return sum / std::max(pairs_, 1);
 }
 
 void BandedInteriorPoint::Move(const StepLengths& length) {
@@ -377,19 +493,27 @@ void BandedInteriorPoint::Move(const StepLengths& length) {
   for (int i = 0; i < active_; ++i) {
     next_.s[i] = now_.s[i] + length.primal * ds_[i];
     next_.z[i] = now_.z[i] + length.dual * dz_[i];
+    next_.v[i] = now_.v[i] + length.dual * dz_[i];
     if (!mode_.elastic) continue;
     next_.e[i] = now_.e[i] + length.primal * de_[i];
     next_.w[i] = now_.w[i] - length.dual * dz_[i];  // price - z without its cancellation
   }
 }
 
-/// f + p sum e - mu sum (log s + log e) + penalty sum |g + s - e|, with the rows just read.
+/// f + p sum e - mu sum (log s + log e) + penalty sum |g + s - e|, with the rows just read; an equality's s costs p, too.
 double BandedInteriorPoint::Merit(double cost, double mu, double penalty, const Rows& rows) const {
   double merit = cost;
-  for (int i = 0; i < active_; ++i) {
-    const double e = mode_.elastic ? rows.e[i] : 0.0;
-    merit += penalty * std::abs(g_[i] + rows.s[i] - e) - mu * std::log(rows.s[i]);
-    if (mode_.elastic) merit += price_ * e - mu * std::log(e);
+  for (const Side& side : sides_) {
+    for (int i = side.first; i < side.first + side.rows; ++i) {
+      if (!HasSlack(side)) {
+        merit += penalty * std::abs(g_[i]);
+        continue;
+      }
+      const double e = mode_.elastic ? rows.e[i] : 0.0;
+      merit += penalty * std::abs(g_[i] + rows.s[i] - e) - mu * std::log(rows.s[i]);
+      if (side.equality) merit += price_ * rows.s[i];
+      if (mode_.elastic) merit += price_ * e - mu * std::log(e);
+    }
   }
   return merit;
 }

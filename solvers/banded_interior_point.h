@@ -4,20 +4,22 @@
 #include <vector>
 
 #include "touchdown/solvers/bordered_cholesky.h"
+#include "touchdown/solvers/constraint_rows.h"
 #include "touchdown/solvers/evaluator.h"
 
 namespace touchdown::solvers {
 
-/// A primal-dual interior point on a problem with inequality rows lo <= u <= hi.
+/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them.
 class BandedInteriorPoint {
  public:
   struct Tolerances {
     double gap = 1e-8;        ///< complementarity and dual error, relative to the cost
     double violation = 1e-8;  ///< of a row
+    bool invariant = false;   ///< the cost counts as large as what was gained and its slope say, not its value
   };
 
   void Prepare(const View& view);
-  /// `multipliers` ([term][row], positive at an upper bound, negative at a lower one) may hold an
+  /// `multipliers` ([term][row], positive at an upper bound, negative at a lower one, either at an equality) may hold an
   /// earlier solve's. Does not allocate.
   SolveStatus Run(const View& view, const double* start,
                   const std::vector<std::vector<double>>& multipliers, const Tolerances& tolerances,
@@ -26,18 +28,20 @@ class BandedInteriorPoint {
   const std::vector<double>& multipliers(int term) const { return multiplier_[term]; }
 
  private:
-  /// One bound of all rows of a term: g = sign (u - bound) <= 0.
+  /// One bound of all rows of a term: g = sign (u - bound) <= 0, or = 0.
   struct Side {
     int term = 0;
     int outputs = 0;
     double sign = 1.0;
     double bound = 0.0;
+    bool equality = false;
     int first = 0;  ///< place in the flat arrays
     int rows = 0;   ///< active in this solve
   };
-  /// Slack, multiplier, elastic part and the elastic part's multiplier, all > 0, of g + s = e.
+  /// Of g + s = e: slack, multiplier, elastic part, and the multipliers v of the slack and w of the elastic part. All
+  /// but z are > 0; v is z, of an equality price + z.
   struct Rows {
-    std::vector<double> s, z, e, w;
+    std::vector<double> s, z, e, w, v;
   };
   struct StepLengths {
     double primal = 1.0;
@@ -63,7 +67,14 @@ class BandedInteriorPoint {
   double CarefulDirection(const View& view, const Errors& errors, double least, double* barrier,
                           Evaluator* evaluator);
   StepLengths LineSearch(double target, StepLengths length, double slack, Evaluator* evaluator);
+  bool StepIsTooLong() const;
   double LargestMultiplier() const;
+  double PointSize() const;
+  double CostSize(const ViewEvaluation& at, double first) const;
+  bool HasSlack(const Side& side) const { return !side.equality || mode_.elastic; }
+  /// By how much a row gives for a unit of its multiplier.
+  double Give(const Side& side, const Rows& rows, int i) const;
+  bool WeighEqualities(const View& view, Evaluator* evaluator);
   Errors MeasureErrors(const View& view, Evaluator* evaluator);
   void PlaceRows(const ViewEvaluation& at);
   void StartRows(const ViewEvaluation& at, const std::vector<std::vector<double>>& multipliers);
@@ -83,6 +94,14 @@ class BandedInteriorPoint {
   Mode mode_;
   double price_ = 0.0;  // of a unit of e
   int active_ = 0;      // rows in all sides
+  int pairs_ = 0;       // products that are to become the target: s v and e w
+  bool invariant_ = false;
+  bool has_equalities_ = false;
+  double curvature_ = 0.0;  // of the cost, where equalities are weighed by it
+  ConstraintRows rows_;
+  std::vector<double> jacobian_, norm_;
+  std::vector<std::vector<double>> norm_by_term_;
+  std::vector<double> equality_give_;
   std::vector<Side> sides_;
   Rows now_, next_;
   std::vector<double> g_, k_, ds_, dz_, de_, correction_s_, correction_e_;

@@ -10,6 +10,9 @@ namespace touchdown::solvers {
 
 namespace {
 
+/// Of the gap, where the cost counts as large as what was gained: that may be much more than what is left.
+constexpr double kInvariantShare = 1e-3;
+
 bool HasRows(const View& view) {
   for (int i = 0; i < view.problem().num_terms(); ++i) {
     if (view.problem().role(i) == Role::kConstraint) return true;
@@ -28,7 +31,7 @@ class BandedSolver : public SolverBackend {
                            "violation of a hard row at which a solve may end"},
                       })) {}
 
-  Capabilities capabilities() const override { return {.hard_rows = true}; }
+  Capabilities capabilities() const override { return {.hard_rows = true, .equality_rows = true}; }
 
  private:
   void DoPrepare(const View& view) override {
@@ -40,7 +43,7 @@ class BandedSolver : public SolverBackend {
     }
   }
 
-  void DoSolve(const View& view, const WarmStart& warm, const Stop& /*stop*/, Evaluator* evaluator,
+  void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
                SolverResult* result) override {
     const ShareScope scope(evaluator, Share::kNative);
     const double gap = options().Get("gap_tolerance");
@@ -49,7 +52,9 @@ class BandedSolver : public SolverBackend {
       return;
     }
     result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
-                                         {gap, options().Get("violation_tolerance")}, evaluator);
+                                         {stop.confirm ? kInvariantShare * gap : gap,
+                                          options().Get("violation_tolerance"), stop.confirm},
+                                         evaluator);
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
     for (int i = 0; i < view.problem().num_terms(); ++i) {
       result->multipliers[i] = interior_point_.multipliers(i);

@@ -10,9 +10,11 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kFirstShift = 1e-6;  // of the largest diagonal element
+constexpr double kFirstShift = 1e-6;  // of the curvature
 constexpr double kShiftGrowth = 10.0;
 constexpr int kMostShifts = 12;
+
+}  // namespace
 
 double LargestDiagonal(const BorderedBandMatrix& H) {
   const int d = H.block_size();
@@ -23,15 +25,16 @@ double LargestDiagonal(const BorderedBandMatrix& H) {
   return largest;
 }
 
-}  // namespace
-
-bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor) {
+bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, double curvature,
+                    double* taken) {
   using Status = BorderedCholesky::Status;
-  double shift = 0.0;
+  double shift = taken != nullptr ? *taken : 0.0;
   for (int i = 0; i < kMostShifts; ++i) {
     const Status status = factor->Factor(H, shift, shift);
+    if (taken != nullptr) *taken = shift;
     if (status != Status::kIndefinite && factor->corner() > 0.0) return true;
-    shift = shift == 0.0 ? kFirstShift * LargestDiagonal(H) : kShiftGrowth * shift;
+    const double size = curvature > 0.0 ? curvature : LargestDiagonal(H);
+    shift = shift == 0.0 ? kFirstShift * size : kShiftGrowth * shift;
   }
   return false;
 }

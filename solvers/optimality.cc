@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The KKT conditions at one point. What a residual of the Lagrangian's gradient is worth is told by its Hessian,
-// without the rows' weights: a metric with large weights is blind to what lies across the rows. Multipliers are estimated as
-// the least squares of that residual over the rows at their bounds, without those of the wrong sign
+// for a backend's multipliers without the rows' weights: a metric with large weights is blind to what lies across the rows. Multipliers
+// are estimated as the least squares of that residual over the rows at their bounds, without those of the wrong sign: across
+// the rows that are kept nothing is left then, and weights hold them.
 // (J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., chapters 12 and 18).
 
 #include "touchdown/solvers/optimality.h"
@@ -84,6 +85,7 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
   }
   if (m == 0) return Weigh();
   Optimality told;
+  side_.assign(m, Side::kNone);
   if (TakeMultipliers(multipliers)) told = Weigh();
   if (told.stationary() || !Estimate()) return told;
   const Optimality estimated = Weigh();
@@ -190,9 +192,17 @@ bool OptimalityCheck::Estimate() {
   return true;
 }
 
+/// The Lagrangian's Hessian with the rows of side_ held by weights.
+bool OptimalityCheck::HoldRows(double curvature) {
+  for (int r = 0; r < rows_.size(); ++r) {
+    const bool kept = side_[r] != Side::kNone && norm_[r] > 0.0;
+    weight_[r] = kept ? kRowWeight * curvature / (norm_[r] * norm_[r]) : 0.0;
+  }
+  return EvaluateHessian(lambda_.data(), weight_.data(), 1.0);
+}
+
 /// Factors the Hessian, made definite where it is not.
-bool OptimalityCheck::Factor(double shift, bool* shifted) {
-  const double largest = LargestOf(at_->hessian);
+bool OptimalityCheck::Factor(double shift, double largest, bool* shifted) {
   *shifted = false;
   for (int i = 0; i < kMostShifts; ++i) {
     if (factor_.Factor(at_->hessian, shift, shift) == BorderedCholesky::Status::kDefinite) {
@@ -204,26 +214,29 @@ bool OptimalityCheck::Factor(double shift, bool* shifted) {
   return false;
 }
 
+/// With the rows of side_ held, which are none for a backend's multipliers.
 Optimality OptimalityCheck::Weigh() {
   Optimality out;
   out.violation = Violation();
   if (!EvaluateHessian(rows_.size() > 0 ? lambda_.data() : nullptr, nullptr, 1.0)) return {};
   out.evaluated = true;
+  const double largest = LargestOf(at_->hessian);
   Residual(lambda_.data());
+  // Of the rows together: multipliers of a pinched pair may be large, and cancel.
   double slope = LargestOf(gradient_), gap = 0.0;
-  for (int r = 0; r < rows_.size(); ++r) {
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      slope = std::max(slope, std::abs(lambda_[r] * jacobian_[k]));
-    }
-    gap += std::abs(lambda_[r]) * WayTo(r, lambda_[r]);
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    slope = std::max(slope, std::abs(residual_[i] - gradient_[i]));
   }
+  for (int r = 0; r < rows_.size(); ++r) gap += std::abs(lambda_[r]) * WayTo(r, lambda_[r]);
   const double gained = std::abs(first_cost_ - at_->full.value);
   const double cost_size = std::max({gained, slope * size_, std::numeric_limits<double>::min()});
   const double least = kLeastCurvature * slope / size_ + std::numeric_limits<double>::min();
   bool shifted = false;
   step_ = residual_;
   if (has_factor_) {
-    if (!Factor(least, &shifted)) return {};
+    const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
+    if (holds && !HoldRows(std::max(largest, least))) return {};
+    if (!Factor(least, largest, &shifted)) return {};
     factor_.Solve(step_.data());
   } else {
     const BorderedBandMatrix& H = at_->hessian;
@@ -236,21 +249,14 @@ Optimality OptimalityCheck::Weigh() {
   out.step = LargestOf(step_) / size_;
   out.gain = promised / cost_size;
   out.gap = gap / cost_size;
-  out.saddle = shifted && CurvesDown();
+  out.saddle = shifted && CurvesDown(largest);
   return out;
 }
 
-/// The Hessian is indefinite along the rows, too, whose weights hold everything across them.
-bool OptimalityCheck::CurvesDown() {
-  const double largest = LargestOf(at_->hessian);
-  for (int r = 0; r < rows_.size(); ++r) {
-    const bool kept = SideOf(r) != Side::kNone && norm_[r] > 0.0;
-    weight_[r] = kept ? kRowWeight * largest / (norm_[r] * norm_[r]) : 0.0;
-  }
-  if (!EvaluateHessian(rows_.size() > 0 ? lambda_.data() : nullptr,
-                       rows_.size() > 0 ? weight_.data() : nullptr, 1.0)) {
-    return false;
-  }
+/// The Hessian is indefinite along all rows at a bound, too, whose weights hold everything across them.
+bool OptimalityCheck::CurvesDown(double largest) {
+  for (int r = 0; r < rows_.size(); ++r) side_[r] = SideOf(r);
+  if (rows_.size() > 0 && !HoldRows(largest)) return false;
   const double room = kFirstShift * largest;
   return factor_.Factor(at_->hessian, room, room) != BorderedCholesky::Status::kDefinite;
 }

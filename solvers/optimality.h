@@ -37,8 +37,9 @@ class OptimalityCheck {
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
   void Residual(const double* lambda);
-  bool Factor(double shift, bool* shifted);
-  bool CurvesDown();
+  bool HoldRows(double curvature);
+  bool Factor(double shift, double largest, bool* shifted);
+  bool CurvesDown(double largest);
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;

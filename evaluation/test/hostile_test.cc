@@ -343,6 +343,8 @@ TEST(HostileReport, WhatStoodIsListed) {
     EXPECT_THAT(report, HasSubstr("steps without a proven pair"));
   }
   EXPECT_TRUE(BreaksThePromise({row}));
+  row.result.outcome = Outcome::kDisarmedInAir;
+  EXPECT_THAT(HostileText(options, {row}), HasSubstr("Ended otherwise: 1"));
 }
 
 TEST(HostileReport, TheDocumentHasTheFamiliesAndTheConditions) {

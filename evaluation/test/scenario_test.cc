@@ -122,7 +122,7 @@ TEST_F(ScenarioTest, AFormulationThatTheBackendRefusesIsRefused) {
   EXPECT_THAT(Refusal("seed: 1\n", {"solver.backend=ceres", "solver.limits=hard"}),
               AllOf(HasSubstr("--set solver.backend=ceres"),
                     HasSubstr("backend ceres takes no inequality constraints")));
-  EXPECT_THAT(Refusal("solver: {endpoint: explicit}\n"),
+  EXPECT_THAT(Refusal("solver: {backend: lbfgs, endpoint: explicit}\n"),
               AllOf(HasSubstr(path_ + ":1"), HasSubstr("takes no equality constraints")));
   EXPECT_EQ(Load("solver: {backend: banded, limits: hard}\n").solver.limits, LimitsKind::kHard);
 }

@@ -36,6 +36,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(1, 0.0, kInfinity));
   all->push_back(
       SmallProblem("HS5", {0.0, 0.0}, -0.5 * std::sqrt(3.0) - std::acos(-1.0) / 3.0, form)
+          .Other(2.0 / 3.0 * std::acos(-1.0) - 0.5 * std::sqrt(3.0))
           .Cost([](const auto* x, auto* u) {
             using std::sin;
             u[0] = sin(x[0] + x[1]) + Square(x[0] - x[1]) - 1.5 * x[0] + 2.5 * x[1] + 1.0;
@@ -102,6 +103,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(0, -kInfinity, 0.5)
                      .Other(360.379767));
   all->push_back(SmallProblem("HS16", {-2.0, 1.0}, 0.25, form)
+                     .Other(2.25 + 100.0 * Square(std::sqrt(0.5) - 0.25))
                      .Squares(2, kRosenbrock)
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {
@@ -147,6 +149,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(0, 13.0, 100.0)
                      .Bound(1, 0.0, 100.0));
   all->push_back(SmallProblem("HS20", {-2.0, 1.0}, 81.5 - 25.0 * std::sqrt(3.0), form)
+                     .Other(40.1987298)
                      .Squares(2, kRosenbrock)
                      .AtLeastZero(3,
                                   [](const auto* x, auto* u) {
@@ -173,6 +176,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[1] = x[1] - x[0] * x[0];
                      }));
   all->push_back(SmallProblem("HS23", {3.0, 1.0}, 2.0, form)
+                     .Other(5.0 + 2.0 * std::sqrt(5.0))
                      .Squares(2,
                               [](const auto* x, auto* u) {
                                 u[0] = x[0];

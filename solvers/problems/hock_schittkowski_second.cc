@@ -71,6 +71,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Zero(1, [](const auto* x, auto* u) { u[0] = 1.0 - x[0] - x[1] - x[2]; })
                      .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS33", {0.0, 0.0, 3.0}, std::sqrt(2.0) - 6.0, form)
+                     .Other(2.0)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] - 1.0) * (x[0] - 2.0) * (x[0] - 3.0) + x[2];
                      })
@@ -134,6 +135,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                        u[1] = x[0] * x[0] - x[1] - x[3] * x[3];
                      }));
   all->push_back(SmallProblem("HS40", {0.8, 0.8, 0.8, 0.8}, -0.25, form)
+                     .Other(0.0)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2] * x[3]; })
                      .Zero(3, [](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] * x[0] + x[1] * x[1] - 1.0;
@@ -201,6 +203,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Bound(4, 0.0, 5.0)
                      .Other(2.0));
   all->push_back(SmallProblem("HS46", {std::sqrt(0.5), 1.75, 0.5, 2.0, 2.0}, 0.0, form)
+                     .Other(0.0210889286)
                      .Squares(4, kFlat)
                      .Zero(2, [](const auto* x, auto* u) {
                        using std::sin;

@@ -20,6 +20,7 @@ constexpr auto kSurfaces = [](const auto* x, auto* u) {
 
 void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* all) {
   all->push_back(SmallProblem("HS60", {2.0, 2.0, 2.0}, 0.03256820025, form)
+                     .Other(2.18966058)
                      .Squares(3,
                               [](const auto* x, auto* u) {
                                 u[0] = x[0] - 1.0;
@@ -34,6 +35,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                            })
                      .BoundAll(-10.0, 10.0));
   all->push_back(SmallProblem("HS61", {0.0, 0.0, 0.0}, -143.6461422, form)
+                     .Other(-81.9190961)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = 4.0 * x[0] * x[0] + 2.0 * x[1] * x[1] + 2.0 * x[2] * x[2] -
                               33.0 * x[0] + 16.0 * x[1] - 24.0 * x[2];
@@ -88,6 +90,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(2, 0.0, 10.0));
   all->push_back(
       SmallProblem("HS71", {1.0, 5.0, 5.0, 1.0}, 17.0140173, form)
+          .Other(32.9443868)
           .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2]; })
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = x[0] * x[1] * x[2] * x[3] - 25.0; })
           .Zero(1,
@@ -149,9 +152,11 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[1] = x[1] + Square(x[2] * x[2]) * x[3] * x[3] - 8.0 - std::sqrt(2.0);
                      }));
   all->push_back(SmallProblem("HS78", {-2.0, 1.5, 2.0, -1.0, -1.0}, -2.91970041, form)
+                     .Other(-0.823594835)
                      .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[1] * x[2] * x[3] * x[4]; })
                      .Zero(3, kSurfaces));
   all->push_back(SmallProblem("HS79", {2.0, 2.0, 2.0, 2.0, 2.0}, 0.0787768209, form)
+                     .Other(13.9668249)
                      .Squares(5,
                               [](const auto* x, auto* u) {
                                 u[0] = x[0] - 1.0;
@@ -167,6 +172,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                        u[2] = x[0] * x[4] - 2.0;
                      }));
   all->push_back(SmallProblem("HS80", {-2.0, 2.0, 2.0, -1.0, -1.0}, 0.0539498478, form)
+                     .Other(0.438851220)
                      .Cost([](const auto* x, auto* u) {
                        using std::exp;
                        u[0] = exp(x[0] * x[1] * x[2] * x[3] * x[4]);
@@ -178,6 +184,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(3, -3.2, 3.2)
                      .Bound(4, -3.2, 3.2));
   all->push_back(SmallProblem("HS81", {-2.0, 2.0, 2.0, -1.0, -1.0}, 0.0539498478, form)
+                     .Other(0.438851220)
                      .Cost([](const auto* x, auto* u) {
                        using std::exp;
                        u[0] = exp(x[0] * x[1] * x[2] * x[3] * x[4]) -

@@ -12,6 +12,8 @@
 #include <type_traits>
 
 #include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/backend_registry.h"
+#include "touchdown/solvers/function_term.h"
 #include "touchdown/solvers/test/test_terms.h"
 #include "touchdown/solvers/window_term.h"
 
@@ -223,7 +225,7 @@ TEST(BandedSolver, StepsOverCurvedRowsAreLong) {
   RecordProperty("iterations", iterations);
   RecordProperty("evaluations", evaluations);
   EXPECT_LT(iterations, 20 * 20);
-  EXPECT_LT(evaluations, iterations + 20 * 5);
+  EXPECT_LT(evaluations, iterations + 20 * 6);
 }
 
 TEST(BandedSolver, SaysInfeasibleAndGivesTheElasticCompromise) {
@@ -282,6 +284,147 @@ struct Sum {
     u[0] = q[0] + q[44];
   }
 };
+
+// Equality rows.
+
+/// One block of n scalars, with a cost and rows u = 0.
+template <class Cost, class Rows>
+Problem WithEqualities(int n, Cost cost, int outputs, Rows rows) {
+  Problem problem({.blocks = 1, .block_size = n});
+  problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "cost"},
+                                                 FunctionShape{.block_size = n}, LinearLoss(1.0),
+                                                 cost),
+                  Role::kCost);
+  problem.AddTerm(std::make_shared<FunctionTerm>(
+                      TermInfo{.name = "rows"},
+                      FunctionShape{.block_size = n, .outputs = outputs}, SquareLoss(1.0), rows),
+                  Role::kConstraint);
+  return problem;
+}
+
+SolverResult SolveFrom(const Problem& problem, const Eigen::VectorXd& start,
+                       const std::string& backend = "banded") {
+  const View view(problem, AffineLift::Identity(problem.shape().blocks));
+  const auto solver = MakeBackend(StandardBackends(), backend);
+  solver->Prepare(view);
+  SolverResult result;
+  solver->Solve(view, WarmStart(start), {}, &result);
+  return result;
+}
+
+TEST(BandedEqualities, CurvatureCountsAlongTheRowsAlone) {
+  const auto saddle = [](const auto* x, auto* u) { u[0] = x[0] * x[0] - x[1] * x[1]; };
+  const auto axis = [](const auto* x, auto* u) { u[0] = x[1] - 0.5 * x[0] - 1.0; };
+  const SolverResult result =
+      SolveFrom(WithEqualities(2, saddle, 1, axis), Eigen::Vector2d(3.0, -2.0));
+  EXPECT_EQ(result.status, SolveStatus::kConverged) << result.message;
+  EXPECT_NEAR(result.x[0], 2.0 / 3.0, 1e-7);  // x^2 - (x / 2 + 1)^2
+  EXPECT_NEAR(result.multipliers[1][0], 8.0 / 3.0, 1e-6) << "2 y";
+}
+
+TEST(BandedEqualities, ALinearCostOnACircle) {
+  const auto sum = [](const auto* x, auto* u) { u[0] = x[0] + x[1]; };
+  const auto circle = [](const auto* x, auto* u) { u[0] = x[0] * x[0] + x[1] * x[1] - 2.0; };
+  for (const Eigen::Vector2d& start : {Eigen::Vector2d(3.0, 0.5), Eigen::Vector2d(-0.1, -2.0)}) {
+    const SolverResult result = SolveFrom(WithEqualities(2, sum, 1, circle), start);
+    EXPECT_EQ(result.status, SolveStatus::kConverged);
+    EXPECT_NEAR(result.cost, -2.0, 1e-7);
+  }
+}
+
+TEST(BandedEqualities, RedundantRowsAreRows) {
+  const auto square = [](const auto* x, auto* u) { u[0] = x[0] * x[0] + 3.0 * x[1] * x[1]; };
+  const auto thrice = [](const auto* x, auto* u) {
+    for (int i = 0; i < 3; ++i) u[i] = (1.0 + i) * (x[0] + x[1] - 1.0);
+  };
+  const SolverResult result =
+      SolveFrom(WithEqualities(2, square, 3, thrice), Eigen::Vector2d(5.0, 5.0));
+  EXPECT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_NEAR(result.x[0], 0.75, 1e-7);
+}
+
+TEST(BandedEqualities, RowsThatContradictEachOtherAreInfeasible) {
+  const auto square = [](const auto* x, auto* u) { u[0] = x[0] * x[0] + x[1] * x[1]; };
+  const auto apart = [](const auto* x, auto* u) {
+    u[0] = x[0] + x[1] - 1.0;
+    u[1] = x[0] + x[1] - 2.0;
+  };
+  const SolverResult result =
+      SolveFrom(WithEqualities(2, square, 2, apart), Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible);
+  EXPECT_FALSE(result.usable());
+}
+
+/// A pendulum that swings up: blocks of angle, rate and torque, its dynamics rows between neighbours.
+Problem SwingUp(int blocks, double most_torque) {
+  const double dt = 5.0 / (blocks - 1);
+  Problem problem({.blocks = blocks, .block_size = 3});
+  const auto add = [&](const char* name, FunctionShape shape, FunctionTerm::Loss loss, Role role,
+                       auto function) {
+    shape.block_size = 3;
+    problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = name}, shape, loss, function),
+                    role);
+  };
+  add("effort", {.windows = blocks}, SquareLoss(2.0 * dt), Role::kCost,
+      [](const auto* x, auto* u) { u[0] = x[2]; });
+  add("dynamics", {.window = 2, .outputs = 2, .windows = blocks - 1}, SquareLoss(1.0),
+      Role::kConstraint, [dt](const auto* x, auto* u) {
+        using std::sin;
+        u[0] = x[3] - x[0] - 0.5 * dt * (x[1] + x[4]);
+        u[1] = x[4] - x[1] - 0.5 * dt * (x[2] - 4.9 * sin(x[0]) + x[5] - 4.9 * sin(x[3]));
+      });
+  add("hangs", {.outputs = 2}, SquareLoss(1.0), Role::kConstraint, [](const auto* x, auto* u) {
+    u[0] = x[0];
+    u[1] = x[1];
+  });
+  add("stands", {.outputs = 2, .first = blocks - 1}, SquareLoss(1.0), Role::kConstraint,
+      [](const auto* x, auto* u) {
+        u[0] = x[0] - 3.14159265358979;
+        u[1] = x[1];
+      });
+  add("torque", {.windows = blocks}, RangeLoss({-most_torque, most_torque}, 1.0, 1.0),
+      Role::kConstraint, [](const auto* x, auto* u) { u[0] = x[2]; });
+  return problem;
+}
+
+Eigen::VectorXd StraightUp(int blocks) {
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(3 * blocks);
+  for (int k = 0; k < blocks; ++k) {
+    start[3 * k] = 3.14159265358979 * k / (blocks - 1);
+    start[3 * k + 1] = 0.6;
+  }
+  return start;
+}
+
+TEST(BandedEqualities, AMultipleShootingProblemIsAtHome) {
+  for (const int blocks : {20, 60}) {
+    for (const double most_torque : {50.0, 3.0}) {
+      const Problem problem = SwingUp(blocks, most_torque);
+      const SolverResult result = SolveFrom(problem, StraightUp(blocks));
+      EXPECT_EQ(result.status, SolveStatus::kConverged) << blocks << " " << result.iterations;
+      EXPECT_LE(result.max_violation, 1e-8);
+      if (!MakeBackend(StandardBackends(), "ipopt")->capabilities().compiled) continue;
+      const SolverResult reference = SolveFrom(problem, StraightUp(blocks), "ipopt");
+      EXPECT_NEAR(result.cost, reference.cost, 1e-8 * reference.cost);
+    }
+  }
+}
+
+TEST(BandedEqualities, ASolveDoesNotAllocate) {
+  if (AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  const Problem problem = SwingUp(20, 50.0);
+  const View view(problem, AffineLift::Identity(20));
+  const auto solver = MakeBandedSolver();
+  solver->Prepare(view);
+  const WarmStart start(StraightUp(20));
+  SolverResult result;
+  Stop stop;
+  stop.confirm = false;
+  solver->Solve(view, start, stop, &result);
+  const long before = AllocationCount();
+  solver->Solve(view, start, stop, &result);
+  EXPECT_EQ(AllocationCount() - before, 0);
+}
 
 TEST(BandedSolver, APrepareThatThrowsLeavesNothingPrepared) {
   const Problem problem = ChainProblem();
