@@ -19,7 +19,7 @@ struct Conditions {
   bool in_corridor;
   bool in_cone;   ///< of a planned landing: wider, and it opens upwards
   bool touching;    ///< the deck, with some force
-  bool will_touch;  ///< a foot is so low over the deck, wherever that may be, that a climb comes too late
+  bool will_touch;  ///< a foot is so low over a deck that is surely there that a climb comes too late
 };
 
 /// The height that is lost until the present descent is ended by what takes hold after `time` [s] [m].

@@ -271,21 +271,14 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
 
 /// Where rows leave directions without curvature nothing tells how far a step may go.
 bool BandedInteriorPoint::StepIsTooLong() const {
-  double longest = 0.0;
-  for (const double step : step_) longest = std::max(longest, std::abs(step));
-  return longest > kLongestStep * PointSize();
+  return Largest(step_) > kLongestStep * PointSize();
 }
 
-double BandedInteriorPoint::PointSize() const {
-  double size = 1.0;
-  for (const double y : y_) size = std::max(size, 1.0 + std::abs(y));
-  return size;
-}
+double BandedInteriorPoint::PointSize() const { return 1.0 + Largest(y_); }
 
 /// Whatever constant is in the cost: what has been gained, and the slope times the point's size.
 double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) const {
-  double slope = 0.0;
-  for (const double part : at.gradient) slope = std::max(slope, std::abs(part));
+  const double slope = Largest(at.gradient);
   return std::max({std::abs(first - at.full.value), slope * PointSize(), kSmallestCost});
 }
 
@@ -310,9 +303,9 @@ double BandedInteriorPoint::Give(const Side& side, const Rows& rows, int i) cons
 bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator) {
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return false;
   const ViewEvaluation& at = evaluator->last();
-  double slope = 0.0, steepest = 0.0;
-  for (const double part : at.gradient) slope = std::max(slope, std::abs(part));
-  curvature_ = std::max({LargestDiagonal(at.hessian), kLeastCurvature * slope, kSmallestCost});
+  double steepest = 0.0;
+  curvature_ = std::max({LargestDiagonal(at.hessian), kLeastCurvature * Largest(at.gradient),
+                         kSmallestCost});
   rows_.Set(view, at);
   jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);
   norm_.assign(static_cast<std::size_t>(rows_.size()), 0.0);

@@ -26,12 +26,6 @@ double Dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-double Largest(const std::vector<double>& a) {
-  double largest = 0.0;
-  for (const double value : a) largest = std::max(largest, std::abs(value));
-  return largest;
-}
-
 }  // namespace
 
 void BandedNewton::Prepare(const View& view) {

@@ -16,6 +16,12 @@ constexpr int kMostShifts = 12;
 
 }  // namespace
 
+double Largest(const std::vector<double>& numbers) {
+  double largest = 0.0;
+  for (const double number : numbers) largest = std::max(largest, std::abs(number));
+  return largest;
+}
+
 double LargestDiagonal(const BorderedBandMatrix& H) {
   const int d = H.block_size();
   double largest = 1e-300;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "touchdown/solvers/bordered_cholesky.h"
 #include "touchdown/solvers/view.h"
 
@@ -8,6 +10,9 @@ namespace touchdown::solvers {
 
 /// Tolerances are relative to the cost, or to this where it is smaller: the cost of a hover is zero.
 inline constexpr double kSmallestCost = 1e-9;
+
+/// The largest by its absolute value; 0 without any.
+double Largest(const std::vector<double>& numbers);
 
 /// The largest element of the diagonal without its border, by its absolute value.
 double LargestDiagonal(const BorderedBandMatrix& H);

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "touchdown/solvers/newton_step.h"
+
 namespace touchdown::solvers {
 
 namespace {
@@ -23,12 +25,6 @@ constexpr double kFirstShift = 1e-6;      // of the largest element
 constexpr double kShiftGrowth = 10.0;
 constexpr int kMostShifts = 16;
 constexpr double kRounding = 1e-12;
-
-double LargestOf(const std::vector<double>& numbers) {
-  double largest = 0.0;
-  for (const double number : numbers) largest = std::max(largest, std::abs(number));
-  return largest;
-}
 
 double LargestOf(const BorderedBandMatrix& H) {
   const int d = H.block_size();
@@ -223,7 +219,7 @@ Optimality OptimalityCheck::Weigh() {
   const double largest = LargestOf(at_->hessian);
   Residual(lambda_.data());
   // Of the rows together: multipliers of a pinched pair may be large, and cancel.
-  double slope = LargestOf(gradient_), gap = 0.0;
+  double slope = Largest(gradient_), gap = 0.0;
   for (std::size_t i = 0; i < residual_.size(); ++i) {
     slope = std::max(slope, std::abs(residual_[i] - gradient_[i]));
   }
@@ -246,7 +242,7 @@ Optimality OptimalityCheck::Weigh() {
   }
   double promised = 0.0;
   for (std::size_t i = 0; i < step_.size(); ++i) promised += 0.5 * residual_[i] * step_[i];
-  out.step = LargestOf(step_) / size_;
+  out.step = Largest(step_) / size_;
   out.gain = promised / cost_size;
   out.gap = gap / cost_size;
   out.saddle = shifted && CurvesDown(largest);
