@@ -38,7 +38,7 @@ class LastStretch : public ::testing::Test {
     input.vehicle.v_WB = at.v_WB;
     input.endpoint = {};
     input.endpoint.t_reference = t_;
-    input.endpoint.height = input.endpoint.height_floor = 0.22;
+    input.endpoint.height = input.endpoint.height_floor = 0.165;
     input.endpoint.arrival_sink = 0.3;
     return replanner_->Replan(input, map_);
   }

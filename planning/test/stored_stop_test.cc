@@ -284,7 +284,7 @@ TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
     bool dives_low = false;
     for (double t = 0.0; t < std::min(t_contact, pair.curve.t_end()) - 0.01; t += 0.01) {
       const FlatState at = pair.curve.Evaluate(t);
-      dives_low |= at.p_WB.z() - 0.57 < 0.065 && at.v_WB.z() < -0.47;
+      dives_low |= at.p_WB.z() - 0.57 < 0.045 && at.v_WB.z() < -0.47;
     }
     const bool contact = ProvePair(0.0, 0.1, PairEnd::kContact, kLimits, hull_, &pair).contact;
     EXPECT_FALSE(contact && dives_low) << trial;
@@ -298,8 +298,8 @@ TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
   EXPECT_GT(dives, 20);
   EXPECT_GT(lands, 50);
   // Who is there already and still too fast may brake.
-  const SplineState low{{0, 0, 0.62}, {0, 0, -0.6}, {0, 0, 2.0}};
-  const UniformBspline brakes = Between(low, {{0, 0, 0.60}, {0, 0, 0}, {0, 0, 0}}, 0.15);
+  const SplineState low{{0, 0, 0.61}, {0, 0, -0.6}, {0, 0, 2.0}};
+  const UniformBspline brakes = Between(low, {{0, 0, 0.59}, {0, 0, 0}, {0, 0, 0}}, 0.15);
   EXPECT_TRUE(SweepHull(brakes, 0.0, 0.15, {low.p, 0.0}, hull_, kNever).proven);
 }
 
