@@ -36,8 +36,13 @@ struct Dual {
     const S quotient = a.v * inverse;
     return Combine(a, b, quotient, inverse, -quotient * inverse);
   }
+  /// Comparisons are of values, as branches are taken by them.
+  friend bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
+  friend bool operator!=(const Dual& a, const Dual& b) { return !(a == b); }
   friend bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
-  friend bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
+  friend bool operator>(const Dual& a, const Dual& b) { return b < a; }
+  friend bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
+  friend bool operator>=(const Dual& a, const Dual& b) { return b <= a; }
 
   friend Dual sqrt(const Dual& a) {
     using std::sqrt;
@@ -61,6 +66,51 @@ struct Dual {
     using std::log;
     return Chain(a, log(a.v), S(1.0) / a.v);
   }
+  friend Dual tan(const Dual& a) {
+    using std::tan;
+    const S value = tan(a.v);
+    return Chain(a, value, S(1.0) + value * value);
+  }
+  friend Dual asin(const Dual& a) {
+    using std::asin, std::sqrt;
+    return Chain(a, asin(a.v), S(1.0) / sqrt(S(1.0) - a.v * a.v));
+  }
+  friend Dual acos(const Dual& a) {
+    using std::acos, std::sqrt;
+    return Chain(a, acos(a.v), S(-1.0) / sqrt(S(1.0) - a.v * a.v));
+  }
+  friend Dual atan(const Dual& a) {
+    using std::atan;
+    return Chain(a, atan(a.v), S(1.0) / (S(1.0) + a.v * a.v));
+  }
+  friend Dual sinh(const Dual& a) {
+    using std::cosh, std::sinh;
+    return Chain(a, sinh(a.v), cosh(a.v));
+  }
+  friend Dual cosh(const Dual& a) {
+    using std::cosh, std::sinh;
+    return Chain(a, cosh(a.v), sinh(a.v));
+  }
+  friend Dual tanh(const Dual& a) {
+    using std::tanh;
+    const S value = tanh(a.v);
+    return Chain(a, value, S(1.0) - value * value);
+  }
+  /// The slope at 0 is that of the right side.
+  friend Dual abs(const Dual& a) { return a.v < S(0.0) ? -a : a; }
+  /// A constant exponent: negative bases are fine where it is whole. (The second derivative of x^1 at 0 is 0.)
+  friend Dual pow(const Dual& a, double exponent) {
+    using std::pow;
+    if (exponent == 0.0) return Dual(1.0);
+    return Chain(a, pow(a.v, exponent), S(exponent) * pow(a.v, exponent - 1.0));
+  }
+  /// Positive bases alone.
+  friend Dual pow(const Dual& a, const Dual& exponent) {
+    using std::log, std::pow;
+    const S value = pow(a.v, exponent.v);
+    return Combine(a, exponent, value, exponent.v * pow(a.v, exponent.v - S(1.0)), value * log(a.v));
+  }
+  friend Dual pow(double base, const Dual& exponent) { return exp(std::log(base) * exponent); }
   friend Dual atan2(const Dual& y, const Dual& x) {
     using std::atan2;
     const S norm2 = x.v * x.v + y.v * y.v;

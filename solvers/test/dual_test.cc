@@ -3,6 +3,9 @@
 
 #include "touchdown/solvers/dual.h"
 
+#include <cmath>
+#include <string>
+
 #include <gtest/gtest.h>
 
 namespace touchdown::solvers {
@@ -28,6 +31,86 @@ TEST(Dual, FirstAndSecondDerivativesMatchDifferences) {
   EXPECT_NEAR(s.d[0].d[0], (plus.d[0] - minus.d[0]) / (2 * d), 1e-8);
   EXPECT_NEAR(s.d[0].d[1], (plus.d[1] - minus.d[1]) / (2 * d), 1e-8);
   EXPECT_DOUBLE_EQ(s.d[0].d[1], s.d[1].d[0]);
+}
+
+/// A function of two numbers at a place where each of its parts has derivatives.
+struct Case {
+  const char* name;
+  double x, y;
+  double (*value)(double, double);
+  Dual<double, 2> (*first)(const Dual<double, 2>&, const Dual<double, 2>&);
+  Dual<Dual<double, 2>, 2> (*second)(const Dual<Dual<double, 2>, 2>&, const Dual<Dual<double, 2>, 2>&);
+};
+
+template <class Function>
+constexpr Case MakeCase(const char* name, double x, double y, Function) {
+  using First = Dual<double, 2>;
+  using Second = Dual<First, 2>;
+  return {name, x, y, [](double a, double b) { return Function()(a, b); },
+          [](const First& a, const First& b) { return Function()(a, b); },
+          [](const Second& a, const Second& b) { return Function()(a, b); }};
+}
+
+class DualFunctions : public testing::TestWithParam<Case> {};
+
+TEST_P(DualFunctions, DerivativesMatchDifferences) {
+  using First = Dual<double, 2>;
+  using Second = Dual<First, 2>;
+  const Case& c = GetParam();
+  const double d = 1e-5;
+  const First f = c.first(First(c.x, 0), First(c.y, 1));
+  const Second s = c.second(Second(First(c.x, 0), 0), Second(First(c.y, 1), 1));
+  EXPECT_DOUBLE_EQ(f.v, c.value(c.x, c.y));
+  EXPECT_DOUBLE_EQ(s.v.v, f.v);
+  for (int i = 0; i < 2; ++i) {
+    const double dx = i == 0 ? d : 0.0, dy = i == 1 ? d : 0.0;
+    const double slope = (c.value(c.x + dx, c.y + dy) - c.value(c.x - dx, c.y - dy)) / (2 * d);
+    EXPECT_NEAR(f.d[i], slope, 1e-8 * (1.0 + std::abs(slope)));
+    const First plus = c.first(First(c.x + dx, 0), First(c.y + dy, 1));
+    const First minus = c.first(First(c.x - dx, 0), First(c.y - dy, 1));
+    for (int j = 0; j < 2; ++j) {
+      const double curve = (plus.d[j] - minus.d[j]) / (2 * d);
+      EXPECT_NEAR(s.d[i].d[j], curve, 1e-7 * (1.0 + std::abs(curve)));
+    }
+  }
+}
+
+#define DUAL_CASE(name, x, y, formula) \
+  MakeCase(name, x, y, [](const auto& a, const auto& b) { (void)b; return formula; })
+
+using std::abs, std::acos, std::asin, std::atan, std::cosh, std::pow, std::sinh, std::tan, std::tanh;
+
+INSTANTIATE_TEST_SUITE_P(
+    All, DualFunctions,
+    testing::Values(DUAL_CASE("tan", 0.4, 0.9, tan(a * b)), DUAL_CASE("asin", 0.3, -0.8, asin(a * b)),
+                    DUAL_CASE("acos", -0.6, 0.7, acos(a * b)), DUAL_CASE("atan", 2.0, -3.0, atan(a * b)),
+                    DUAL_CASE("sinh", 1.1, -0.7, sinh(a * b)), DUAL_CASE("cosh", 1.1, -0.7, cosh(a * b)),
+                    DUAL_CASE("tanh", 0.5, 0.8, tanh(a - b)), DUAL_CASE("abs", -2.0, 1.5, abs(a * b)),
+                    DUAL_CASE("pow_whole", -1.5, 0.3, pow(a * b, 3.0)),
+                    DUAL_CASE("pow_broken", 1.5, 0.3, pow(a * b, -0.7)),
+                    DUAL_CASE("pow_of_both", 1.7, 0.6, pow(a, b * a)),
+                    DUAL_CASE("pow_of_number", 0.8, -0.6, pow(2.5, a * b))),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+#undef DUAL_CASE
+
+TEST(Dual, WholePowersOfZeroHaveDerivatives) {
+  using First = Dual<double, 1>;
+  using Second = Dual<First, 1>;
+  for (const double exponent : {0.0, 1.0, 2.0, 3.0}) {
+    const Second s = pow(Second(First(0.0, 0), 0), exponent);
+    EXPECT_EQ(s.v.v, exponent == 0.0 ? 1.0 : 0.0) << exponent;
+    EXPECT_EQ(s.d[0].v, exponent == 1.0 ? 1.0 : 0.0) << exponent;
+    EXPECT_EQ(s.d[0].d[0], exponent == 2.0 ? 2.0 : 0.0) << exponent;
+  }
+}
+
+TEST(Dual, ComparisonsAreOfValuesAndMixWithNumbers) {
+  using First = Dual<double, 1>;
+  const First a(1.0, 0), same(1.0), more(2.0, 0);
+  EXPECT_TRUE(a == same && a <= same && a >= same && a == 1.0 && 1.0 <= a);
+  EXPECT_TRUE(a != more && a < more && a <= more && more > a && more >= a && a < 1.5);
+  EXPECT_FALSE(a < same || a > same || a == more || more <= a || a != 1.0);
 }
 
 }  // namespace
