@@ -31,6 +31,7 @@ namespace {
 /// the last steps converge quadratically.
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
+constexpr double kFirstRoom = 1e-2;  // of its variables to their bounds, share of these and of their distance
 constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
 constexpr double kNoCost = 1e-6;     // a cost that is less has not begun
 /// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N. Maratos,
@@ -55,11 +56,15 @@ constexpr double kEqualityWeight = 1e8;   // of a row of unit slope, times the c
 constexpr double kLeastCurvature = 1e-3;  // of the cost, share of its slope
 constexpr double kLongestStep = 10.0;     // over the point's size
 constexpr double kLeastShift = 1e-3;      // that makes a step shorter, share of the curvature
+constexpr double kMostShift = 1e3;        // less than what holds the rows
 constexpr double kRaisedShift = 10.0;
+constexpr double kShiftRoom = 2.0;        // a shift that is just enough leaves a pivot of rounding
+constexpr double kLeastCost = 0.1;
 constexpr int kLateEqualityStep = 8;  // steps that rows bend go round in circles sooner
 // Prices of a unit of violation, times the cost it starts from.
 constexpr double kElasticPrice = 100.0;
 constexpr double kElasticPriceRaised = 1e5;
+constexpr double kContradiction = 0.1;
 
 double Dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -76,8 +81,11 @@ void BandedInteriorPoint::Prepare(const View& view) {
     vector->assign(static_cast<std::size_t>(view.num_variables()), 0.0);
   }
   const Problem& problem = view.problem();
-  const auto terms = static_cast<std::size_t>(problem.num_terms());
+  terms_ = problem.num_terms();
+  const auto terms = static_cast<std::size_t>(terms_);
   sides_.clear();
+  boxes_.clear();
+  curvature_ = 0.0;
   has_equalities_ = false;
   for (auto* arrays : {&multiplier_, &weight_, &product_}) arrays->assign(terms, {});
   row_weights_.assign(terms, {});
@@ -101,11 +109,13 @@ void BandedInteriorPoint::Prepare(const View& view) {
       total += rows;
     }
   }
+  for (int sign = -1; sign <= 1 && view.bounded(); ++sign) AddBox(sign, view);
+  for (const Box& box : boxes_) total += box.variable.size();
   if (has_equalities_) {
     rows_.Prepare(view);
-    ConstraintRows::Size(view, &norm_by_term_);
+    ConstraintRows::Size(view, &give_by_term_);
     jacobian_.reserve(static_cast<std::size_t>(rows_.most_nonzeros()));
-    norm_.reserve(all_rows);
+    give_.reserve(all_rows);
     equality_give_.assign(total, 0.0);
   }
   for (auto* array : {&now_.s, &now_.z, &now_.e, &now_.w, &now_.v, &next_.s, &next_.z,
@@ -114,35 +124,98 @@ void BandedInteriorPoint::Prepare(const View& view) {
   }
 }
 
+/// Lower bounds, values that are fixed, or upper bounds.
+void BandedInteriorPoint::AddBox(int sign, const View& view) {
+  Box box;
+  for (int i = 0; i < view.blocks() * view.block_size(); ++i) {
+    const double lower = view.lower(i), upper = view.upper(i);
+    const double bound = sign < 0 ? lower : upper;
+    if (!std::isfinite(bound) || (lower == upper) != (sign == 0)) continue;
+    box.variable.push_back(i);
+    box.bound.push_back(bound);
+  }
+  if (box.variable.empty()) return;
+  const int term = terms_ + static_cast<int>(boxes_.size());
+  sides_.push_back({term, 1, sign < 0 ? -1.0 : 1.0, 0.0, sign == 0});
+  has_equalities_ |= sign == 0;
+  for (auto* arrays : {&multiplier_, &weight_, &product_}) {
+    arrays->emplace_back(box.variable.size(), 0.0);
+  }
+  boxes_.push_back(std::move(box));
+}
+
+const BandedInteriorPoint::Box* BandedInteriorPoint::BoxOf(const Side& side) const {
+  return side.term < terms_ ? nullptr : &boxes_[side.term - terms_];
+}
+
+void BandedInteriorPoint::BoundMultipliers(std::vector<double>* multipliers) const {
+  multipliers->assign(boxes_.empty() ? 0 : y_.size(), 0.0);
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    const std::vector<double>& of_box = multiplier_[terms_ + b];
+    for (std::size_t j = 0; j < of_box.size(); ++j) {
+      (*multipliers)[boxes_[b].variable[j]] += of_box[j];
+    }
+  }
+}
+
 SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
                                      const std::vector<std::vector<double>>& multipliers,
                                      const Tolerances& tolerances, Evaluator* evaluator) {
+  const SolveStatus status = Attempts(view, start, multipliers, tolerances, evaluator);
+  StoreMultipliers(now_);
+  return status;
+}
+
+SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
+                                          const std::vector<std::vector<double>>& multipliers,
+                                          const Tolerances& tolerances, Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
   invariant_ = tolerances.invariant;
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
   // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by the
-  // fast steps, then by the careful ones. A violation that remains at one price is believed at a
-  // much higher one, and never where a point without it is known.
-  bool violating = false;  // the optimum at some price
-  for (const Mode mode : {Mode{true, false, kElasticPrice}, Mode{true, false, kElasticPriceRaised},
-                          Mode{true, true, kElasticPrice}}) {
-    if (status != SolveStatus::kNumericalFailure && status != SolveStatus::kInfeasible) {
-      return status;
-    }
-    if (violating && mode.careful) break;
+  // fast steps, then by the careful ones, each at a price and at a much higher one.
+  const std::vector<std::vector<double>> none;
+  const auto once_more = [&](const Mode& mode, const auto& known) {
     std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
-    status = Attempt(view, mode, {}, tolerances, evaluator);
-    violating = violating || status == SolveStatus::kInfeasible;
+    status = Attempt(view, mode, known, tolerances, evaluator);
+  };
+  const auto failed = [&status] { return status == SolveStatus::kNumericalFailure; };
+  for (const bool careful : {false, true}) {
+    for (const double price : {kElasticPrice, kElasticPriceRaised}) {
+      if (failed()) once_more({true, careful, price}, none);
+    }
   }
-  if (status != SolveStatus::kNumericalFailure && status != SolveStatus::kInfeasible) return status;
+  // The elastic mode has found rows that can be met; equalities it pinches from both sides, until rounding is all
+  // that is left of their metric.
+  const bool pinched = mode_.elastic && has_equalities_ && status == SolveStatus::kConverged;
   const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
-  return violating && !known_feasible ? SolveStatus::kInfeasible : SolveStatus::kNumericalFailure;
+  if (known_feasible && (failed() || pinched || status == SolveStatus::kInfeasible)) {
+    StoreMultipliers(now_);
+    once_more({}, pinched ? multiplier_ : none);
+    if (pinched && failed()) status = SolveStatus::kUnconfirmed;
+  }
+  // Steps uphill may have left a better valley: careful ones go down in it.
+  if (status == SolveStatus::kConverged && left_better_) {
+    once_more({.careful = true}, none);
+    if (failed() || left_better_) status = SolveStatus::kUnconfirmed;
+  }
+  return status;
+}
+
+void BandedInteriorPoint::StoreMultipliers(const Rows& rows) {
+  for (auto& array : multiplier_) std::fill(array.begin(), array.end(), 0.0);
+  for (const Side& side : sides_) {
+    for (int j = 0; j < side.rows; ++j) {
+      multiplier_[side.term][j] += side.sign * rows.z[side.first + j];
+    }
+  }
 }
 
 SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
                                          const std::vector<std::vector<double>>& multipliers,
                                          const Tolerances& tolerances, Evaluator* evaluator) {
   mode_ = mode;
+  MoveInside(view);
   if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
   price_ = mode.price * std::max(std::abs(evaluator->last().full.value), 1.0);
   PlaceRows(evaluator->last());
@@ -150,27 +223,32 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
   StartRows(evaluator->last(), multipliers);
   if (!EvaluateAt(y_.data(), now_, evaluator)) return SolveStatus::kEvaluationFailed;
   double barrier = Complementarity({0.0, 0.0});
+  double steepest = 0.0;
   int stalls = 0;
   const int most_steps = mode.careful ? kMostCarefulSteps : kMostFastSteps;
   for (int step = 0; step < most_steps && !evaluator->must_stop(); ++step) {
     ReadRows(evaluator->last());
     double shift = 0.0;
-    if (!FactorDefinite(evaluator->last().hessian, &factor_, curvature_, &shift)) break;
+    if (!Factor(evaluator, &shift)) break;
     const Errors errors = MeasureErrors(view, evaluator);
-    if (errors.gap <= tolerances.gap && errors.dual <= tolerances.gap &&
-        errors.primal <= Evaluator::kFeasible &&
+    steepest = std::max(steepest, Largest(evaluator->last().gradient));
+    // A metric with a shift is blind.
+    const bool stationary = errors.dual <= tolerances.gap &&
+                            (shift == 0.0 || Largest(right_) <= kRounding * steepest);
+    if (errors.gap <= tolerances.gap && stationary && errors.primal <= Evaluator::kFeasible &&
         (errors.row <= tolerances.violation ||
-         (mode.elastic && LargestMultiplier() > 0.5 * price_))) {
+         (mode.elastic && LargestMultiplier(0.0) > 0.5 * price_))) {
       // An earlier point may cost less by what it violates within the tolerance. One that costs much less
       // is of another valley, which steps uphill have left.
       const double last = evaluator->last().full.value;
       const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
       const bool much_cheaper = evaluator->best_cost() < last - kMuchCheaper * std::abs(last);
-      if (!known_feasible || (errors.row <= Evaluator::kFeasible && !much_cheaper)) {
-        evaluator->PreferLast();
-      }
-      return errors.row <= Evaluator::kFeasible ? SolveStatus::kConverged
-                                                : SolveStatus::kInfeasible;
+      left_better_ = known_feasible && (errors.row > Evaluator::kFeasible || much_cheaper);
+      if (!left_better_) evaluator->PreferLast();
+      if (has_equalities_) CorrectEqualities(view, evaluator);
+      if (errors.row <= Evaluator::kFeasible) return SolveStatus::kConverged;
+      if (RowsContradict(evaluator->last().gradient)) return SolveStatus::kInfeasible;
+      break;  // the price is too low
     }
     const double least =
         kLeastTarget * tolerances.gap / std::max(errors.gap, 1e-300) * Complementarity({0.0, 0.0});
@@ -179,7 +257,7 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
                           : FastDirection(view, errors, least, evaluator);
     };
     double target = direction();
-    while (has_equalities_ && StepIsTooLong()) {
+    while (has_equalities_ && StepIsTooLong() && shift < kMostShift * curvature_) {
       shift = std::max(kRaisedShift * shift, kLeastShift * curvature_);
       if (!FactorDefinite(evaluator->last().hessian, &factor_, curvature_, &shift)) break;
       target = direction();
@@ -201,6 +279,37 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     if (stalls >= kMostStalls) break;
   }
   return evaluator->must_stop() ? evaluator->stop_status() : SolveStatus::kNumericalFailure;
+}
+
+/// Variables off their bounds, so that their slacks begin as what they are, and stay that.
+void BandedInteriorPoint::MoveInside(const View& view) {
+  for (int i = 0; i < view.blocks() * view.block_size() && view.bounded(); ++i) {
+    const double lower = view.lower(i), upper = view.upper(i), width = upper - lower;
+    const auto room = [width](double bound) {
+      return std::isfinite(bound) ? kFirstRoom * std::min(std::max(1.0, std::abs(bound)), width) : 0.0;
+    };
+    y_[i] = std::clamp(y_[i], lower + room(lower), upper - room(upper));
+  }
+}
+
+/// Factors the last point's matrix, with more of a shift than it needs at least.
+bool BandedInteriorPoint::Factor(Evaluator* evaluator, double* shift) {
+  const BorderedBandMatrix& H = evaluator->last().hessian;
+  if (!FactorDefinite(H, &factor_, curvature_, shift)) return false;
+  if (*shift == 0.0) return true;
+  *shift *= kShiftRoom;
+  return FactorDefinite(H, &factor_, curvature_, shift);
+}
+
+/// The metric of a step is blind to what is left across an equality: its multiplier takes one step more.
+void BandedInteriorPoint::CorrectEqualities(const View& view, Evaluator* evaluator) {
+  SetCorrection(false);
+  Direction(view, Complementarity({0.0, 0.0}), evaluator);
+  for (const Side& side : sides_) {
+    for (int i = side.first; i < side.first + side.rows && !HasSlack(side); ++i) {
+      now_.z[i] += dz_[i];
+    }
+  }
 }
 
 /// Mehrotra's predictor and corrector. Returns the complementarity aimed at, `least` or more: far
@@ -235,7 +344,7 @@ double BandedInteriorPoint::CarefulDirection(const View& view, const Errors& err
 BandedInteriorPoint::StepLengths BandedInteriorPoint::LineSearch(double target, StepLengths length,
                                                                  double slack,
                                                                  Evaluator* evaluator) {
-  const double penalty = 2.0 * std::max(LargestMultiplier(), 1e-12);
+  const double penalty = 2.0 * std::max(LargestMultiplier(1.0), 1e-12);
   const double merit = Merit(evaluator->last().full.value, target, penalty, now_);
   const double highest = merit + slack * std::abs(merit);
   for (; length.primal >= kShortestStep; length.primal *= 0.5) {
@@ -260,7 +369,7 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
     for (int i = side.first; i < side.first + side.rows; ++i) {
       errors.row = std::max(errors.row, side.equality ? std::abs(g_[i]) : g_[i]);
       errors.primal =
-          std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (mode_.elastic ? now_.e[i] : 0.0)));
+          std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (Elastic(side) ? now_.e[i] : 0.0)));
     }
   }
   DualResidual(view, evaluator);
@@ -269,26 +378,39 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
   return errors;
 }
 
-/// Where rows leave directions without curvature nothing tells how far a step may go.
-bool BandedInteriorPoint::StepIsTooLong() const {
-  return Largest(step_) > kLongestStep * PointSize();
-}
-
 double BandedInteriorPoint::PointSize() const { return 1.0 + Largest(y_); }
 
-/// Whatever constant is in the cost: what has been gained, and the slope times the point's size.
+/// Whatever constant is in the cost: what has been gained, or the slope times the point's size; but no more than the
+/// cost itself, of which less may be left than was gained.
 double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) const {
+  const double value = at.full.value;
   const double slope = Largest(at.gradient);
-  return std::max({std::abs(first - at.full.value), slope * PointSize(), kSmallestCost});
+  const double gained = std::max(std::abs(first - value), slope * PointSize());
+  return std::max(std::min(gained, std::max(std::abs(value), kLeastCost)), kSmallestCost);
 }
 
-/// Of an equality also what the latest direction leads to: they may begin with none.
-double BandedInteriorPoint::LargestMultiplier() const {
+/// What rows gain together by any step that is as long as the point is large is little of what they violate.
+bool BandedInteriorPoint::RowsContradict(const std::vector<double>& gradient) const {
+  double pull = 0.0, off = 0.0;
+  for (std::size_t i = 0; i < right_.size(); ++i) {
+    pull = std::max(pull, std::abs(right_[i] - gradient[i]));  // G^T z
+  }
+  for (const Side& side : sides_) {
+    for (int i = side.first; i < side.first + side.rows && Elastic(side); ++i) {
+      off += std::abs(now_.z[i] * (side.equality ? g_[i] : std::max(g_[i], 0.0)));
+    }
+  }
+  return pull * PointSize() <= kContradiction * off;
+}
+
+/// Of rows, a share of the latest direction further: those of equalities may begin with none.
+double BandedInteriorPoint::LargestMultiplier(double share) const {
   double largest = 0.0;
   for (const Side& side : sides_) {
+    if (BoxOf(side)) continue;
     for (int i = side.first; i < side.first + side.rows; ++i) {
       largest = std::max(largest, std::abs(now_.z[i]));
-      if (side.equality) largest = std::max(largest, std::abs(now_.z[i] + dz_[i]));
+      if (side.equality) largest = std::max(largest, std::abs(now_.z[i] + share * dz_[i]));
     }
   }
   return largest;
@@ -296,32 +418,42 @@ double BandedInteriorPoint::LargestMultiplier() const {
 
 double BandedInteriorPoint::Give(const Side& side, const Rows& rows, int i) const {
   if (!HasSlack(side)) return equality_give_[i];
-  return rows.s[i] / rows.v[i] + (mode_.elastic ? rows.e[i] / rows.w[i] : 0.0);
+  return rows.s[i] / rows.v[i] + (Elastic(side) ? rows.e[i] / rows.w[i] : 0.0);
 }
 
-/// How far equalities give, by the cost's curvature and their slopes here.
+/// How far equalities give: by the cost's curvature in the most curved of the variables of each, and their slopes here.
 bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator) {
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return false;
   const ViewEvaluation& at = evaluator->last();
-  double steepest = 0.0;
   curvature_ = std::max({LargestDiagonal(at.hessian), kLeastCurvature * Largest(at.gradient),
                          kSmallestCost});
   rows_.Set(view, at);
   jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);
-  norm_.assign(static_cast<std::size_t>(rows_.size()), 0.0);
+  give_.assign(static_cast<std::size_t>(rows_.size()), 0.0);
   rows_.Jacobian(at, jacobian_.data());
+  const auto curvature = [&](int variable) {
+    return std::abs(evaluator->mutable_last()->hessian.Diagonal(variable));
+  };
+  const auto give = [&](double norm2, double most_curved) {
+    return norm2 / (kEqualityWeight * (most_curved > 0.0 ? most_curved : curvature_));
+  };
+  double most = 0.0;
   for (int row = 0; row < rows_.size(); ++row) {
+    double norm2 = 0.0, most_curved = 0.0;
     for (int k = rows_.start(row); k < rows_.start(row + 1); ++k) {
-      norm_[row] += jacobian_[k] * jacobian_[k];
+      norm2 += jacobian_[k] * jacobian_[k];
+      most_curved = std::max(most_curved, curvature(rows_.column(k)));
     }
-    steepest = std::max(steepest, norm_[row]);
+    give_[row] = give(norm2, most_curved);
+    most = std::max(most, give_[row]);
   }
-  rows_.Spread(norm_.data(), &norm_by_term_);
+  rows_.Spread(give_.data(), &give_by_term_);
   for (const Side& side : sides_) {
+    const Box* box = BoxOf(side);
     for (int j = 0; side.equality && j < side.rows; ++j) {
-      const double norm2 = norm_by_term_[side.term][j];
-      const double size2 = norm2 > 0.0 ? norm2 : steepest > 0.0 ? steepest : 1.0;
-      equality_give_[side.first + j] = size2 / (kEqualityWeight * curvature_);
+      const double own = box ? give(1.0, curvature(box->variable[j])) : give_by_term_[side.term][j];
+      // A row without any slope here: as another.
+      equality_give_[side.first + j] = own > 0.0 ? own : most > 0.0 ? most : give(1.0, 0.0);
     }
   }
   return true;
@@ -331,9 +463,11 @@ void BandedInteriorPoint::PlaceRows(const ViewEvaluation& at) {
   active_ = pairs_ = 0;
   for (Side& side : sides_) {
     side.first = active_;
-    side.rows = at.full.terms[side.term].windows * side.outputs;
+    const Box* box = BoxOf(side);
+    side.rows = box ? static_cast<int>(box->variable.size())
+                    : at.full.terms[side.term].windows * side.outputs;
     active_ += side.rows;
-    pairs_ += side.rows * ((HasSlack(side) ? 1 : 0) + (mode_.elastic ? 1 : 0));
+    pairs_ += side.rows * ((HasSlack(side) ? 1 : 0) + (Elastic(side) ? 1 : 0));
   }
 }
 
@@ -341,7 +475,11 @@ void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
                                     const std::vector<std::vector<double>>& multipliers) {
   ReadRows(at);
   double size = 1e-6;
-  for (int i = 0; i < active_; ++i) size = std::max(size, std::abs(g_[i]));
+  for (const Side& side : sides_) {
+    for (int i = side.first; i < side.first + side.rows && !BoxOf(side); ++i) {
+      size = std::max(size, std::abs(g_[i]));
+    }
+  }
   for (auto* array : {&ds_, &dz_, &de_}) std::fill(array->begin(), array->end(), 0.0);
   // A cost of zero says nothing of its size.
   const double value = std::abs(at.full.value);
@@ -356,16 +494,17 @@ void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
       if (side.equality) {
         now_.z[i] = known && !mode_.elastic ? multipliers[side.term][j] : 0.0;
         now_.s[i] = now_.e[i] = 0.0;
-        if (!mode_.elastic) continue;
+        if (!Elastic(side)) continue;
         now_.v[i] = now_.w[i] = price_;
         now_.s[i] = std::max(-g_[i], 0.0) + mu / price_;
         now_.e[i] = std::max(g_[i], 0.0) + mu / price_;
         continue;
       }
-      now_.s[i] = std::max(-g_[i], kFirstSlack * size);
+      now_.s[i] = BoxOf(side) ? -g_[i] : std::max(-g_[i], kFirstSlack * size);
+      now_.e[i] = 0.0;
       now_.z[i] = mu / now_.s[i];
       if (known) now_.z[i] = std::max(now_.z[i], side.sign * multipliers[side.term][j]);
-      if (mode_.elastic) {
+      if (Elastic(side)) {
         now_.z[i] = std::min(now_.z[i], 0.5 * price_);
         now_.w[i] = price_ - now_.z[i];
         now_.e[i] = std::max(g_[i] + now_.s[i], mu / now_.w[i]);
@@ -377,23 +516,53 @@ void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
 
 void BandedInteriorPoint::ReadRows(const ViewEvaluation& at) {
   for (const Side& side : sides_) {
+    if (const Box* box = BoxOf(side)) {
+      for (int j = 0; j < side.rows; ++j) {
+        g_[side.first + j] = side.sign * (at.x[box->variable[j]] - box->bound[j]);
+      }
+      continue;
+    }
     const double* u = at.full.terms[side.term].u.data();
     for (int j = 0; j < side.rows; ++j) g_[side.first + j] = side.sign * (u[j] - side.bound);
   }
 }
 
 bool BandedInteriorPoint::EvaluateAt(const double* y, const Rows& rows, Evaluator* evaluator) {
-  for (auto* arrays : {&multiplier_, &weight_}) {
-    for (auto& array : *arrays) std::fill(array.begin(), array.end(), 0.0);
-  }
+  StoreMultipliers(rows);
+  for (auto& array : weight_) std::fill(array.begin(), array.end(), 0.0);
   for (const Side& side : sides_) {
     for (int j = 0; j < side.rows; ++j) {
-      const int i = side.first + j;
-      multiplier_[side.term][j] += side.sign * rows.z[i];
-      weight_[side.term][j] += 1.0 / Give(side, rows, i);
+      weight_[side.term][j] += 1.0 / Give(side, rows, side.first + j);
     }
   }
-  return evaluator->EvaluateLagrangian(y, {.rows = row_weights_.data()});
+  if (!evaluator->EvaluateLagrangian(y, {.rows = row_weights_.data()})) return false;
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    const std::vector<double>& weight = weight_[terms_ + b];
+    for (std::size_t j = 0; j < weight.size(); ++j) {
+      evaluator->mutable_last()->hessian.Diagonal(boxes_[b].variable[j]) += weight[j];
+    }
+  }
+  return true;
+}
+
+/// right_ = grad f + G^T product_.
+void BandedInteriorPoint::AddRowsTransposed(const View& view, Evaluator* evaluator) {
+  view.MultiplyRowsTransposed(products_in_.data(), evaluator->mutable_last(), right_.data());
+  const std::vector<double>& gradient = evaluator->last().gradient;
+  for (std::size_t i = 0; i < right_.size(); ++i) right_[i] += gradient[i];
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    const std::vector<double>& product = product_[terms_ + b];
+    for (std::size_t j = 0; j < product.size(); ++j) right_[boxes_[b].variable[j]] += product[j];
+  }
+}
+
+/// product_ = G step_.
+void BandedInteriorPoint::MultiplyRows(const View& view, Evaluator* evaluator) {
+  view.MultiplyRows(step_.data(), evaluator->mutable_last(), products_out_.data());
+  for (std::size_t b = 0; b < boxes_.size(); ++b) {
+    std::vector<double>& product = product_[terms_ + b];
+    for (std::size_t j = 0; j < product.size(); ++j) product[j] = step_[boxes_[b].variable[j]];
+  }
 }
 
 /// right_ = grad f + G^T z.
@@ -404,9 +573,7 @@ void BandedInteriorPoint::DualResidual(const View& view, Evaluator* evaluator) {
       product_[side.term][j] += side.sign * now_.z[side.first + j];
     }
   }
-  view.MultiplyRowsTransposed(products_in_.data(), evaluator->mutable_last(), right_.data());
-  const std::vector<double>& gradient = evaluator->last().gradient;
-  for (std::size_t i = 0; i < right_.size(); ++i) right_[i] += gradient[i];
+  AddRowsTransposed(view, evaluator);
 }
 
 void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* evaluator) {
@@ -416,15 +583,13 @@ void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* eval
       const int i = side.first + j;
       k_[i] = g_[i];
       if (HasSlack(side)) k_[i] += (mu - correction_s_[i]) / now_.v[i];
-      if (mode_.elastic) k_[i] -= (mu - correction_e_[i]) / now_.w[i];
+      if (Elastic(side)) k_[i] -= (mu - correction_e_[i]) / now_.w[i];
       product_[side.term][j] += side.sign * (now_.z[i] + k_[i] / Give(side, now_, i));
     }
   }
-  view.MultiplyRowsTransposed(products_in_.data(), evaluator->mutable_last(), right_.data());
-  const std::vector<double>& gradient = evaluator->last().gradient;
-  for (std::size_t i = 0; i < right_.size(); ++i) right_[i] += gradient[i];
+  AddRowsTransposed(view, evaluator);
   NewtonStep(view, y_.data(), right_.data(), factor_, step_.data());
-  view.MultiplyRows(step_.data(), evaluator->mutable_last(), products_out_.data());
+  MultiplyRows(view, evaluator);
   for (const Side& side : sides_) {
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
@@ -432,7 +597,7 @@ void BandedInteriorPoint::Direction(const View& view, double mu, Evaluator* eval
       if (!HasSlack(side)) continue;
       const double s = now_.s[i];
       ds_[i] = (mu - correction_s_[i] - s * dz_[i]) / now_.v[i] - s;
-      if (!mode_.elastic) continue;
+      if (!Elastic(side)) continue;
       const double e = now_.e[i], w = now_.w[i];
       de_[i] = (mu - correction_e_[i] + e * dz_[i]) / w - e;
     }
@@ -447,8 +612,14 @@ void BandedInteriorPoint::SetCorrection(bool predicted) {
   }
 }
 
+/// Where nothing curves along the rows, nothing tells how far a step may go.
+bool BandedInteriorPoint::StepIsTooLong() const {
+  return Largest(step_) > kLongestStep * PointSize();
+}
+
 BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) const {
-  double primal = 1.0, dual = 1.0;
+  const double longest = kLongestStep * PointSize();
+  double primal = std::min(1.0, longest / std::max(Largest(step_), longest)), dual = 1.0;
   const double share = std::max(kToBoundary, 1.0 - gap);
   const auto limit = [share](double from, double step, double* length) {
     if (step < 0.0) *length = std::min(*length, -share * from / step);
@@ -458,7 +629,7 @@ BandedInteriorPoint::StepLengths BandedInteriorPoint::LongestStep(double gap) co
     for (int i = side.first; i < side.first + side.rows; ++i) {
       limit(now_.s[i], ds_[i], &primal);
       limit(now_.v[i], dz_[i], &dual);
-      if (!mode_.elastic) continue;
+      if (!Elastic(side)) continue;
       limit(now_.e[i], de_[i], &primal);
       limit(now_.w[i], -dz_[i], &dual);
     }
@@ -474,7 +645,7 @@ double BandedInteriorPoint::Complementarity(const StepLengths& length) const {
     for (int i = side.first; i < side.first + side.rows; ++i) {
       const double v = now_.v[i] + length.dual * dz_[i];
       sum += (now_.s[i] + length.primal * ds_[i]) * v;
-      if (mode_.elastic)
+      if (Elastic(side))
         sum += (now_.e[i] + length.primal * de_[i]) * (now_.w[i] - length.dual * dz_[i]);
     }
   }
@@ -483,9 +654,15 @@ double BandedInteriorPoint::Complementarity(const StepLengths& length) const {
 
 void BandedInteriorPoint::Move(const StepLengths& length) {
   for (std::size_t i = 0; i < y_.size(); ++i) trial_[i] = y_[i] + length.primal * step_[i];
+  for (const Side& side : sides_) {
+    // The multiplier of an equality belongs to what is left of its row.
+    const double share = HasSlack(side) ? length.dual : length.primal;
+    for (int i = side.first; i < side.first + side.rows; ++i) {
+      next_.z[i] = now_.z[i] + share * dz_[i];
+    }
+  }
   for (int i = 0; i < active_; ++i) {
     next_.s[i] = now_.s[i] + length.primal * ds_[i];
-    next_.z[i] = now_.z[i] + length.dual * dz_[i];
     next_.v[i] = now_.v[i] + length.dual * dz_[i];
     if (!mode_.elastic) continue;
     next_.e[i] = now_.e[i] + length.primal * de_[i];
@@ -502,10 +679,10 @@ double BandedInteriorPoint::Merit(double cost, double mu, double penalty, const 
         merit += penalty * std::abs(g_[i]);
         continue;
       }
-      const double e = mode_.elastic ? rows.e[i] : 0.0;
+      const double e = Elastic(side) ? rows.e[i] : 0.0;
       merit += penalty * std::abs(g_[i] + rows.s[i] - e) - mu * std::log(rows.s[i]);
       if (side.equality) merit += price_ * rows.s[i];
-      if (mode_.elastic) merit += price_ * e - mu * std::log(e);
+      if (Elastic(side)) merit += price_ * e - mu * std::log(e);
     }
   }
   return merit;

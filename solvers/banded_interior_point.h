@@ -9,7 +9,8 @@
 
 namespace touchdown::solvers {
 
-/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them.
+/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them, and with bounds on variables, inside
+/// of which all of its points are.
 class BandedInteriorPoint {
  public:
   struct Tolerances {
@@ -26,11 +27,18 @@ class BandedInteriorPoint {
                   Evaluator* evaluator);
   /// The multiplier of every row at the last point, [term] -> [row]; empty for costs.
   const std::vector<double>& multipliers(int term) const { return multiplier_[term]; }
+  /// Of the bounds of every variable, the interval left out.
+  void BoundMultipliers(std::vector<double>* multipliers) const;
 
  private:
+  /// Variables with a lower bound, with an upper one, or with one value: y - bound are the rows of one more term.
+  struct Box {
+    std::vector<int> variable;
+    std::vector<double> bound;
+  };
   /// One bound of all rows of a term: g = sign (u - bound) <= 0, or = 0.
   struct Side {
-    int term = 0;
+    int term = 0;  ///< beyond the problem's: a box
     int outputs = 0;
     double sign = 1.0;
     double bound = 0.0;
@@ -60,18 +68,32 @@ class BandedInteriorPoint {
     double row = 0.0;     ///< largest g
   };
 
+  SolveStatus Attempts(const View& view, const double* start,
+                       const std::vector<std::vector<double>>& multipliers,
+                       const Tolerances& tolerances, Evaluator* evaluator);
   SolveStatus Attempt(const View& view, const Mode& mode,
                       const std::vector<std::vector<double>>& multipliers,
                       const Tolerances& tolerances, Evaluator* evaluator);
+  bool Factor(Evaluator* evaluator, double* shift);
+  void CorrectEqualities(const View& view, Evaluator* evaluator);
+  void StoreMultipliers(const Rows& rows);
   double FastDirection(const View& view, const Errors& errors, double least, Evaluator* evaluator);
   double CarefulDirection(const View& view, const Errors& errors, double least, double* barrier,
                           Evaluator* evaluator);
   StepLengths LineSearch(double target, StepLengths length, double slack, Evaluator* evaluator);
   bool StepIsTooLong() const;
-  double LargestMultiplier() const;
+  bool RowsContradict(const std::vector<double>& gradient) const;
+  double LargestMultiplier(double share) const;
   double PointSize() const;
   double CostSize(const ViewEvaluation& at, double first) const;
-  bool HasSlack(const Side& side) const { return !side.equality || mode_.elastic; }
+  const Box* BoxOf(const Side& side) const;
+  /// Bounds of variables never give.
+  bool Elastic(const Side& side) const { return mode_.elastic && !BoxOf(side); }
+  bool HasSlack(const Side& side) const { return !side.equality || Elastic(side); }
+  void AddBox(int sign, const View& view);
+  void MoveInside(const View& view);
+  void AddRowsTransposed(const View& view, Evaluator* evaluator);
+  void MultiplyRows(const View& view, Evaluator* evaluator);
   /// By how much a row gives for a unit of its multiplier.
   double Give(const Side& side, const Rows& rows, int i) const;
   bool WeighEqualities(const View& view, Evaluator* evaluator);
@@ -92,6 +114,7 @@ class BandedInteriorPoint {
   double Merit(double cost, double mu, double penalty, const Rows& rows) const;
 
   Mode mode_;
+  bool left_better_ = false;  // a point that costs much less than where an attempt has converged
   double price_ = 0.0;  // of a unit of e
   int active_ = 0;      // rows in all sides
   int pairs_ = 0;       // products that are to become the target: s v and e w
@@ -99,13 +122,15 @@ class BandedInteriorPoint {
   bool has_equalities_ = false;
   double curvature_ = 0.0;  // of the cost, where equalities are weighed by it
   ConstraintRows rows_;
-  std::vector<double> jacobian_, norm_;
-  std::vector<std::vector<double>> norm_by_term_;
+  std::vector<double> jacobian_, give_;
+  std::vector<std::vector<double>> give_by_term_;
   std::vector<double> equality_give_;
   std::vector<Side> sides_;
+  std::vector<Box> boxes_;
+  int terms_ = 0;  // of the problem; boxes follow them
   Rows now_, next_;
   std::vector<double> g_, k_, ds_, dz_, de_, correction_s_, correction_e_;
-  std::vector<std::vector<double>> multiplier_, weight_, product_;  // [term][row]
+  std::vector<std::vector<double>> multiplier_, weight_, product_;  // [term][row], boxes among the terms
   std::vector<RowWeights> row_weights_;
   std::vector<const double*> products_in_;
   std::vector<double*> products_out_;

@@ -10,8 +10,8 @@ namespace touchdown::solvers {
 
 namespace {
 
-/// Of the gap, where the cost counts as large as what was gained: that may be much more than what is left.
-constexpr double kInvariantShare = 1e-3;
+/// Of the gap, where the point is to be confirmed: so that it is.
+constexpr double kConfirmedShare = 1e-2;
 
 bool HasRows(const View& view) {
   for (int i = 0; i < view.problem().num_terms(); ++i) {
@@ -31,11 +31,13 @@ class BandedSolver : public SolverBackend {
                            "violation of a hard row at which a solve may end"},
                       })) {}
 
-  Capabilities capabilities() const override { return {.hard_rows = true, .equality_rows = true}; }
+  Capabilities capabilities() const override {
+    return {.hard_rows = true, .equality_rows = true, .variable_bounds = true};
+  }
 
  private:
   void DoPrepare(const View& view) override {
-    has_rows_ = HasRows(view);
+    has_rows_ = view.bounded() || HasRows(view);
     if (has_rows_) {
       interior_point_.Prepare(view);
     } else {
@@ -52,16 +54,17 @@ class BandedSolver : public SolverBackend {
       return;
     }
     result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
-                                         {stop.confirm ? kInvariantShare * gap : gap,
+                                         {stop.confirm ? kConfirmedShare * gap : gap,
                                           options().Get("violation_tolerance"), stop.confirm},
                                          evaluator);
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
     for (int i = 0; i < view.problem().num_terms(); ++i) {
       result->multipliers[i] = interior_point_.multipliers(i);
     }
+    interior_point_.BoundMultipliers(&result->bound_multipliers);
   }
 
-  bool has_rows_ = false;
+  bool has_rows_ = false;  // or bounds
   BandedNewton newton_;
   BandedInteriorPoint interior_point_;
 };

@@ -31,6 +31,11 @@ class BorderedBandMatrix {
   double& corner() { return corner_; }
   double corner() const { return corner_; }
 
+  /// Element (i, i).
+  double& Diagonal(int i) {
+    return bordered_ && i == blocks_ * d_ ? corner_ : block(i / d_, 0)[i % d_ * (d_ + 1)];
+  }
+
   /// out = A in, both of size(). Does not allocate.
   void Multiply(const double* in, double* out) const;
 

@@ -6,12 +6,15 @@
 #include "touchdown/solvers/constraint_rows.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace touchdown::solvers {
 
-void ConstraintRows::Prepare(const View& view) {
+void ConstraintRows::Prepare(const View& view, bool bounds) {
   const Problem& problem = view.problem();
-  std::size_t windows = 0, rows = 0, nonzeros = 0;
+  with_bounds_ = bounds;
+  const auto variables = static_cast<std::size_t>(bounds ? view.num_variables() : 0);
+  std::size_t windows = 0, rows = variables, nonzeros = variables;
   for (int i = 0; i < problem.num_terms(); ++i) {
     if (problem.role(i) != Role::kConstraint) continue;
     const TermShape& shape = problem.term(i).shape();
@@ -64,12 +67,25 @@ void ConstraintRows::Set(const View& view, const ViewEvaluation& evaluation) {
       }
     }
   }
+  first_bound_ = size();
+  for (int i = 0; with_bounds_ && i < view.num_variables(); ++i) {
+    if (!std::isfinite(view.lower(i)) && !std::isfinite(view.upper(i))) continue;
+    lo_.push_back(view.lower(i));
+    hi_.push_back(view.upper(i));
+    column_.push_back(i);
+    start_.push_back(nonzeros());
+  }
 }
 
 void ConstraintRows::Values(const ViewEvaluation& evaluation, double* u) const {
   for (const Window& window : windows_) {
     const int outputs = view_->problem().term(window.term).shape().outputs;
     u = std::copy_n(&evaluation.full.terms[window.term].u[window.index * outputs], outputs, u);
+  }
+  const int blocks = view_->blocks() * view_->block_size();
+  for (int r = first_bound_; r < size(); ++r) {
+    const int variable = column_[start_[r]];
+    *u++ = variable < blocks ? evaluation.x[variable] : evaluation.h;  // bounds of blocks: an identity
   }
 }
 
@@ -88,6 +104,7 @@ void ConstraintRows::Jacobian(const ViewEvaluation& evaluation, double* values) 
           view_->IntervalDerivative(du, block.du_dh[j], w.first_block, shape.window, evaluation);
     }
   }
+  std::fill_n(values, size() - first_bound_, 1.0);
 }
 
 void ConstraintRows::Spread(const double* flat, std::vector<std::vector<double>>* by_term) const {

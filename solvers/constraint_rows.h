@@ -14,8 +14,9 @@ namespace touchdown::solvers {
 /// it, so it is left out here and only its violation is kept.
 class ConstraintRows {
  public:
-  /// Allocates for the most rows that views of this structure can have.
-  void Prepare(const View& view);
+  /// Allocates for the most rows that views of this structure can have. With `bounds` those of variables, the
+  /// interval's among them, follow the others as rows u = y_i.
+  void Prepare(const View& view, bool bounds = false);
   /// Takes the rows that are active in `evaluation`, which must have been evaluated. Does not
   /// allocate.
   void Set(const View& view, const ViewEvaluation& evaluation);
@@ -23,6 +24,8 @@ class ConstraintRows {
   int size() const { return static_cast<int>(lo_.size()); }
   double lo(int row) const { return lo_[row]; }
   double hi(int row) const { return hi_[row]; }
+  /// The first of the rows that are bounds; size() without any.
+  int first_bound() const { return first_bound_; }
   /// Worst violation of the rows that were left out.
   double constant_violation() const { return constant_violation_; }
 
@@ -39,7 +42,7 @@ class ConstraintRows {
   /// Every nonzero; the evaluation must hold gradients.
   void Jacobian(const ViewEvaluation& evaluation, double* values) const;
 
-  /// Multipliers row by row to [term][window x output], 0 at constant rows; sized by Prepare.
+  /// Multipliers row by row to [term][window x output], without bounds, 0 at constant rows; sized by Prepare.
   void Spread(const double* flat, std::vector<std::vector<double>>* by_term) const;
   /// The inverse; false if `by_term` does not hold every row.
   bool Gather(const std::vector<std::vector<double>>& by_term, double* flat) const;
@@ -60,6 +63,8 @@ class ConstraintRows {
   std::vector<Window> windows_;
   std::vector<double> lo_, hi_;
   std::vector<int> start_, column_;
+  bool with_bounds_ = false;
+  int first_bound_ = 0;
   double constant_violation_ = 0.0;
 };
 

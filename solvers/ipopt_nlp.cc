@@ -50,6 +50,7 @@ void IpoptNlp::Prepare(const View& view) {
     if (!multipliers_[i].empty()) row_weights_[i].multiplier = multipliers_[i].data();
   }
   dense_row_.assign(static_cast<std::size_t>(view.num_variables()), 0.0);
+  bound_multipliers_ = dense_row_;
 }
 
 bool IpoptNlp::Begin(const View& view, const WarmStart& warm, Evaluator* evaluator) {
@@ -85,12 +86,10 @@ bool IpoptNlp::get_nlp_info(Index& n, Index& m, Index& nnz_jac_g, Index& nnz_h_l
 
 bool IpoptNlp::get_bounds_info(Index n, Number* x_l, Number* x_u, Index m, Number* g_l,
                                Number* g_u) {
-  std::fill(x_l, x_l + n, -kUnbounded);
-  std::fill(x_u, x_u + n, kUnbounded);
-  if (view_->free_interval()) {
-    const ProblemShape& shape = view_->problem().shape();
-    x_l[n - 1] = point_.interval_scale() * shape.interval_min;
-    x_u[n - 1] = point_.interval_scale() * shape.interval_max;
+  for (int i = 0; i < n; ++i) {
+    const double scale = view_->free_interval() && i == n - 1 ? point_.interval_scale() : 1.0;
+    x_l[i] = Bound(scale * view_->lower(i));
+    x_u[i] = Bound(scale * view_->upper(i));
   }
   int equalities = 0;
   for (int r = 0; r < m; ++r) equalities += rows_.lo(r) == rows_.hi(r);
@@ -220,9 +219,8 @@ void IpoptNlp::finalize_solution(Ipopt::SolverReturn /*status*/, Index n, const 
                                  Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
   rows_.Spread(lambda, &multipliers_);
   report_.has_multipliers = true;
-  if (view_->free_interval()) {
-    report_.interval_multiplier = point_.interval_scale() * (z_U[n - 1] - z_L[n - 1]);
-  }
+  for (int i = 0; i < n; ++i) bound_multipliers_[i] = z_U[i] - z_L[i];
+  if (view_->free_interval()) bound_multipliers_[n - 1] *= point_.interval_scale();
 }
 
 }  // namespace touchdown::solvers

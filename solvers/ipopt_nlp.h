@@ -23,7 +23,6 @@ class IpoptNlp : public Ipopt::TNLP {
     bool told = false;  ///< it has made an iteration
     double primal_infeasibility = 0.0;
     double dual_infeasibility = 0.0;
-    double interval_multiplier = 0.0;
     bool has_multipliers = false;
   };
 
@@ -40,6 +39,8 @@ class IpoptNlp : public Ipopt::TNLP {
   const Report& report() const { return report_; }
   /// [term][window x output].
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
+  /// [variable].
+  const std::vector<double>& bound_multipliers() const { return bound_multipliers_; }
 
  private:
   using Index = Ipopt::Index;
@@ -81,7 +82,7 @@ class IpoptNlp : public Ipopt::TNLP {
   bool warm_multipliers_ = false;
   bool ending_ = false;  // Ipopt is on its way out: let it evaluate what it wants
   Report report_;
-  std::vector<double> lambda_, jacobian_, dense_row_;
+  std::vector<double> lambda_, jacobian_, dense_row_, bound_multipliers_;
   std::vector<std::vector<double>> multipliers_;
   std::vector<RowWeights> row_weights_;
 };

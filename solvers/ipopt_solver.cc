@@ -60,7 +60,7 @@ class IpoptSolver : public SolverBackend {
   IpoptSolver(const IpoptSolver&) = delete;
   IpoptSolver& operator=(const IpoptSolver&) = delete;
 
-  Capabilities capabilities() const override { return {.hard_rows = true, .equality_rows = true}; }
+  Capabilities capabilities() const override { return {.hard_rows = true, .equality_rows = true, .variable_bounds = true}; }
 
  private:
   void DoPrepare(const View& view) override {
@@ -108,7 +108,7 @@ class IpoptSolver : public SolverBackend {
     result->status = Status(code, *evaluator);
     if (!nlp_->report().has_multipliers) return;
     result->multipliers = nlp_->multipliers();
-    result->interval_multiplier = nlp_->report().interval_multiplier;
+    result->bound_multipliers = nlp_->bound_multipliers();
   }
 
   void Configure(const Stop& stop) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFirstShift = 1e-6;  // of the curvature
 constexpr double kShiftGrowth = 10.0;
-constexpr int kMostShifts = 12;
+constexpr double kMostShift = 1e4;  // of the largest element
 
 }  // namespace
 
@@ -31,16 +31,28 @@ double LargestDiagonal(const BorderedBandMatrix& H) {
   return largest;
 }
 
+double LargestElement(const BorderedBandMatrix& H) {
+  const int d = H.block_size();
+  double largest = H.bordered() ? std::abs(H.corner()) : 0.0;
+  for (int i = 0; i < H.blocks(); ++i) {
+    const int last = std::min(H.half_bandwidth(), H.blocks() - 1 - i);
+    const double* block = H.block(i, 0);
+    for (int k = 0; k < (last + 1) * d * d; ++k) largest = std::max(largest, std::abs(block[k]));
+  }
+  return largest;
+}
+
 bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, double curvature,
                     double* taken) {
   using Status = BorderedCholesky::Status;
-  double shift = taken != nullptr ? *taken : 0.0;
-  for (int i = 0; i < kMostShifts; ++i) {
+  const double first = taken != nullptr ? *taken : 0.0;
+  for (double shift = first, most = HUGE_VAL; shift < most;) {
     const Status status = factor->Factor(H, shift, shift);
     if (taken != nullptr) *taken = shift;
     if (status != Status::kIndefinite && factor->corner() > 0.0) return true;
+    most = kMostShift * LargestElement(H);
     const double size = curvature > 0.0 ? curvature : LargestDiagonal(H);
-    shift = shift == 0.0 ? kFirstShift * size : kShiftGrowth * shift;
+    shift = shift > 0.0 ? kShiftGrowth * shift : kFirstShift * size;
   }
   return false;
 }

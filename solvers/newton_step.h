@@ -17,6 +17,9 @@ double Largest(const std::vector<double>& numbers);
 /// The largest element of the diagonal without its border, by its absolute value.
 double LargestDiagonal(const BorderedBandMatrix& H);
 
+/// The largest of all its elements.
+double LargestElement(const BorderedBandMatrix& H);
+
 /// Factors H, shifted until it is positive definite where it is not; a border that alone is
 /// indefinite takes its absolute value. Shifts begin at a small share of `curvature`, or of H's largest diagonal element
 /// where that is 0; with `shift` they begin there instead, and the one that was taken is told. False if no shift helps. Does

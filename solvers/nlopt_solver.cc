@@ -92,9 +92,8 @@ class NloptSolver : public SolverBackend {
     rows_.Prepare(view);
     const auto n = static_cast<std::size_t>(view.num_variables());
     z_.assign(n, 0.0);
-    bound_.assign(n, HUGE_VAL);
-    interval_min_ = -HUGE_VAL;
-    interval_max_ = HUGE_VAL;
+    lower_.assign(n, -HUGE_VAL);
+    upper_.assign(n, HUGE_VAL);
     nlopt_destroy(opt_);
     opt_ = nlopt_create(method_.algorithm, static_cast<unsigned>(n));
     nlopt_set_min_objective(opt_, &NloptSolver::Objective, this);
@@ -156,17 +155,17 @@ class NloptSolver : public SolverBackend {
     if (method_.stores_vectors) {
       nlopt_set_vector_storage(opt_, static_cast<unsigned>(options().Get("vector_storage")));
     }
-    if (view.free_interval() && !method_.interval_as_angle) {
-      const ProblemShape& shape = view.problem().shape();
-      interval_min_ = shape.interval_min;
-      interval_max_ = shape.interval_max;
-      bound_.back() = point_.interval_scale() * shape.interval_max;
-      nlopt_set_upper_bounds(opt_, bound_.data());
-      for (double& bound : bound_) bound = -HUGE_VAL;
-      bound_.back() = point_.interval_scale() * shape.interval_min;
-      nlopt_set_lower_bounds(opt_, bound_.data());
-      for (double& bound : bound_) bound = HUGE_VAL;
+    const int blocks = view.blocks() * view.block_size();
+    for (int i = 0; i < blocks; ++i) {
+      lower_[i] = view.lower(i);
+      upper_[i] = view.upper(i);
     }
+    if (view.free_interval() && !method_.interval_as_angle) {
+      lower_.back() = point_.interval_scale() * view.lower(blocks);
+      upper_.back() = point_.interval_scale() * view.upper(blocks);
+    }
+    nlopt_set_lower_bounds(opt_, lower_.data());
+    nlopt_set_upper_bounds(opt_, upper_.data());
     if (!method_.capabilities.hard_rows) return;
     equalities_.clear();
     inequalities_.clear();
@@ -299,9 +298,9 @@ class NloptSolver : public SolverBackend {
   WhitenedPoint point_;
   ConstraintRows rows_;
   Evaluator* evaluator_ = nullptr;
-  std::vector<double> z_, bound_, u_, jacobian_;
+  std::vector<double> z_, u_, jacobian_;
+  std::vector<double> lower_, upper_;  // infinite where NLopt keeps to none
   std::vector<Side> equalities_, inequalities_;
-  double interval_min_ = 0.0, interval_max_ = 0.0;  // infinite where NLopt keeps to none
   int max_iterations_ = 0;
   int failures_ = 0;
   int repeats_ = 0;
@@ -319,6 +318,7 @@ std::unique_ptr<SolverBackend> Make(const Method& method) {
 std::unique_ptr<SolverBackend> MakeNloptLbfgs() {
   return Make({.name = "nlopt-lbfgs",
                .algorithm = NLOPT_LD_LBFGS,
+               .capabilities = {.variable_bounds = true},
                .stores_vectors = true,
                .function_tolerance = 1e-7});
 }
@@ -326,6 +326,7 @@ std::unique_ptr<SolverBackend> MakeNloptLbfgs() {
 std::unique_ptr<SolverBackend> MakeNloptTnewton() {
   return Make({.name = "nlopt-tnewton",
                .algorithm = NLOPT_LD_TNEWTON_PRECOND_RESTART,
+               .capabilities = {.variable_bounds = true},
                .stores_vectors = true,
                .function_tolerance = 1e-6});
 }
@@ -333,7 +334,7 @@ std::unique_ptr<SolverBackend> MakeNloptTnewton() {
 std::unique_ptr<SolverBackend> MakeNloptCcsaq() {
   return Make({.name = "nlopt-ccsaq",
                .algorithm = NLOPT_LD_CCSAQ,
-               .capabilities = {.hard_rows = true, .max_rows = kMostCcsaqRows},
+               .capabilities = {.hard_rows = true, .variable_bounds = true, .max_rows = kMostCcsaqRows},
                .interval_as_angle = true,
                .function_tolerance = 1e-8});
 }
@@ -341,7 +342,7 @@ std::unique_ptr<SolverBackend> MakeNloptCcsaq() {
 std::unique_ptr<SolverBackend> MakeNloptSlsqp() {
   return Make({.name = "nlopt-slsqp",
                .algorithm = NLOPT_LD_SLSQP,
-               .capabilities = {.hard_rows = true, .equality_rows = true},
+               .capabilities = {.hard_rows = true, .equality_rows = true, .variable_bounds = true},
                .function_tolerance = 1e-9});
 }
 

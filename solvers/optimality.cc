@@ -25,42 +25,41 @@ constexpr double kFirstShift = 1e-6;      // of the largest element
 constexpr double kShiftGrowth = 10.0;
 constexpr int kMostShifts = 16;
 constexpr double kRounding = 1e-12;
-
-double LargestOf(const BorderedBandMatrix& H) {
-  const int d = H.block_size();
-  double largest = H.bordered() ? std::abs(H.corner()) : 0.0;
-  for (int i = 0; i < H.blocks(); ++i) {
-    const int last = std::min(H.half_bandwidth(), H.blocks() - 1 - i);
-    const double* block = H.block(i, 0);
-    for (int k = 0; k < (last + 1) * d * d; ++k) largest = std::max(largest, std::abs(block[k]));
-  }
-  return largest;
-}
+constexpr double kLeastCost = 0.1;
+// Of neighbours.
+constexpr double kNeighbour = 1e-2;  // so far away, share of the point's size
+constexpr double kClearlyLess = 1e-8;  // share of the cost, or of kLeastCost
+constexpr double kClearlyMore = 10.0;  // than what the conditions leave
+constexpr double kNeighbourViolation = 1e-10;
+constexpr int kMostCorrections = 40;  // a row and its opposite go half the way each time
+constexpr int kInverseIterations = 40;  // a shift may be ten times what it need be
+constexpr double kPushes = 1e-6;  // multiplier of a row, share of the slopes
 
 }  // namespace
 
 void OptimalityCheck::Prepare(const View& view) {
   const auto n = static_cast<std::size_t>(view.num_variables());
-  rows_.Prepare(view);
+  rows_.Prepare(view, true);
   BorderedBandMatrix shape;
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   has_factor_ = BorderedCholesky::Takes(shape);
   if (has_factor_) factor_.Prepare(shape);
-  for (auto* vector : {&gradient_, &residual_, &step_}) vector->assign(n, 0.0);
+  for (auto* vector : {&gradient_, &residual_, &step_, &soft_, &near_}) vector->assign(n, 0.0);
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
   row_weights_.assign(by_term_.size(), {});
   std::size_t rows = 0;
   for (const std::vector<double>& of_term : by_term_) rows += of_term.size();
-  for (auto* vector : {&u_, &norm_, &lambda_, &weight_}) vector->reserve(rows);
+  rows += n;
+  for (auto* vector : {&u_, &u_near_, &norm_, &lambda_, &weight_}) vector->reserve(rows);
   side_.reserve(rows);
   jacobian_.reserve(static_cast<std::size_t>(rows_.most_nonzeros()));
 }
 
 Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
-                                 const std::vector<std::vector<double>>& multipliers,
-                                 double first_cost, ViewEvaluation* storage) {
+                                 const SolverResult& told, double first_cost,
+                                 ViewEvaluation* storage) {
   view_ = &view;
   y_ = &y;
   at_ = storage;
@@ -70,7 +69,7 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
   gradient_ = at_->gradient;
   rows_.Set(view, *at_);
   const auto m = static_cast<std::size_t>(rows_.size());
-  for (auto* vector : {&u_, &norm_, &lambda_, &weight_}) vector->assign(m, 0.0);
+  for (auto* vector : {&u_, &u_near_, &norm_, &lambda_, &weight_}) vector->assign(m, 0.0);
   jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);
   rows_.Values(*at_, u_.data());
   rows_.Jacobian(*at_, jacobian_.data());
@@ -79,23 +78,28 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
     for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) sum += jacobian_[k] * jacobian_[k];
     norm_[r] = std::sqrt(sum);
   }
-  if (m == 0) return Weigh();
-  Optimality told;
   side_.assign(m, Side::kNone);
-  if (TakeMultipliers(multipliers)) told = Weigh();
-  if (told.stationary() || !Estimate()) return told;
-  const Optimality estimated = Weigh();
-  return told.evaluated && told.gain + told.gap < estimated.gain + estimated.gap ? told : estimated;
+  TakeMultipliers(told);
+  Optimality found = Weigh();
+  if (m > 0 && !found.stationary() && Estimate()) {
+    const Optimality estimated = Weigh();
+    if (estimated.stationary() || !found.evaluated) found = estimated;
+  }
+  if (found.feasible() && found.stationary()) found.saddle = NeighbourCostsLess();
+  return found;
 }
 
-/// Multipliers that no bound can have are none.
-bool OptimalityCheck::TakeMultipliers(const std::vector<std::vector<double>>& multipliers) {
-  if (multipliers.empty() || !rows_.Gather(multipliers, lambda_.data())) return false;
-  for (int r = 0; r < rows_.size(); ++r) {
-    if (!std::isfinite(lambda_[r])) return false;
-    if (!std::isfinite(WayTo(r, lambda_[r]))) lambda_[r] = 0.0;
+/// Multipliers that are not told, or that no bound can have, are 0.
+void OptimalityCheck::TakeMultipliers(const SolverResult& told) {
+  if (!rows_.Gather(told.multipliers, lambda_.data())) {
+    std::fill(lambda_.begin(), lambda_.end(), 0.0);
   }
-  return true;
+  for (int r = rows_.first_bound(); r < rows_.size() && !told.bound_multipliers.empty(); ++r) {
+    lambda_[r] = told.bound_multipliers[rows_.column(rows_.start(r))];
+  }
+  for (int r = 0; r < rows_.size(); ++r) {
+    if (!std::isfinite(lambda_[r]) || !std::isfinite(WayTo(r, lambda_[r]))) lambda_[r] = 0.0;
+  }
 }
 
 /// From a row to the bound that a multiplier of this sign belongs to.
@@ -104,11 +108,12 @@ double OptimalityCheck::WayTo(int row, double multiplier) const {
                            : std::abs(u_[row] - (multiplier > 0.0 ? rows_.hi(row) : rows_.lo(row)));
 }
 
-double OptimalityCheck::Violation() const {
+/// Of rows of these values, by the slopes at y.
+double OptimalityCheck::Violation(const std::vector<double>& u) const {
   double worst = 0.0;
   for (int r = 0; r < rows_.size(); ++r) {
-    const double beyond = std::max(rows_.lo(r) - u_[r], u_[r] - rows_.hi(r));
-    const double bound = u_[r] > rows_.hi(r) ? rows_.hi(r) : rows_.lo(r);
+    const double beyond = std::max(rows_.lo(r) - u[r], u[r] - rows_.hi(r));
+    const double bound = u[r] > rows_.hi(r) ? rows_.hi(r) : rows_.lo(r);
     if (beyond <= kRounding * std::abs(bound)) continue;
     worst = std::max(worst, beyond / (norm_[r] * size_));
   }
@@ -133,10 +138,16 @@ bool OptimalityCheck::EvaluateHessian(const double* multipliers, const double* w
                        weights ? weights_by_term_[i].data() : nullptr};
   }
   const Lagrangian lagrangian{.objective_factor = cost_factor, .rows = row_weights_.data()};
-  return view_->Evaluate(y_->data(), {.gradient = true, .hessian = true}, lagrangian, at_);
+  if (!view_->Evaluate(y_->data(), {.gradient = true, .hessian = true}, lagrangian, at_)) {
+    return false;
+  }
+  for (int r = rows_.first_bound(); r < rows_.size() && weights; ++r) {
+    at_->hessian.Diagonal(rows_.column(rows_.start(r))) += weights[r];
+  }
+  return true;
 }
 
-/// residual_ = grad f + J^T lambda, but for what the bounds of a free interval take.
+/// residual_ = grad f + J^T lambda.
 void OptimalityCheck::Residual(const double* lambda) {
   residual_ = gradient_;
   for (int r = 0; r < rows_.size(); ++r) {
@@ -145,12 +156,6 @@ void OptimalityCheck::Residual(const double* lambda) {
       residual_[rows_.column(k)] += lambda[r] * jacobian_[k];
     }
   }
-  if (!view_->free_interval()) return;
-  const ProblemShape& shape = view_->problem().shape();
-  const double h = (*y_)[y_->size() - 1], near = Optimality::kFeasible * h;
-  double& last = residual_.back();
-  if (h <= shape.interval_min + near) last = std::min(last, 0.0);
-  if (h >= shape.interval_max - near) last = std::max(last, 0.0);
 }
 
 bool OptimalityCheck::Estimate() {
@@ -173,17 +178,20 @@ bool OptimalityCheck::Estimate() {
         }
       }
     }
-    int worst = -1;
-    double most = 0.0;
+    // The worst of them, and those that are hardly better.
+    const auto wrong = [this](int r) {
+      if (side_[r] == Side::kNone || side_[r] == Side::kBoth) return 0.0;
+      return -(side_[r] == Side::kUpper ? 1.0 : -1.0) * lambda_[r] * norm_[r];
+    };
+    double worst = kRounding * Largest(gradient_);
+    for (int r = 0; r < rows_.size(); ++r) worst = std::max(worst, wrong(r));
+    bool any = false;
     for (int r = 0; r < rows_.size(); ++r) {
-      if (side_[r] == Side::kNone || side_[r] == Side::kBoth) continue;
-      const double wrong = -(side_[r] == Side::kUpper ? 1.0 : -1.0) * lambda_[r] * norm_[r];
-      if (wrong <= most) continue;
-      most = wrong;
-      worst = r;
+      if (wrong(r) <= 0.5 * worst) continue;
+      side_[r] = Side::kNone;
+      any = true;
     }
-    if (worst < 0) return true;
-    side_[worst] = Side::kNone;
+    if (!any) return true;
   }
   return true;
 }
@@ -198,13 +206,11 @@ bool OptimalityCheck::HoldRows(double curvature) {
 }
 
 /// Factors the Hessian, made definite where it is not.
-bool OptimalityCheck::Factor(double shift, double largest, bool* shifted) {
-  *shifted = false;
+bool OptimalityCheck::Factor(double shift, double largest) {
   for (int i = 0; i < kMostShifts; ++i) {
     if (factor_.Factor(at_->hessian, shift, shift) == BorderedCholesky::Status::kDefinite) {
       return true;
     }
-    *shifted = true;
     shift = std::max(kShiftGrowth * shift, kFirstShift * largest);
   }
   return false;
@@ -213,10 +219,11 @@ bool OptimalityCheck::Factor(double shift, double largest, bool* shifted) {
 /// With the rows of side_ held, which are none for a backend's multipliers.
 Optimality OptimalityCheck::Weigh() {
   Optimality out;
-  out.violation = Violation();
+  out.violation = Violation(u_);
   if (!EvaluateHessian(rows_.size() > 0 ? lambda_.data() : nullptr, nullptr, 1.0)) return {};
   out.evaluated = true;
-  const double largest = LargestOf(at_->hessian);
+  const double largest = LargestElement(at_->hessian);
+  largest_ = largest;
   Residual(lambda_.data());
   // Of the rows together: multipliers of a pinched pair may be large, and cancel.
   double slope = Largest(gradient_), gap = 0.0;
@@ -227,12 +234,11 @@ Optimality OptimalityCheck::Weigh() {
   const double gained = std::abs(first_cost_ - at_->full.value);
   const double cost_size = std::max({gained, slope * size_, std::numeric_limits<double>::min()});
   const double least = kLeastCurvature * slope / size_ + std::numeric_limits<double>::min();
-  bool shifted = false;
   step_ = residual_;
   if (has_factor_) {
     const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
     if (holds && !HoldRows(std::max(largest, least))) return {};
-    if (!Factor(least, largest, &shifted)) return {};
+    if (!Factor(least, largest)) return {};
     factor_.Solve(step_.data());
   } else {
     const BorderedBandMatrix& H = at_->hessian;
@@ -244,17 +250,85 @@ Optimality OptimalityCheck::Weigh() {
   for (std::size_t i = 0; i < step_.size(); ++i) promised += 0.5 * residual_[i] * step_[i];
   out.step = Largest(step_) / size_;
   out.gain = promised / cost_size;
+  out.left = promised / std::max(std::abs(at_->full.value), kLeastCost);
   out.gap = gap / cost_size;
-  out.saddle = shifted && CurvesDown(largest);
+  left_ = promised + gap;
+  cost_ = at_->full.value;
   return out;
 }
 
-/// The Hessian is indefinite along all rows at a bound, too, whose weights hold everything across them.
-bool OptimalityCheck::CurvesDown(double largest) {
-  for (int r = 0; r < rows_.size(); ++r) side_[r] = SideOf(r);
-  if (rows_.size() > 0 && !HoldRows(largest)) return false;
-  const double room = kFirstShift * largest;
-  return factor_.Factor(at_->hessian, room, room) != BorderedCholesky::Status::kDefinite;
+/// Some point near, along the direction in which the Lagrangian curves least, keeps all rows and costs less, by more
+/// than what a stationary point may have left: y is a saddle, an inflection, or a maximum along its rows. Rows at a
+/// bound are left where they do not push, or held as well: of opposite ones none need push.
+bool OptimalityCheck::NeighbourCostsLess() {
+  return has_factor_ && ((SoftestDirection(kPushes) && DescendsAlongIt()) ||
+                         (rows_.size() > 0 && SoftestDirection(0.0) && DescendsAlongIt()));
+}
+
+/// On one side of y at least.
+bool OptimalityCheck::DescendsAlongIt() {
+  const double value = cost_;
+  const double less = kClearlyLess * std::max(std::abs(value), kLeastCost) + kClearlyMore * left_;
+  const double longest = Largest(soft_);
+  // To come back to the rows: the shortest way, by the factor of I + weight J^T J.
+  for (int r = 0; r < rows_.size(); ++r) {
+    const bool there = SideOf(r) != Side::kNone && norm_[r] > 0.0;
+    weight_[r] = there ? kRowWeight / (norm_[r] * norm_[r]) : 0.0;
+  }
+  if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
+  if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
+  for (const double sign : {1.0, -1.0}) {
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * kNeighbour * size_ / longest * soft_[i];
+    }
+    for (int i = 0; i < kMostCorrections; ++i) {
+      if (!view_->Evaluate(near_.data(), {}, {}, at_)) break;
+      rows_.Values(*at_, u_near_.data());
+      const bool keeps = Violation(u_near_) <= kNeighbourViolation;
+      if (keeps && at_->full.value < value - less) return true;
+      if (keeps) break;
+      ReturnToRows();
+    }
+  }
+  return false;
+}
+
+/// soft_: by inverse iteration on the Lagrangian's Hessian, with the rows held that push, by this share of the slopes: those
+/// of side_.
+bool OptimalityCheck::SoftestDirection(double pushes) {
+  const double largest = largest_ + std::numeric_limits<double>::min();
+  const double slope = Largest(gradient_) + largest * size_;
+  for (int r = 0; r < rows_.size(); ++r) {
+    const Side side = SideOf(r);
+    const bool held = side == Side::kBoth || std::abs(lambda_[r]) * norm_[r] >= pushes * slope;
+    side_[r] = held ? side : Side::kNone;
+  }
+  if (!HoldRows(largest) || !Factor(kFirstShift * largest, largest)) return false;
+  for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);
+  for (int i = 0; i < kInverseIterations; ++i) {
+    factor_.Solve(soft_.data());
+    const double scale = Largest(soft_);
+    if (!(scale > 0.0) || !std::isfinite(scale)) return false;
+    for (double& number : soft_) number /= scale;
+  }
+  return true;
+}
+
+/// near_, where rows have the values u_near_, is moved onto those that push, and into the others.
+void OptimalityCheck::ReturnToRows() {
+  std::fill(step_.begin(), step_.end(), 0.0);
+  for (int r = 0; r < rows_.size(); ++r) {
+    if (weight_[r] == 0.0) continue;
+    double off = std::max(u_near_[r] - rows_.hi(r), 0.0) - std::max(rows_.lo(r) - u_near_[r], 0.0);
+    if (side_[r] != Side::kNone) {
+      off = u_near_[r] - (side_[r] == Side::kLower ? rows_.lo(r) : rows_.hi(r));
+    }
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * off;
+    }
+  }
+  factor_.Solve(step_.data());
+  for (std::size_t i = 0; i < near_.size(); ++i) near_[i] += step_[i];
 }
 
 }  // namespace touchdown::solvers

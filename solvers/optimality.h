@@ -18,39 +18,44 @@ class OptimalityCheck {
   /// Allocates for views of this structure.
   void Prepare(const View& view);
 
-  /// Looks at y. `multipliers` ([term][window x output]) are the backend's, and may be empty: where they do not make
-  /// the point stationary, they are estimated from the rows at their bounds. `first_cost`: where the solve began.
-  /// `storage` was sized by the view, and holds the evaluation at y after it. Does not allocate.
-  Optimality Look(const View& view, const Eigen::VectorXd& y,
-                  const std::vector<std::vector<double>>& multipliers, double first_cost,
-                  ViewEvaluation* storage);
+  /// Looks at y. `told` has the backend's multipliers, or none: where they do not make the point stationary, they are
+  /// estimated from the rows and variables at their bounds. `first_cost`: where the solve began.
+  /// `storage` was sized by the view, and is overwritten. Does not allocate.
+  Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
+                  double first_cost, ViewEvaluation* storage);
 
  private:
   /// At which of its bounds a row is, by its multiplier's sign.
   enum class Side : signed char { kLower = -1, kNone = 0, kUpper = 1, kBoth = 2 };
 
-  bool TakeMultipliers(const std::vector<std::vector<double>>& multipliers);
+  void TakeMultipliers(const SolverResult& told);
   bool Estimate();
   Optimality Weigh();
-  double Violation() const;
+  double Violation(const std::vector<double>& u) const;
   double WayTo(int row, double multiplier) const;
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
   void Residual(const double* lambda);
   bool HoldRows(double curvature);
-  bool Factor(double shift, double largest, bool* shifted);
-  bool CurvesDown(double largest);
+  bool Factor(double shift, double largest);
+  bool NeighbourCostsLess();
+  bool SoftestDirection(double pushes);
+  bool DescendsAlongIt();
+  void ReturnToRows();
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;
   ViewEvaluation* at_ = nullptr;
   double first_cost_ = 0.0;
   double size_ = 1.0;
-  ConstraintRows rows_;
+  double cost_ = 0.0;
+  double left_ = 0.0;     // of the cost, by the conditions
+  double largest_ = 0.0;  // element of the Lagrangian's Hessian
+  ConstraintRows rows_;  // bounds among them
   bool has_factor_ = true;  // the band is not too wide
   BorderedCholesky factor_;
-  std::vector<double> gradient_, residual_, step_;
-  std::vector<double> u_, jacobian_, norm_, lambda_, weight_;
+  std::vector<double> gradient_, residual_, step_, soft_, near_;
+  std::vector<double> u_, u_near_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;
   std::vector<std::vector<double>> by_term_, weights_by_term_;
   std::vector<RowWeights> row_weights_;

@@ -45,6 +45,23 @@ void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
   terms_.push_back({std::move(term), role});
 }
 
+void Problem::SetBounds(std::vector<double> lower, std::vector<double> upper) {
+  const auto n = static_cast<std::size_t>(shape_.blocks * shape_.block_size);
+  if (lower.size() != n || upper.size() != n) {
+    throw std::invalid_argument("Problem: " + std::to_string(lower.size()) + " lower and " +
+                                std::to_string(upper.size()) + " upper bounds, it has " +
+                                std::to_string(n) + " scalars in blocks");
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (lower[i] <= upper[i] && lower[i] < kInfinity && upper[i] > -kInfinity) continue;
+    throw std::invalid_argument("Problem: scalar " + std::to_string(i) + " has bounds [" +
+                                std::to_string(lower[i]) + ", " + std::to_string(upper[i]) +
+                                "], they must satisfy lower <= upper");
+  }
+  lower_ = std::move(lower);
+  upper_ = std::move(upper);
+}
+
 bool Problem::convex() const {
   return !shape_.free_interval && std::all_of(terms_.begin(), terms_.end(),
                                               [](const Entry& e) { return e.term->info().convex; });
@@ -104,6 +121,7 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
   const TermSums sums{evaluation->gradient.data(), evaluation->row_gradient.data(),
                       shape_.blocks * shape_.block_size, &evaluation->hessian};
   if (want.gradient) std::fill(evaluation->gradient.begin(), evaluation->gradient.end(), 0.0);
+  if (bounded()) AddBoundViolation(x, evaluation);
   try {
     if (!Place(evaluation)) return false;
     if (want.hessian) StartHessian(lagrangian, input, sums, evaluation);
@@ -185,6 +203,13 @@ bool Problem::AddCost(std::size_t i, Evaluation* evaluation) const {
   evaluation->cost_by_term[i] = sum;
   evaluation->value += sum;
   return std::isfinite(sum);
+}
+
+void Problem::AddBoundViolation(const double* x, Evaluation* evaluation) const {
+  for (std::size_t i = 0; i < lower_.size(); ++i) {
+    evaluation->max_violation =
+        std::max({evaluation->max_violation, lower_[i] - x[i], x[i] - upper_[i]});
+  }
 }
 
 bool Problem::AddViolation(std::size_t i, bool gradient, Evaluation* evaluation) const {

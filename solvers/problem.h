@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct Lagrangian {
 struct Evaluation {
   bool ok = false;                   ///< false: a value or a slope is not finite, or a term threw
   double value = 0.0;                ///< sum of the cost terms
-  double max_violation = 0.0;        ///< worst violation of a constraint row
+  double max_violation = 0.0;        ///< worst violation of a constraint row or a bound
   std::vector<double> gradient;      ///< of the objective: blocks x d, then h if free
   std::vector<double> row_gradient;  ///< sum of multiplier x row, filled with the Hessian
   BorderedBandMatrix hessian;        ///< of the Lagrangian
@@ -65,6 +66,15 @@ class Problem {
   /// Adds a term. Throws std::invalid_argument if its block size differs, its window is longer than the
   /// problem, or the bounds of its rows are not lo <= hi.
   void AddTerm(std::shared_ptr<const Term> term, Role role);
+
+  /// Bounds lower <= x <= upper of the blocks, N x d numbers each, infinite where there is none: for
+  /// backends that keep them without rows (Capabilities). Throws std::invalid_argument on another size, or
+  /// where they are not lower <= upper.
+  void SetBounds(std::vector<double> lower, std::vector<double> upper);
+  /// Has bounds but for the interval's.
+  bool bounded() const { return !lower_.empty(); }
+  double lower(int i) const { return bounded() ? lower_[i] : -kInfinity; }
+  double upper(int i) const { return bounded() ? upper_[i] : kInfinity; }
 
   const ProblemShape& shape() const { return shape_; }
   int num_terms() const { return static_cast<int>(terms_.size()); }
@@ -102,10 +112,14 @@ class Problem {
                     Evaluation* evaluation) const;
   bool HeldConstant(const Entry& entry, const Evaluation& evaluation) const;
   bool AddCost(std::size_t i, Evaluation* evaluation) const;
+  void AddBoundViolation(const double* x, Evaluation* evaluation) const;
   bool AddViolation(std::size_t i, bool gradient, Evaluation* evaluation) const;
+
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   ProblemShape shape_;
   std::vector<Entry> terms_;
+  std::vector<double> lower_, upper_;  // of the blocks, or none
   int half_bandwidth_ = 0;
   double interval_ = 1.0;
   double t0_ = 0.0;

@@ -28,6 +28,12 @@ std::string SolverBackend::Refusal(const View& view) const {
   if (view.free_interval() && !can.free_interval) {
     return "backend " + name_ + " cannot optimise the arrival time";
   }
+  if (view.bounded() && !view.identity()) {
+    return "bounds on variables need a view of the problem's own variables";
+  }
+  if (view.bounded() && !can.variable_bounds) {
+    return "backend " + name_ + " takes no bounds on variables: make them costs";
+  }
   const Problem& problem = view.problem();
   int rows = 0;
   for (int i = 0; i < problem.num_terms(); ++i) {
@@ -65,6 +71,10 @@ void ForEachStructureNumber(const View& view, Visit&& visit) {
   visit(view.blocks());
   for (const int block : view.lift().block) visit(block);
   for (const double coefficient : view.lift().coefficient) visit(coefficient);
+  for (int i = 0; view.bounded() && i < view.num_variables(); ++i) {
+    visit(view.lower(i));
+    visit(view.upper(i));
+  }
   visit(problem.num_terms());
   for (int i = 0; i < problem.num_terms(); ++i) {
     const TermShape& shape = problem.term(i).shape();
@@ -96,6 +106,7 @@ void SolverBackend::Prepare(const View& view) {
   prepared_.clear();  // what follows may throw with half of it sized
   evaluator_.Prepare(view);
   check_.Prepare(view);
+  inside_.y.resize(view.num_variables());
   DoPrepare(view);
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
 }
@@ -118,11 +129,10 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
                                   ": the warm start has multipliers that are " + "not finite");
     }
   }
-  const ProblemShape& shape = view.problem().shape();
-  if (view.free_interval() &&
-      !(warm.y[n - 1] >= shape.interval_min && warm.y[n - 1] <= shape.interval_max)) {
-    inside_ = warm;
-    inside_.y[n - 1] = std::clamp(warm.y[n - 1], shape.interval_min, shape.interval_max);
+  inside_.y = warm.y;
+  view.MoveIntoBounds(inside_.y.data());
+  if (inside_.y != warm.y) {
+    inside_.multipliers = warm.multipliers;
     return Solve(view, inside_, stop, result);
   }
   const double cpu_start = ThreadCpuSeconds();
@@ -130,7 +140,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->trace.clear();
   result->message.clear();
   for (auto& rows : result->multipliers) rows.clear();  // keeps its storage
-  result->interval_multiplier = 0.0;
+  result->bound_multipliers.clear();
   result->native_status = 0;
   if (n == 0) {
     evaluator_.Evaluate(warm.y.data(), {});  // all is eliminated: nothing to choose
@@ -166,7 +176,7 @@ void SolverBackend::Judge(const View& view, SolverResult* result) {
   const ShareScope scope(&evaluator_, Share::kEvaluation);
   const double first = evaluator_.first_cost();
   result->optimality =
-      check_.Look(view, evaluator_.best(), result->multipliers, first, evaluator_.mutable_last());
+      check_.Look(view, evaluator_.best(), *result, first, evaluator_.mutable_last());
   const Optimality& at = result->optimality;
   if (evaluator_.best_cost() < -kEndless * (1.0 + std::abs(first))) {
     result->status = SolveStatus::kUnbounded;

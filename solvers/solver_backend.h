@@ -21,6 +21,7 @@ struct Capabilities {
   bool compiled = true;
   bool hard_rows = false;                          ///< inequality constraint rows
   bool equality_rows = false;                      ///< equality constraint rows
+  bool variable_bounds = false;                    ///< bounds on blocks (Problem::SetBounds)
   bool free_interval = true;                       ///< a free knot interval
   bool needs_residuals = false;                    ///< takes only costs that are sums of squares
   int max_rows = std::numeric_limits<int>::max();  ///< most constraint rows it is of use with
@@ -45,7 +46,7 @@ class SolverBackend {
   /// refusal if the backend cannot solve it.
   void Prepare(const View& view);
 
-  /// Solves from `warm` (view.num_variables() numbers; a free interval is moved into its bounds).
+  /// Solves from `warm` (view.num_variables() numbers; what is beyond its bounds is moved onto them).
   /// The view must have the prepared structure; its parameters may have changed. Numerical outcomes
   /// are in result->status. Throws std::invalid_argument on another structure, a wrong size, a
   /// number that is not finite, or without Prepare.
@@ -69,7 +70,7 @@ class SolverBackend {
 
   Evaluator evaluator_;
   OptimalityCheck check_;
-  WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the interval's bounds
+  WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the bounds
   std::vector<double> prepared_;         // signature of the prepared structure
 };
 

@@ -70,18 +70,20 @@ struct Optimality {
   double violation = 0.0;  ///< way to the bound of the worst row along its slope, share of the point's size
   double step = 0.0;       ///< Newton's, of the Lagrangian, share of the point's size
   double gain = 0.0;       ///< what it promises, share of the cost's size
+  double left = 0.0;       ///< the same, share of the cost's value, or of 0.1 where that is less
   double gap = 0.0;        ///< multipliers times the way to their bounds, share of the cost's size
-  /// The Lagrangian falls on both sides along a direction that leaves every row at its bound there.
+  /// A point near that keeps all rows costs less, by more than what may be left.
   bool saddle = false;
 
   bool feasible() const { return evaluated && violation <= kFeasible; }
   bool stationary() const {
-    return evaluated && (step <= kStep || gain <= kGain) && gap <= kGap;
+    return evaluated && (step <= kStep || (gain <= kGain && left <= kLeft)) && gap <= kGap;
   }
 
   static constexpr double kFeasible = 1e-6;
   static constexpr double kStep = 1e-6;
   static constexpr double kGain = 1e-8;
+  static constexpr double kLeft = 1e-7;
   static constexpr double kGap = 1e-7;  // rows that are met to kFeasible leave as much
 };
 
@@ -111,7 +113,9 @@ struct SolverResult : SolverSummary {
   /// [term][window x output] of constraint terms at the backend's last point (x, where it converged),
   /// empty where the backend has none.
   std::vector<std::vector<double>> multipliers;
-  double interval_multiplier = 0.0;    ///< of an active bound of a free interval
+  /// Of the variables' bounds, the interval's among them: positive at an upper one, negative at a lower one;
+  /// empty where the backend has none. Of a variable that is fixed it may be 0: some leave it out.
+  std::vector<double> bound_multipliers;
   std::string message;                 ///< the backend's own words
   std::vector<IterationRecord> trace;  ///< filled if Stop::trace asks for it
   SolveShares shares;                  ///< filled if Stop::shares asks for it

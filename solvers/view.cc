@@ -55,6 +55,28 @@ View::View(const Problem& problem, AffineLift lift) : problem_(&problem), lift_(
   }
 }
 
+bool View::identity() const {
+  return !lift_.offset && lift_.reduced_blocks == problem_->shape().blocks &&
+         std::all_of(lift_.coefficient.begin(), lift_.coefficient.end(),
+                     [](double c) { return c == 1.0; });
+}
+
+double View::lower(int i) const {
+  const bool interval = free_interval() && i == num_variables() - 1;
+  return interval ? problem_->shape().interval_min : problem_->lower(i);
+}
+
+double View::upper(int i) const {
+  const bool interval = free_interval() && i == num_variables() - 1;
+  return interval ? problem_->shape().interval_max : problem_->upper(i);
+}
+
+void View::MoveIntoBounds(double* y) const {
+  const int n = num_variables();
+  const int first = bounded() ? 0 : n - (free_interval() ? 1 : 0);
+  for (int i = first; i < n; ++i) y[i] = std::clamp(y[i], lower(i), upper(i));
+}
+
 void ViewEvaluation::HoldParameters() {
   full.HoldParameters();
   hold_ = true;

@@ -44,6 +44,15 @@ class View {
   int blocks() const { return lift_.reduced_blocks; }
   int block_size() const { return problem_->shape().block_size; }
   bool free_interval() const { return problem_->shape().free_interval; }
+  /// Its variables are the problem's own.
+  bool identity() const;
+  /// Variables but the interval have bounds.
+  bool bounded() const { return problem_->bounded(); }
+  /// Bounds of variable i, the interval among them; but for that one only of use where the view is the identity.
+  double lower(int i) const;
+  double upper(int i) const;
+  /// Moves what is beyond its bounds onto them. Does not allocate.
+  void MoveIntoBounds(double* y) const;
   int num_variables() const { return blocks() * block_size() + (free_interval() ? 1 : 0); }
 
   /// Allocates what Evaluate needs.

@@ -32,13 +32,11 @@ void WhitenedPoint::Prepare(const View& view) {
 
 bool WhitenedPoint::Begin(const View& view, const double* y, const Settings& settings,
                           Evaluator* evaluator) {
+  view_ = &view;
   evaluator_ = evaluator;
-  whiten_ = settings.whiten;
+  whiten_ = settings.whiten && !view.bounded();
   angle_ = settings.interval_as_angle && view.free_interval();
   slope_ = 1.0;
-  free_interval_ = view.free_interval();
-  interval_min_ = view.problem().shape().interval_min;
-  interval_max_ = view.problem().shape().interval_max;
   std::copy(y, y + y_.size(), y_.begin());
   z_ = y_;
   if (!evaluator->Evaluate(y, {.gradient = true})) return false;
@@ -64,8 +62,9 @@ void WhitenedPoint::RenewMetric(const View& view, const double* z) {
 }
 
 void WhitenedPoint::StartAngle() {
-  middle_ = 0.5 * interval_scale() * (interval_max_ + interval_min_);
-  half_ = 0.5 * interval_scale() * (interval_max_ - interval_min_);
+  const double least = view_->lower(size() - 1), most_h = view_->upper(size() - 1);
+  middle_ = 0.5 * interval_scale() * (most_h + least);
+  half_ = 0.5 * interval_scale() * (most_h - least);
   double angle = 0.0;
   unit_ = 1.0;
   if (half_ > 0.0) {
@@ -94,7 +93,7 @@ void WhitenedPoint::MoveTo(const double* z) {
     y_ = plain_;
   }
   // Bounds were kept in z; dividing by the scale may have lost the last bit, and Ipopt relaxes them.
-  if (free_interval_) y_.back() = std::clamp(y_.back(), interval_min_, interval_max_);
+  view_->MoveIntoBounds(y_.data());
 }
 
 bool WhitenedPoint::Evaluate(const double* z, bool gradient) {
@@ -137,9 +136,9 @@ bool WhitenedPoint::StationaryAtBest(double first_cost) {
     return false;
   std::copy(last().gradient.begin(), last().gradient.end(), plain_.begin());
   whitening_.GradientToWhite(plain_.data());
-  if (free_interval_) {
-    const bool outwards =
-        plain_.back() > 0.0 ? last().h <= interval_min_ : last().h >= interval_max_;
+  if (view_->free_interval()) {
+    const bool outwards = plain_.back() > 0.0 ? last().h <= view_->lower(size() - 1)
+                                              : last().h >= view_->upper(size() - 1);
     if (outwards) plain_.back() = 0.0;
   }
   double sum = 0.0;

@@ -11,7 +11,8 @@ namespace touchdown::solvers {
 
 /// The evaluator as a backend sees it that works on whitened variables z (whitening.h): one point at
 /// a time, its objective, gradient and rows in z. Without whitening z is the view's y; so it is where
-/// the costs' nominal curvature is singular, as that of a linear cost: such a metric means nothing.
+/// the costs' nominal curvature is singular, as that of a linear cost: such a metric means nothing; and where
+/// variables have bounds, which are none in z.
 class WhitenedPoint {
  public:
   struct Settings {
@@ -64,13 +65,12 @@ class WhitenedPoint {
   void MoveTo(const double* z);
   void StartAngle();
 
+  const View* view_ = nullptr;
   Whitening whitening_;
   ViewEvaluation metric_;  // where the metric is taken
   Evaluator* evaluator_ = nullptr;
   bool whiten_ = false;
-  bool free_interval_ = false;
   bool angle_ = false;
-  double interval_min_ = 0.0, interval_max_ = 0.0;
   double middle_ = 0.0, half_ = 0.0, unit_ = 1.0;  // of the angle
   double slope_ = 1.0;                             // of the scaled interval in it
   std::vector<double> z_, y_, plain_;              // plain_: z with the scaled interval, no angle

@@ -103,7 +103,6 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(0, -kInfinity, 0.5)
                      .Other(360.379767));
   all->push_back(SmallProblem("HS16", {-2.0, 1.0}, 0.25, form)
-                     .Other(2.25 + 100.0 * Square(std::sqrt(0.5) - 0.25))
                      .Squares(2, kRosenbrock)
                      .AtLeastZero(2,
                                   [](const auto* x, auto* u) {

@@ -71,7 +71,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Zero(1, [](const auto* x, auto* u) { u[0] = 1.0 - x[0] - x[1] - x[2]; })
                      .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS33", {0.0, 0.0, 3.0}, std::sqrt(2.0) - 6.0, form)
-                     .Other(2.0)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] - 1.0) * (x[0] - 2.0) * (x[0] - 3.0) + x[2];
                      })
@@ -109,8 +108,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                         auto* u) { u[0] = 72.0 - x[0] - 2.0 * x[1] - 2.0 * x[2]; })
                      .Bound(0, 0.0, 20.0)
                      .Bound(1, 0.0, 11.0)
-                     .Bound(2, 0.0, 42.0)
-                     .Other(0.0));
+                     .Bound(2, 0.0, 42.0));
   all->push_back(SmallProblem("HS37", {10.0, 10.0, 10.0}, -3456.0, form)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
                      .AtLeastZero(2,
@@ -118,8 +116,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                     u[0] = 72.0 - x[0] - 2.0 * x[1] - 2.0 * x[2];
                                     u[1] = x[0] + 2.0 * x[1] + 2.0 * x[2];
                                   })
-                     .BoundAll(0.0, 42.0)
-                     .Other(0.0));
+                     .BoundAll(0.0, 42.0));
   all->push_back(SmallProblem("HS38", {-3.0, -1.0, -3.0, -1.0}, 0.0, form)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = 100.0 * Square(x[1] - x[0] * x[0]) + Square(1.0 - x[0]) +
@@ -135,7 +132,6 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                        u[1] = x[0] * x[0] - x[1] - x[3] * x[3];
                      }));
   all->push_back(SmallProblem("HS40", {0.8, 0.8, 0.8, 0.8}, -0.25, form)
-                     .Other(0.0)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2] * x[3]; })
                      .Zero(3, [](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] * x[0] + x[1] * x[1] - 1.0;
@@ -149,8 +145,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
           .Bound(0, 0.0, 1.0)
           .Bound(1, 0.0, 1.0)
           .Bound(2, 0.0, 1.0)
-          .Bound(3, 0.0, 2.0)
-          .Other(2.0));
+          .Bound(3, 0.0, 2.0));
   all->push_back(SmallProblem("HS42", {1.0, 1.0, 1.0, 1.0}, 28.0 - 10.0 * std::sqrt(2.0), form)
                      .Squares(4,
                               [](const auto* x, auto* u) {

@@ -173,6 +173,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      }));
   all->push_back(SmallProblem("HS80", {-2.0, 2.0, 2.0, -1.0, -1.0}, 0.0539498478, form)
                      .Other(0.438851220)
+                     .Other(1.0)
                      .Cost([](const auto* x, auto* u) {
                        using std::exp;
                        u[0] = exp(x[0] * x[1] * x[2] * x[3] * x[4]);
@@ -185,6 +186,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      .Bound(4, -3.2, 3.2));
   all->push_back(SmallProblem("HS81", {-2.0, 2.0, 2.0, -1.0, -1.0}, 0.0539498478, form)
                      .Other(0.438851220)
+                     .Other(1.0)
                      .Cost([](const auto* x, auto* u) {
                        using std::exp;
                        u[0] = exp(x[0] * x[1] * x[2] * x[3] * x[4]) -

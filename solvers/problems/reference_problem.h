@@ -36,6 +36,8 @@ class SmallProblem {
   SmallProblem(std::string name, std::vector<double> start, double cost, EqualityForm form)
       : form_(form) {
     const auto n = static_cast<Eigen::Index>(start.size());
+    lower_.assign(start.size(), -kInfinity);
+    upper_.assign(start.size(), kInfinity);
     problem_ =
         std::make_shared<Problem>(ProblemShape{.blocks = 1, .block_size = static_cast<int>(n)});
     reference_ = {
@@ -68,13 +70,14 @@ class SmallProblem {
   }
   /// lo <= x[i] <= hi.
   SmallProblem& Bound(int i, double lo, double hi) {
-    return Rows("bound", 1, {lo, hi}, [i](const auto* x, auto* u) { u[0] = x[i]; });
+    lower_[i] = lo;
+    upper_[i] = hi;
+    problem_->SetBounds(lower_, upper_);
+    return *this;
   }
   SmallProblem& BoundAll(double lo, double hi) {
-    const int n = static_cast<int>(reference_.start.size());
-    return Rows("bounds", n, {lo, hi}, [n](const auto* x, auto* u) {
-      for (int i = 0; i < n; ++i) u[i] = x[i];
-    });
+    for (std::size_t i = 0; i < lower_.size(); ++i) Bound(static_cast<int>(i), lo, hi);
+    return *this;
   }
   SmallProblem& Other(double cost) {
     reference_.others.push_back(cost);
@@ -100,6 +103,7 @@ class SmallProblem {
   }
 
   EqualityForm form_;
+  std::vector<double> lower_, upper_;
   std::shared_ptr<Problem> problem_;
   ReferenceProblem reference_;
 };

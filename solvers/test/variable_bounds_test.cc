@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bounds on variables, in the problem and with every backend that takes them.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/problems/reference_problem.h"
+#include "touchdown/solvers/test/every_backend.h"
+
+namespace touchdown::solvers {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(VariableBounds, AreRefusedWhereTheyAreNone) {
+  Problem problem({.blocks = 2, .block_size = 1});
+  EXPECT_THROW(problem.SetBounds({0.0}, {1.0}), std::invalid_argument);
+  EXPECT_THROW(problem.SetBounds({0.0, 2.0}, {1.0, 1.0}), std::invalid_argument);
+  EXPECT_THROW(problem.SetBounds({0.0, std::nan("")}, {1.0, 1.0}), std::invalid_argument);
+  EXPECT_THROW(problem.SetBounds({kInfinity, 0.0}, {kInfinity, 1.0}), std::invalid_argument);
+  EXPECT_FALSE(problem.bounded());
+  problem.SetBounds({0.0, -kInfinity}, {1.0, kInfinity});
+  EXPECT_TRUE(problem.bounded());
+}
+
+TEST(VariableBounds, AreCountedAsViolated) {
+  Problem problem({.blocks = 2, .block_size = 1});
+  problem.SetBounds({0.0, -kInfinity}, {1.0, 2.0});
+  const View view(problem, AffineLift::Identity(2));
+  ViewEvaluation at;
+  view.Resize(&at);
+  for (const auto& [y, violation] : {std::pair(Eigen::Vector2d(0.5, -9.0), 0.0),
+                                     {Eigen::Vector2d(-0.25, 0.0), 0.25},
+                                     {Eigen::Vector2d(1.5, 2.75), 0.75}}) {
+    ASSERT_TRUE(view.Evaluate(y.data(), {}, {}, &at));
+    EXPECT_EQ(at.full.max_violation, violation);
+  }
+}
+
+class BoundsOfEveryBackend : public EveryBackend {
+ protected:
+  /// The result, or nothing where the backend takes no bounds and says so.
+  bool SolveReference(const ReferenceProblem& p, SolverResult* result, const Stop& stop = {}) {
+    const View view(*p.problem, AffineLift::Identity(p.problem->shape().blocks));
+    auto backend = Make();
+    if (!backend->capabilities().variable_bounds) {
+      EXPECT_EQ(backend->Refusal(view),
+                "backend " + GetParam() + " takes no bounds on variables: make them costs");
+      return false;
+    }
+    backend->Prepare(view);
+    backend->Solve(view, p.start, stop, result);
+    return true;
+  }
+};
+
+TEST_P(BoundsOfEveryBackend, HoldWhereTheCostPushes) {
+  // Three bounds of which the first two are met, and one variable without.
+  const ReferenceProblem p = SmallProblem("corner", {0.5, 0.5, 0.5, 0.5}, 5.0, EqualityForm::kRows)
+                                 .Squares(4,
+                                          [](const auto* x, auto* u) {
+                                            u[0] = x[0] - 3.0;
+                                            u[1] = x[1] + 2.0;
+                                            u[2] = x[2] - 0.25;
+                                            u[3] = x[3] - x[2];
+                                          })
+                                 .Bound(0, 0.0, 2.0)
+                                 .Bound(1, 0.0, 2.0)
+                                 .Bound(2, 0.0, 2.0);
+  SolverResult result;
+  if (!SolveReference(p, &result)) return;
+  EXPECT_EQ(result.status, SolveStatus::kConverged) << result.message;
+  EXPECT_NEAR(result.cost, 5.0, 1e-6);
+  EXPECT_LE((result.x - Eigen::Vector4d(2.0, 0.0, 0.25, 0.25)).lpNorm<Eigen::Infinity>(), 1e-3);
+  EXPECT_EQ(result.max_violation, 0.0);
+  if (result.bound_multipliers.empty()) return;
+  const std::vector<double> wanted = {2.0, -4.0, 0.0, 0.0};
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(result.bound_multipliers[i], wanted[i], 1e-4) << i;
+}
+
+TEST_P(BoundsOfEveryBackend, NothingIsEvaluatedBeyondThem) {
+  const ReferenceProblem p =
+      SmallProblem("logarithm", {9.0, -3.0}, 0.0, EqualityForm::kRows)
+          .Cost([](const auto* x, auto* u) {
+            using std::log;
+            u[0] = x[0] - 0.1 * log(x[0]) + x[1] * x[1];
+          })
+          .Bound(0, 1e-9, 10.0)
+          .Bound(1, 1.0, 1.0 + 1e-3);
+  SolverResult result;
+  Stop stop;
+  stop.callback = [](const StopQuery& query) {
+    EXPECT_GE(query.y[0], 1e-9);
+    EXPECT_LE(query.y[0], 10.0);
+    EXPECT_EQ(query.max_violation, 0.0);
+    return false;
+  };
+  if (!SolveReference(p, &result, stop)) return;
+  EXPECT_TRUE(result.usable()) << ToString(result.status);
+  EXPECT_GE(result.x[1], 1.0) << "where it began was not inside";
+}
+
+TEST_P(BoundsOfEveryBackend, AVariableMayBeFixed) {
+  const ReferenceProblem p = SmallProblem("fixed", {0.0, 7.0}, 4.0, EqualityForm::kRows)
+                                 .Squares(2,
+                                          [](const auto* x, auto* u) {
+                                            u[0] = x[0] + x[1] - 6.0;
+                                            u[1] = x[0] - x[1];
+                                          })
+                                 .Bound(1, 5.0, 5.0);
+  SolverResult result;
+  if (!SolveReference(p, &result)) return;
+  EXPECT_EQ(result.status, SolveStatus::kConverged) << result.message;
+  EXPECT_NEAR(result.x[0], 3.0, 1e-4);
+  EXPECT_NEAR(result.x[1], 5.0, 1e-9);
+}
+
+TEST_P(BoundsOfEveryBackend, AHillIsLeftFromEverywhere) {
+  for (const double start : {-0.99, -0.5, -0.01, 0.01, 0.05, 0.1, 0.3, 1.0, 1.9}) {
+    const ReferenceProblem p = SmallProblem("hill", {start}, -4.0, EqualityForm::kRows)
+                                   .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[0]; })
+                                   .Bound(0, -1.0, 2.0);
+    SolverResult result;
+    if (!SolveReference(p, &result)) return;
+    EXPECT_EQ(result.status, SolveStatus::kConverged) << start << " " << ToString(result.status);
+    EXPECT_LE(std::min(std::abs(result.cost + 4.0), std::abs(result.cost + 1.0)), 1e-6) << start;
+  }
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BoundsOfEveryBackend);
+INSTANTIATE_TEST_SUITE_P(Backends, BoundsOfEveryBackend, ::testing::ValuesIn(CompiledBackends()),
+                         TestName);
+
+TEST(VariableBounds, NeedTheProblemsOwnVariables) {
+  Problem problem({.blocks = 2, .block_size = 1});
+  problem.AddTerm(SumOfSquares<1, 1>(
+                      "square", [](const auto* x, auto* u) { u[0] = x[0]; }, true),
+                  Role::kCost);
+  problem.SetBounds({0.0, 0.0}, {1.0, 1.0});
+  AffineLift half;
+  half.reduced_blocks = 1;
+  half.block = {0, 0};
+  half.coefficient = {1.0, 1.0};
+  const View view(problem, half);
+  EXPECT_EQ(MakeBackend(StandardBackends(), "banded")->Refusal(view),
+            "bounds on variables need a view of the problem's own variables");
+}
+
+TEST(VariableBounds, BandedDoesNotAllocate) {
+  if (AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  Problem problem = Scalars(40);
+  problem.AddTerm(Rosenbrock(), Role::kCost);
+  problem.SetBounds(std::vector<double>(40, -1.5), std::vector<double>(40, 0.8));
+  const View view(problem, AffineLift::Identity(40));
+  const auto solver = MakeBackend(StandardBackends(), "banded");
+  solver->Prepare(view);
+  const WarmStart start(Eigen::VectorXd::Constant(40, -1.0));
+  SolverResult result;
+  solver->Solve(view, start, {}, &result);
+  EXPECT_EQ(result.status, SolveStatus::kConverged);
+  const long before = AllocationCount();
+  solver->Solve(view, start, {}, &result);
+  EXPECT_EQ(AllocationCount() - before, 0);
+}
+
+}  // namespace
+}  // namespace touchdown::solvers
