@@ -86,7 +86,7 @@ void BandedInteriorPoint::Prepare(const View& view) {
   sides_.clear();
   boxes_.clear();
   curvature_ = 0.0;
-  has_equalities_ = false;
+  may_have_equalities_ = false;
   for (auto* arrays : {&multiplier_, &weight_, &product_}) arrays->assign(terms, {});
   row_weights_.assign(terms, {});
   products_in_.assign(terms, nullptr);
@@ -102,7 +102,7 @@ void BandedInteriorPoint::Prepare(const View& view) {
     all_rows += rows;
     const LossBounds bounds = problem.term(i).bounds();
     const bool equality = bounds.lo == bounds.hi;
-    has_equalities_ |= equality;
+    may_have_equalities_ |= equality;
     for (const auto& [sign, bound] : {std::pair{1.0, bounds.hi}, std::pair{-1.0, bounds.lo}}) {
       if (!std::isfinite(bound) || (equality && sign < 0.0)) continue;
       sides_.push_back({i, term.outputs, sign, bound, equality});
@@ -111,7 +111,8 @@ void BandedInteriorPoint::Prepare(const View& view) {
   }
   for (int sign = -1; sign <= 1 && view.bounded(); ++sign) AddBox(sign, view);
   for (const Box& box : boxes_) total += box.variable.size();
-  if (has_equalities_) {
+  FindOpposites(view);
+  if (may_have_equalities_) {
     rows_.Prepare(view);
     ConstraintRows::Size(view, &give_by_term_);
     jacobian_.reserve(static_cast<std::size_t>(rows_.most_nonzeros()));
@@ -137,7 +138,7 @@ void BandedInteriorPoint::AddBox(int sign, const View& view) {
   if (box.variable.empty()) return;
   const int term = terms_ + static_cast<int>(boxes_.size());
   sides_.push_back({term, 1, sign < 0 ? -1.0 : 1.0, 0.0, sign == 0});
-  has_equalities_ |= sign == 0;
+  may_have_equalities_ |= sign == 0;
   for (auto* arrays : {&multiplier_, &weight_, &product_}) {
     arrays->emplace_back(box.variable.size(), 0.0);
   }
@@ -206,7 +207,9 @@ void BandedInteriorPoint::StoreMultipliers(const Rows& rows) {
   for (auto& array : multiplier_) std::fill(array.begin(), array.end(), 0.0);
   for (const Side& side : sides_) {
     for (int j = 0; j < side.rows; ++j) {
-      multiplier_[side.term][j] += side.sign * rows.z[side.first + j];
+      const double multiplier = side.sign * rows.z[side.first + j];
+      const bool others = side.merged && rows.z[side.first + j] < 0.0;
+      multiplier_[others ? sides_[side.opposite].term : side.term][j] += multiplier;
     }
   }
 }
@@ -218,6 +221,7 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
   MoveInside(view);
   if (!evaluator->Evaluate(y_.data(), {.gradient = true})) return SolveStatus::kEvaluationFailed;
   price_ = mode.price * std::max(std::abs(evaluator->last().full.value), 1.0);
+  MergeOpposites(view, evaluator->last());
   PlaceRows(evaluator->last());
   if (has_equalities_ && !WeighEqualities(view, evaluator)) return SolveStatus::kEvaluationFailed;
   StartRows(evaluator->last(), multipliers);
@@ -366,6 +370,8 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
                                  : std::max(std::abs(at.full.value), kSmallestCost);
   errors.gap = Complementarity({0.0, 0.0}) * pairs_ / cost;
   for (const Side& side : sides_) {
+    // Rows that were the same at the start have to be so in the end.
+    if (side.merged) errors.row = std::max(errors.row, at.full.max_violation);
     for (int i = side.first; i < side.first + side.rows; ++i) {
       errors.row = std::max(errors.row, side.equality ? std::abs(g_[i]) : g_[i]);
       errors.primal =
@@ -459,12 +465,61 @@ bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator
   return true;
 }
 
+/// By their shapes and bounds.
+void BandedInteriorPoint::FindOpposites(const View& view) {
+  const auto shape = [&](int side) -> const TermShape& {
+    return view.problem().term(sides_[side].term).shape();
+  };
+  for (int a = 0; a < static_cast<int>(sides_.size()); ++a) {
+    for (int b = 0; b < a && sides_[a].opposite < 0; ++b) {
+      if (BoxOf(sides_[a]) || BoxOf(sides_[b]) || sides_[b].opposite >= 0) continue;
+      const bool opposite = sides_[a].term != sides_[b].term && sides_[a].sign != sides_[b].sign &&
+                            !sides_[a].equality && !sides_[b].equality &&
+                            sides_[a].bound == sides_[b].bound;
+      if (!opposite || shape(a).window != shape(b).window || shape(a).outputs != shape(b).outputs ||
+          shape(a).max_windows != shape(b).max_windows) {
+        continue;
+      }
+      sides_[a].opposite = b;
+      sides_[b].opposite = a;
+      may_have_equalities_ = true;
+    }
+  }
+}
+
+/// The same to the last bit, with their slopes: written twice.
+bool BandedInteriorPoint::AreTheSameRows(const View& view, const ViewEvaluation& at, int term,
+                                         int other) const {
+  const TermBlock &a = at.full.terms[term], &b = at.full.terms[other];
+  const TermShape& shape = view.problem().term(term).shape();
+  const auto rows = static_cast<std::ptrdiff_t>(a.windows) * shape.outputs;
+  const auto same = [](const auto& p, const auto& q, std::ptrdiff_t count) {
+    return std::equal(p.begin(), p.begin() + count, q.begin());
+  };
+  return a.windows == b.windows && same(a.first_block, b.first_block, a.windows) &&
+         same(a.u, b.u, rows) && same(a.du_dh, b.du_dh, rows) &&
+         same(a.du, b.du, rows * shape.window * shape.block_size);
+}
+
+void BandedInteriorPoint::MergeOpposites(const View& view, const ViewEvaluation& at) {
+  has_equalities_ = false;
+  for (int i = 0; i < static_cast<int>(sides_.size()); ++i) {
+    Side& side = sides_[i];
+    if (side.opposite >= 0) {
+      side.merged = AreTheSameRows(view, at, side.term, sides_[side.opposite].term);
+      side.equality = side.merged && i < side.opposite;
+    }
+    has_equalities_ |= side.equality;
+  }
+}
+
 void BandedInteriorPoint::PlaceRows(const ViewEvaluation& at) {
   active_ = pairs_ = 0;
   for (Side& side : sides_) {
     side.first = active_;
     const Box* box = BoxOf(side);
-    side.rows = box ? static_cast<int>(box->variable.size())
+    side.rows = side.merged && !side.equality ? 0
+                : box                          ? static_cast<int>(box->variable.size())
                     : at.full.terms[side.term].windows * side.outputs;
     active_ += side.rows;
     pairs_ += side.rows * ((HasSlack(side) ? 1 : 0) + (Elastic(side) ? 1 : 0));
@@ -492,7 +547,10 @@ void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
       if (side.equality) {
-        now_.z[i] = known && !mode_.elastic ? multipliers[side.term][j] : 0.0;
+        now_.z[i] = known && !mode_.elastic ? side.sign * multipliers[side.term][j] : 0.0;
+        if (known && !mode_.elastic && side.merged) {
+          now_.z[i] += side.sign * multipliers[sides_[side.opposite].term][j];
+        }
         now_.s[i] = now_.e[i] = 0.0;
         if (!Elastic(side)) continue;
         now_.v[i] = now_.w[i] = price_;

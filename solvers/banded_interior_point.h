@@ -43,8 +43,11 @@ class BandedInteriorPoint {
     double sign = 1.0;
     double bound = 0.0;
     bool equality = false;
-    int first = 0;  ///< place in the flat arrays
-    int rows = 0;   ///< active in this solve
+    /// Another that may be of the same rows from the other side of the bound: these are equalities, and there are no slacks.
+    int opposite = -1;
+    bool merged = false;  ///< in this solve it is so: one of the two is the equality, the other has no rows
+    int first = 0;        ///< place in the flat arrays
+    int rows = 0;         ///< active in this solve
   };
   /// Of g + s = e: slack, multiplier, elastic part, and the multipliers v of the slack and w of the elastic part. All
   /// but z are > 0; v is z, of an equality price + z.
@@ -98,6 +101,9 @@ class BandedInteriorPoint {
   double Give(const Side& side, const Rows& rows, int i) const;
   bool WeighEqualities(const View& view, Evaluator* evaluator);
   Errors MeasureErrors(const View& view, Evaluator* evaluator);
+  void FindOpposites(const View& view);
+  bool AreTheSameRows(const View& view, const ViewEvaluation& at, int term, int other) const;
+  void MergeOpposites(const View& view, const ViewEvaluation& at);
   void PlaceRows(const ViewEvaluation& at);
   void StartRows(const ViewEvaluation& at, const std::vector<std::vector<double>>& multipliers);
   void ReadRows(const ViewEvaluation& at);
@@ -119,7 +125,8 @@ class BandedInteriorPoint {
   int active_ = 0;      // rows in all sides
   int pairs_ = 0;       // products that are to become the target: s v and e w
   bool invariant_ = false;
-  bool has_equalities_ = false;
+  bool may_have_equalities_ = false;
+  bool has_equalities_ = false;  // in this solve
   double curvature_ = 0.0;  // of the cost, where equalities are weighed by it
   ConstraintRows rows_;
   std::vector<double> jacobian_, give_;

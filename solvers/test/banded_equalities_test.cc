@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -74,6 +75,49 @@ TEST(BandedEqualities, RedundantRowsAreRows) {
   EXPECT_NEAR(result.x[0], 0.75, 1e-7);
   const std::vector<double>& multipliers = result.multipliers[1];
   EXPECT_NEAR(multipliers[0] + 2.0 * multipliers[1] + 3.0 * multipliers[2], -1.5, 1e-6);
+}
+
+/// As WithEqualities, with u >= 0 and `other` <= 0 as two terms.
+template <class Cost, class Rows, class Others>
+Problem WithPairs(Cost cost, Rows rows, Others others) {
+  Problem problem({.blocks = 1, .block_size = 2});
+  const auto add = [&](const char* name, FunctionTerm::Loss loss, Role role, auto function) {
+    problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = name},
+                                                   FunctionShape{.block_size = 2}, loss, function),
+                    role);
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  add("cost", LinearLoss(1.0), Role::kCost, cost);
+  add("at_least", RangeLoss({0.0, infinity}, 1.0, 1.0), Role::kConstraint, rows);
+  add("at_most", RangeLoss({-infinity, 0.0}, 1.0, 1.0), Role::kConstraint, others);
+  return problem;
+}
+
+TEST(BandedEqualities, ARowAndItsOppositeAreOne) {
+  const auto line = [](const auto* x, auto* u) { u[0] = x[0] + x[1] - 1.0; };
+  for (const double sign : {1.0, -1.0}) {
+    const auto cost = [sign](const auto* x, auto* u) {
+      u[0] = (x[0] - 3.0 * sign) * (x[0] - 3.0 * sign) + (x[1] - 3.0 * sign) * (x[1] - 3.0 * sign);
+    };
+    const SolverResult result = SolveFrom(WithPairs(cost, line, line), Eigen::Vector2d(4.0, -7.0));
+    EXPECT_EQ(result.status, SolveStatus::kConverged);
+    EXPECT_LE(result.iterations, 3) << "a quadratic cost and a linear row";
+    EXPECT_NEAR(result.x[0], 0.5, 1e-7);
+    // 2 (0.5 -+ 3) + multiplier = 0, negative at a lower bound.
+    EXPECT_NEAR(result.multipliers[1][0], sign > 0.0 ? 0.0 : -7.0, 1e-6);
+    EXPECT_NEAR(result.multipliers[2][0], sign > 0.0 ? 5.0 : 0.0, 1e-6);
+  }
+}
+
+TEST(BandedEqualities, RowsThatAreAlikeAtTheStartAloneAreNotClaimed) {
+  const auto cost = [](const auto* x, auto* u) { u[0] = x[0] * x[0] + x[1] * x[1]; };
+  const auto line = [](const auto* x, auto* u) { u[0] = x[0] + x[1] - 1.0; };
+  const auto bent = [](const auto* x, auto* u) { u[0] = x[0] + x[1] - 1.0 + x[0] * x[0]; };
+  const SolverResult result =
+      SolveFrom(WithPairs(cost, line, bent), Eigen::Vector2d(0.0, 3.0));  // only (0, 1) has both
+  if (result.status == SolveStatus::kConverged) {
+    EXPECT_NEAR(result.cost, 1.0, 1e-6);
+  }
 }
 
 TEST(BandedEqualities, RowsThatContradictEachOtherAreInfeasible) {
