@@ -49,6 +49,9 @@ constexpr int kMostFastSteps = 30;  // they converge in 5 to 15 where they do
 constexpr int kMostCarefulSteps = 200;
 constexpr double kRounding = 1e-8;
 constexpr double kLeastTarget = 0.1;  // of the gap asked for
+constexpr double kLeastShare = 1e-6;  // of the gap there is, that a step aims at
+constexpr double kLeastShareWhereRowsBend = 1e-2;
+constexpr double kNearlyMet = 1e-4;
 constexpr double kBarrierDecrease = 0.2;
 constexpr double kBarrierSolved = 1e-2;  // errors at which its own problem counts as solved
 // Where rows are equalities.
@@ -239,7 +242,7 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     // A metric with a shift is blind.
     const bool stationary = errors.dual <= tolerances.gap &&
                             (shift == 0.0 || Largest(right_) <= kRounding * steepest);
-    if (errors.gap <= tolerances.gap && stationary && errors.primal <= Evaluator::kFeasible &&
+    if (errors.gap <= tolerances.gap && errors.worth <= tolerances.gap && stationary && errors.primal <= Evaluator::kFeasible &&
         (errors.row <= tolerances.violation ||
          (mode.elastic && LargestMultiplier(0.0) > 0.5 * price_))) {
       // An earlier point may cost less by what it violates within the tolerance. One that costs much less
@@ -325,7 +328,10 @@ double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors
   Direction(view, 0.0, evaluator);
   if (pairs_ == 0) return 0.0;
   const double ratio = Complementarity(LongestStep(errors.gap)) / mu;
-  const double target = std::max(mu * std::clamp(ratio * ratio * ratio, 1e-6, 1.0), least);
+  // Rows that are far from met bend: what the predictor thinks of the gap is not to be trusted.
+  const bool bend = has_equalities_ && !mode_.elastic && errors.primal > kNearlyMet;
+  const double lowest = bend ? kLeastShareWhereRowsBend : kLeastShare;
+  const double target = std::max(mu * std::clamp(ratio * ratio * ratio, lowest, 1.0), least);
   SetCorrection(true);
   Direction(view, target, evaluator);
   return target;
@@ -373,6 +379,7 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
     // Rows that were the same at the start have to be so in the end.
     if (side.merged) errors.row = std::max(errors.row, at.full.max_violation);
     for (int i = side.first; i < side.first + side.rows; ++i) {
+      if (!HasSlack(side)) errors.worth += std::abs(now_.z[i] * g_[i]) / cost;
       errors.row = std::max(errors.row, side.equality ? std::abs(g_[i]) : g_[i]);
       errors.primal =
           std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (Elastic(side) ? now_.e[i] : 0.0)));

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include <Eigen/Core>
 
@@ -17,9 +15,29 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr int kWidestScalarBand = 31;
-
 constexpr int RoundUp(int n) { return (n + 3) / 4 * 4; }
+
+/// Columns of blocks of d scalars, or of single ones of blocks of any size, padded with zeros to `stride` rows.
+template <int d>
+void LoadColumns(const BorderedBandMatrix& A, double shift, int stride, double* band) {
+  const int size = d == 1 ? A.block_size() : d;
+  const int n = A.blocks();
+  for (int j = 0; j < n; ++j) {
+    const int last = std::min(A.half_bandwidth(), n - 1 - j);
+    for (int c = 0; c < size; ++c) {
+      // A scalar band's column starts at its own diagonal element.
+      const int above = d == 1 ? c : 0;
+      double* column = band + static_cast<std::ptrdiff_t>(j * size + c) * stride;
+      int row = 0;
+      for (int k = 0; k <= last; ++k) {
+        const double* block = A.block(j, k) + c * size;
+        for (int r = k == 0 ? above : 0; r < size; ++r) column[row++] = block[r];
+      }
+      for (; row < stride; ++row) column[row] = 0.0;
+      column[c - above] += shift;
+    }
+  }
+}
 
 /// Kernels for d scalars in a block and a compile-time half bandwidth.
 template <int d, int half>
@@ -34,24 +52,11 @@ struct Panels {
     return band + (j * d + c) * kStride;
   }
 
+  static constexpr int stride() { return kStride; }
+  static constexpr int pad() { return kPad; }
+
   static void Load(const BorderedBandMatrix& A, double shift, double* band) {
-    const int size = d == 1 ? A.block_size() : d;  // any for a band of scalars
-    const int n = A.blocks();
-    for (int j = 0; j < n; ++j) {
-      const int last = std::min(A.half_bandwidth(), n - 1 - j);
-      for (int c = 0; c < size; ++c) {
-        // A scalar band's column starts at its own diagonal element.
-        const int above = d == 1 ? c : 0;
-        double* column = band + (j * size + c) * kStride;
-        int row = 0;
-        for (int k = 0; k <= last; ++k) {
-          const double* block = A.block(j, k) + c * size;
-          for (int r = k == 0 ? above : 0; r < size; ++r) column[row++] = block[r];
-        }
-        for (; row < kStride; ++row) column[row] = 0.0;
-        column[c - above] += shift;
-      }
-    }
+    LoadColumns<d>(A, shift, kStride, band);
   }
 
   template <int rows>
@@ -157,8 +162,71 @@ struct Panels {
   }
 };
 
-/// Calls `visit(Panels<d, half>())` for the sizes that there are: blocks of three, or any other size
-/// as a band of scalars, whose half bandwidth is rounded up to one that is compiled.
+/// The same for a band of scalars that is as wide as it is.
+class WideBand {
+ public:
+  explicit WideBand(int half) : half_(half) {}
+
+  int stride() const { return half_ + 1; }
+  int pad() const { return half_ + 1; }
+
+  void Load(const BorderedBandMatrix& A, double shift, double* band) const {
+    LoadColumns<1>(A, shift, stride(), band);
+  }
+
+  bool Factor(int n, double* band) const {
+    for (int j = 0; j < n; ++j) {
+      double* column = band + Start(j);
+      const double inverse = 1.0 / column[0];
+      if (!(inverse > 0.0) || !std::isfinite(inverse)) return false;
+      column[0] = std::sqrt(inverse);
+      Column(column + 1, half_) *= column[0];
+      for (int b = 1; b <= half_; ++b) {
+        if (column[b] == 0.0) continue;
+        const int rows = half_ + 1 - b;
+        Column(band + Start(j + b), rows) -= column[b] * Column(column + b, rows);
+      }
+    }
+    return true;
+  }
+
+  void SolveLower(int n, const double* band, double* x) const {
+    for (int j = 0; j < n; ++j) {
+      const double* column = band + Start(j);
+      x[j] *= column[0];
+      Column(x + j + 1, half_) -= x[j] * Column(column + 1, half_);
+    }
+  }
+
+  void SolveUpper(int n, const double* band, double* x) const {
+    for (int j = n - 1; j >= 0; --j) {
+      const double* column = band + Start(j);
+      const double sum = (Column(column + 1, half_) * Column(x + j + 1, half_)).sum();
+      x[j] = (x[j] - sum) * column[0];
+    }
+  }
+
+  void MultiplyUpper(int n, const double* band, const double* x, double* out) const {
+    for (int j = 0; j < n; ++j) {
+      const double* column = band + Start(j);
+      double sum = x[j] / column[0];
+      for (int r = 1; r <= std::min(half_, n - 1 - j); ++r) sum += column[r] * x[j + r];
+      out[j] = sum;
+    }
+  }
+
+ private:
+  static Eigen::Map<Eigen::ArrayXd> Column(double* first, int rows) { return {first, rows}; }
+  static Eigen::Map<const Eigen::ArrayXd> Column(const double* first, int rows) {
+    return {first, rows};
+  }
+  std::ptrdiff_t Start(int j) const { return static_cast<std::ptrdiff_t>(j) * stride(); }
+
+  int half_;
+};
+
+/// Calls `visit` with kernels: for blocks of three, or for any other size as a band of scalars, whose half bandwidth is
+/// rounded up to one that is compiled while there is one.
 template <class Visit>
 auto Dispatch(int d, int half, Visit&& visit) {
   if (d == 3) {
@@ -178,34 +246,24 @@ auto Dispatch(int d, int half, Visit&& visit) {
   }
   if (half <= 7) return visit(Panels<1, 7>());
   if (half <= 15) return visit(Panels<1, 15>());
-  return visit(Panels<1, kWidestScalarBand>());
+  if (half <= 31) return visit(Panels<1, 31>());
+  return visit(WideBand(half));
 }
 
 }  // namespace
-
-bool BorderedCholesky::Takes(const BorderedBandMatrix& shape) {
-  const int size = shape.block_size();
-  return size == 3 ? shape.half_bandwidth() <= 5
-                   : size * (shape.half_bandwidth() + 1) - 1 <= kWidestScalarBand;
-}
 
 void BorderedCholesky::Prepare(const BorderedBandMatrix& shape) {
   const int size = shape.block_size();
   d_ = size == 3 ? 3 : 1;
   half_ = size == 3 ? shape.half_bandwidth() : size * (shape.half_bandwidth() + 1) - 1;
-  if (!Takes(shape)) {
-    throw std::invalid_argument("BorderedCholesky: a band of " + std::to_string(half_) +
-                                " beside the diagonal, it must be at most " +
-                                std::to_string(d_ == 3 ? 5 : kWidestScalarBand));
-  }
   n_ = shape.blocks() * size;
   blocks_ = n_ / d_;
   bordered_ = shape.bordered();
   const auto n = static_cast<std::size_t>(n_);
   Dispatch(d_, half_, [&](auto panels) {
-    using P = decltype(panels);
-    band_.assign((n + P::kPad) * P::kStride, 0.0);
-    scratch_.assign(n + P::kPad, 0.0);
+    const auto pad = static_cast<std::size_t>(panels.pad());
+    band_.assign((n + pad) * static_cast<std::size_t>(panels.stride()), 0.0);
+    scratch_.assign(n + pad, 0.0);
   });
   border_.assign(n, 0.0);
   corner_ = 1.0;
@@ -214,9 +272,8 @@ void BorderedCholesky::Prepare(const BorderedBandMatrix& shape) {
 BorderedCholesky::Status BorderedCholesky::Factor(const BorderedBandMatrix& A, double shift,
                                                   double border_shift) {
   const bool definite = Dispatch(d_, half_, [&](auto panels) {
-    using P = decltype(panels);
-    P::Load(A, shift, band_.data());
-    return P::Factor(blocks_, band_.data());
+    panels.Load(A, shift, band_.data());
+    return panels.Factor(blocks_, band_.data());
   });
   if (!definite) return Status::kIndefinite;
   corner_ = 1.0;
@@ -232,7 +289,7 @@ BorderedCholesky::Status BorderedCholesky::Factor(const BorderedBandMatrix& A, d
 void BorderedCholesky::SolveBandLower(double* x) const {
   std::copy(x, x + n_, scratch_.begin());
   Dispatch(d_, half_, [&](auto panels) {
-    decltype(panels)::SolveLower(blocks_, band_.data(), scratch_.data());
+    panels.SolveLower(blocks_, band_.data(), scratch_.data());
   });
   std::copy(scratch_.begin(), scratch_.begin() + n_, x);
 }
@@ -249,7 +306,7 @@ void BorderedCholesky::SolveBandUpper(double* x) const {
   std::copy(x, x + n_, scratch_.begin());
   std::fill(scratch_.begin() + n_, scratch_.end(), 0.0);
   Dispatch(d_, half_, [&](auto panels) {
-    decltype(panels)::SolveUpper(blocks_, band_.data(), scratch_.data());
+    panels.SolveUpper(blocks_, band_.data(), scratch_.data());
   });
   std::copy(scratch_.begin(), scratch_.begin() + n_, x);
 }
@@ -270,7 +327,7 @@ void BorderedCholesky::SolveWithBorder(double* x) const {
 
 void BorderedCholesky::MultiplyUpper(const double* x, double* out) const {
   Dispatch(d_, half_,
-           [&](auto panels) { decltype(panels)::MultiplyUpper(blocks_, band_.data(), x, out); });
+           [&](auto panels) { panels.MultiplyUpper(blocks_, band_.data(), x, out); });
   if (!bordered_) return;
   for (int i = 0; i < n_; ++i) out[i] += border_[i] * x[n_];
   out[n_] = corner_ * x[n_];

@@ -43,8 +43,7 @@ void OptimalityCheck::Prepare(const View& view) {
   BorderedBandMatrix shape;
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
-  has_factor_ = BorderedCholesky::Takes(shape);
-  if (has_factor_) factor_.Prepare(shape);
+  factor_.Prepare(shape);
   for (auto* vector : {&gradient_, &residual_, &step_, &soft_, &near_}) vector->assign(n, 0.0);
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
@@ -159,7 +158,6 @@ void OptimalityCheck::Residual(const double* lambda) {
 }
 
 bool OptimalityCheck::Estimate() {
-  if (!has_factor_) return false;
   for (int r = 0; r < rows_.size(); ++r) side_[r] = SideOf(r);
   for (int dropped = 0; dropped <= rows_.size(); ++dropped) {
     for (int r = 0; r < rows_.size(); ++r) {
@@ -235,17 +233,10 @@ Optimality OptimalityCheck::Weigh() {
   const double cost_size = std::max({gained, slope * size_, std::numeric_limits<double>::min()});
   const double least = kLeastCurvature * slope / size_ + std::numeric_limits<double>::min();
   step_ = residual_;
-  if (has_factor_) {
-    const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
-    if (holds && !HoldRows(std::max(largest, least))) return {};
-    if (!Factor(least, largest)) return {};
-    factor_.Solve(step_.data());
-  } else {
-    const BorderedBandMatrix& H = at_->hessian;
-    for (int i = 0; i < static_cast<int>(step_.size()); ++i) {
-      step_[i] /= std::abs(H.At(i, i)) + least;
-    }
-  }
+  const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
+  if (holds && !HoldRows(std::max(largest, least))) return {};
+  if (!Factor(least, largest)) return {};
+  factor_.Solve(step_.data());
   double promised = 0.0;
   for (std::size_t i = 0; i < step_.size(); ++i) promised += 0.5 * residual_[i] * step_[i];
   out.step = Largest(step_) / size_;
@@ -261,8 +252,8 @@ Optimality OptimalityCheck::Weigh() {
 /// than what a stationary point may have left: y is a saddle, an inflection, or a maximum along its rows. Rows at a
 /// bound are left where they do not push, or held as well: of opposite ones none need push.
 bool OptimalityCheck::NeighbourCostsLess() {
-  return has_factor_ && ((SoftestDirection(kPushes) && DescendsAlongIt()) ||
-                         (rows_.size() > 0 && SoftestDirection(0.0) && DescendsAlongIt()));
+  return (SoftestDirection(kPushes) && DescendsAlongIt()) ||
+         (rows_.size() > 0 && SoftestDirection(0.0) && DescendsAlongIt());
 }
 
 /// On one side of y at least.

@@ -52,7 +52,6 @@ class OptimalityCheck {
   double left_ = 0.0;     // of the cost, by the conditions
   double largest_ = 0.0;  // element of the Lagrangian's Hessian
   ConstraintRows rows_;  // bounds among them
-  bool has_factor_ = true;  // the band is not too wide
   BorderedCholesky factor_;
   std::vector<double> gradient_, residual_, step_, soft_, near_;
   std::vector<double> u_, u_near_, jacobian_, norm_, lambda_, weight_;
