@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown compare: solver backends on the same random landing problems.
+// touchdown compare: solver backends on the same random landing problems, or on sets of known ones.
 #include <algorithm>
 #include <charconv>
 #include <iostream>
@@ -16,6 +16,7 @@
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/progress.h"
+#include "touchdown/evaluation/reference_compare.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/sim/forest.h"
 
@@ -24,6 +25,8 @@ namespace {
 
 struct CompareArguments {
   CompareOptions options;
+  std::string problem_set = "landing";
+  ReferenceOptions references;  // of another set
   std::string start = "cold";
   std::string arrival = "fixed";
   std::string limits = "soft";
@@ -75,8 +78,30 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   return settings;
 }
 
+int CompareReferences(CompareArguments arguments, const Registries& registries) {
+  for (const std::string& path : {arguments.db, arguments.picture}) {
+    if (!path.empty()) {
+      throw BadInput(fmt::format("--problem-set {}: it writes no file; use --json.", arguments.problem_set));
+    }
+  }
+  ReferenceOptions& options = arguments.references;
+  options.set = arguments.problem_set;
+  options.backends = arguments.options.backends;
+  options.seed = arguments.options.cases.seed;
+  if (arguments.pin) PinToCpu(*arguments.pin);
+  const ReferenceResult result =
+      RunReferences(options, registries.backends, Progress({.things = "problems"}));
+  if (arguments.json) {
+    std::cout << ReferenceJson(options, result).dump(2) << std::endl;
+  } else {
+    std::cout << ReferenceText(options, result) << std::flush;
+  }
+  return kDone;
+}
+
 int Compare(CompareArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
+  if (arguments.problem_set != "landing") return CompareReferences(arguments, registries);
   CompareOptions& options = arguments.options;
   std::sort(options.points.begin(), options.points.end());
   options.cases.warm = arguments.start == "warm";
@@ -122,6 +147,16 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   const auto arguments = std::make_shared<CompareArguments>();
   CompareOptions& options = arguments->options;
   CaseOptions& cases = options.cases;
+  command
+      .Add("--problem-set", arguments->problem_set,
+           "Random landings, or sets of known problems (docs/compare.md)")
+      .Check(OneOf({"landing", "hs", "hs-pairs", "shooting"}))
+      .ShowDefault();
+  command
+      .Add("--starts", arguments->references.starts,
+           "Of a known problem: the published one, and others around it")
+      .Check(Range(1, 1000))
+      .ShowDefault();
   command.Add("--problems", options.problems, "Number of problems of each size")
       .Check(Range(1, 100000))
       .ShowDefault();

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/reference_compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/statistics.h"
+#include "touchdown/sim/random_stream.h"
+#include "touchdown/solvers/problems/hock_schittkowski.h"
+#include "touchdown/solvers/problems/shooting.h"
+#include "touchdown/solvers/view.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using solvers::ReferenceProblem;
+using solvers::SolverResult;
+using solvers::SolveStatus;
+
+constexpr double kRight = 1e-6;     // of the optimum's cost, and absolutely
+constexpr double kFeasible = 1e-5;  // of what is believed without asking the backend
+
+std::vector<ReferenceProblem> Problems(const std::string& set) {
+  if (set == "shooting") return solvers::ShootingProblems();
+  return solvers::HockSchittkowski(set == "hs-pairs" ? solvers::EqualityForm::kPairs
+                                                     : solvers::EqualityForm::kRows);
+}
+
+/// The published start, then others around it: a fifth of a unit and a tenth of each number away where the set is one of long
+/// trajectories, up to a unit and half of each number where it is of a few variables.
+Eigen::VectorXd Start(const ReferenceOptions& options, const ReferenceProblem& problem, int index) {
+  Eigen::VectorXd start = problem.start;
+  if (index == 0) return start;
+  sim::RandomStream stream(options.seed, fmt::format("{} start {}", problem.name, index));
+  const double reach = std::isnan(problem.cost) ? 0.2 : 1.0;
+  for (double& x : start) x += reach * (1.0 + 0.5 * std::abs(x)) * stream.Uniform(-1.0, 1.0);
+  return start;
+}
+
+struct Claim {
+  bool converged = false;
+  double cost = 0.0;
+};
+
+bool Near(double cost, double optimum) {
+  return std::abs(cost - optimum) <= kRight * std::max(1.0, std::abs(optimum));
+}
+
+class Contest {
+ public:
+  Contest(const ReferenceOptions& options, const ReferenceProblem& problem)
+      : options_(options),
+        problem_(problem),
+        view_(*problem.problem, solvers::AffineLift::Identity(problem.problem->shape().blocks)) {}
+
+  void Ask(const solvers::BackendEntry& entry) {
+    ReferenceCell cell{.problem = problem_.name, .backend = entry.name};
+    std::vector<Claim> claims;
+    const auto backend = entry.make();
+    cell.refusal = backend->Refusal(view_);
+    if (cell.refusal.empty()) {
+      backend->Prepare(view_);
+      for (int i = 0; i < options_.starts; ++i) claims.push_back(Solve(backend.get(), i, &cell));
+    }
+    cells_.push_back(std::move(cell));
+    claims_.push_back(std::move(claims));
+  }
+
+  /// After all were asked: the optimum may be the best that anybody found.
+  std::vector<ReferenceCell> Judge() {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      for (const Claim& claim : claims_[i]) {
+        if (!claim.converged) {
+          ++cells_[i].unclaimed;
+        } else {
+          ++(Known(claim.cost) ? cells_[i].right : cells_[i].elsewhere);
+        }
+      }
+    }
+    return std::move(cells_);
+  }
+
+ private:
+  Claim Solve(solvers::SolverBackend* backend, int index, ReferenceCell* cell) {
+    solvers::Stop stop;
+    stop.max_iterations = options_.max_iterations;
+    stop.wall_limit_s = options_.most_seconds;
+    SolverResult result;
+    backend->Solve(view_, solvers::WarmStart(Start(options_, problem_, index)), stop, &result);
+    cell->cpu_ms.push_back(1e3 * result.cpu_s);
+    const bool converged = result.status == SolveStatus::kConverged;
+    if (converged && result.max_violation <= kFeasible) best_ = std::min(best_, result.cost);
+    // A claim at a point that is not feasible is one of no optimum.
+    const bool feasible = result.max_violation <= kFeasible;
+    return {converged, feasible ? result.cost : std::numeric_limits<double>::quiet_NaN()};
+  }
+
+  bool Known(double cost) const {
+    if (std::isnan(problem_.cost)) return Near(cost, best_);
+    return Near(cost, problem_.cost) ||
+           std::any_of(problem_.others.begin(), problem_.others.end(),
+                       [cost](double other) { return Near(cost, other); });
+  }
+
+  const ReferenceOptions& options_;
+  const ReferenceProblem& problem_;
+  solvers::View view_;
+  double best_ = std::numeric_limits<double>::infinity();
+  std::vector<ReferenceCell> cells_;
+  std::vector<std::vector<Claim>> claims_;
+};
+
+struct Total {
+  int right = 0, elsewhere = 0, unclaimed = 0, refused = 0, problems = 0;
+  std::vector<double> cpu_ms;
+
+  int solves() const { return right + elsewhere + unclaimed; }
+};
+
+Total TotalOf(const ReferenceResult& result, const std::string& backend) {
+  Total total;
+  for (const ReferenceCell& cell : result.cells) {
+    if (cell.backend != backend) continue;
+    ++total.problems;
+    total.right += cell.right;
+    total.elsewhere += cell.elsewhere;
+    total.unclaimed += cell.unclaimed;
+    total.refused += cell.refusal.empty() ? 0 : 1;
+    total.cpu_ms.insert(total.cpu_ms.end(), cell.cpu_ms.begin(), cell.cpu_ms.end());
+  }
+  return total;
+}
+
+std::string Milliseconds(std::optional<double> ms) { return ms ? fmt::format("{:.3g}", *ms) : "-"; }
+
+}  // namespace
+
+ReferenceResult RunReferences(const ReferenceOptions& options,
+                              const solvers::BackendRegistry& registry,
+                              const std::function<void(int done, int all)>& report) {
+  ReferenceResult result;
+  result.published = options.set != "shooting";
+  const std::vector<ReferenceProblem> problems = Problems(options.set);
+  for (const ReferenceProblem& problem : problems) {
+    result.problems.push_back(problem.name);
+    Contest contest(options, problem);
+    for (const solvers::BackendEntry& entry : registry) {
+      const auto& asked = options.backends;
+      const bool wanted =
+          asked.empty() || std::find(asked.begin(), asked.end(), entry.name) != asked.end();
+      if (wanted && entry.make()->capabilities().compiled) contest.Ask(entry);
+    }
+    for (ReferenceCell& cell : contest.Judge()) {
+      if (result.problems.size() == 1) result.backends.push_back(cell.backend);
+      result.cells.push_back(std::move(cell));
+    }
+    report(static_cast<int>(result.problems.size()), static_cast<int>(problems.size()));
+  }
+  return result;
+}
+
+std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult& result) {
+  const char* elsewhere = result.published ? "false claims" : "elsewhere";
+  std::string text = fmt::format(
+      "Problem set {}: {} problems, {} starts each, seed {}. Right: converged, and within 1e-6 of {}.\n"
+      "  {:<15}{:>16}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n",
+      options.set, result.problems.size(), options.starts, options.seed,
+      result.published ? "a published optimum" : "the best that anybody found", "backend", "right",
+      elsewhere, "not claimed", "refused", "median ms", "p95", "largest");
+  for (const std::string& backend : result.backends) {
+    const Total total = TotalOf(result, backend);
+    const Quantiles ms = QuantilesOf(total.cpu_ms);
+    text += fmt::format("  {:<15}{:>16}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n", backend,
+                        fmt::format("{} of {}", total.right, total.solves()), total.elsewhere,
+                        total.unclaimed, total.refused, Milliseconds(ms.median),
+                        Milliseconds(ms.p95), Milliseconds(ms.max));
+  }
+  text += fmt::format("\nRight, of {} starts; ! {}; - refused\n  {:<22}", options.starts,
+                      result.published ? "false claims" : "claims elsewhere", "");
+  for (const std::string& backend : result.backends) text += fmt::format("{:>14}", backend);
+  text += "\n";
+  std::size_t at = 0;
+  for (const std::string& problem : result.problems) {
+    text += fmt::format("  {:<22}", problem);
+    for (std::size_t b = 0; b < result.backends.size(); ++b) {
+      const ReferenceCell& cell = result.cells[at++];
+      std::string of_cell = cell.refusal.empty() ? fmt::format("{}", cell.right) : "-";
+      if (cell.elsewhere > 0) of_cell += fmt::format(" {}!", cell.elsewhere);
+      text += fmt::format("{:>14}", of_cell);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json ReferenceJson(const ReferenceOptions& options,
+                                     const ReferenceResult& result) {
+  using Json = nlohmann::ordered_json;
+  Json json{{"problem_set", options.set}, {"starts", options.starts},
+            {"seed", options.seed},       {"max_iterations", options.max_iterations},
+            {"published", result.published}, {"cells", Json::array()}};
+  for (const ReferenceCell& cell : result.cells) {
+    const std::optional<double> median = Quantile(cell.cpu_ms, 0.5);
+    Json of_cell{{"problem", cell.problem},
+                 {"backend", cell.backend},
+                 {"right", cell.right},
+                 {"elsewhere", cell.elsewhere},
+                 {"unclaimed", cell.unclaimed},
+                 {"median_ms", median ? Json(*median) : Json()}};
+    if (!cell.refusal.empty()) of_cell["refusal"] = cell.refusal;
+    json["cells"].push_back(std::move(of_cell));
+  }
+  return json;
+}
+
+}  // namespace touchdown::evaluation
