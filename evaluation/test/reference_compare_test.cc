@@ -6,13 +6,13 @@
 namespace touchdown::evaluation {
 namespace {
 
-ReferenceResult Run(const ReferenceOptions& options) {
+ReferenceResult RunAll(const ReferenceOptions& options) {
   return RunReferences(options, solvers::StandardBackends(), [](int, int) {});
 }
 
 TEST(ReferenceCompare, BandedIsRightOnEveryShootingProblem) {
   ReferenceOptions options{.set = "shooting", .backends = {"banded", "lbfgs"}, .starts = 1};
-  const ReferenceResult result = Run(options);
+  const ReferenceResult result = RunAll(options);
   EXPECT_FALSE(result.published);
   EXPECT_EQ(result.problems.size(), 10u);
   EXPECT_EQ(result.backends, (std::vector<std::string>{"banded", "lbfgs"}));
@@ -33,7 +33,7 @@ TEST(ReferenceCompare, BandedIsRightOnEveryShootingProblem) {
 
 TEST(ReferenceCompare, StartsRepeatAndEveryOneIsCounted) {
   ReferenceOptions options{.set = "shooting", .backends = {"banded"}, .starts = 3};
-  const ReferenceResult first = Run(options), second = Run(options);
+  const ReferenceResult first = RunAll(options), second = RunAll(options);
   ASSERT_EQ(first.cells.size(), first.problems.size());
   for (std::size_t i = 0; i < first.cells.size(); ++i) {
     const ReferenceCell& cell = first.cells[i];
