@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BUILD = Path(os.environ.get("TOUCHDOWN_BUILD", ""))
 
 # Options that say how much work there is: never more than this ...
-SHORT = {"--trials": 1, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1}
+SHORT = {"--trials": 1, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1, "--starts": 1}
 # ... which these sub-commands are given where the document leaves them to their default.
 GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"], "study replan": ["--scenes"],
          "study pad": ["--trials"], "study hostile": ["--flights"], "study tags": ["--poses"]}  # fmt: skip
