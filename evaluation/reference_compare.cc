@@ -46,10 +46,6 @@ struct Claim {
   double cost = 0.0;
 };
 
-bool Near(double cost, double optimum) {
-  return std::abs(cost - optimum) <= kRight * std::max(1.0, std::abs(optimum));
-}
-
 class Contest {
  public:
   Contest(const ReferenceOptions& options, const ReferenceProblem& problem)
@@ -100,10 +96,9 @@ class Contest {
   }
 
   bool Known(double cost) const {
-    if (std::isnan(problem_.cost)) return Near(cost, best_);
-    return Near(cost, problem_.cost) ||
-           std::any_of(problem_.others.begin(), problem_.others.end(),
-                       [cost](double other) { return Near(cost, other); });
+    ReferenceProblem judged = problem_;
+    if (std::isnan(judged.cost)) judged.cost = best_;
+    return judged.Off(cost) <= kRight;
   }
 
   const ReferenceOptions& options_;

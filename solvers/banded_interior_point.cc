@@ -9,7 +9,7 @@
 // with H the Lagrangian's Hessian, curvature of the rows included. Every row is a window, so that
 // G^T W G fills nothing: the matrix stays an arrowhead of the band, and one factor serves Mehrotra's
 // predictor and corrector. For an equality without s and e the same is a proximal step of the method of multipliers, with a W so large that
-// each meets the linear row to 1e-8, and that the matrix is definite where H is along the rows. A merit function guards the step where rows are curved or not convex;
+// a step leaves little of the linear row, and that the matrix is definite where H is along the rows. A merit function guards the step where rows are curved or not convex;
 // where these fast steps stall, the barrier method's careful ones take over.
 // Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical Optimization,
 // 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev. 47 (2005) 99; equalities: M. Friedlander, D. Orban,

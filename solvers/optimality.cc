@@ -260,7 +260,6 @@ bool OptimalityCheck::NeighbourCostsLess() {
 bool OptimalityCheck::DescendsAlongIt() {
   const double value = cost_;
   const double less = kClearlyLess * std::max(std::abs(value), kLeastCost) + kClearlyMore * left_;
-  const double longest = Largest(soft_);
   // To come back to the rows: the shortest way, by the factor of I + weight J^T J.
   for (int r = 0; r < rows_.size(); ++r) {
     const bool there = SideOf(r) != Side::kNone && norm_[r] > 0.0;
@@ -270,7 +269,7 @@ bool OptimalityCheck::DescendsAlongIt() {
   if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
   for (const double sign : {1.0, -1.0}) {
     for (std::size_t i = 0; i < near_.size(); ++i) {
-      near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * kNeighbour * size_ / longest * soft_[i];
+      near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * kNeighbour * size_ * soft_[i];
     }
     for (int i = 0; i < kMostCorrections; ++i) {
       if (!view_->Evaluate(near_.data(), {}, {}, at_)) break;
@@ -284,7 +283,7 @@ bool OptimalityCheck::DescendsAlongIt() {
   return false;
 }
 
-/// soft_: by inverse iteration on the Lagrangian's Hessian, with the rows held that push, by this share of the slopes: those
+/// soft_, of largest element 1: by inverse iteration on the Lagrangian's Hessian, with the rows held that push, by this share of the slopes: those
 /// of side_.
 bool OptimalityCheck::SoftestDirection(double pushes) {
   const double largest = largest_ + std::numeric_limits<double>::min();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -22,6 +23,15 @@ struct ReferenceProblem {
   Eigen::VectorXd start;
   double cost = 0.0;           ///< at the best local optimum that is known
   std::vector<double> others;  ///< costs at other local optima
+
+  /// How far a cost is from that of the nearest known optimum, share of it or of 1 where it is less.
+  double Off(double at) const {
+    double off = std::abs(at - cost) / std::max(1.0, std::abs(cost));
+    for (const double other : others) {
+      off = std::min(off, std::abs(at - other) / std::max(1.0, std::abs(other)));
+    }
+    return off;
+  }
 };
 
 /// How the equality rows of a set are written.

@@ -251,8 +251,6 @@ struct HeavyQuadrotor {
 
 constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> Times(std::size_t count, double value) { return std::vector<double>(count, value); }
-
 /// States without bounds, then the inputs' own.
 std::vector<double> Limits(int states, double sign, std::vector<double> inputs) {
   std::vector<double> all(static_cast<std::size_t>(states), sign * kInfinity);
@@ -293,20 +291,20 @@ std::vector<ReferenceProblem> ShootingProblems() {
   all.push_back(SwingUp("pendulum_weak_60", 60, 3.0));
   all.push_back(SwingUp("pendulum_weak_200", 200, 3.0));
   all.push_back(CartPoleUp(50));
-  std::vector<double> apart = Times(12, 0.0);
+  std::vector<double> apart = std::vector<double>(12, 0.0);
   for (std::size_t i = 0; i < 6; ++i) apart[i] = i % 2 == 0 ? 0.5 : -0.3;
-  all.push_back(Shooting<MassChain>("mass_chain_100", 100, 10.0, {{0.0, apart}, {1.0, Times(12, 0.0)}},
+  all.push_back(Shooting<MassChain>("mass_chain_100", 100, 10.0, {{0.0, apart}, {1.0, std::vector<double>(12, 0.0)}},
                                     Limits(12, -1.0, {-1.5, -1.5}), Limits(12, 1.0, {1.5, 1.5})));
   all.push_back(Shooting<PlanarQuadrotor>(
       "planar_quadrotor_60", 60, 3.0,
-      {{0.0, Times(6, 0.0)}, {0.5, {2.0, 1.0, kFree, kFree, kFree, kFree}}, {1.0, {4.0, 0.0, 0.0, 0.0, 0.0, 0.0}}},
+      {{0.0, std::vector<double>(6, 0.0)}, {0.5, {2.0, 1.0, kFree, kFree, kFree, kFree}}, {1.0, {4.0, 0.0, 0.0, 0.0, 0.0, 0.0}}},
       Limits(6, -1.0, {0.2 * kGravity, -30.0}), Limits(6, 1.0, {2.0 * kGravity, 30.0})));
   all.push_back(ThroughWaypoints(40));
   all.push_back(ThroughWaypoints(200));
-  std::vector<double> there = Times(12, 0.0);
+  std::vector<double> there = std::vector<double>(12, 0.0);
   there[0] = 3.0, there[1] = 1.0, there[2] = -1.0;
   all.push_back(Shooting<HeavyQuadrotor>(
-      "heavy_quadrotor_30", 30, 2.5, {{0.0, Times(12, 0.0)}, {1.0, there}},
+      "heavy_quadrotor_30", 30, 2.5, {{0.0, std::vector<double>(12, 0.0)}, {1.0, there}},
       Limits(12, -1.0, {0.2 * kGravity, -40.0, -40.0, -10.0}),
       Limits(12, 1.0, {2.0 * kGravity, 40.0, 40.0, 10.0})));
   return all;
