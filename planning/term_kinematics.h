@@ -14,6 +14,8 @@
 
 namespace touchdown::planning {
 
+using solvers::ValueOf;
+
 /// Three numbers of any scalar type.
 template <class T>
 using Triple = std::array<T, 3>;
@@ -47,13 +49,6 @@ Triple<T> KnotAcceleration(const T* q, const T& h) {
 template <class T>
 T Dot(const Triple<T>& a, const Triple<T>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// The number behind a scalar of any type.
-inline double ValueOf(double x) { return x; }
-template <class S, int n>
-double ValueOf(const solvers::Dual<S, n>& x) {
-  return ValueOf(x.v);
 }
 
 /// x(t) whose value and first two derivatives at ValueOf(t) are given: exact to second order, which

@@ -148,7 +148,7 @@ void FunctionTerm::AddHessian(int window, const double* q, const TermRequest& re
   bends = bends && !request.nominal_curvature;
   if (bends) {
     std::array<Second, kMostVariables> in;
-    for (int i = 0; i < n; ++i) in[i] = Second(First(q[i], i), i);
+    for (int i = 0; i < n; ++i) in[i] = Second(q[i], i);
     functions_.second(in.data(), out.data());
   }
   for (int i = 0; i < n; ++i) {
@@ -157,7 +157,7 @@ void FunctionTerm::AddHessian(int window, const double* q, const TermRequest& re
       for (int c = 0; c < m; ++c) {
         const double* du = &block.du[(window * m + c) * n];
         sum += weight[c] * du[i] * du[j];
-        if (bends && slope[c] != 0.0) sum += slope[c] * out[c].d[i].d[j];
+        if (bends && slope[c] != 0.0) sum += slope[c] * out[c].curvature(i, j);
       }
       const int a = i / d, b = j / d;
       hessian->block(block.first_block[window] + a, b - a)[i % d * d + j % d] += sum;

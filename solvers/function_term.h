@@ -48,8 +48,8 @@ class FunctionTerm : public Term {
                 const TermSums& sums) const override;
 
  private:
-  using First = Dual<double, kMostVariables>;
-  using Second = Dual<First, kMostVariables>;
+  using First = Dual<kMostVariables>;
+  using Second = SecondDual<kMostVariables>;
   struct Functions {
     std::function<void(const double*, double*)> value;
     std::function<void(const First*, First*)> first;

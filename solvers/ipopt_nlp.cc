@@ -212,7 +212,7 @@ bool IpoptNlp::intermediate_callback(Ipopt::AlgorithmMode mode, Index iteration,
   return !ending_;
 }
 
-void IpoptNlp::finalize_solution(Ipopt::SolverReturn /*status*/, Index n, const Number* /*x*/,
+void IpoptNlp::finalize_solution(Ipopt::SolverReturn status, Index n, const Number* x,
                                  const Number* z_L, const Number* z_U, Index /*m*/,
                                  const Number* /*g*/, const Number* lambda, Number /*value*/,
                                  const Ipopt::IpoptData* /*data*/,
@@ -221,6 +221,12 @@ void IpoptNlp::finalize_solution(Ipopt::SolverReturn /*status*/, Index n, const 
   report_.has_multipliers = true;
   for (int i = 0; i < n; ++i) bound_multipliers_[i] = z_U[i] - z_L[i];
   if (view_->free_interval()) bound_multipliers_[n - 1] *= point_.interval_scale();
+  // One on the way here may have cost less by as much as it was off its rows.
+  const bool solved = status == Ipopt::SUCCESS || status == Ipopt::STOP_AT_ACCEPTABLE_POINT;
+  if (solved && !evaluator_->must_stop() && point_.Evaluate(x, false) &&
+      point_.last().full.max_violation < evaluator_->best_violation()) {
+    evaluator_->PreferLast();
+  }
 }
 
 }  // namespace touchdown::solvers

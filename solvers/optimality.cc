@@ -97,7 +97,15 @@ void OptimalityCheck::TakeMultipliers(const SolverResult& told) {
     lambda_[r] = told.bound_multipliers[rows_.column(rows_.start(r))];
   }
   for (int r = 0; r < rows_.size(); ++r) {
-    if (!std::isfinite(lambda_[r]) || !std::isfinite(WayTo(r, lambda_[r]))) lambda_[r] = 0.0;
+    const bool fixed = r >= rows_.first_bound() && rows_.lo(r) == rows_.hi(r);
+    if (fixed || !std::isfinite(lambda_[r]) || !std::isfinite(WayTo(r, lambda_[r]))) {
+      lambda_[r] = 0.0;
+    }
+  }
+  // A fixed variable is none to many backends: its multiplier is what is left there.
+  Residual(lambda_.data());
+  for (int r = rows_.first_bound(); r < rows_.size(); ++r) {
+    if (rows_.lo(r) == rows_.hi(r)) lambda_[r] = -residual_[rows_.column(rows_.start(r))];
   }
 }
 

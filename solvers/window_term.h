@@ -24,7 +24,7 @@
 //
 // twice: it adds sum_c m_c d2u_c to d2, a row-major (v + 1) x (v + 1) matrix with h last, of which
 // the blocks on and above the diagonal are read, those on it whole, and h's column if it is free. Without it
-// nested duals do the same, some ten times slower. A map whose output c depends on coordinate c % d
+// a SecondDual does the same, some times slower, for w d < 64. A map whose output c depends on coordinate c % d
 // of the blocks alone says so with kSeparable = true and has its Hessian summed coordinate by
 // coordinate. Instantiate WindowTerm in one .cc only.
 #pragma once
@@ -138,12 +138,12 @@ class WindowTerm : public Term {
     if constexpr (HasJacobian<Inner>) {
       inner_.Jacobian(w.k, w.q, w.h, w.t, u, du, du_dh);
     } else {
-      using D = Dual<double, kV + 1>;
+      using D = Dual<kV + 1>;
       std::array<D, kV> q_dual;
       for (int i = 0; i < kV; ++i) q_dual[i] = D(w.q[i], i);
       const D h_dual(w.h, kV);
-      D t_dual(w.t);
-      t_dual.d[kV] = w.first;  // t_k = t0 + k h moves with the interval
+      // t_k = t0 + k h moves with the interval.
+      const D t_dual = w.t + w.first * (h_dual - w.h);
       std::array<D, kM> u_dual;
       inner_(w.k, q_dual.data(), h_dual, t_dual, u_dual.data());
       for (int c = 0; c < kM; ++c) {
@@ -270,23 +270,18 @@ class WindowTerm : public Term {
     if constexpr (HasCurvature<Inner>) {
       inner_.Curvature(w.k, w.q, w.h, w.t, w.free_interval, slope, sum);
     } else if constexpr (!Inner::kLinearInBlocks || Inner::kUsesInterval) {
-      using Inside = Dual<double, n>;
-      using Outside = Dual<Inside, n>;
-      std::array<Outside, kV> q_dual;
-      for (int i = 0; i < kV; ++i) q_dual[i] = Outside(Inside(w.q[i], i), i);
-      const Outside h_dual(Inside(w.h, kV), kV);
-      Inside t_inside(w.t);
-      t_inside.d[kV] = w.first;
-      Outside t_dual;
-      t_dual.v = t_inside;
-      t_dual.d[kV] = Inside(static_cast<double>(w.first));
-      std::array<Outside, kM> u;
-      inner_(w.k, q_dual.data(), h_dual, t_dual, u.data());
+      using D = SecondDual<n>;
+      std::array<D, kV> q;
+      for (int i = 0; i < kV; ++i) q[i] = D(w.q[i], i);
+      const D h(w.h, kV);
+      std::array<D, kM> u;
+      inner_(w.k, q.data(), h, w.t + w.first * (h - w.h), u.data());
       for (int c = 0; c < kM; ++c) {
         if (slope[c] == 0.0) continue;
-        for (int i = 0; i < n; ++i) {
-          for (int j = 0; j < n; ++j) sum[i * n + j] += slope[c] * u[c].d[i].d[j];
-        }
+        u[c].ForEachCurvature([&](int i, int j, double curvature) {
+          sum[i * n + j] += slope[c] * curvature;
+          if (i != j) sum[j * n + i] += slope[c] * curvature;
+        });
       }
     }
   }

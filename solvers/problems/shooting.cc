@@ -42,7 +42,7 @@ class Trapezoid {
   // By duals of one block each: the two do not meet in a product.
   void Jacobian(int /*k*/, const double* q, double /*h*/, double /*t*/, double* u, double* du,
                 double* du_dh) const {
-    using D = Dual<double, kBlockSize>;
+    using D = Dual<kBlockSize>;
     std::fill_n(du, kOutputs * 2 * kBlockSize, 0.0);
     std::fill_n(du_dh, kOutputs, 0.0);
     for (int i = 0; i < kStates; ++i) u[i] = q[kBlockSize + i] - q[i];
@@ -62,20 +62,18 @@ class Trapezoid {
 
   void Curvature(int /*k*/, const double* q, double /*h*/, double /*t*/, bool /*free_interval*/,
                  const double* m, double* d2) const {
-    using Inside = Dual<double, kBlockSize>;
-    using Outside = Dual<Inside, kBlockSize>;
+    using D = SecondDual<kBlockSize>;
     constexpr int n = 2 * kBlockSize + 1;
     for (const int first : {0, kBlockSize}) {
-      std::array<Outside, kBlockSize> block;
-      std::array<Outside, kStates> slope;
-      for (int j = 0; j < kBlockSize; ++j) block[j] = Outside(Inside(q[first + j], j), j);
+      std::array<D, kBlockSize> block;
+      std::array<D, kStates> slope;
+      for (int j = 0; j < kBlockSize; ++j) block[j] = D(q[first + j], j);
       motion_(block.data(), block.data() + kStates, slope.data());
       for (int c = 0; c < kStates; ++c) {
-        for (int i = 0; i < kBlockSize; ++i) {
-          for (int j = 0; j < kBlockSize; ++j) {
-            d2[(first + i) * n + first + j] -= 0.5 * dt_ * m[c] * slope[c].d[i].d[j];
-          }
-        }
+        slope[c].ForEachCurvature([&](int i, int j, double curvature) {
+          d2[(first + i) * n + first + j] -= 0.5 * dt_ * m[c] * curvature;
+          if (i != j) d2[(first + j) * n + first + i] -= 0.5 * dt_ * m[c] * curvature;
+        });
       }
     }
   }
