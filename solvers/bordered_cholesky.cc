@@ -17,25 +17,49 @@ namespace {
 
 constexpr int RoundUp(int n) { return (n + 3) / 4 * 4; }
 
-/// Columns of blocks of d scalars, or of single ones of blocks of any size, padded with zeros to `stride` rows.
+/// Columns of blocks of d scalars, padded with zeros to `stride` rows.
 template <int d>
-void LoadColumns(const BorderedBandMatrix& A, double shift, int stride, double* band) {
-  const int size = d == 1 ? A.block_size() : d;
+void LoadBlocks(const BorderedBandMatrix& A, double shift, int stride, double* band) {
   const int n = A.blocks();
   for (int j = 0; j < n; ++j) {
     const int last = std::min(A.half_bandwidth(), n - 1 - j);
-    for (int c = 0; c < size; ++c) {
-      // A scalar band's column starts at its own diagonal element.
-      const int above = d == 1 ? c : 0;
-      double* column = band + static_cast<std::ptrdiff_t>(j * size + c) * stride;
+    for (int c = 0; c < d; ++c) {
+      double* column = band + static_cast<std::ptrdiff_t>(j * d + c) * stride;
       int row = 0;
       for (int k = 0; k <= last; ++k) {
-        const double* block = A.block(j, k) + c * size;
-        for (int r = k == 0 ? above : 0; r < size; ++r) column[row++] = block[r];
+        const double* block = A.block(j, k) + c * d;
+        for (int r = 0; r < d; ++r) column[row++] = block[r];
       }
       for (; row < stride; ++row) column[row] = 0.0;
-      column[c - above] += shift;
+      column[c] += shift;
     }
+  }
+}
+
+/// Columns of scalars in groups of d, each from the first row of its group on; behind them columns of the identity, up to
+/// a whole group.
+void LoadScalars(const BorderedBandMatrix& A, double shift, int d, int stride, double* band) {
+  const int size = A.block_size(), n = A.blocks();
+  for (int j = 0; j < n; ++j) {
+    const int last = std::min(A.half_bandwidth(), n - 1 - j);
+    for (int c = 0; c < size; ++c) {
+      const int at = j * size + c;
+      double* column = band + static_cast<std::ptrdiff_t>(at) * stride;
+      double* const end = column + stride;
+      double* const diagonal = column + at % d;
+      column = std::fill_n(column, at % d, 0.0);
+      for (int k = 0; k <= last; ++k) {
+        const double* block = A.block(j, k) + c * size;
+        column = std::copy(block + (k == 0 ? c : 0), block + size, column);
+      }
+      std::fill(column, end, 0.0);
+      *diagonal += shift;
+    }
+  }
+  for (int at = n * size; at % d != 0; ++at) {
+    double* column = band + static_cast<std::ptrdiff_t>(at) * stride;
+    std::fill_n(column, stride, 0.0);
+    column[at % d] = 1.0;
   }
 }
 
@@ -52,11 +76,16 @@ struct Panels {
     return band + (j * d + c) * kStride;
   }
 
+  static constexpr int group() { return d; }
   static constexpr int stride() { return kStride; }
   static constexpr int pad() { return kPad; }
 
   static void Load(const BorderedBandMatrix& A, double shift, double* band) {
-    LoadColumns<d>(A, shift, kStride, band);
+    if (A.block_size() == d) {
+      LoadBlocks<d>(A, shift, kStride, band);
+    } else {
+      LoadScalars(A, shift, d, kStride, band);
+    }
   }
 
   template <int rows>
@@ -149,15 +178,15 @@ struct Panels {
     }
   }
 
-  static void MultiplyUpper(int n, const double* band, const double* x, double* out) {
-    for (int j = 0; j < n; ++j) {
-      for (int c = 0; c < d; ++c) {
-        const double* column = Column(band, j, c);
-        double sum = x[j * d + c] / column[c];
-        const int rows = std::min(kRows, (n - j) * d);
-        for (int r = c + 1; r < rows; ++r) sum += column[r] * x[j * d + r];
-        out[j * d + c] = sum;
-      }
+  /// `size`: of the matrix, without padding.
+  static void MultiplyUpper(int size, const double* band, const double* x, double* out) {
+    for (int i = 0; i < size; ++i) {
+      const int c = i % d, first = i - c;
+      const double* column = band + static_cast<std::ptrdiff_t>(i) * kStride;
+      double sum = x[i] / column[c];
+      const int rows = std::min(kRows, size - first);
+      for (int r = c + 1; r < rows; ++r) sum += column[r] * x[first + r];
+      out[i] = sum;
     }
   }
 };
@@ -167,11 +196,12 @@ class WideBand {
  public:
   explicit WideBand(int half) : half_(half) {}
 
+  int group() const { return 1; }
   int stride() const { return half_ + 1; }
   int pad() const { return half_ + 1; }
 
   void Load(const BorderedBandMatrix& A, double shift, double* band) const {
-    LoadColumns<1>(A, shift, stride(), band);
+    LoadScalars(A, shift, 1, stride(), band);
   }
 
   bool Factor(int n, double* band) const {
@@ -225,8 +255,8 @@ class WideBand {
   int half_;
 };
 
-/// Calls `visit` with kernels: for blocks of three, or for any other size as a band of scalars, whose half bandwidth is
-/// rounded up to one that is compiled while there is one.
+/// Calls `visit` with kernels: for blocks of three, or for those of any other size as a band of scalars in groups of four,
+/// whose half bandwidth is rounded up to one that is compiled while there is one.
 template <class Visit>
 auto Dispatch(int d, int half, Visit&& visit) {
   if (d == 3) {
@@ -244,9 +274,10 @@ auto Dispatch(int d, int half, Visit&& visit) {
         return visit(Panels<3, 5>());
     }
   }
-  if (half <= 7) return visit(Panels<1, 7>());
-  if (half <= 15) return visit(Panels<1, 15>());
-  if (half <= 31) return visit(Panels<1, 31>());
+  if (half <= 8) return visit(Panels<4, 2>());
+  if (half <= 16) return visit(Panels<4, 4>());
+  if (half <= 24) return visit(Panels<4, 6>());
+  if (half <= 32) return visit(Panels<4, 8>());
   return visit(WideBand(half));
 }
 
@@ -254,13 +285,13 @@ auto Dispatch(int d, int half, Visit&& visit) {
 
 void BorderedCholesky::Prepare(const BorderedBandMatrix& shape) {
   const int size = shape.block_size();
-  d_ = size == 3 ? 3 : 1;
+  d_ = size == 3 ? 3 : 1;  // what half_ counts
   half_ = size == 3 ? shape.half_bandwidth() : size * (shape.half_bandwidth() + 1) - 1;
   n_ = shape.blocks() * size;
-  blocks_ = n_ / d_;
   bordered_ = shape.bordered();
   const auto n = static_cast<std::size_t>(n_);
   Dispatch(d_, half_, [&](auto panels) {
+    blocks_ = (n_ + panels.group() - 1) / panels.group();
     const auto pad = static_cast<std::size_t>(panels.pad());
     band_.assign((n + pad) * static_cast<std::size_t>(panels.stride()), 0.0);
     scratch_.assign(n + pad, 0.0);
@@ -327,7 +358,7 @@ void BorderedCholesky::SolveWithBorder(double* x) const {
 
 void BorderedCholesky::MultiplyUpper(const double* x, double* out) const {
   Dispatch(d_, half_,
-           [&](auto panels) { panels.MultiplyUpper(blocks_, band_.data(), x, out); });
+           [&](auto panels) { panels.MultiplyUpper(n_, band_.data(), x, out); });
   if (!bordered_) return;
   for (int i = 0; i < n_; ++i) out[i] += border_[i] * x[n_];
   out[n_] = corner_ * x[n_];

@@ -260,14 +260,20 @@ Optimality OptimalityCheck::Weigh() {
 /// than what a stationary point may have left: y is a saddle, an inflection, or a maximum along its rows. Rows at a
 /// bound are left where they do not push, or held as well: of opposite ones none need push.
 bool OptimalityCheck::NeighbourCostsLess() {
-  return (SoftestDirection(kPushes) && DescendsAlongIt()) ||
-         (rows_.size() > 0 && SoftestDirection(0.0) && DescendsAlongIt());
+  for (const double pushes : {kPushes, 0.0}) {
+    if (!HoldPushing(pushes) || CurvesUpwards()) return false;  // then with more rows held, too
+    if (SoftestDirection() && DescendsAlongIt()) return true;
+  }
+  return false;
+}
+
+double OptimalityCheck::ClearlyLess() const {
+  return kClearlyLess * std::max(std::abs(cost_), kLeastCost) + kClearlyMore * left_;
 }
 
 /// On one side of y at least.
 bool OptimalityCheck::DescendsAlongIt() {
-  const double value = cost_;
-  const double less = kClearlyLess * std::max(std::abs(value), kLeastCost) + kClearlyMore * left_;
+  const double value = cost_, less = ClearlyLess();
   // To come back to the rows: the shortest way, by the factor of I + weight J^T J.
   for (int r = 0; r < rows_.size(); ++r) {
     const bool there = SideOf(r) != Side::kNone && norm_[r] > 0.0;
@@ -291,17 +297,28 @@ bool OptimalityCheck::DescendsAlongIt() {
   return false;
 }
 
-/// soft_, of largest element 1: by inverse iteration on the Lagrangian's Hessian, with the rows held that push, by this share of the slopes: those
-/// of side_.
-bool OptimalityCheck::SoftestDirection(double pushes) {
-  const double largest = largest_ + std::numeric_limits<double>::min();
-  const double slope = Largest(gradient_) + largest * size_;
+/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes: those of side_.
+bool OptimalityCheck::HoldPushing(double pushes) {
+  const double slope = Largest(gradient_) + largest_ * size_;
   for (int r = 0; r < rows_.size(); ++r) {
     const Side side = SideOf(r);
     const bool held = side == Side::kBoth || std::abs(lambda_[r]) * norm_[r] >= pushes * slope;
     side_[r] = held ? side : Side::kNone;
   }
-  if (!HoldRows(largest) || !Factor(kFirstShift * largest, largest)) return false;
+  return HoldRows(largest_ + std::numeric_limits<double>::min());
+}
+
+/// In all directions that the rows held leave free, so that a neighbour costs more by what counts: y is a minimum.
+bool OptimalityCheck::CurvesUpwards() {
+  const double away = kNeighbour * size_;
+  const double clearly = std::max(kFirstShift * largest_, 2.0 * ClearlyLess() / (away * away));
+  return factor_.Factor(at_->hessian, -clearly, -clearly) == BorderedCholesky::Status::kDefinite;
+}
+
+/// soft_, of largest element 1, by inverse iteration on what HoldPushing evaluated.
+bool OptimalityCheck::SoftestDirection() {
+  const double largest = largest_ + std::numeric_limits<double>::min();
+  if (!Factor(kFirstShift * largest, largest)) return false;
   for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);
   for (int i = 0; i < kInverseIterations; ++i) {
     factor_.Solve(soft_.data());

@@ -39,7 +39,10 @@ class OptimalityCheck {
   bool HoldRows(double curvature);
   bool Factor(double shift, double largest);
   bool NeighbourCostsLess();
-  bool SoftestDirection(double pushes);
+  bool HoldPushing(double pushes);
+  bool CurvesUpwards();
+  bool SoftestDirection();
+  double ClearlyLess() const;
   bool DescendsAlongIt();
   void ReturnToRows();
 

@@ -230,6 +230,7 @@ class WindowTerm : public Term {
       const double* du = &block.du[(w.k * kM + c) * kV];
       for (int i = 0; i < kV; ++i) {
         const double left = weight[c] * du[i];
+        if (left == 0.0) continue;  // rows of many variables depend on few of them
         // From the row's own block on: the block diagonal is stored whole.
         for (int j = i / kD * kD; j < kV; ++j) sum[i * n + j] += left * du[j];
       }
