@@ -33,6 +33,7 @@ constexpr double kClearlyMore = 10.0;  // than what the conditions leave
 constexpr double kNeighbourViolation = 1e-10;
 constexpr int kMostCorrections = 40;  // a row and its opposite go half the way each time
 constexpr int kInverseIterations = 40;  // a shift may be ten times what it need be
+constexpr int kFewInverseIterations = 5;
 constexpr double kPushes = 1e-6;  // multiplier of a row, share of the slopes
 
 }  // namespace
@@ -261,8 +262,10 @@ Optimality OptimalityCheck::Weigh() {
 /// bound are left where they do not push, or held as well: of opposite ones none need push.
 bool OptimalityCheck::NeighbourCostsLess() {
   for (const double pushes : {kPushes, 0.0}) {
-    if (!HoldPushing(pushes) || CurvesUpwards()) return false;  // then with more rows held, too
-    if (SoftestDirection() && DescendsAlongIt()) return true;
+    if (!HoldPushing(pushes)) return false;
+    const bool upwards = CurvesUpwards();
+    if (SoftestDirection(upwards) && DescendsAlongIt()) return true;
+    if (upwards) return false;  // and so with more rows held
   }
   return false;
 }
@@ -308,19 +311,19 @@ bool OptimalityCheck::HoldPushing(double pushes) {
   return HoldRows(largest_ + std::numeric_limits<double>::min());
 }
 
-/// In all directions that the rows held leave free, so that a neighbour costs more by what counts: y is a minimum.
+/// In all directions that the rows held leave free, by what counts at a neighbour: y is a minimum, but where higher orders win.
 bool OptimalityCheck::CurvesUpwards() {
   const double away = kNeighbour * size_;
   const double clearly = std::max(kFirstShift * largest_, 2.0 * ClearlyLess() / (away * away));
   return factor_.Factor(at_->hessian, -clearly, -clearly) == BorderedCholesky::Status::kDefinite;
 }
 
-/// soft_, of largest element 1, by inverse iteration on what HoldPushing evaluated.
-bool OptimalityCheck::SoftestDirection() {
+/// soft_, of largest element 1, by inverse iteration on what HoldPushing evaluated, or CurvesUpwards factored.
+bool OptimalityCheck::SoftestDirection(bool factored) {
   const double largest = largest_ + std::numeric_limits<double>::min();
-  if (!Factor(kFirstShift * largest, largest)) return false;
+  if (!factored && !Factor(kFirstShift * largest, largest)) return false;
   for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);
-  for (int i = 0; i < kInverseIterations; ++i) {
+  for (int i = 0; i < (factored ? kFewInverseIterations : kInverseIterations); ++i) {
     factor_.Solve(soft_.data());
     const double scale = Largest(soft_);
     if (!(scale > 0.0) || !std::isfinite(scale)) return false;

@@ -41,7 +41,7 @@ class OptimalityCheck {
   bool NeighbourCostsLess();
   bool HoldPushing(double pushes);
   bool CurvesUpwards();
-  bool SoftestDirection();
+  bool SoftestDirection(bool factored);
   double ClearlyLess() const;
   bool DescendsAlongIt();
   void ReturnToRows();
