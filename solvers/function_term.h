@@ -29,8 +29,8 @@ struct FunctionShape {
 /// ten times slower than a WindowTerm of the same size.
 class FunctionTerm : public Term {
  public:
-  static constexpr int kMostVariables = 10;  ///< w d
-  static constexpr int kMostOutputs = 10;    ///< m
+  static constexpr int kMostVariables = 32;  ///< w d
+  static constexpr int kMostOutputs = 32;    ///< m
   using Loss = std::variant<SquareLoss, HingeLoss, RangeLoss, LinearLoss>;
 
   /// Throws std::invalid_argument on a size out of range.

@@ -5,6 +5,7 @@
 #include "touchdown/solvers/loss.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -49,6 +50,8 @@ RangeLoss::RangeLoss(LossBounds bounds, double weight, double width)
     throw std::invalid_argument("RangeLoss: bounds are [" + std::to_string(bounds.lo) + ", " +
                                 std::to_string(bounds.hi) + "], they must satisfy lo <= hi");
   }
+  if (bounds.lo <= -kNoBound) bounds_.lo = -std::numeric_limits<double>::infinity();
+  if (bounds.hi >= kNoBound) bounds_.hi = std::numeric_limits<double>::infinity();
 }
 
 LossValue RangeLoss::Value(double u) const {

@@ -24,6 +24,9 @@ struct LossResidual {
   double dr = 0.0;
 };
 
+/// A bound that is at least so large is none: people write 1e20 or 1e30 for it.
+inline constexpr double kNoBound = 1e19;
+
 /// Interval of u that a loss is zero on: the hard constraint it softens.
 struct LossBounds {
   double lo = -std::numeric_limits<double>::infinity();
@@ -73,7 +76,7 @@ class HingeLoss {
 };
 
 /// A hinge on either side of an interval: zero for lo <= u <= hi, HingeLoss of what is beyond. A bound may be
-/// infinite; lo = hi is an equality where the term is made hard.
+/// infinite, or kNoBound and more; lo = hi is an equality where the term is made hard.
 class RangeLoss {
  public:
   static constexpr bool kQuadratic = false;

@@ -60,6 +60,8 @@ void Problem::SetBounds(std::vector<double> lower, std::vector<double> upper) {
   }
   lower_ = std::move(lower);
   upper_ = std::move(upper);
+  for (double& bound : lower_) bound = bound <= -kNoBound ? -kInfinity : bound;
+  for (double& bound : upper_) bound = bound >= kNoBound ? kInfinity : bound;
 }
 
 bool Problem::convex() const {

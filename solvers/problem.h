@@ -67,7 +67,7 @@ class Problem {
   /// problem, or the bounds of its rows are not lo <= hi.
   void AddTerm(std::shared_ptr<const Term> term, Role role);
 
-  /// Bounds lower <= x <= upper of the blocks, N x d numbers each, infinite where there is none: for
+  /// Bounds lower <= x <= upper of the blocks, N x d numbers each, infinite (or beyond kNoBound) where there is none: for
   /// backends that keep them without rows (Capabilities). Throws std::invalid_argument on another size, or
   /// where they are not lower <= upper.
   void SetBounds(std::vector<double> lower, std::vector<double> upper);

@@ -38,6 +38,9 @@ class View {
  public:
   /// Throws std::invalid_argument if the lift does not fit the problem.
   View(const Problem& problem, AffineLift lift);
+  /// The problem in its own variables.
+  explicit View(const Problem& problem)
+      : View(problem, AffineLift::Identity(problem.shape().blocks)) {}
 
   const Problem& problem() const { return *problem_; }
   const AffineLift& lift() const { return lift_; }

@@ -166,5 +166,16 @@ TEST(VariableBounds, BandedDoesNotAllocate) {
   EXPECT_EQ(AllocationCount() - before, 0);
 }
 
+TEST(VariableBounds, WhatIsBeyondAnyNumberIsNone) {
+  Problem problem({.blocks = 1, .block_size = 2});
+  problem.SetBounds({-1e30, -2.0}, {3.0, 1e20});
+  EXPECT_TRUE(std::isinf(problem.lower(0)) && std::isinf(problem.upper(1)));
+  EXPECT_EQ(problem.lower(1), -2.0);
+  const LossBounds bounds = RangeLoss({-1e30, 1.5}, 1.0, 1.0).bounds();
+  EXPECT_TRUE(std::isinf(bounds.lo));
+  EXPECT_EQ(bounds.hi, 1.5);
+  EXPECT_THROW(problem.SetBounds({1e30, 0.0}, {1e20, 0.0}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace touchdown::solvers

@@ -24,7 +24,7 @@ endfunction()
 
 function(build source name)
   run(0 ${CMAKE_COMMAND} -S "${source}" -B "${WORK_DIR}/${name}" -G Ninja
-      "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DEXAMPLES=${EXAMPLES}")
+      "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DEXAMPLES=${EXAMPLES}" ${ARGN})
   run(0 ${CMAKE_COMMAND} --build "${WORK_DIR}/${name}")
 endfunction()
 
@@ -62,6 +62,21 @@ foreach(i RANGE ${last})
   run(1,2 ${own} ${fly} --set terms.reach.hard=true)
   if(status EQUAL 2 AND NOT errors MATCHES "backend ${backend} .*constraint")
     message(FATAL_ERROR "${backend} refuses rows without a reason: ${errors}")
+  endif()
+endforeach()
+
+# The solvers alone, though nothing else can be found.
+set(lone -DCMAKE_DISABLE_FIND_PACKAGE_octomap=ON -DCMAKE_DISABLE_FIND_PACKAGE_apriltag=ON
+         -DCMAKE_DISABLE_FIND_PACKAGE_mujoco=ON -DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON)
+build("${EXAMPLES}/own_problem" own_problem ${lone})
+foreach(i RANGE ${last})
+  string(JSON backend GET "${backends}" ${i} name)
+  if(NOT backend MATCHES "^(banded|ipopt)$")
+    continue()
+  endif()
+  run(0 "${WORK_DIR}/own_problem/own_problem" ${backend})
+  if(NOT output MATCHES "^converged, cost 76\\.")
+    message(FATAL_ERROR "own_problem with ${backend}: ${output}")
   endif()
 endforeach()
 
