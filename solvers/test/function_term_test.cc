@@ -70,7 +70,7 @@ TEST(FunctionTerm, RefusesSizesOutOfRange) {
     return FunctionTerm(TermInfo{"a"}, shape, SquareLoss(1.0), kFunction);
   };
   EXPECT_NO_THROW(make(kShape));
-  EXPECT_THROW(make({.block_size = 11, .outputs = 2}), std::invalid_argument);
+  EXPECT_THROW(make({.block_size = 33, .outputs = 2}), std::invalid_argument);
   EXPECT_THROW(make({.block_size = 4, .outputs = 0}), std::invalid_argument);
   EXPECT_THROW(make({.block_size = 4, .outputs = 2, .first = -1}), std::invalid_argument);
 }
