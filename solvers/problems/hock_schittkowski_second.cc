@@ -199,6 +199,9 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Other(2.0));
   all->push_back(SmallProblem("HS46", {std::sqrt(0.5), 1.75, 0.5, 2.0, 2.0}, 0.0, form)
                      .Other(0.0210889286)
+                     .Other(3.95024704)
+                     .Other(105.7193328)
+                     .Other(109.0850755)
                      .Squares(4, kFlat)
                      .Zero(2, [](const auto* x, auto* u) {
                        using std::sin;

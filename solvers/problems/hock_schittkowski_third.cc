@@ -138,6 +138,9 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                                   })
                      .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS77", {2.0, 2.0, 2.0, 2.0, 2.0}, 0.24150513, form)
+                     .Other(4.602561512)
+                     .Other(5.533357279)
+                     .Other(9.908760197)
                      .Squares(5,
                               [](const auto* x, auto* u) {
                                 u[0] = x[0] - 1.0;
@@ -153,10 +156,13 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                      }));
   all->push_back(SmallProblem("HS78", {-2.0, 1.5, 2.0, -1.0, -1.0}, -2.91970041, form)
                      .Other(-0.823594835)
+                     .Other(0.0)  // with x3 = x5 = 0, where x1 > 0
                      .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[1] * x[2] * x[3] * x[4]; })
                      .Zero(3, kSurfaces));
   all->push_back(SmallProblem("HS79", {2.0, 2.0, 2.0, 2.0, 2.0}, 0.0787768209, form)
                      .Other(13.9668249)
+                     .Other(27.45200407)
+                     .Other(27.52196145)
                      .Squares(5,
                               [](const auto* x, auto* u) {
                                 u[0] = x[0] - 1.0;
