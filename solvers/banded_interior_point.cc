@@ -549,8 +549,11 @@ void BandedInteriorPoint::StartRows(const ViewEvaluation& at,
   if (has_equalities_) cost = std::max(cost, curvature_ * PointSize() * PointSize());
   const double mu = kFirstMu * cost / std::max(active_, 1);
   for (const Side& side : sides_) {
-    const bool known = static_cast<int>(multipliers.size()) > side.term &&
-                       static_cast<int>(multipliers[side.term].size()) >= side.rows;
+    const auto tells = [&](int term) {
+      return term < terms_ && term < static_cast<int>(multipliers.size()) &&
+             static_cast<int>(multipliers[term].size()) >= side.rows;
+    };
+    const bool known = tells(side.term) && (!side.merged || tells(sides_[side.opposite].term));
     for (int j = 0; j < side.rows; ++j) {
       const int i = side.first + j;
       if (side.equality) {

@@ -28,6 +28,7 @@ constexpr double kRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 // Of neighbours.
 constexpr double kNeighbour = 1e-2;  // so far away, share of the point's size
+constexpr double kNearest = 1e-8;      // where the cost does not rise, down to this
 constexpr double kClearlyLess = 1e-8;  // share of the cost, or of kLeastCost
 constexpr double kClearlyMore = 10.0;  // than what the conditions leave
 constexpr double kNeighbourViolation = 1e-10;
@@ -264,7 +265,7 @@ bool OptimalityCheck::NeighbourCostsLess() {
   for (const double pushes : {kPushes, 0.0}) {
     if (!HoldPushing(pushes)) return false;
     const bool upwards = CurvesUpwards();
-    if (SoftestDirection(upwards) && DescendsAlongIt()) return true;
+    if (SoftestDirection(upwards) && DescendsAlongIt(upwards)) return true;
     if (upwards) return false;  // and so with more rows held
   }
   return false;
@@ -275,7 +276,7 @@ double OptimalityCheck::ClearlyLess() const {
 }
 
 /// On one side of y at least.
-bool OptimalityCheck::DescendsAlongIt() {
+bool OptimalityCheck::DescendsAlongIt(bool upwards) {
   const double value = cost_, less = ClearlyLess();
   // To come back to the rows: the shortest way, by the factor of I + weight J^T J.
   for (int r = 0; r < rows_.size(); ++r) {
@@ -284,17 +285,21 @@ bool OptimalityCheck::DescendsAlongIt() {
   }
   if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
   if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
-  for (const double sign : {1.0, -1.0}) {
-    for (std::size_t i = 0; i < near_.size(); ++i) {
-      near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * kNeighbour * size_ * soft_[i];
-    }
-    for (int i = 0; i < kMostCorrections; ++i) {
-      if (!view_->Evaluate(near_.data(), {}, {}, at_)) break;
-      rows_.Values(*at_, u_near_.data());
-      const bool keeps = Violation(u_near_) <= kNeighbourViolation;
-      if (keeps && at_->full.value < value - less) return true;
-      if (keeps) break;
-      ReturnToRows();
+  // The cost may have scales of its own, shorter than the point's size.
+  for (double away = kNeighbour; away >= (upwards ? kNeighbour : kNearest); away *= 0.1) {
+    for (const double sign : {away, -away}) {
+      for (std::size_t i = 0; i < near_.size(); ++i) {
+        near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * size_ * soft_[i];
+      }
+      for (int i = 0; i < kMostCorrections; ++i) {
+        view_->MoveIntoBounds(near_.data());
+        if (!view_->Evaluate(near_.data(), {}, {}, at_)) break;
+        rows_.Values(*at_, u_near_.data());
+        const bool keeps = Violation(u_near_) <= kNeighbourViolation;
+        if (keeps && at_->full.value < value - less) return true;
+        if (keeps) break;
+        ReturnToRows();
+      }
     }
   }
   return false;

@@ -43,7 +43,7 @@ class OptimalityCheck {
   bool CurvesUpwards();
   bool SoftestDirection(bool factored);
   double ClearlyLess() const;
-  bool DescendsAlongIt();
+  bool DescendsAlongIt(bool upwards);
   void ReturnToRows();
 
   const View* view_ = nullptr;

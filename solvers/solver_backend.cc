@@ -144,7 +144,8 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->native_status = 0;
   if (n == 0) {
     evaluator_.Evaluate(warm.y.data(), {});  // all is eliminated: nothing to choose
-    result->status = SolveStatus::kConverged;
+    const bool feasible = evaluator_.best_violation() <= Evaluator::kFeasible;
+    result->status = feasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
   } else {
     DoSolve(view, warm, stop, &evaluator_, result);
   }

@@ -219,6 +219,17 @@ TEST_P(ClaimsOfEveryBackend, EvaluationsCountAgainstTheBudget) {
   }
 }
 
+TEST_P(ClaimsOfEveryBackend, ASaddleBesideALargeVariableIsNoOptimum) {
+  const ReferenceProblem valleys =
+      SmallProblem("valleys", {103.0, 0.0}, 0.0, EqualityForm::kRows)
+          .Squares(2, [](const auto* x, auto* u) {
+            u[0] = x[0] - 100.0;
+            u[1] = 4.0 * (x[1] * x[1] - 0.25);
+          });
+  const SolverResult result = SolveReference(valleys);
+  EXPECT_FALSE(result.status == SolveStatus::kConverged && result.cost > 1e-6) << result.cost;
+}
+
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ClaimsOfEveryBackend);
 INSTANTIATE_TEST_SUITE_P(Backends, ClaimsOfEveryBackend, ::testing::ValuesIn(CompiledBackends()),
                          TestName);
