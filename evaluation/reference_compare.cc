@@ -51,7 +51,7 @@ class Contest {
   Contest(const ReferenceOptions& options, const ReferenceProblem& problem)
       : options_(options),
         problem_(problem),
-        view_(*problem.problem, solvers::AffineLift::Identity(problem.problem->shape().blocks)) {}
+        view_(*problem.problem) {}
 
   void Ask(const solvers::BackendEntry& entry) {
     ReferenceCell cell{.problem = problem_.name, .backend = entry.name};

@@ -46,9 +46,9 @@ class BorderedCholesky {
   void SolveBandLower(double* x) const;
   void SolveBandUpper(double* x) const;
 
-  // Scalars of B, in blocks of `d_`: 3, or 1 with the band widened.
+  // B, by its half bandwidth in blocks of `d_` scalars: 3, or 1 with the band widened.
   int d_ = 3;
-  int blocks_ = 0;
+  int blocks_ = 0;  // groups of columns in the kernels
   int half_ = 0;
   int n_ = 0;
   bool bordered_ = false;

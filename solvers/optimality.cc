@@ -266,7 +266,7 @@ bool OptimalityCheck::NeighbourCostsLess() {
     if (!HoldPushing(pushes)) return false;
     const bool upwards = CurvesUpwards();
     if (SoftestDirection(upwards) && DescendsAlongIt(upwards)) return true;
-    if (upwards) return false;  // and so with more rows held
+    if (upwards || rows_.size() == 0) return false;  // with more rows held it is no other
   }
   return false;
 }

@@ -36,7 +36,7 @@ Problem WithEqualities(int n, Cost cost, int outputs, Rows rows) {
 
 SolverResult SolveFrom(const Problem& problem, const Eigen::VectorXd& start,
                        const std::string& backend = "banded") {
-  const View view(problem, AffineLift::Identity(problem.shape().blocks));
+  const View view(problem);
   const auto solver = MakeBackend(StandardBackends(), backend);
   solver->Prepare(view);
   SolverResult result;

@@ -13,7 +13,7 @@ TEST_P(EveryRowBackend, ConstrainedProblemsHaveTheirKnownOptima) {
   int solved = 0, confirmed = 0;
   for (const StandardProblem& standard : ConstrainedProblems()) {
     SCOPED_TRACE(standard.name);
-    const View view(*standard.problem, AffineLift::Identity(standard.problem->shape().blocks));
+    const View view(*standard.problem);
     auto backend = Make();
     if (!backend->Refusal(view).empty()) continue;
     ++solved;

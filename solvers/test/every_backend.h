@@ -20,7 +20,7 @@ class EveryBackend : public ::testing::TestWithParam<std::string> {
   }
 
   SolverResult Solve(const Problem& problem, const Eigen::VectorXd& warm, const Stop& stop = {}) {
-    const View view(problem, AffineLift::Identity(problem.shape().blocks));
+    const View view(problem);
     auto backend = Make();
     backend->Prepare(view);
     SolverResult result;

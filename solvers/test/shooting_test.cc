@@ -14,7 +14,7 @@ namespace touchdown::solvers {
 namespace {
 
 SolverResult Solve(const ReferenceProblem& p, SolverBackend* backend) {
-  const View view(*p.problem, AffineLift::Identity(p.problem->shape().blocks));
+  const View view(*p.problem);
   backend->Prepare(view);
   SolverResult result;
   backend->Solve(view, WarmStart(p.start), {.max_iterations = 300}, &result);
@@ -40,7 +40,7 @@ TEST(ShootingProblems, BandedAndIpoptMeetAtTheSameOptimum) {
 
 TEST(ShootingProblems, DerivativesAreRight) {
   for (const ReferenceProblem& p : ShootingProblems()) {
-    const View view(*p.problem, AffineLift::Identity(p.problem->shape().blocks));
+    const View view(*p.problem);
     Eigen::VectorXd y = p.start;
     for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += 0.1 * std::sin(7.0 * static_cast<double>(i));
     ViewEvaluation at, near;

@@ -44,7 +44,7 @@ class BoundsOfEveryBackend : public EveryBackend {
  protected:
   /// The result, or nothing where the backend takes no bounds and says so.
   bool SolveReference(const ReferenceProblem& p, SolverResult* result, const Stop& stop = {}) {
-    const View view(*p.problem, AffineLift::Identity(p.problem->shape().blocks));
+    const View view(*p.problem);
     auto backend = Make();
     if (!backend->capabilities().variable_bounds) {
       EXPECT_EQ(backend->Refusal(view),
