@@ -21,6 +21,8 @@ constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortestStep = 1e-10;
 /// Below this share of the cost a decrease is rounding.
 constexpr double kRounding = 1e-15;
+/// What was gained counts for this share of the cost at least.
+constexpr double kLeastShare = 1e-6;
 
 double Dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -47,11 +49,16 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     const ViewEvaluation& at = evaluator->last();
     gradient_ = at.gradient;
     const double value = at.full.value;
+    if (Largest(gradient_) == 0.0) return SolveStatus::kConverged;
     if (!FactorDefinite(at.hessian, &factor_)) return SolveStatus::kNumericalFailure;
     NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
     const double slope = Dot(gradient_, step_);
     const double scale = std::max(std::abs(value), kSmallestCost);
-    if (-0.5 * slope <= tolerances.gap * scale) return SolveStatus::kConverged;
+    // Of the cost; of what was gained, where a constant in the cost must not end the solve.
+    const double gained = std::abs(evaluator->first_cost() - value);
+    const double whole =
+        tolerances.of_gain ? std::clamp(gained, kLeastShare * scale, scale) : scale;
+    if (-0.5 * slope <= tolerances.gap * whole) return SolveStatus::kConverged;
     const double length = LineSearch(value, slope, full_step, evaluator);
     full_step = length == 1.0;
     if (length == 0.0) {

@@ -14,7 +14,8 @@ class BandedNewton {
   /// `gap`: ends when half the Newton decrement, the expected distance to the optimum, falls below
   /// this share of the cost.
   struct Tolerances {
-    double gap = 1e-9;
+    double gap = 1e-9;     ///< expected decrease, share of the cost
+    bool of_gain = false;  ///< or of what was gained, where that is less
   };
 
   void Prepare(const View& view);

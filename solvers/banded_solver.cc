@@ -48,14 +48,13 @@ class BandedSolver : public SolverBackend {
   void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
                SolverResult* result) override {
     const ShareScope scope(evaluator, Share::kNative);
-    const double gap = options().Get("gap_tolerance");
+    const double gap = (stop.confirm ? kConfirmedShare : 1.0) * options().Get("gap_tolerance");
     if (!has_rows_) {
-      result->status = newton_.Run(view, warm.y.data(), {gap}, evaluator);
+      result->status = newton_.Run(view, warm.y.data(), {gap, stop.confirm}, evaluator);
       return;
     }
     result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
-                                         {stop.confirm ? kConfirmedShare * gap : gap,
-                                          options().Get("violation_tolerance"), stop.confirm},
+                                         {gap, options().Get("violation_tolerance"), stop.confirm},
                                          evaluator);
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
     for (int i = 0; i < view.problem().num_terms(); ++i) {

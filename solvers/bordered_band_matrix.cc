@@ -72,6 +72,22 @@ void BorderedBandMatrix::Multiply(const double* in, double* out) const {
   out[n] += corner_ * in[n];
 }
 
+void BorderedBandMatrix::Scale(const double* d) {
+  for (int i = 0; i < blocks_; ++i) {
+    const int last = std::min(half_, blocks_ - 1 - i);
+    for (int k = 0; k <= last; ++k) {
+      double* a = block(i, k);
+      for (int r = 0; r < d_; ++r) {
+        for (int s = 0; s < d_; ++s) a[r * d_ + s] *= d[i * d_ + r] * d[(i + k) * d_ + s];
+      }
+    }
+  }
+  if (!bordered_) return;
+  const double at_corner = d[blocks_ * d_];
+  for (int i = 0; i < blocks_ * d_; ++i) border_[i] *= d[i] * at_corner;
+  corner_ *= at_corner * at_corner;
+}
+
 double BorderedBandMatrix::At(int row, int column) const {
   if (row > column) std::swap(row, column);
   const int n = blocks_ * d_;

@@ -36,6 +36,9 @@ class BorderedBandMatrix {
     return bordered_ && i == blocks_ * d_ ? corner_ : block(i / d_, 0)[i % d_ * (d_ + 1)];
   }
 
+  /// A becomes D A D, with D = diag(d), of size(). Does not allocate.
+  void Scale(const double* d);
+
   /// out = A in, both of size(). Does not allocate.
   void Multiply(const double* in, double* out) const;
 

@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+#include "touchdown/solvers/quiet_glog.h"
 #include "touchdown/solvers/whitened_point.h"
 
 namespace touchdown::solvers {
@@ -33,8 +34,10 @@ class WhitenedObjective : public ceres::FirstOrderFunction {
     if (evaluator_->must_stop()) return false;  // ends the line search at once
     if (!point_->Evaluate(z, gradient != nullptr)) return false;
     *cost = point_->value();
-    if (gradient) point_->Gradient(gradient);
-    return true;
+    if (!gradient) return true;
+    point_->Gradient(gradient);
+    // The metric or the interval's angle may overflow; Ceres ends the process on what is not finite.
+    return std::all_of(gradient, gradient + point_->size(), [](double g) { return std::isfinite(g); });
   }
 
  private:
@@ -123,6 +126,7 @@ class CeresLbfgs : public SolverBackend {
       std::copy(point_.z(), point_.z() + point_.size(), z_.begin());
       watch.BeginLeg(legs);
       const ShareScope scope(evaluator, Share::kNative);
+      const QuietGlog quiet;
       ceres::Solve(solver, problem, z_.data(), &summary);
       if (!watch.leg_over() || evaluator->must_stop()) break;
       point_.RenewMetric(view, z_.data());

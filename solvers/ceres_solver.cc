@@ -17,6 +17,8 @@
 #include <limits>
 #include <vector>
 
+#include "touchdown/solvers/quiet_glog.h"
+
 namespace touchdown::solvers {
 
 namespace {
@@ -234,6 +236,7 @@ class CeresSolver : public SolverBackend {
     ceres::Solver::Summary summary;
     bool held = false, more = false;
     for (int round = 0; round < kMostRounds; ++round) {
+      const QuietGlog quiet;
       ceres::Solve(solver, &problem, &summary);
       watch.Finish();
       more = ChangeHold(view, evaluator, &held, &problem);

@@ -25,7 +25,8 @@ void Evaluator::Begin(const View& view, const Stop& stop) {
   failed_ = false;
   stop_status_ = SolveStatus::kConverged;
   has_best_ = false;
-  best_cost_ = best_violation_ = 0.0;
+  best_cost_ = first_cost_ = best_violation_ = 0.0;
+  std::fill(best_cost_by_term_.begin(), best_cost_by_term_.end(), 0.0);
   storage_.HoldParameters();
   trace_.clear();
   shares_ = {};

@@ -38,6 +38,7 @@ constexpr double kStationary = 1e-9;
 /// the 33 rows of a landing at 20 points one solve in fifteen took longer than 0.5 s, at 40 points
 /// two in three did.
 constexpr int kMostCcsaqRows = 20;
+constexpr int kMostDualEvaluations = 1000;  // of a step of CCSAQ
 
 struct Method {
   const char* name;
@@ -97,6 +98,8 @@ class NloptSolver : public SolverBackend {
     nlopt_destroy(opt_);
     opt_ = nlopt_create(method_.algorithm, static_cast<unsigned>(n));
     nlopt_set_min_objective(opt_, &NloptSolver::Objective, this);
+    // CCSAQ's dual problem asks nobody; where rows pinch each other it would never end.
+    nlopt_set_param(opt_, "dual_maxeval", kMostDualEvaluations);
   }
 
   void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The KKT conditions at one point. What a residual of the Lagrangian's gradient is worth is told by its Hessian,
+// The KKT conditions at one point, in variables that are each over their own size, 1 + |y_i|. What a residual of the Lagrangian's gradient is worth is told by its Hessian,
 // for a backend's multipliers without the rows' weights: a metric with large weights is blind to what lies across the rows. Multipliers
 // are estimated as the least squares of that residual over the rows at their bounds, without those of the wrong sign: across
 // the rows that are kept nothing is left then, and weights hold them.
@@ -17,17 +17,17 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kAtBound = 1e-5;   // way of a row to its bound, share of the point's size
+constexpr double kAtBound = 1e-5;   // way of a row to its bound, along its slope
 constexpr double kRowWeight = 1e8;  // beside the identity, of rows that are to be kept
 constexpr int kRefinements = 3;
-constexpr double kLeastCurvature = 1e-8;  // of a cost's slope over the point's size
+constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
 constexpr double kFirstShift = 1e-6;      // of the largest element
 constexpr double kShiftGrowth = 10.0;
 constexpr int kMostShifts = 16;
 constexpr double kRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 // Of neighbours.
-constexpr double kNeighbour = 1e-2;  // so far away, share of the point's size
+constexpr double kNeighbour = 1e-2;  // so far away
 constexpr double kNearest = 1e-8;      // where the cost does not rise, down to this
 constexpr double kClearlyLess = 1e-8;  // share of the cost, or of kLeastCost
 constexpr double kClearlyMore = 10.0;  // than what the conditions leave
@@ -46,7 +46,7 @@ void OptimalityCheck::Prepare(const View& view) {
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   factor_.Prepare(shape);
-  for (auto* vector : {&gradient_, &residual_, &step_, &soft_, &near_}) vector->assign(n, 0.0);
+  for (auto* vector : {&size_, &gradient_, &residual_, &step_, &soft_, &near_}) vector->assign(n, 0.0);
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
   row_weights_.assign(by_term_.size(), {});
@@ -60,14 +60,34 @@ void OptimalityCheck::Prepare(const View& view) {
 
 Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
                                  const SolverResult& told, double first_cost,
-                                 ViewEvaluation* storage) {
+                                 const MustStop& must_stop, ViewEvaluation* storage) {
+  first_cost_ = first_cost;
+  Optimality found;
+  if (Begin(view, y, must_stop, storage)) {
+    TakeMultipliers(told);
+    found = Weigh();
+    if (rows_.size() > 0 && !found.stationary() && Estimate()) {
+      const Optimality estimated = Weigh();
+      if (estimated.stationary() || !found.evaluated) found = estimated;
+    }
+    if (found.feasible() && found.stationary()) found.saddle = NeighbourCostsLess();
+  }
+  found.evaluations = evaluations_;
+  return found;
+}
+
+bool OptimalityCheck::Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
+                            ViewEvaluation* storage) {
   view_ = &view;
   y_ = &y;
+  must_stop_ = &must_stop;
   at_ = storage;
-  first_cost_ = first_cost;
-  size_ = 1.0 + y.lpNorm<Eigen::Infinity>();
-  if (!view.Evaluate(y.data(), {.gradient = true}, {}, at_)) return {};
-  gradient_ = at_->gradient;
+  evaluations_ = 0;
+  if (!Evaluate(y.data(), {.gradient = true}, {})) return false;
+  for (std::size_t i = 0; i < size_.size(); ++i) {
+    size_[i] = 1.0 + std::abs(y[static_cast<Eigen::Index>(i)]);
+    gradient_[i] = size_[i] * at_->gradient[i];
+  }
   rows_.Set(view, *at_);
   const auto m = static_cast<std::size_t>(rows_.size());
   for (auto* vector : {&u_, &u_near_, &norm_, &lambda_, &weight_}) vector->assign(m, 0.0);
@@ -76,18 +96,20 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
   rows_.Jacobian(*at_, jacobian_.data());
   for (int r = 0; r < rows_.size(); ++r) {
     double sum = 0.0;
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) sum += jacobian_[k] * jacobian_[k];
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      jacobian_[k] *= size_[rows_.column(k)];
+      sum += jacobian_[k] * jacobian_[k];
+    }
     norm_[r] = std::sqrt(sum);
   }
   side_.assign(m, Side::kNone);
-  TakeMultipliers(told);
-  Optimality found = Weigh();
-  if (m > 0 && !found.stationary() && Estimate()) {
-    const Optimality estimated = Weigh();
-    if (estimated.stationary() || !found.evaluated) found = estimated;
-  }
-  if (found.feasible() && found.stationary()) found.saddle = NeighbourCostsLess();
-  return found;
+  return true;
+}
+
+bool OptimalityCheck::Evaluate(const double* y, Want want, const Lagrangian& lagrangian) {
+  if (*must_stop_ && (*must_stop_)()) return false;
+  ++evaluations_;
+  return view_->Evaluate(y, want, lagrangian, at_);
 }
 
 /// Multipliers that are not told, or that no bound can have, are 0.
@@ -107,7 +129,7 @@ void OptimalityCheck::TakeMultipliers(const SolverResult& told) {
   // A fixed variable is none to many backends: its multiplier is what is left there.
   Residual(lambda_.data());
   for (int r = rows_.first_bound(); r < rows_.size(); ++r) {
-    if (rows_.lo(r) == rows_.hi(r)) lambda_[r] = -residual_[rows_.column(rows_.start(r))];
+    if (rows_.lo(r) == rows_.hi(r)) lambda_[r] = -residual_[rows_.column(rows_.start(r))] / norm_[r];
   }
 }
 
@@ -117,24 +139,62 @@ double OptimalityCheck::WayTo(int row, double multiplier) const {
                            : std::abs(u_[row] - (multiplier > 0.0 ? rows_.hi(row) : rows_.lo(row)));
 }
 
-/// Of rows of these values, by the slopes at y.
-double OptimalityCheck::Violation(const std::vector<double>& u) const {
-  double worst = 0.0;
-  for (int r = 0; r < rows_.size(); ++r) {
-    const double beyond = std::max(rows_.lo(r) - u[r], u[r] - rows_.hi(r));
-    const double bound = u[r] > rows_.hi(r) ? rows_.hi(r) : rows_.lo(r);
-    if (beyond <= kRounding * std::abs(bound)) continue;
-    worst = std::max(worst, beyond / (norm_[r] * size_));
-  }
-  const bool constant = rows_.constant_violation() > Optimality::kFeasible;
-  return constant ? std::numeric_limits<double>::infinity() : worst;
+/// How far the value u of a row is beyond its upper bound or, negative, its lower one; 0 where that is rounding.
+double OptimalityCheck::Beyond(int row, double u) const {
+  const double bound = u > rows_.hi(row) ? rows_.hi(row) : rows_.lo(row);
+  const bool between = u >= rows_.lo(row) && u <= rows_.hi(row);
+  return between || std::abs(u - bound) <= kRounding * std::abs(bound) ? 0.0 : u - bound;
 }
 
+/// Of rows of these values, by the slopes at y.
+double OptimalityCheck::Violation(const std::vector<double>& u) const {
+  if (rows_.constant_violation() > Optimality::kFeasible) {
+    return std::numeric_limits<double>::infinity();
+  }
+  double worst = 0.0;
+  for (int r = 0; r < rows_.size(); ++r) {
+    const double beyond = std::abs(Beyond(r, u[r]));
+    if (beyond > 0.0) worst = std::max(worst, beyond / norm_[r]);
+  }
+  return worst;
+}
+
+/// The nearer one, where it is near.
 OptimalityCheck::Side OptimalityCheck::SideOf(int row) const {
   if (rows_.lo(row) == rows_.hi(row)) return Side::kBoth;
-  const double near = kAtBound * norm_[row] * size_;
-  if (u_[row] >= rows_.hi(row) - near) return Side::kUpper;
-  return u_[row] <= rows_.lo(row) + near ? Side::kLower : Side::kNone;
+  const double to_upper = rows_.hi(row) - u_[row], to_lower = u_[row] - rows_.lo(row);
+  if (std::min(to_upper, to_lower) > kAtBound * norm_[row]) return Side::kNone;
+  return to_upper <= to_lower ? Side::kUpper : Side::kLower;
+}
+
+bool OptimalityCheck::CanGetCloser(const View& view, const Eigen::VectorXd& y,
+                                   const MustStop& must_stop, ViewEvaluation* storage) {
+  if (!Begin(view, y, must_stop, storage) || !std::isfinite(Violation(u_))) return false;
+  // The least squares of what rows are off, those at their bounds held.
+  for (int r = 0; r < rows_.size(); ++r) {
+    const bool counts = SideOf(r) != Side::kNone && norm_[r] > 0.0;
+    weight_[r] = counts ? kRowWeight / (norm_[r] * norm_[r]) : 0.0;
+  }
+  if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
+  if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
+  std::fill(step_.begin(), step_.end(), 0.0);
+  for (int r = 0; r < rows_.size(); ++r) {
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * Beyond(r, u_[r]);
+    }
+  }
+  factor_.Solve(step_.data());
+  double before = 0.0, after = 0.0;
+  for (int r = 0; r < rows_.size(); ++r) {
+    if (weight_[r] == 0.0) continue;
+    double off = Beyond(r, u_[r]);
+    before = std::max(before, std::abs(off) / norm_[r]);
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      off += jacobian_[k] * step_[rows_.column(k)];
+    }
+    after = std::max(after, std::abs(off) / norm_[r]);
+  }
+  return Largest(step_) <= 1.0 && after <= 0.5 * before;
 }
 
 /// H of cost_factor x cost + multipliers x rows, and weight x J^T J.
@@ -147,12 +207,11 @@ bool OptimalityCheck::EvaluateHessian(const double* multipliers, const double* w
                        weights ? weights_by_term_[i].data() : nullptr};
   }
   const Lagrangian lagrangian{.objective_factor = cost_factor, .rows = row_weights_.data()};
-  if (!view_->Evaluate(y_->data(), {.gradient = true, .hessian = true}, lagrangian, at_)) {
-    return false;
-  }
+  if (!Evaluate(y_->data(), {.gradient = true, .hessian = true}, lagrangian)) return false;
   for (int r = rows_.first_bound(); r < rows_.size() && weights; ++r) {
     at_->hessian.Diagonal(rows_.column(rows_.start(r))) += weights[r];
   }
+  at_->hessian.Scale(size_.data());
   return true;
 }
 
@@ -238,10 +297,15 @@ Optimality OptimalityCheck::Weigh() {
   for (std::size_t i = 0; i < residual_.size(); ++i) {
     slope = std::max(slope, std::abs(residual_[i] - gradient_[i]));
   }
-  for (int r = 0; r < rows_.size(); ++r) gap += std::abs(lambda_[r]) * WayTo(r, lambda_[r]);
+  double loose = 0.0;  // of rows that are not at their bound to what counts as feasible
+  for (int r = 0; r < rows_.size(); ++r) {
+    const double way = WayTo(r, lambda_[r]);
+    gap += std::abs(lambda_[r]) * way;
+    if (way > Optimality::kFeasible * norm_[r]) loose += std::abs(lambda_[r]) * way;
+  }
   const double gained = std::abs(first_cost_ - at_->full.value);
-  const double cost_size = std::max({gained, slope * size_, std::numeric_limits<double>::min()});
-  const double least = kLeastCurvature * slope / size_ + std::numeric_limits<double>::min();
+  const double cost_size = std::max({gained, slope, std::numeric_limits<double>::min()});
+  const double least = kLeastCurvature * slope + std::numeric_limits<double>::min();
   step_ = residual_;
   const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
   if (holds && !HoldRows(std::max(largest, least))) return {};
@@ -249,10 +313,11 @@ Optimality OptimalityCheck::Weigh() {
   factor_.Solve(step_.data());
   double promised = 0.0;
   for (std::size_t i = 0; i < step_.size(); ++i) promised += 0.5 * residual_[i] * step_[i];
-  out.step = Largest(step_) / size_;
+  out.step = Largest(step_);
   out.gain = promised / cost_size;
-  out.left = promised / std::max(std::abs(at_->full.value), kLeastCost);
-  out.gap = gap / cost_size;
+  const double value = std::max(std::abs(at_->full.value), kLeastCost);
+  out.left = promised / value;
+  out.gap = std::max(gap / cost_size, loose / value);
   left_ = promised + gap;
   cost_ = at_->full.value;
   return out;
@@ -289,11 +354,11 @@ bool OptimalityCheck::DescendsAlongIt(bool upwards) {
   for (double away = kNeighbour; away >= (upwards ? kNeighbour : kNearest); away *= 0.1) {
     for (const double sign : {away, -away}) {
       for (std::size_t i = 0; i < near_.size(); ++i) {
-        near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * size_ * soft_[i];
+        near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * size_[i] * soft_[i];
       }
       for (int i = 0; i < kMostCorrections; ++i) {
         view_->MoveIntoBounds(near_.data());
-        if (!view_->Evaluate(near_.data(), {}, {}, at_)) break;
+        if (!Evaluate(near_.data(), {}, {})) break;
         rows_.Values(*at_, u_near_.data());
         const bool keeps = Violation(u_near_) <= kNeighbourViolation;
         if (keeps && at_->full.value < value - less) return true;
@@ -307,7 +372,7 @@ bool OptimalityCheck::DescendsAlongIt(bool upwards) {
 
 /// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes: those of side_.
 bool OptimalityCheck::HoldPushing(double pushes) {
-  const double slope = Largest(gradient_) + largest_ * size_;
+  const double slope = Largest(gradient_) + largest_;
   for (int r = 0; r < rows_.size(); ++r) {
     const Side side = SideOf(r);
     const bool held = side == Side::kBoth || std::abs(lambda_[r]) * norm_[r] >= pushes * slope;
@@ -318,8 +383,8 @@ bool OptimalityCheck::HoldPushing(double pushes) {
 
 /// In all directions that the rows held leave free, by what counts at a neighbour: y is a minimum, but where higher orders win.
 bool OptimalityCheck::CurvesUpwards() {
-  const double away = kNeighbour * size_;
-  const double clearly = std::max(kFirstShift * largest_, 2.0 * ClearlyLess() / (away * away));
+  const double clearly =
+      std::max(kFirstShift * largest_, 2.0 * ClearlyLess() / (kNeighbour * kNeighbour));
   return factor_.Factor(at_->hessian, -clearly, -clearly) == BorderedCholesky::Status::kDefinite;
 }
 
@@ -351,7 +416,7 @@ void OptimalityCheck::ReturnToRows() {
     }
   }
   factor_.Solve(step_.data());
-  for (std::size_t i = 0; i < near_.size(); ++i) near_[i] += step_[i];
+  for (std::size_t i = 0; i < near_.size(); ++i) near_[i] += size_[i] * step_[i];
 }
 
 }  // namespace touchdown::solvers

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,23 +16,35 @@ namespace touchdown::solvers {
 /// Judges the points that backends return, whatever they say of them.
 class OptimalityCheck {
  public:
+  using MustStop = std::function<bool()>;
+
   /// Allocates for views of this structure.
   void Prepare(const View& view);
 
   /// Looks at y. `told` has the backend's multipliers, or none: where they do not make the point stationary, they are
   /// estimated from the rows and variables at their bounds. `first_cost`: where the solve began.
-  /// `storage` was sized by the view, and is overwritten. Does not allocate.
+  /// `storage` was sized by the view, and is overwritten. Asks `must_stop` before every evaluation, and ends with what it
+  /// has where the answer is yes. Does not allocate.
   Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
-                  double first_cost, ViewEvaluation* storage);
+                  double first_cost, const MustStop& must_stop, ViewEvaluation* storage);
+
+  /// By the slopes of the rows, a step no longer than y is large meets them twice as well: where a backend says that
+  /// they cannot be met, it only gave up.
+  bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
+                    ViewEvaluation* storage);
 
  private:
   /// At which of its bounds a row is, by its multiplier's sign.
   enum class Side : signed char { kLower = -1, kNone = 0, kUpper = 1, kBoth = 2 };
 
+  bool Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
+             ViewEvaluation* storage);
+  bool Evaluate(const double* y, Want want, const Lagrangian& lagrangian);
   void TakeMultipliers(const SolverResult& told);
   bool Estimate();
   Optimality Weigh();
   double Violation(const std::vector<double>& u) const;
+  double Beyond(int row, double u) const;
   double WayTo(int row, double multiplier) const;
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
@@ -48,14 +61,16 @@ class OptimalityCheck {
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;
+  const MustStop* must_stop_ = nullptr;
   ViewEvaluation* at_ = nullptr;
+  int evaluations_ = 0;
   double first_cost_ = 0.0;
-  double size_ = 1.0;
   double cost_ = 0.0;
   double left_ = 0.0;     // of the cost, by the conditions
   double largest_ = 0.0;  // element of the Lagrangian's Hessian
   ConstraintRows rows_;  // bounds among them
   BorderedCholesky factor_;
+  std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
   std::vector<double> gradient_, residual_, step_, soft_, near_;
   std::vector<double> u_, u_near_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;

@@ -19,10 +19,11 @@ Problem::Problem(const ProblemShape& shape) : shape_(shape) {
     throw std::invalid_argument("Problem: " + std::to_string(shape.blocks) + " blocks of " +
                                 std::to_string(shape.block_size) + " scalars, both must be >= 1");
   }
-  if (!(shape.interval_min > 0.0 && shape.interval_max >= shape.interval_min)) {
+  if (!(shape.interval_min > 0.0 && shape.interval_max >= shape.interval_min &&
+        std::isfinite(shape.interval_max))) {
     throw std::invalid_argument("Problem: interval bounds [" + std::to_string(shape.interval_min) +
                                 ", " + std::to_string(shape.interval_max) +
-                                "], they must satisfy 0 < min <= max");
+                                "], they must satisfy 0 < min <= max, both finite");
   }
 }
 

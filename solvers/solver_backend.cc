@@ -153,7 +153,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
 
   result->optimality = {};
-  if (n > 0 && stop.confirm && result->status == SolveStatus::kConverged) Judge(view, result);
+  if (n > 0 && stop.confirm) Judge(view, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();
@@ -172,19 +172,32 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   result->cpu_s = ThreadCpuSeconds() - cpu_start;
 }
 
-/// What becomes of a backend's claim to have converged.
+/// What becomes of a backend's word.
 void SolverBackend::Judge(const View& view, SolverResult* result) {
+  SolveStatus* status = &result->status;
+  const double first = evaluator_.first_cost(), best = evaluator_.best_cost();
+  if (evaluator_.best_violation() <= Evaluator::kFeasible &&
+      best < -kEndless * (1.0 + std::abs(first))) {
+    *status = SolveStatus::kUnbounded;
+  }
+  if (*status != SolveStatus::kConverged && *status != SolveStatus::kInfeasible) return;
   const ShareScope scope(&evaluator_, Share::kEvaluation);
-  const double first = evaluator_.first_cost();
+  const auto must_stop = [this] { return evaluator_.CheckStop(); };
+  if (*status == SolveStatus::kInfeasible) {
+    const bool closer =
+        check_.CanGetCloser(view, evaluator_.best(), must_stop, evaluator_.mutable_last());
+    if (closer) *status = SolveStatus::kNumericalFailure;
+    return;
+  }
   result->optimality =
-      check_.Look(view, evaluator_.best(), *result, first, evaluator_.mutable_last());
+      check_.Look(view, evaluator_.best(), *result, first, must_stop, evaluator_.mutable_last());
   const Optimality& at = result->optimality;
-  if (evaluator_.best_cost() < -kEndless * (1.0 + std::abs(first))) {
-    result->status = SolveStatus::kUnbounded;
+  if (evaluator_.must_stop()) {
+    *status = evaluator_.stop_status();
   } else if (!at.feasible() || !at.stationary()) {
-    result->status = SolveStatus::kUnconfirmed;
+    *status = SolveStatus::kUnconfirmed;
   } else if (at.saddle) {
-    result->status = SolveStatus::kSaddle;
+    *status = SolveStatus::kSaddle;
   }
 }
 

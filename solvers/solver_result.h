@@ -17,7 +17,7 @@ enum class SolveStatus {
   kTimeLimit,         ///< the wall-clock deadline passed
   kStopped,           ///< the caller's callback asked to stop
   kUnconfirmed,       ///< the backend says converged, and the check does not find it so
-  kSaddle,            ///< stationary, but the cost falls on both sides: no minimum
+  kSaddle,            ///< stationary, but a point near that keeps all rows costs less: no minimum
   kUnbounded,         ///< the cost seems to fall without end
   kInfeasible,        ///< constraints cannot be met from here, or so it seems
   kEvaluationFailed,  ///< a term returned NaN or threw
@@ -61,29 +61,34 @@ struct WarmStart {
   std::vector<std::vector<double>> multipliers;
 };
 
-/// What the conditions of Karush, Kuhn and Tucker say of a point. The numbers do not change with a constant in
-/// the cost, with a factor of the cost or of a row, or with the unit of all variables where these are large
-/// beside 1: a point is as large as its largest variable, and 1 at least; a cost is as large as what
-/// the solve has gained, and as its slope times the point's size.
+/// What the conditions of Karush, Kuhn and Tucker say of a point y. Lengths are measured with each variable over its own
+/// size, 1 + |y_i|; the cost's size is what the solve has gained, or its slope where that is more. So they do not
+/// change with a factor of a row, or with the unit of a variable that is large beside 1. A constant in the cost changes
+/// `left` alone, and so does a factor of a cost whose optimum is near 0.
 struct Optimality {
   bool evaluated = false;  ///< false: a term or its derivatives are not finite there
-  double violation = 0.0;  ///< way to the bound of the worst row along its slope, share of the point's size
-  double step = 0.0;       ///< Newton's, of the Lagrangian, share of the point's size
+  double violation = 0.0;  ///< way to the bound of the worst row along its slope
+  double step = 0.0;       ///< Newton's, of the Lagrangian
   double gain = 0.0;       ///< what it promises, share of the cost's size
   double left = 0.0;       ///< the same, share of the cost's value, or of 0.1 where that is less
-  double gap = 0.0;        ///< multipliers times the way to their bounds, share of the cost's size
+  /// Multipliers times the way to their bounds, share of the cost's size; and of its value, or of 0.1, of those
+  /// rows that are farther from their bound than what counts as feasible.
+  double gap = 0.0;
   /// A point near that keeps all rows costs less, by more than what may be left.
   bool saddle = false;
+  int evaluations = 0;  ///< that the check took; they are not among the solve's
 
   bool feasible() const { return evaluated && violation <= kFeasible; }
   bool stationary() const {
-    return evaluated && (step <= kStep || (gain <= kGain && left <= kLeft)) && gap <= kGap;
+    const bool near = step <= kStep && left <= kMostLeft;
+    return evaluated && (near || (gain <= kGain && left <= kLeft)) && gap <= kGap;
   }
 
   static constexpr double kFeasible = 1e-6;
   static constexpr double kStep = 1e-6;
   static constexpr double kGain = 1e-8;
   static constexpr double kLeft = 1e-7;
+  static constexpr double kMostLeft = 1e-3;  // far out a small share of a variable is a long way
   static constexpr double kGap = 1e-7;  // rows that are met to kFeasible leave as much
 };
 

@@ -91,6 +91,8 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
   all->push_back(
       SmallProblem("HS71", {1.0, 5.0, 5.0, 1.0}, 17.0140173, form)
           .Other(32.9443868)
+          .Other(30.6969385)
+          .Other(27.1464282)
           .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[3] * (x[0] + x[1] + x[2]) + x[2]; })
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = x[0] * x[1] * x[2] * x[3] - 25.0; })
           .Zero(1,

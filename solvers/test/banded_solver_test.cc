@@ -12,6 +12,8 @@
 #include <type_traits>
 
 #include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/problems/reference_problem.h"
+#include "touchdown/solvers/solve.h"
 #include "touchdown/solvers/test/test_terms.h"
 #include "touchdown/solvers/window_term.h"
 
@@ -175,6 +177,25 @@ TEST(BandedSolver, ConvergesWhereTheCostIsZero) {
                   &result);
     EXPECT_EQ(result.status, SolveStatus::kConverged) << start;
     EXPECT_LT(result.cost, 1e-12);
+  }
+}
+
+TEST(BandedSolver, AConstantInTheCostChangesNothing) {
+  for (const double constant : {0.0, 5.0, 1e8}) {
+    for (const double factor : {0.0, 1e-12, 1.0}) {
+      const ReferenceProblem p =
+          SmallProblem("rosenbrock", {-1.2, 1.0}, constant, EqualityForm::kRows)
+              .Cost([=](const auto* x, auto* u) {
+                const auto a = x[1] - x[0] * x[0], b = 1.0 - x[0];
+                u[0] = factor * (100.0 * a * a + b * b) + constant;
+              });
+      if (constant > 0.0 && factor == 1e-12) continue;  // it is below the constant's last digit
+      const SolverResult result = solvers::Solve(*p.problem, p.start);
+      EXPECT_EQ(result.status, SolveStatus::kConverged) << constant << " " << factor;
+      if (factor > 0.0) {
+        EXPECT_NEAR(result.x[0], 1.0, 1e-3) << constant << " " << factor;
+      }
+    }
   }
 }
 

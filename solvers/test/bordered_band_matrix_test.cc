@@ -24,5 +24,22 @@ TEST(BorderedBandMatrix, AnswersForTheWholeSymmetricMatrix) {
   EXPECT_EQ(m.At(2, 5), 0.0);
 }
 
+TEST(BorderedBandMatrix, ScalesRowsAndColumns) {
+  BorderedBandMatrix m;
+  m.Resize(4, 2, 1, true);
+  const std::vector<double> d = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0};
+  m.block(1, 0)[3] = 1.0;
+  m.block(1, 1)[1] = 1.0;
+  m.block(3, 0)[0] = 1.0;
+  m.border()[3] = 1.0;
+  m.corner() = 1.0;
+  m.Scale(d.data());
+  EXPECT_EQ(m.At(3, 3), 16.0);
+  EXPECT_EQ(m.At(2, 5), 18.0);
+  EXPECT_EQ(m.At(6, 6), 49.0);
+  EXPECT_EQ(m.At(8, 3), 36.0);
+  EXPECT_EQ(m.At(8, 8), 81.0);
+}
+
 }  // namespace
 }  // namespace touchdown::solvers

@@ -51,6 +51,18 @@ TEST(Evaluator, WhileNothingIsFeasibleKeepsTheLeastViolation) {
   EXPECT_NEAR(evaluator.best_violation(), 0.5, 1e-12);
 }
 
+TEST(Evaluator, AnEarlierSolveLeavesNoCosts) {
+  Bounded b;
+  const Stop stop;
+  Evaluator evaluator = b.Begin(stop);
+  const double x = 0.9;
+  ASSERT_TRUE(evaluator.Evaluate(&x, {}));
+  EXPECT_GT(evaluator.best_cost_by_term()[0], 0.0);
+  evaluator.Begin(*b.view, stop);
+  EXPECT_EQ(evaluator.best_cost_by_term()[0], 0.0);
+  EXPECT_EQ(evaluator.first_cost(), 0.0);
+}
+
 TEST(Evaluator, AnswersARepeatedQuestionFromItsCache) {
   Bounded b;
   const Stop stop;

@@ -22,6 +22,13 @@ TEST(Problem, RefusesTermsThatDoNotFit) {
                std::invalid_argument);
 }
 
+TEST(Problem, RefusesAnIntervalWithoutEnd) {
+  const double endless = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(
+      Problem({.blocks = 1, .block_size = 1, .interval_min = 0.1, .interval_max = endless}),
+      std::invalid_argument);
+}
+
 TEST(Problem, AWindowOutsideTheProblemIsAnEvaluationThatFails) {
   class Stray : public WavyMap {
    public:
