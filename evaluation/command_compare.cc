@@ -2,6 +2,7 @@
 // touchdown compare: solver backends on the same random landing problems, or on sets of known ones.
 #include <algorithm>
 #include <charconv>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -17,6 +18,7 @@
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/reference_compare.h"
+#include "touchdown/evaluation/reference_table.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/sim/forest.h"
 
@@ -78,24 +80,40 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   return settings;
 }
 
+MachineState BeginTiming(std::optional<int> pin) {
+  MachineState machine;
+  machine.pinned = pin;
+  if (pin) PinToCpu(*pin);
+  machine.load_before = LoadAverage();
+  return machine;
+}
+
+/// The table and the picture that are asked for.
+void Keep(const CompareArguments& arguments,
+          void (*draw)(const std::string& table, const std::string& picture),
+          const std::function<void(const std::string& path)>& write) {
+  if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, draw);
+}
+
 int CompareReferences(CompareArguments arguments, const Registries& registries) {
-  for (const std::string& path : {arguments.db, arguments.picture}) {
-    if (!path.empty()) {
-      throw BadInput(fmt::format("--problem-set {}: it writes no file; use --json.", arguments.problem_set));
-    }
-  }
   ReferenceOptions& options = arguments.references;
   options.set = arguments.problem_set;
   options.backends = arguments.options.backends;
   options.seed = arguments.options.cases.seed;
-  if (arguments.pin) PinToCpu(*arguments.pin);
+  CheckOutputs(arguments.db, arguments.picture);
+  MachineState machine = BeginTiming(arguments.pin);
   const ReferenceResult result =
       RunReferences(options, registries.backends, Progress({.things = "problems"}));
+  machine.load_after = LoadAverage();
   if (arguments.json) {
     std::cout << ReferenceJson(options, result).dump(2) << std::endl;
   } else {
     std::cout << ReferenceText(options, result) << std::flush;
   }
+  Keep(arguments, DrawProblemSet, [&](const std::string& path) {
+    WriteReferenceTable(path, options, result, machine);
+  });
   return kDone;
 }
 
@@ -117,10 +135,7 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   problem.endpoint = arguments.endpoint == "explicit" ? planning::EndpointMode::kExplicit
                                                       : planning::EndpointMode::kEliminated;
   CheckOutputs(arguments.db, arguments.picture);
-  MachineState machine;
-  machine.pinned = arguments.pin;
-  if (arguments.pin) PinToCpu(*arguments.pin);
-  machine.load_before = LoadAverage();
+  MachineState machine = BeginTiming(arguments.pin);
   const CompareResult result =
       RunCompare(options, registries.backends, Progress({.things = "problems"}));
   machine.load_after = LoadAverage();
@@ -129,13 +144,9 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   } else {
     std::cout << CompareText(options, result) << std::flush;
   }
-  const auto write = [&](const std::string& path) {
+  Keep(arguments, DrawComparison, [&](const std::string& path) {
     WriteCompareTable(path, options, result, machine);
-  };
-  if (!arguments.db.empty()) write(arguments.db);
-  if (!arguments.picture.empty()) {
-    DrawFrom(arguments.db, arguments.picture, write, DrawComparison);
-  }
+  });
   return kDone;
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -41,64 +41,51 @@ Eigen::VectorXd Start(const ReferenceOptions& options, const ReferenceProblem& p
   return start;
 }
 
-struct Claim {
-  bool converged = false;
-  double cost = 0.0;
-};
-
 class Contest {
  public:
   Contest(const ReferenceOptions& options, const ReferenceProblem& problem)
-      : options_(options),
-        problem_(problem),
-        view_(*problem.problem) {}
+      : options_(options), problem_(problem), view_(*problem.problem) {}
 
   void Ask(const solvers::BackendEntry& entry) {
     ReferenceCell cell{.problem = problem_.name, .backend = entry.name};
-    std::vector<Claim> claims;
     const auto backend = entry.make();
     cell.refusal = backend->Refusal(view_);
     if (cell.refusal.empty()) {
       backend->Prepare(view_);
-      for (int i = 0; i < options_.starts; ++i) claims.push_back(Solve(backend.get(), i, &cell));
+      for (int i = 0; i < options_.starts; ++i) cell.solves.push_back(Solve(backend.get(), i));
     }
     cells_.push_back(std::move(cell));
-    claims_.push_back(std::move(claims));
   }
 
   /// After all were asked: the optimum may be the best that anybody found.
   std::vector<ReferenceCell> Judge() {
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      for (const Claim& claim : claims_[i]) {
-        if (!claim.converged) {
-          ++cells_[i].unclaimed;
-        } else {
-          ++(Known(claim.cost) ? cells_[i].right : cells_[i].elsewhere);
-        }
-      }
+    for (ReferenceCell& cell : cells_) {
+      for (ReferenceSolve& solve : cell.solves) solve.verdict = Of(solve.summary);
     }
     return std::move(cells_);
   }
 
+  double optimum() const { return std::isnan(problem_.cost) ? best_ : problem_.cost; }
+
  private:
-  Claim Solve(solvers::SolverBackend* backend, int index, ReferenceCell* cell) {
+  ReferenceSolve Solve(solvers::SolverBackend* backend, int index) {
     solvers::Stop stop;
     stop.max_iterations = options_.max_iterations;
     stop.wall_limit_s = options_.most_seconds;
     SolverResult result;
     backend->Solve(view_, solvers::WarmStart(Start(options_, problem_, index)), stop, &result);
-    cell->cpu_ms.push_back(1e3 * result.cpu_s);
-    const bool converged = result.status == SolveStatus::kConverged;
-    if (converged && result.max_violation <= kFeasible) best_ = std::min(best_, result.cost);
-    // A claim at a point that is not feasible is one of no optimum.
-    const bool feasible = result.max_violation <= kFeasible;
-    return {converged, feasible ? result.cost : std::numeric_limits<double>::quiet_NaN()};
+    const bool claimed = result.status == SolveStatus::kConverged;
+    if (claimed && result.max_violation <= kFeasible) best_ = std::min(best_, result.cost);
+    return {.start = index, .summary = result};
   }
 
-  bool Known(double cost) const {
+  /// A claim at a point that is not feasible is one of no optimum.
+  Verdict Of(const solvers::SolverSummary& summary) const {
+    if (summary.status != SolveStatus::kConverged) return Verdict::kNotClaimed;
     ReferenceProblem judged = problem_;
-    if (std::isnan(judged.cost)) judged.cost = best_;
-    return judged.Off(cost) <= kRight;
+    judged.cost = optimum();
+    const bool known = judged.Off(summary.cost) <= kRight;
+    return known && summary.max_violation <= kFeasible ? Verdict::kRight : Verdict::kElsewhere;
   }
 
   const ReferenceOptions& options_;
@@ -106,11 +93,16 @@ class Contest {
   solvers::View view_;
   double best_ = std::numeric_limits<double>::infinity();
   std::vector<ReferenceCell> cells_;
-  std::vector<std::vector<Claim>> claims_;
 };
 
+std::vector<double> CpuTimes(const ReferenceCell& cell) {
+  std::vector<double> ms;
+  for (const ReferenceSolve& solve : cell.solves) ms.push_back(1e3 * solve.summary.cpu_s);
+  return ms;
+}
+
 struct Total {
-  int right = 0, elsewhere = 0, unclaimed = 0, refused = 0, problems = 0;
+  int right = 0, elsewhere = 0, unclaimed = 0, refused = 0;
   std::vector<double> cpu_ms;
 
   int solves() const { return right + elsewhere + unclaimed; }
@@ -120,12 +112,11 @@ Total TotalOf(const ReferenceResult& result, const std::string& backend) {
   Total total;
   for (const ReferenceCell& cell : result.cells) {
     if (cell.backend != backend) continue;
-    ++total.problems;
-    total.right += cell.right;
-    total.elsewhere += cell.elsewhere;
-    total.unclaimed += cell.unclaimed;
+    total.right += cell.Count(Verdict::kRight);
+    total.elsewhere += cell.Count(Verdict::kElsewhere);
+    total.unclaimed += cell.Count(Verdict::kNotClaimed);
     total.refused += cell.refusal.empty() ? 0 : 1;
-    total.cpu_ms.insert(total.cpu_ms.end(), cell.cpu_ms.begin(), cell.cpu_ms.end());
+    for (const double ms : CpuTimes(cell)) total.cpu_ms.push_back(ms);
   }
   return total;
 }
@@ -133,6 +124,24 @@ Total TotalOf(const ReferenceResult& result, const std::string& backend) {
 std::string Milliseconds(std::optional<double> ms) { return ms ? fmt::format("{:.3g}", *ms) : "-"; }
 
 }  // namespace
+
+const char* ToString(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kRight:
+      return "right";
+    case Verdict::kElsewhere:
+      return "elsewhere";
+    case Verdict::kNotClaimed:
+      return "not_claimed";
+  }
+  return "unknown";
+}
+
+int ReferenceCell::Count(Verdict verdict) const {
+  return static_cast<int>(
+      std::count_if(solves.begin(), solves.end(),
+                    [verdict](const ReferenceSolve& solve) { return solve.verdict == verdict; }));
+}
 
 ReferenceResult RunReferences(const ReferenceOptions& options,
                               const solvers::BackendRegistry& registry,
@@ -149,6 +158,7 @@ ReferenceResult RunReferences(const ReferenceOptions& options,
           asked.empty() || std::find(asked.begin(), asked.end(), entry.name) != asked.end();
       if (wanted && entry.make()->capabilities().compiled) contest.Ask(entry);
     }
+    result.optima.push_back(contest.optimum());
     for (ReferenceCell& cell : contest.Judge()) {
       if (result.problems.size() == 1) result.backends.push_back(cell.backend);
       result.cells.push_back(std::move(cell));
@@ -183,8 +193,9 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
     text += fmt::format("  {:<22}", problem);
     for (std::size_t b = 0; b < result.backends.size(); ++b) {
       const ReferenceCell& cell = result.cells[at++];
-      std::string of_cell = cell.refusal.empty() ? fmt::format("{}", cell.right) : "-";
-      if (cell.elsewhere > 0) of_cell += fmt::format(" {}!", cell.elsewhere);
+      std::string of_cell = cell.refusal.empty() ? std::to_string(cell.Count(Verdict::kRight)) : "-";
+      const int others = cell.Count(Verdict::kElsewhere);
+      if (others > 0) of_cell += fmt::format(" {}!", others);
       text += fmt::format("{:>14}", of_cell);
     }
     text += "\n";
@@ -199,12 +210,12 @@ nlohmann::ordered_json ReferenceJson(const ReferenceOptions& options,
             {"seed", options.seed},       {"max_iterations", options.max_iterations},
             {"published", result.published}, {"cells", Json::array()}};
   for (const ReferenceCell& cell : result.cells) {
-    const std::optional<double> median = Quantile(cell.cpu_ms, 0.5);
+    const std::optional<double> median = Quantile(CpuTimes(cell), 0.5);
     Json of_cell{{"problem", cell.problem},
                  {"backend", cell.backend},
-                 {"right", cell.right},
-                 {"elsewhere", cell.elsewhere},
-                 {"unclaimed", cell.unclaimed},
+                 {"right", cell.Count(Verdict::kRight)},
+                 {"elsewhere", cell.Count(Verdict::kElsewhere)},
+                 {"unclaimed", cell.Count(Verdict::kNotClaimed)},
                  {"median_ms", median ? Json(*median) : Json()}};
     if (!cell.refusal.empty()) of_cell["refusal"] = cell.refusal;
     json["cells"].push_back(std::move(of_cell));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "touchdown/solvers/backend_registry.h"
+#include "touchdown/solvers/solver_result.h"
 
 namespace touchdown::evaluation {
 
@@ -22,19 +23,34 @@ struct ReferenceOptions {
   double most_seconds = 10.0;  ///< wall time of a solve
 };
 
+/// What a solve came to, judged by the optima that are known.
+enum class Verdict {
+  kRight,       ///< converged to one, within 1e-6
+  kElsewhere,   ///< converged to another point: a false claim, where all optima are published
+  kNotClaimed,  ///< did not say that it had converged
+};
+const char* ToString(Verdict verdict);
+
+/// One backend on one problem from one start.
+struct ReferenceSolve {
+  int start = 0;  ///< 0: the published one
+  solvers::SolverSummary summary;
+  Verdict verdict = Verdict::kNotClaimed;
+};
+
 /// One backend on one problem, from all starts.
 struct ReferenceCell {
   std::string problem, backend;
   std::string refusal;  ///< not empty: it was not asked
-  int right = 0;        ///< converged to a known optimum, within 1e-6
-  int elsewhere = 0;    ///< converged to another point: a false claim, where all optima are published
-  int unclaimed = 0;    ///< did not say that it had converged
-  std::vector<double> cpu_ms;
+  std::vector<ReferenceSolve> solves;
+
+  int Count(Verdict verdict) const;
 };
 
 struct ReferenceResult {
   bool published = true;  ///< else the best cost of all solves is the optimum
   std::vector<std::string> problems, backends;
+  std::vector<double> optima;        ///< [problem], the best known cost
   std::vector<ReferenceCell> cells;  ///< [problem][backend]
 };
 

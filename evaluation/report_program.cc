@@ -103,6 +103,10 @@ void DrawComparison(const std::string& table_path, const std::string& picture_pa
   Draw("touchdown_report.compare", "--picture", table_path, picture_path);
 }
 
+void DrawProblemSet(const std::string& table_path, const std::string& picture_path) {
+  Draw("touchdown_report.problem_set", "--picture", table_path, picture_path);
+}
+
 void DrawGrowth(const std::string& table_path, const std::string& picture_path) {
   Draw("touchdown_report.growth", "--picture", table_path, picture_path);
 }

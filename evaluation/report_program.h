@@ -20,6 +20,9 @@ void DrawLanding(const std::string& record_path, const std::string& picture_path
 /// Draws the pictures of a comparison's table (compare_table.h). @throws as DrawLanding
 void DrawComparison(const std::string& table_path, const std::string& picture_path);
 
+/// Draws the picture of a comparison on a set of known problems (reference_table.h). @throws as DrawLanding
+void DrawProblemSet(const std::string& table_path, const std::string& picture_path);
+
 /// Draws the picture of a replanning study's part growth (replan_report.h). @throws as DrawLanding
 void DrawGrowth(const std::string& table_path, const std::string& picture_path);
 
