@@ -242,7 +242,7 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     // A metric with a shift is blind.
     const bool stationary = errors.dual <= tolerances.gap &&
                             (shift == 0.0 || Largest(right_) <= kRounding * steepest);
-    if (errors.gap <= tolerances.gap && errors.worth <= tolerances.gap && stationary && errors.primal <= Evaluator::kFeasible &&
+    if (errors.gap <= tolerances.gap && errors.worth <= tolerances.gap && stationary &&
         (errors.row <= tolerances.violation ||
          (mode.elastic && LargestMultiplier(0.0) > 0.5 * price_))) {
       // An earlier point may cost less by what it violates within the tolerance. One that costs much less
@@ -379,10 +379,10 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
     // Rows that were the same at the start have to be so in the end.
     if (side.merged) errors.row = std::max(errors.row, at.full.max_violation);
     for (int i = side.first; i < side.first + side.rows; ++i) {
-      if (!HasSlack(side)) errors.worth += std::abs(now_.z[i] * g_[i]) / cost;
       errors.row = std::max(errors.row, side.equality ? std::abs(g_[i]) : g_[i]);
-      errors.primal =
-          std::max(errors.primal, std::abs(g_[i] + now_.s[i] - (Elastic(side) ? now_.e[i] : 0.0)));
+      const double off = g_[i] + now_.s[i] - (Elastic(side) ? now_.e[i] : 0.0);
+      errors.primal = std::max(errors.primal, std::abs(off));
+      errors.worth += std::abs(now_.z[i] * off) / cost;
     }
   }
   DualResidual(view, evaluator);

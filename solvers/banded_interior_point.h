@@ -66,7 +66,7 @@ class BandedInteriorPoint {
   };
   struct Errors {
     double gap = 0.0;     ///< sum of s z and e w, share of the cost
-    double worth = 0.0;   ///< sum of |z g| of equalities, share of the cost
+    double worth = 0.0;   ///< what the rows are off by, times their multipliers, share of the cost
     double dual = 0.0;    ///< what a step to grad f + G^T z = 0 would gain, share of the cost
     double primal = 0.0;  ///< of g + s = e
     double row = 0.0;     ///< largest g
