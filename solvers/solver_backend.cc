@@ -35,7 +35,6 @@ std::string SolverBackend::Refusal(const View& view) const {
     return "backend " + name_ + " takes no bounds on variables: make them costs";
   }
   const Problem& problem = view.problem();
-  int rows = 0;
   for (int i = 0; i < problem.num_terms(); ++i) {
     if (problem.role(i) == Role::kCost) {
       if (can.needs_residuals && !problem.term(i).shape().has_residual) {
@@ -50,11 +49,6 @@ std::string SolverBackend::Refusal(const View& view) const {
       return "backend " + name_ + " takes no " + (equality ? "equality" : "inequality") +
              " constraints: make term " + problem.term(i).info().name + " a cost";
     }
-    rows += problem.term(i).shape().max_windows * problem.term(i).shape().outputs;
-  }
-  if (rows > can.max_rows) {
-    return "backend " + name_ + " is of use with at most " + std::to_string(can.max_rows) +
-           " constraint rows, and this problem can have " + std::to_string(rows);
   }
   return "";
 }

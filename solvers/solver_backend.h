@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,6 @@ struct Capabilities {
   bool variable_bounds = false;                    ///< bounds on blocks (Problem::SetBounds)
   bool free_interval = true;                       ///< a free knot interval
   bool needs_residuals = false;                    ///< takes only costs that are sums of squares
-  int max_rows = std::numeric_limits<int>::max();  ///< most constraint rows it is of use with
 };
 
 /// A solver behind one interface. Everything that does not differ between backends happens once,

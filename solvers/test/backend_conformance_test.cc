@@ -291,12 +291,6 @@ TEST(Refusal, IsASentenceWithTheReason) {
 
   const StandardProblem linear = Hs35();
   const View linear_view(*linear.problem, AffineLift::Identity(3));
-  Problem many = Scalars(6);
-  const auto rows = [](const auto* x, auto* u) {
-    for (int i = 0; i < 24; ++i) u[i] = x[i / 4] - i;
-  };
-  many.AddTerm(AtMostZero<6, 24>("many", rows), Role::kConstraint);
-  const View many_view(many, AffineLift::Identity(6));
   for (const BackendEntry& entry : StandardBackends()) {
     const auto backend = entry.make();
     const Capabilities can = backend->capabilities();
@@ -307,9 +301,6 @@ TEST(Refusal, IsASentenceWithTheReason) {
     EXPECT_EQ(backend->Refusal(view), "") << entry.name;
     if (can.needs_residuals) {
       EXPECT_NE(backend->Refusal(linear_view).find("sums of squares"), std::string::npos);
-    }
-    if (can.hard_rows && can.max_rows < 24) {
-      EXPECT_NE(backend->Refusal(many_view).find("this problem can have 24"), std::string::npos);
     }
   }
 }
