@@ -68,7 +68,9 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
     found = Weigh();
     if (rows_.size() > 0 && !found.stationary() && Estimate()) {
       const Optimality estimated = Weigh();
-      if (estimated.stationary() || !found.evaluated) found = estimated;
+      if (estimated.left + estimated.gap_left < found.left + found.gap_left || !found.evaluated) {
+        found = estimated;
+      }
     }
     if (found.feasible() && found.stationary()) found.saddle = NeighbourCostsLess();
   }
@@ -258,7 +260,11 @@ bool OptimalityCheck::Estimate() {
       side_[r] = Side::kNone;
       any = true;
     }
-    if (!any) return true;
+    if (any) continue;
+    for (int r = 0; r < rows_.size(); ++r) {
+      if (wrong(r) > 0.0) lambda_[r] = 0.0;  // rounding
+    }
+    return true;
   }
   return true;
 }
@@ -297,12 +303,7 @@ Optimality OptimalityCheck::Weigh() {
   for (std::size_t i = 0; i < residual_.size(); ++i) {
     slope = std::max(slope, std::abs(residual_[i] - gradient_[i]));
   }
-  double loose = 0.0;  // of rows that are not at their bound to what counts as feasible
-  for (int r = 0; r < rows_.size(); ++r) {
-    const double way = WayTo(r, lambda_[r]);
-    gap += std::abs(lambda_[r]) * way;
-    if (way > Optimality::kFeasible * norm_[r]) loose += std::abs(lambda_[r]) * way;
-  }
+  for (int r = 0; r < rows_.size(); ++r) gap += std::abs(lambda_[r]) * WayTo(r, lambda_[r]);
   const double gained = std::abs(first_cost_ - at_->full.value);
   const double cost_size = std::max({gained, slope, std::numeric_limits<double>::min()});
   const double least = kLeastCurvature * slope + std::numeric_limits<double>::min();
@@ -317,7 +318,8 @@ Optimality OptimalityCheck::Weigh() {
   out.gain = promised / cost_size;
   const double value = std::max(std::abs(at_->full.value), kLeastCost);
   out.left = promised / value;
-  out.gap = std::max(gap / cost_size, loose / value);
+  out.gap = gap / cost_size;
+  out.gap_left = gap / value;
   left_ = promised + gap;
   cost_ = at_->full.value;
   return out;

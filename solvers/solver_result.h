@@ -71,9 +71,8 @@ struct Optimality {
   double step = 0.0;       ///< Newton's, of the Lagrangian
   double gain = 0.0;       ///< what it promises, share of the cost's size
   double left = 0.0;       ///< the same, share of the cost's value, or of 0.1 where that is less
-  /// Multipliers times the way to their bounds, share of the cost's size; and of its value, or of 0.1, of those
-  /// rows that are farther from their bound than what counts as feasible.
-  double gap = 0.0;
+  double gap = 0.0;        ///< multipliers times the way to their bounds, share of the cost's size
+  double gap_left = 0.0;   ///< the same, share of the cost's value, or of 0.1 where that is less
   /// A point near that keeps all rows costs less, by more than what may be left.
   bool saddle = false;
   int evaluations = 0;  ///< that the check took; they are not among the solve's
@@ -81,7 +80,8 @@ struct Optimality {
   bool feasible() const { return evaluated && violation <= kFeasible; }
   bool stationary() const {
     const bool near = step <= kStep && left <= kMostLeft;
-    return evaluated && (near || (gain <= kGain && left <= kLeft)) && gap <= kGap;
+    const bool met = gap <= kGap && gap_left <= kGap;
+    return evaluated && (near || (gain <= kGain && left <= kLeft)) && met;
   }
 
   static constexpr double kFeasible = 1e-6;
@@ -89,7 +89,7 @@ struct Optimality {
   static constexpr double kGain = 1e-8;
   static constexpr double kLeft = 1e-7;
   static constexpr double kMostLeft = 1e-3;  // far out a small share of a variable is a long way
-  static constexpr double kGap = 1e-7;  // rows that are met to kFeasible leave as much
+  static constexpr double kGap = 5e-7;  // of both; rows that are met to kFeasible leave as much
 };
 
 /// What a solve came to, without its point: of one size for all problems.

@@ -152,6 +152,20 @@ TEST(Optimality, OfTwoBoundsThatAreBothNearTheNearerOneCounts) {
   }
 }
 
+TEST(Optimality, AMultiplierThatIsRoundingIsNone) {
+  const ReferenceProblem p = SmallProblem("corner", {-1.0, 1.0}, 1.0, EqualityForm::kRows)
+                                 .Squares(2,
+                                          [](const auto* x, auto* u) {
+                                            u[0] = 10.0 * (x[1] - x[0] * x[0]);
+                                            u[1] = 1.0 - x[0];
+                                          })
+                                 .AtLeastZero(2, [](const auto* x, auto* u) {
+                                   u[0] = x[1] * x[1] - x[0];
+                                   u[1] = x[0] * x[0] - x[1];
+                                 });
+  EXPECT_TRUE(LookAt(p, {5.19e-17, 1.4e-18}).stationary());
+}
+
 TEST(Optimality, OnlyWhereNoStepMeetsTheRowsBetterAreTheyInfeasible) {
   for (const double other : {3.0, 4.0}) {
     const ReferenceProblem p = SmallProblem("twice", {0.0, 0.0}, 0.0, EqualityForm::kRows)
