@@ -161,7 +161,7 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   command
       .Add("--problem-set", arguments->problem_set,
            "Random landings, or sets of known problems (docs/compare.md)")
-      .Check(OneOf({"landing", "hs", "hs-pairs", "shooting"}))
+      .Check(OneOf({"landing", "hs", "hs-pairs", "mgh", "shooting"}))
       .ShowDefault();
   command
       .Add("--starts", arguments->references.starts,

@@ -11,6 +11,7 @@
 #include "touchdown/evaluation/statistics.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/solvers/problems/hock_schittkowski.h"
+#include "touchdown/solvers/problems/more_garbow_hillstrom.h"
 #include "touchdown/solvers/problems/shooting.h"
 #include "touchdown/solvers/view.h"
 
@@ -26,6 +27,7 @@ constexpr double kFeasible = 1e-5;  // of what is believed without asking the ba
 
 std::vector<ReferenceProblem> Problems(const std::string& set) {
   if (set == "shooting") return solvers::ShootingProblems();
+  if (set == "mgh") return solvers::MoreGarbowHillstrom();
   return solvers::HockSchittkowski(set == "hs-pairs" ? solvers::EqualityForm::kPairs
                                                      : solvers::EqualityForm::kRows);
 }

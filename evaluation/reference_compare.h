@@ -15,7 +15,7 @@
 namespace touchdown::evaluation {
 
 struct ReferenceOptions {
-  std::string set = "hs";             ///< hs, hs-pairs or shooting
+  std::string set = "hs";             ///< hs, hs-pairs, mgh or shooting
   std::vector<std::string> backends;  ///< none: all
   int starts = 10;                    ///< the published one, and others around it
   std::uint64_t seed = 1;

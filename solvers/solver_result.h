@@ -88,7 +88,7 @@ struct Optimality {
   static constexpr double kStep = 1e-6;
   static constexpr double kGain = 1e-8;
   static constexpr double kLeft = 1e-7;
-  static constexpr double kMostLeft = 1e-3;  // far out a small share of a variable is a long way
+  static constexpr double kMostLeft = 1e-6;  // far out a small share of a variable is a long way
   static constexpr double kGap = 5e-7;  // of both; rows that are met to kFeasible leave as much
 };
 
