@@ -101,7 +101,7 @@ void SolverBackend::Prepare(const View& view) {
   evaluator_.Prepare(view);
   check_.Prepare(view);
   inside_.y.resize(view.num_variables());
-  DoPrepare(view);
+  if (view.num_variables() > 0) DoPrepare(view);
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
 }
 

@@ -24,6 +24,27 @@ auto ShiftedLog() {
       false);
 }
 
+TEST_P(EveryBackend, WithNothingToChooseThePointIsJudged) {
+  // Every block is eliminated, and all are 0.
+  const AffineLift none{.reduced_blocks = 0, .block = {-1, -1}, .coefficient = {0.0, 0.0}};
+  for (const double least : {-1.0, 1.0}) {
+    Problem problem = Scalars(2);
+    problem.AddTerm(Rosenbrock(), Role::kCost);
+    const auto row = [least](const auto* x, auto* u) { u[0] = least - x[0]; };
+    const auto backend = Make();
+    if (backend->capabilities().hard_rows) {
+      problem.AddTerm(AtMostZero<2, 1>("row", row), Role::kConstraint);
+    }
+    const View view(problem, none);
+    backend->Prepare(view);
+    SolverResult result;
+    backend->Solve(view, WarmStart(Eigen::VectorXd(0)), {}, &result);
+    const bool broken = backend->capabilities().hard_rows && least > 0.0;
+    EXPECT_EQ(result.status, broken ? SolveStatus::kInfeasible : SolveStatus::kConverged);
+    EXPECT_EQ(result.cost, 1.0);
+  }
+}
+
 TEST_P(EveryBackend, Rosenbrock) {
   Problem problem = Scalars(2);
   problem.AddTerm(Rosenbrock(), Role::kCost);

@@ -109,6 +109,22 @@ TEST(BandedEqualities, ARowAndItsOppositeAreOne) {
   }
 }
 
+TEST(BandedEqualities, MultipliersOfOneOfTwoOppositesAreNone) {
+  const auto line = [](const auto* x, auto* u) { u[0] = x[0] + x[1] - 1.0; };
+  const auto cost = [](const auto* x, auto* u) { u[0] = x[0] * x[0] + x[1] * x[1]; };
+  const Problem problem = WithPairs(cost, line, line);
+  const View view(problem);
+  const auto solver = MakeBandedSolver();
+  solver->Prepare(view);
+  for (const auto& multipliers : std::vector<std::vector<std::vector<double>>>{
+           {{}, {-1.0}}, {{}, {-1.0}, {}}, {{}, {}, {1.0}}, {{}, {-1.0}, {0.0}}}) {
+    SolverResult result;
+    solver->Solve(view, WarmStart(Eigen::Vector2d(4.0, -7.0), multipliers), {}, &result);
+    EXPECT_EQ(result.status, SolveStatus::kConverged);
+    EXPECT_NEAR(result.cost, 0.5, 1e-6);
+  }
+}
+
 TEST(BandedEqualities, RowsThatAreAlikeAtTheStartAloneAreNotClaimed) {
   const auto cost = [](const auto* x, auto* u) { u[0] = x[0] * x[0] + x[1] * x[1]; };
   const auto line = [](const auto* x, auto* u) { u[0] = x[0] + x[1] - 1.0; };
