@@ -39,11 +39,8 @@ PreparedProblem Prepare(const ReplannerOptions& options, const solvers::BackendR
   }
   prepared.backend->Prepare(prepared.problem->view());
   prepared.start.y.resize(prepared.problem->view().num_variables());
-  prepared.solver.x = prepared.first_guess = prepared.start.y;
-  const solvers::Problem& problem = prepared.problem->view().problem();
-  for (int i = 0; i < problem.num_terms(); ++i) {
-    prepared.solver.cost_by_term.push_back({problem.term(i).info().name, 0.0});
-  }
+  prepared.first_guess = prepared.start.y;
+  solvers::SolverBackend::Reserve(prepared.problem->view(), &prepared.solver);
   return prepared;
 }
 

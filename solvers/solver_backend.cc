@@ -9,6 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "touchdown/solvers/constraint_rows.h"
 #include "touchdown/solvers/thread_clock.h"
 
 namespace touchdown::solvers {
@@ -103,6 +104,17 @@ void SolverBackend::Prepare(const View& view) {
   inside_.y.resize(view.num_variables());
   if (view.num_variables() > 0) DoPrepare(view);
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
+}
+
+void SolverBackend::Reserve(const View& view, SolverResult* result) {
+  const Problem& problem = view.problem();
+  result->x.resize(view.num_variables());
+  result->cost_by_term.clear();
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    result->cost_by_term.push_back({problem.term(i).info().name, 0.0});
+  }
+  ConstraintRows::Size(view, &result->multipliers);
+  result->bound_multipliers.reserve(static_cast<std::size_t>(view.num_variables()));
 }
 
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,

@@ -44,6 +44,9 @@ class SolverBackend {
   /// refusal if the backend cannot solve it.
   void Prepare(const View& view);
 
+  /// Sizes a result for solves of this structure: so the first of them does not allocate it.
+  static void Reserve(const View& view, SolverResult* result);
+
   /// Solves from `warm` (view.num_variables() numbers; what is beyond its bounds is moved onto them).
   /// The view must have the prepared structure; its parameters may have changed. Numerical outcomes
   /// are in result->status. Throws std::invalid_argument on another structure, a wrong size, a

@@ -323,7 +323,7 @@ TEST(BandedSolver, DoesNotAllocateInASolve) {
     solver->Prepare(view);
     const WarmStart warm(Eigen::VectorXd::Constant(view.num_variables(), 0.3));
     SolverResult result;
-    solver->Solve(view, warm, {}, &result);  // sizes the result
+    SolverBackend::Reserve(view, &result);
     const long before = AllocationCount();
     solver->Solve(view, warm, {}, &result);
     EXPECT_EQ(AllocationCount() - before, 0) << (hard ? "hard" : "soft");
