@@ -169,23 +169,41 @@ OptimalityCheck::Side OptimalityCheck::SideOf(int row) const {
   return to_upper <= to_lower ? Side::kUpper : Side::kLower;
 }
 
+/// A row of unit slope weighs this; those that are not kept, nothing.
+template <class Keeps>
+void OptimalityCheck::WeighRows(double weight, const Keeps& keeps) {
+  for (int r = 0; r < rows_.size(); ++r) {
+    weight_[r] = keeps(r) && norm_[r] > 0.0 ? weight / (norm_[r] * norm_[r]) : 0.0;
+  }
+}
+
+/// I + J^T weight J.
+bool OptimalityCheck::FactorRows() {
+  return EvaluateHessian(nullptr, weight_.data(), 0.0) &&
+         factor_.Factor(at_->hessian, 1.0, 1.0) == BorderedCholesky::Status::kDefinite;
+}
+
+/// step_ = the shortest way onto the rows that weigh, which are `off` by so much, by what FactorRows factored.
+template <class Off>
+void OptimalityCheck::StepOntoRows(const Off& off) {
+  std::fill(step_.begin(), step_.end(), 0.0);
+  for (int r = 0; r < rows_.size(); ++r) {
+    if (weight_[r] == 0.0) continue;
+    const double by = off(r);
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * by;
+    }
+  }
+  factor_.Solve(step_.data());
+}
+
 bool OptimalityCheck::CanGetCloser(const View& view, const Eigen::VectorXd& y,
                                    const MustStop& must_stop, ViewEvaluation* storage) {
   if (!Begin(view, y, must_stop, storage) || !std::isfinite(Violation(u_))) return false;
   // The least squares of what rows are off, those at their bounds held.
-  for (int r = 0; r < rows_.size(); ++r) {
-    const bool counts = SideOf(r) != Side::kNone && norm_[r] > 0.0;
-    weight_[r] = counts ? kRowWeight / (norm_[r] * norm_[r]) : 0.0;
-  }
-  if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
-  if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
-  std::fill(step_.begin(), step_.end(), 0.0);
-  for (int r = 0; r < rows_.size(); ++r) {
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * Beyond(r, u_[r]);
-    }
-  }
-  factor_.Solve(step_.data());
+  WeighRows(kRowWeight, [this](int r) { return SideOf(r) != Side::kNone; });
+  if (!FactorRows()) return false;
+  StepOntoRows([this](int r) { return Beyond(r, u_[r]); });
   double before = 0.0, after = 0.0;
   for (int r = 0; r < rows_.size(); ++r) {
     if (weight_[r] == 0.0) continue;
@@ -231,12 +249,8 @@ void OptimalityCheck::Residual(const double* lambda) {
 bool OptimalityCheck::Estimate() {
   for (int r = 0; r < rows_.size(); ++r) side_[r] = SideOf(r);
   for (int dropped = 0; dropped <= rows_.size(); ++dropped) {
-    for (int r = 0; r < rows_.size(); ++r) {
-      const bool kept = side_[r] != Side::kNone && norm_[r] > 0.0;
-      weight_[r] = kept ? kRowWeight / (norm_[r] * norm_[r]) : 0.0;
-    }
-    if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
-    if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
+    WeighRows(kRowWeight, [this](int r) { return side_[r] != Side::kNone; });
+    if (!FactorRows()) return false;
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
     for (int i = 0; i < kRefinements; ++i) {
       Residual(lambda_.data());
@@ -271,10 +285,7 @@ bool OptimalityCheck::Estimate() {
 
 /// The Lagrangian's Hessian with the rows of side_ held by weights.
 bool OptimalityCheck::HoldRows(double curvature) {
-  for (int r = 0; r < rows_.size(); ++r) {
-    const bool kept = side_[r] != Side::kNone && norm_[r] > 0.0;
-    weight_[r] = kept ? kRowWeight * curvature / (norm_[r] * norm_[r]) : 0.0;
-  }
+  WeighRows(kRowWeight * curvature, [this](int r) { return side_[r] != Side::kNone; });
   return EvaluateHessian(lambda_.data(), weight_.data(), 1.0);
 }
 
@@ -345,13 +356,9 @@ double OptimalityCheck::ClearlyLess() const {
 /// On one side of y at least.
 bool OptimalityCheck::DescendsAlongIt(bool upwards) {
   const double value = cost_, less = ClearlyLess();
-  // To come back to the rows: the shortest way, by the factor of I + weight J^T J.
-  for (int r = 0; r < rows_.size(); ++r) {
-    const bool there = SideOf(r) != Side::kNone && norm_[r] > 0.0;
-    weight_[r] = there ? kRowWeight / (norm_[r] * norm_[r]) : 0.0;
-  }
-  if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
-  if (factor_.Factor(at_->hessian, 1.0, 1.0) != BorderedCholesky::Status::kDefinite) return false;
+  // To come back to the rows.
+  WeighRows(kRowWeight, [this](int r) { return SideOf(r) != Side::kNone; });
+  if (!FactorRows()) return false;
   // The cost may have scales of its own, shorter than the point's size.
   for (double away = kNeighbour; away >= (upwards ? kNeighbour : kNearest); away *= 0.1) {
     for (const double sign : {away, -away}) {
@@ -406,18 +413,12 @@ bool OptimalityCheck::SoftestDirection(bool factored) {
 
 /// near_, where rows have the values u_near_, is moved onto those that push, and into the others.
 void OptimalityCheck::ReturnToRows() {
-  std::fill(step_.begin(), step_.end(), 0.0);
-  for (int r = 0; r < rows_.size(); ++r) {
-    if (weight_[r] == 0.0) continue;
-    double off = std::max(u_near_[r] - rows_.hi(r), 0.0) - std::max(rows_.lo(r) - u_near_[r], 0.0);
-    if (side_[r] != Side::kNone) {
-      off = u_near_[r] - (side_[r] == Side::kLower ? rows_.lo(r) : rows_.hi(r));
+  StepOntoRows([this](int r) {
+    if (side_[r] == Side::kNone) {
+      return std::max(u_near_[r] - rows_.hi(r), 0.0) - std::max(rows_.lo(r) - u_near_[r], 0.0);
     }
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * off;
-    }
-  }
-  factor_.Solve(step_.data());
+    return u_near_[r] - (side_[r] == Side::kLower ? rows_.lo(r) : rows_.hi(r));
+  });
   for (std::size_t i = 0; i < near_.size(); ++i) near_[i] += size_[i] * step_[i];
 }
 

@@ -48,6 +48,11 @@ class OptimalityCheck {
   double WayTo(int row, double multiplier) const;
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
+  template <class Keeps>
+  void WeighRows(double weight, const Keeps& keeps);
+  bool FactorRows();
+  template <class Off>
+  void StepOntoRows(const Off& off);
   void Residual(const double* lambda);
   bool HoldRows(double curvature);
   bool Factor(double shift, double largest);

@@ -133,7 +133,7 @@ TEST_P(EveryBackend, AFreeIntervalStaysInItsBoundsOrIsRefused) {
         Role::kCost);
     const auto backend = Make();
     if (!backend->capabilities().free_interval) {
-      const View view(problem, AffineLift::Identity(1));
+      const View view(problem);
       EXPECT_EQ(backend->Refusal(view),
                 "backend " + GetParam() + " cannot optimise the arrival time");
       EXPECT_THROW(backend->Prepare(view), std::invalid_argument);
@@ -189,7 +189,7 @@ TEST_P(EveryBackend, PrintsNothing) {
   broken.AddTerm(ShiftedLog(), Role::kCost);
   for (const double start : {-1.0, 1.0}) Solve(broken, Eigen::VectorXd::Constant(1, start));
   const StandardProblem infeasible = Infeasible();
-  const View view(*infeasible.problem, AffineLift::Identity(1));
+  const View view(*infeasible.problem);
   if (Make()->Refusal(view).empty()) Solve(*infeasible.problem, infeasible.start);
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -242,7 +242,7 @@ TEST_P(EveryBackend, StopsOnBudgetCallbackAndClock) {
 TEST_P(EveryBackend, RefusesConstraintsItCannotTake) {
   Problem problem = Scalars(2);
   problem.AddTerm(Rosenbrock(), Role::kConstraint);  // a square loss: equality rows
-  const View view(problem, AffineLift::Identity(2));
+  const View view(problem);
   auto backend = Make();
   if (backend->capabilities().equality_rows) {
     EXPECT_EQ(backend->Refusal(view), "");
@@ -255,7 +255,7 @@ TEST_P(EveryBackend, RefusesConstraintsItCannotTake) {
 TEST_P(EveryBackend, RefusesMisuse) {
   Problem problem = Scalars(2);
   problem.AddTerm(Rosenbrock(), Role::kCost);
-  const View view(problem, AffineLift::Identity(2));
+  const View view(problem);
   auto backend = Make();
   SolverResult result;
   EXPECT_THROW(backend->Solve(view, WarmStart(Eigen::VectorXd::Zero(2)), {}, &result),
@@ -271,14 +271,14 @@ TEST_P(EveryBackend, RefusesMisuse) {
   Problem other = Scalars(2);
   other.AddTerm(Rosenbrock(), Role::kCost);
   other.AddTerm(Rosenbrock(), Role::kCost);
-  const View other_view(other, AffineLift::Identity(2));
+  const View other_view(other);
   EXPECT_THROW(backend->Solve(other_view, WarmStart(Eigen::VectorXd::Zero(2)), {}, &result),
                std::invalid_argument);
 }
 
 TEST_P(EveryBackend, TwoThreadsGiveTheBitsOfOne) {
   const StandardProblem constrained = Projection();
-  const View view(*constrained.problem, AffineLift::Identity(6));
+  const View view(*constrained.problem);
   const bool rows = Make()->Refusal(view).empty();
   const auto run = [&]() -> Eigen::VectorXd {
     if (rows) return Solve(*constrained.problem, constrained.start).x;
@@ -304,14 +304,14 @@ INSTANTIATE_TEST_SUITE_P(Backends, EveryBackend, ::testing::ValuesIn(CompiledBac
 TEST(Refusal, IsASentenceWithTheReason) {
   Problem squares = Scalars(2);
   squares.AddTerm(Rosenbrock(), Role::kCost);
-  const View view(squares, AffineLift::Identity(2));
+  const View view(squares);
   const auto missing = MakeMissingBackend("somebody");
   EXPECT_FALSE(missing->capabilities().compiled);
   EXPECT_NE(missing->Refusal(view).find("somebody was not compiled in"), std::string::npos);
   EXPECT_THROW(missing->Prepare(view), std::invalid_argument);
 
   const StandardProblem linear = Hs35();
-  const View linear_view(*linear.problem, AffineLift::Identity(3));
+  const View linear_view(*linear.problem);
   for (const BackendEntry& entry : StandardBackends()) {
     const auto backend = entry.make();
     const Capabilities can = backend->capabilities();

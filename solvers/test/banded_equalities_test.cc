@@ -185,7 +185,7 @@ TEST(BandedEqualities, AStiffVariableHidesNothing) {
     };
     for (const double off : {0.0, 0.01, 5.0}) {
       const Problem problem = WithEqualities(3, cost, 1, sum);
-      const View view(problem, AffineLift::Identity(1));
+      const View view(problem);
       const auto solver = MakeBackend(StandardBackends(), "banded");
       solver->Prepare(view);
       Stop stop;
@@ -226,7 +226,7 @@ TEST(BandedEqualities, ForgetAnEarlierProblem) {
   product.SetBounds({-1.0, -1.0}, {1.0, 1.0});
   const auto solver = MakeBackend(StandardBackends(), "banded");
   for (const Problem* problem : {&flat, static_cast<const Problem*>(&product)}) {
-    const View view(*problem, AffineLift::Identity(1));
+    const View view(*problem);
     solver->Prepare(view);
     SolverResult result;
     solver->Solve(view, WarmStart(Eigen::Vector2d(0.5, 0.4)), {}, &result);
@@ -295,7 +295,7 @@ TEST(BandedEqualities, AMultipleShootingProblemIsAtHome) {
 TEST(BandedEqualities, ASolveDoesNotAllocate) {
   if (AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
   const Problem problem = SwingUp(20, 50.0);
-  const View view(problem, AffineLift::Identity(20));
+  const View view(problem);
   const auto solver = MakeBandedSolver();
   solver->Prepare(view);
   const WarmStart start(StraightUp(20));

@@ -132,7 +132,7 @@ SolverResult Solve(const View& view, double gap = 1e-7, bool confirm = true) {
 
 TEST(BandedSolver, SolvesAQuadraticInOneStep) {
   const Problem problem = ChainProblem();
-  const View view(problem, AffineLift::Identity(kBlocks));
+  const View view(problem);
   const SolverResult result = Solve(view);
   EXPECT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_EQ(result.iterations, 1);
@@ -148,7 +148,7 @@ TEST(BandedSolver, StepsOverWhereATermHasNoDerivatives) {
   };
   Problem problem({.blocks = 1, .block_size = 1});
   problem.AddTerm(SumOfSquares<1, 1>("root", root, true), Role::kCost);
-  const View view(problem, AffineLift::Identity(1));
+  const View view(problem);
   auto solver = MakeBandedSolver();
   solver->Prepare(view);
   SolverResult result;
@@ -168,7 +168,7 @@ TEST(BandedSolver, ConvergesWhereTheCostIsZero) {
       std::make_shared<WindowTerm<Ball, SquareLoss>>(TermInfo{"sphere", "", "", "", false},
                                                      Ball(kBlocks, 0.5), SquareLoss(1.0), kBlocks),
       Role::kCost);
-  const View view(problem, AffineLift::Identity(kBlocks));
+  const View view(problem);
   for (const double start : {0.5 / std::sqrt(3.0), 0.29, 0.2}) {
     auto solver = MakeBandedSolver();
     solver->Prepare(view);
@@ -202,7 +202,7 @@ TEST(BandedSolver, AConstantInTheCostChangesNothing) {
 TEST(BandedSolver, MeetsTheOptimalityConditions) {
   Problem problem = ChainProblem();
   AddRows(Ball(kBlocks, 0.5), &problem);
-  const View view(problem, AffineLift::Identity(kBlocks));
+  const View view(problem);
   const SolverResult result = Solve(view, 1e-12);
   ASSERT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_LT(result.max_violation, 1e-8);
@@ -237,7 +237,7 @@ TEST(BandedSolver, StepsOverCurvedRowsAreLong) {
             TermInfo{"wall", "", "", "", true}, Wall(kBlocks, 0.3), HingeLoss(1e4, 0.02), kBlocks),
         Role::kCost);
     AddRows(Pace(kBlocks, 0.05), &problem);
-    const View view(problem, AffineLift::Identity(kBlocks));
+    const View view(problem);
     const SolverResult result = Solve(view, 1e-6, /*confirm=*/false);  // it is too coarse for that
     EXPECT_TRUE(result.usable()) << seed;
     EXPECT_NEAR(result.cost, Solve(view, 1e-10).cost, 1e-5 * result.cost) << seed;
@@ -254,7 +254,7 @@ TEST(BandedSolver, SaysInfeasibleAndGivesTheElasticCompromise) {
   Problem problem = ChainProblem();
   AddRows(Ball(kBlocks, 0.5), &problem);
   AddRows(Wall(kBlocks, 0.7), &problem);  // 0.2 beyond the ball
-  const View view(problem, AffineLift::Identity(kBlocks));
+  const View view(problem);
   const SolverResult result = Solve(view);
   EXPECT_EQ(result.status, SolveStatus::kInfeasible);
   EXPECT_TRUE(result.x.allFinite());
@@ -279,7 +279,7 @@ TEST(BandedSolver, ForgetsTheRowsOfAnEarlierSolve) {
   const auto balls = std::make_shared<WindowTerm<SomeBalls, HingeLoss>>(
       TermInfo{"rows", "", "", "", true}, SomeBalls(kBlocks, 0.3), HingeLoss(1.0, 0.1), kBlocks);
   problem.AddTerm(balls, Role::kConstraint);
-  const View view(problem, AffineLift::Identity(kBlocks));
+  const View view(problem);
   const WarmStart warm(Eigen::VectorXd::Constant(view.num_variables(), 0.3));
   auto used = MakeBandedSolver();
   used->Prepare(view);
@@ -297,7 +297,7 @@ TEST(BandedSolver, ForgetsTheRowsOfAnEarlierSolve) {
 
 TEST(BandedSolver, ARefusedPrepareLeavesTheEarlierOne) {
   const Problem problem = ChainProblem();
-  const View view(problem, AffineLift::Identity(kBlocks));
+  const View view(problem);
   Problem bounded({.blocks = 2, .block_size = 1});
   bounded.SetBounds({0.0, 0.0}, {1.0, 1.0});
   AffineLift one;  // both blocks are the same
@@ -318,7 +318,7 @@ TEST(BandedSolver, DoesNotAllocateInASolve) {
   for (const bool hard : {false, true}) {
     Problem problem = ChainProblem();
     if (hard) AddRows(Ball(kBlocks, 0.5), &problem);
-    const View view(problem, AffineLift::Identity(kBlocks));
+    const View view(problem);
     auto solver = MakeBandedSolver();
     solver->Prepare(view);
     const WarmStart warm(Eigen::VectorXd::Constant(view.num_variables(), 0.3));

@@ -35,7 +35,7 @@ TEST_P(EveryRowBackend, ConstrainedProblemsHaveTheirKnownOptima) {
 
 TEST_P(EveryRowBackend, InfeasibleIsAStatus) {
   const StandardProblem p = Infeasible();
-  const View view(*p.problem, AffineLift::Identity(1));
+  const View view(*p.problem);
   ASSERT_EQ(Make()->Refusal(view), "");
   const SolverResult result = Solve(*p.problem, p.start, {.max_iterations = 1000});
   EXPECT_EQ(result.status, SolveStatus::kInfeasible)
@@ -56,7 +56,7 @@ TEST_P(EveryRowBackend, ARowThatCannotBeEvaluatedIsAStatus) {
                                         u[0] = 1.0 - sqrt(x[0]);
                                       }),
                      Role::kConstraint);
-  const View view(*p.problem, AffineLift::Identity(1));
+  const View view(*p.problem);
   ASSERT_EQ(Make()->Refusal(view), "");
   EXPECT_EQ(Solve(*p.problem, p.start).status, SolveStatus::kEvaluationFailed);
   const SolverResult good = Solve(*p.problem, Eigen::VectorXd::Constant(1, 9.0));
@@ -65,7 +65,7 @@ TEST_P(EveryRowBackend, ARowThatCannotBeEvaluatedIsAStatus) {
 
 TEST_P(EveryRowBackend, MultipliersSatisfyStationarity) {
   const StandardProblem p = Projection();
-  const View view(*p.problem, AffineLift::Identity(6));
+  const View view(*p.problem);
   ASSERT_EQ(Make()->Refusal(view), "");
   const SolverResult result = Solve(*p.problem, p.start);
   if (GetParam().starts_with("nlopt")) {

@@ -21,7 +21,7 @@ struct Bounded {
     problem.AddTerm(std::make_shared<WindowTerm<Map, HingeLoss>>(
                         TermInfo{"bound", "", "", "", true}, Map(row), HingeLoss(1.0, 1.0), 1),
                     Role::kConstraint);
-    view = std::make_unique<View>(problem, AffineLift::Identity(1));
+    view = std::make_unique<View>(problem);
   }
   Evaluator Begin(const Stop& stop) const {
     Evaluator evaluator;

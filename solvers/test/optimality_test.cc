@@ -16,7 +16,7 @@ namespace touchdown::solvers {
 namespace {
 
 Optimality LookAt(const ReferenceProblem& p, const std::vector<double>& point) {
-  const View view(*p.problem, AffineLift::Identity(1));
+  const View view(*p.problem);
   OptimalityCheck check;
   check.Prepare(view);
   ViewEvaluation storage;
@@ -236,7 +236,7 @@ TEST(Optimality, KnownOptimaOfTheSetPass) {
   int found = 0;
   for (const EqualityForm form : {EqualityForm::kRows, EqualityForm::kPairs}) {
     for (const ReferenceProblem& p : HockSchittkowski(form)) {
-      const View view(*p.problem, AffineLift::Identity(1));
+      const View view(*p.problem);
       ipopt->Prepare(view);
       SolverResult result;
       ipopt->Solve(view, p.start, {.max_iterations = 1000}, &result);
@@ -251,7 +251,7 @@ TEST(Optimality, KnownOptimaOfTheSetPass) {
 class ClaimsOfEveryBackend : public EveryBackend {
  protected:
   SolverResult SolveReference(const ReferenceProblem& p) {
-    const View view(*p.problem, AffineLift::Identity(1));
+    const View view(*p.problem);
     auto backend = Make();
     SolverResult result;
     if (!backend->Refusal(view).empty()) return result;  // numerical failure: no claim
@@ -364,7 +364,7 @@ TEST_P(ClaimsOfEveryBackend, NothingIsPrinted) {
 TEST_P(ClaimsOfEveryBackend, EvaluationsCountAgainstTheBudget) {
   for (const ReferenceProblem& p : HockSchittkowski()) {
     if (p.name != "HS38" && p.name != "HS16") continue;
-    const View view(*p.problem, AffineLift::Identity(1));
+    const View view(*p.problem);
     auto backend = Make();
     if (!backend->Refusal(view).empty()) continue;
     backend->Prepare(view);

@@ -29,7 +29,7 @@ TEST(VariableBounds, AreRefusedWhereTheyAreNone) {
 TEST(VariableBounds, AreCountedAsViolated) {
   Problem problem({.blocks = 2, .block_size = 1});
   problem.SetBounds({0.0, -kInfinity}, {1.0, 2.0});
-  const View view(problem, AffineLift::Identity(2));
+  const View view(problem);
   ViewEvaluation at;
   view.Resize(&at);
   for (const auto& [y, violation] : {std::pair(Eigen::Vector2d(0.5, -9.0), 0.0),
@@ -154,7 +154,7 @@ TEST(VariableBounds, BandedDoesNotAllocate) {
   Problem problem = Scalars(40);
   problem.AddTerm(Rosenbrock(), Role::kCost);
   problem.SetBounds(std::vector<double>(40, -1.5), std::vector<double>(40, 0.8));
-  const View view(problem, AffineLift::Identity(40));
+  const View view(problem);
   const auto solver = MakeBackend(StandardBackends(), "banded");
   solver->Prepare(view);
   const WarmStart start(Eigen::VectorXd::Constant(40, -1.0));

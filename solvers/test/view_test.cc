@@ -111,7 +111,7 @@ TEST(View, AWrongDerivativeIsFoundAtAnyScale) {
             std::make_shared<WindowTerm<FaultyMap, SquareLoss>>(
                 TermInfo{"faulty", "", "", "", false}, FaultyMap{fault, scale}, SquareLoss(1.0), 3),
             role);
-        const View view(problem, AffineLift::Identity(3));
+        const View view(problem);
         const Eigen::VectorXd y = Eigen::VectorXd::LinSpaced(6, 0.4, 1.3);
         const double multipliers[] = {0.7, -0.4, 1.1};
         const RowWeights rows[] = {{.multiplier = multipliers}};

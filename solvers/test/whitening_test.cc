@@ -38,7 +38,7 @@ TEST(Whitening, MakesTheNominalHessianTheIdentity) {
     problem.AddTerm(std::make_shared<WindowTerm<Anchor, SquareLoss>>(
                         TermInfo{"anchor", "", "", "", true}, Anchor(), SquareLoss(0.1), 9),
                     Role::kCost);
-    const View view(problem, AffineLift::Identity(9));
+    const View view(problem);
     Eigen::VectorXd y(view.num_variables());
     for (double& value : y) value = normal(random);
     if (free_interval) y[y.size() - 1] = 0.8;

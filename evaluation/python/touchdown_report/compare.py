@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from touchdown_report import command_line, database  # noqa: E402
-from touchdown_report.style import STYLE  # noqa: E402
+from touchdown_report.style import STYLE, made_with, sign  # noqa: E402
 
 SUPPORTED_VERSION = "2"
 # A line style for each backend: colour alone does not tell ten of them apart.
@@ -195,9 +195,7 @@ def headline(manifest):
         f"{word['arrival']} arrival, {word['limits']} limits, {word['endpoint']} endpoint, "
         f"{word['start']} start, seed {word['seed']}",
         f"solved: within {float(word['gap']):.0e} of the best known cost and feasible, judged "
-        f"outside the solvers  ·  {word['cpu']}  ·  build {word['build_type']}, "
-        f"revision {word['revision']}  ·  load {float(word['load_before']):.1f} "
-        f"to {float(word['load_after']):.1f}",
+        f"outside the solvers  ·  {made_with(word)}",
     )
 
 
@@ -215,9 +213,7 @@ def draw(comparison, path):
             draw_size(row, comparison, points, styles)
         if rows > len(sizes):
             draw_scaling(*axes[-1], comparison, styles)
-        title, provenance = headline(comparison.manifest)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        figure.supxlabel(provenance, x=0.01, ha="left", fontsize=7.5, color="#555555")
+        sign(figure, *headline(comparison.manifest))
         figure.savefig(path, dpi=150)
         plt.close(figure)
 

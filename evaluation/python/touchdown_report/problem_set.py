@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from touchdown_report import command_line, compare, database  # noqa: E402
-from touchdown_report.style import STYLE  # noqa: E402
+from touchdown_report.style import STYLE, made_with, sign  # noqa: E402
 
 SUPPORTED_VERSION = "1"
 
@@ -51,9 +51,7 @@ def headline(manifest):
     return (
         f"problem set {manifest['problem_set']}, {manifest['starts']} starts each, "
         f"seed {manifest['seed']}",
-        f"right: converged, and within 1e-6 of {judged}  ·  {manifest['cpu']}  ·  "
-        f"build {manifest['build_type']}, revision {manifest['revision']}  ·  "
-        f"load {float(manifest['load_before']):.1f} to {float(manifest['load_after']):.1f}",
+        f"right: converged, and within 1e-6 of {judged}  ·  {made_with(manifest)}",
     )
 
 
@@ -71,9 +69,7 @@ def draw(problem_set, path):
         right.set_title("time, the check of the claim included")
         right.set_xlabel("thread CPU time [ms]")
         right.legend(**compare.LEGEND)
-        title, provenance = headline(problem_set.manifest)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        figure.supxlabel(provenance, x=0.01, ha="left", fontsize=7.5, color="#555555")
+        sign(figure, *headline(problem_set.manifest))
         figure.savefig(path, dpi=150)
         plt.close(figure)
 

@@ -12,3 +12,17 @@ STYLE = {
     "grid.color": "#EEEEEE",
     "axes.axisbelow": True,
 }
+
+
+def sign(figure, title, provenance):
+    """What a picture shows, above it, and what it was made with, below."""
+    figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
+    figure.supxlabel(provenance, x=0.01, ha="left", fontsize=7.5, color="#555555")
+
+
+def made_with(manifest):
+    """The machine and the build of a result file's `manifest`."""
+    return (
+        f"{manifest['cpu']}  ·  build {manifest['build_type']}, revision {manifest['revision']}  ·  "
+        f"load {float(manifest['load_before']):.1f} to {float(manifest['load_after']):.1f}"
+    )

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from touchdown_report import command_line, database  # noqa: E402
-from touchdown_report.style import STYLE  # noqa: E402
+from touchdown_report.style import STYLE, sign  # noqa: E402
 
 SUPPORTED_VERSION = "8"
 MOST_LISTS = 2
@@ -237,9 +237,7 @@ def figure_of(sweep):
         for empty in axes[panels:]:
             empty.axis("off")
         title, provenance = headline(sweep)
-        figure.suptitle(title, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        provenance = textwrap.fill(provenance, int(17 * width))
-        figure.supxlabel(provenance, x=0.01, ha="left", fontsize=7.5, color="#555555")
+        sign(figure, title, textwrap.fill(provenance, int(17 * width)))
         return figure
 
 
