@@ -88,6 +88,25 @@ void BorderedBandMatrix::Scale(const double* d) {
   corner_ *= at_corner * at_corner;
 }
 
+void BorderedBandMatrix::LargestInRows(double* out) const {
+  std::fill(out, out + size(), 0.0);
+  const auto take = [out](int row, int column, double element) {
+    for (const int i : {row, column}) out[i] = std::max(out[i], std::abs(element));
+  };
+  for (int i = 0; i < blocks_; ++i) {
+    const int last = std::min(half_, blocks_ - 1 - i);
+    for (int k = 0; k <= last; ++k) {
+      const double* a = block(i, k);
+      for (int r = 0; r < d_; ++r) {
+        for (int s = 0; s < d_; ++s) take(i * d_ + r, (i + k) * d_ + s, a[r * d_ + s]);
+      }
+    }
+  }
+  const int n = blocks_ * d_;
+  for (int i = 0; i < n && bordered_; ++i) take(i, n, border_[i]);
+  if (bordered_) take(n, n, corner_);
+}
+
 double BorderedBandMatrix::At(int row, int column) const {
   if (row > column) std::swap(row, column);
   const int n = blocks_ * d_;

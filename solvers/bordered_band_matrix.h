@@ -36,6 +36,9 @@ class BorderedBandMatrix {
     return bordered_ && i == blocks_ * d_ ? corner_ : block(i / d_, 0)[i % d_ * (d_ + 1)];
   }
 
+  /// out[i] = the largest element of row i by its absolute value, of size(). Does not allocate.
+  void LargestInRows(double* out) const;
+
   /// A becomes D A D, with D = diag(d), of size(). Does not allocate.
   void Scale(const double* d);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The KKT conditions at one point, in variables that are each over their own size, 1 + |y_i|. What a residual of the Lagrangian's gradient is worth is told by its Hessian,
-// for a backend's multipliers without the rows' weights: a metric with large weights is blind to what lies across the rows. Multipliers
-// are estimated as the least squares of that residual over the rows at their bounds, without those of the wrong sign: across
-// the rows that are kept nothing is left then, and weights hold them.
+// The KKT conditions at one point, in variables that are each over their own size, 1 + |y_i|. What a residual of the
+// Lagrangian's gradient is worth is told by its Hessian, for a backend's multipliers without the rows' weights: a metric
+// with large weights is blind to what lies across the rows. Multipliers are estimated as the least squares of that residual
+// over the rows at their bounds, without those of the wrong sign: across the rows that are kept nothing is left then, and
+// weights hold them. Weights and shifts are shares of what is there, variable by variable: a stiff variable must not hide a soft one.
 // (J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., chapters 12 and 18).
 
 #include "touchdown/solvers/optimality.h"
@@ -17,25 +18,17 @@ namespace touchdown::solvers {
 
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAtBound = 1e-5;   // way of a row to its bound, along its slope
-constexpr double kRowWeight = 1e8;  // beside the identity, of rows that are to be kept
-constexpr int kRefinements = 3;
+constexpr double kRowWeight = 1e7;   // beside the curvature, of rows that are to be kept
+constexpr double kLeastShare = 1e-4;  // of the largest curvature, where variables have none of their own
+constexpr int kRefinements = 4;
 constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
-constexpr double kFirstShift = 1e-6;      // of the largest element
-constexpr double kShiftGrowth = 10.0;
-constexpr int kMostShifts = 16;
 constexpr double kRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
-// Of neighbours.
-constexpr double kNeighbour = 1e-2;  // so far away
-constexpr double kNearest = 1e-8;      // where the cost does not rise, down to this
-constexpr double kClearlyLess = 1e-8;  // share of the cost, or of kLeastCost
-constexpr double kClearlyMore = 10.0;  // than what the conditions leave
-constexpr double kNeighbourViolation = 1e-10;
-constexpr int kMostCorrections = 40;  // a row and its opposite go half the way each time
-constexpr int kInverseIterations = 40;  // a shift may be ten times what it need be
-constexpr int kFewInverseIterations = 5;
-constexpr double kPushes = 1e-6;  // multiplier of a row, share of the slopes
+constexpr double kLastShift = 1e6;
+constexpr double kShiftGrowth = 10.0;
+constexpr double kReaches[] = {1.0, 0.1, 0.01};  // shares of a step onto the rows
 
 }  // namespace
 
@@ -46,14 +39,16 @@ void OptimalityCheck::Prepare(const View& view) {
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   factor_.Prepare(shape);
-  for (auto* vector : {&size_, &gradient_, &residual_, &step_, &soft_, &near_}) vector->assign(n, 0.0);
+  for (auto* vector : {&size_, &curvature_, &diagonal_, &gradient_, &residual_, &step_, &way_, &near_}) {
+    vector->assign(n, 0.0);
+  }
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
   row_weights_.assign(by_term_.size(), {});
   std::size_t rows = 0;
   for (const std::vector<double>& of_term : by_term_) rows += of_term.size();
   rows += n;
-  for (auto* vector : {&u_, &u_near_, &norm_, &lambda_, &weight_}) vector->reserve(rows);
+  for (auto* vector : {&u_, &u_near_, &off_, &norm_, &lambda_, &weight_}) vector->reserve(rows);
   side_.reserve(rows);
   jacobian_.reserve(static_cast<std::size_t>(rows_.most_nonzeros()));
 }
@@ -66,13 +61,20 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
   if (Begin(view, y, must_stop, storage)) {
     TakeMultipliers(told);
     found = Weigh();
-    if (rows_.size() > 0 && !found.stationary() && Estimate()) {
+    const double shift = shift_;
+    if (rows_.size() > 0 && !(shift <= kFirstShift && found.stationary()) && Estimate()) {
       const Optimality estimated = Weigh();
-      if (estimated.left + estimated.gap_left < found.left + found.gap_left || !found.evaluated) {
+      const bool better = estimated.stationary() != found.stationary() ? estimated.stationary()
+                          : shift_ != shift                            ? shift_ < shift
+                                                                       : Left(estimated) < Left(found);
+      if (better) {
         found = estimated;
+      } else {
+        TakeMultipliers(told);
+        found = Weigh();
       }
     }
-    if (found.feasible() && found.stationary()) found.saddle = NeighbourCostsLess();
+    if (found.feasible() && found.stationary()) LookAround(&found);
   }
   found.evaluations = evaluations_;
   return found;
@@ -92,7 +94,7 @@ bool OptimalityCheck::Begin(const View& view, const Eigen::VectorXd& y, const Mu
   }
   rows_.Set(view, *at_);
   const auto m = static_cast<std::size_t>(rows_.size());
-  for (auto* vector : {&u_, &u_near_, &norm_, &lambda_, &weight_}) vector->assign(m, 0.0);
+  for (auto* vector : {&u_, &u_near_, &off_, &norm_, &lambda_, &weight_}) vector->assign(m, 0.0);
   jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);
   rows_.Values(*at_, u_.data());
   rows_.Jacobian(*at_, jacobian_.data());
@@ -105,6 +107,7 @@ bool OptimalityCheck::Begin(const View& view, const Eigen::VectorXd& y, const Mu
     norm_[r] = std::sqrt(sum);
   }
   side_.assign(m, Side::kNone);
+  curvature_.assign(size_.size(), 1.0);
   return true;
 }
 
@@ -116,6 +119,7 @@ bool OptimalityCheck::Evaluate(const double* y, Want want, const Lagrangian& lag
 
 /// Multipliers that are not told, or that no bound can have, are 0.
 void OptimalityCheck::TakeMultipliers(const SolverResult& told) {
+  std::fill(side_.begin(), side_.end(), Side::kNone);
   if (!rows_.Gather(told.multipliers, lambda_.data())) {
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
   }
@@ -148,17 +152,23 @@ double OptimalityCheck::Beyond(int row, double u) const {
   return between || std::abs(u - bound) <= kRounding * std::abs(bound) ? 0.0 : u - bound;
 }
 
-/// Of rows of these values, by the slopes at y.
+/// Of the worst of rows of these values, by the slopes at y.
 double OptimalityCheck::Violation(const std::vector<double>& u) const {
-  if (rows_.constant_violation() > Optimality::kFeasible) {
-    return std::numeric_limits<double>::infinity();
-  }
-  double worst = 0.0;
-  for (int r = 0; r < rows_.size(); ++r) {
-    const double beyond = std::abs(Beyond(r, u[r]));
-    if (beyond > 0.0) worst = std::max(worst, beyond / norm_[r]);
-  }
+  double worst = rows_.constant_violation() > Optimality::kFeasible ? kInfinity : 0.0;
+  for (int r = 0; r < rows_.size(); ++r) worst = std::max(worst, Violation(r, u[r]));
   return worst;
+}
+
+/// Of all of them: of rows that contradict each other it does not fall by sharing.
+double OptimalityCheck::TotalViolation(const std::vector<double>& u) const {
+  double sum = rows_.constant_violation() > Optimality::kFeasible ? kInfinity : 0.0;
+  for (int r = 0; r < rows_.size(); ++r) sum += Violation(r, u[r]);
+  return sum;
+}
+
+double OptimalityCheck::Violation(int row, double u) const {
+  const double beyond = std::abs(Beyond(row, u));
+  return beyond > 0.0 ? beyond / norm_[row] : 0.0;
 }
 
 /// The nearer one, where it is near.
@@ -169,29 +179,35 @@ OptimalityCheck::Side OptimalityCheck::SideOf(int row) const {
   return to_upper <= to_lower ? Side::kUpper : Side::kLower;
 }
 
-/// A row of unit slope weighs this; those that are not kept, nothing.
-template <class Keeps>
-void OptimalityCheck::WeighRows(double weight, const Keeps& keeps) {
+/// So that a row holds much more than the most curved of its variables; those that are not kept weigh nothing.
+void OptimalityCheck::WeighRows(Kept kept) {
   for (int r = 0; r < rows_.size(); ++r) {
-    weight_[r] = keeps(r) && norm_[r] > 0.0 ? weight / (norm_[r] * norm_[r]) : 0.0;
+    double most = 0.0;
+    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
+      most = std::max(most, curvature_[rows_.column(k)]);
+    }
+    const Side side = kept == Kept::kHeld ? side_[r] : SideOf(r);
+    const bool holds = side != Side::kNone && norm_[r] > 0.0;
+    weight_[r] = holds ? kRowWeight * most / (norm_[r] * norm_[r]) : 0.0;
   }
 }
 
-/// I + J^T weight J.
+/// D + J^T weight J, D the curvatures.
 bool OptimalityCheck::FactorRows() {
-  return EvaluateHessian(nullptr, weight_.data(), 0.0) &&
-         factor_.Factor(at_->hessian, 1.0, 1.0) == BorderedCholesky::Status::kDefinite;
+  if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
+  for (std::size_t i = 0; i < curvature_.size(); ++i) {
+    at_->hessian.Diagonal(static_cast<int>(i)) += curvature_[i];
+  }
+  return factor_.Factor(at_->hessian) == BorderedCholesky::Status::kDefinite;
 }
 
-/// step_ = the shortest way onto the rows that weigh, which are `off` by so much, by what FactorRows factored.
-template <class Off>
-void OptimalityCheck::StepOntoRows(const Off& off) {
+/// step_ = the shortest way, by D, onto the rows that weigh, which are off_ by so much.
+void OptimalityCheck::StepOntoRows() {
   std::fill(step_.begin(), step_.end(), 0.0);
   for (int r = 0; r < rows_.size(); ++r) {
     if (weight_[r] == 0.0) continue;
-    const double by = off(r);
     for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * by;
+      step_[rows_.column(k)] -= weight_[r] * jacobian_[k] * off_[r];
     }
   }
   factor_.Solve(step_.data());
@@ -199,22 +215,29 @@ void OptimalityCheck::StepOntoRows(const Off& off) {
 
 bool OptimalityCheck::CanGetCloser(const View& view, const Eigen::VectorXd& y,
                                    const MustStop& must_stop, ViewEvaluation* storage) {
-  if (!Begin(view, y, must_stop, storage) || !std::isfinite(Violation(u_))) return false;
+  if (!Begin(view, y, must_stop, storage)) return false;
+  const double before = TotalViolation(u_);
+  if (!std::isfinite(before)) return false;
   // The least squares of what rows are off, those at their bounds held.
-  WeighRows(kRowWeight, [this](int r) { return SideOf(r) != Side::kNone; });
+  WeighRows(Kept::kAtBounds);
   if (!FactorRows()) return false;
-  StepOntoRows([this](int r) { return Beyond(r, u_[r]); });
-  double before = 0.0, after = 0.0;
-  for (int r = 0; r < rows_.size(); ++r) {
-    if (weight_[r] == 0.0) continue;
-    double off = Beyond(r, u_[r]);
-    before = std::max(before, std::abs(off) / norm_[r]);
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      off += jacobian_[k] * step_[rows_.column(k)];
-    }
-    after = std::max(after, std::abs(off) / norm_[r]);
+  for (int r = 0; r < rows_.size(); ++r) off_[r] = Beyond(r, u_[r]);
+  StepOntoRows();
+  for (const double reach : kReaches) {
+    MoveAway(reach, step_);
+    view_->MoveIntoBounds(near_.data());
+    if (!Evaluate(near_.data(), {}, {})) continue;
+    rows_.Values(*at_, u_near_.data());
+    if (TotalViolation(u_near_) <= (1.0 - 0.5 * reach) * before) return true;
   }
-  return Largest(step_) <= 1.0 && after <= 0.5 * before;
+  return false;
+}
+
+/// near_ = y + share x way, which is in variables over their sizes.
+void OptimalityCheck::MoveAway(double share, const std::vector<double>& way) {
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + share * size_[i] * way[i];
+  }
 }
 
 /// H of cost_factor x cost + multipliers x rows, and weight x J^T J.
@@ -249,7 +272,7 @@ void OptimalityCheck::Residual(const double* lambda) {
 bool OptimalityCheck::Estimate() {
   for (int r = 0; r < rows_.size(); ++r) side_[r] = SideOf(r);
   for (int dropped = 0; dropped <= rows_.size(); ++dropped) {
-    WeighRows(kRowWeight, [this](int r) { return side_[r] != Side::kNone; });
+    WeighRows(Kept::kHeld);
     if (!FactorRows()) return false;
     std::fill(lambda_.begin(), lambda_.end(), 0.0);
     for (int i = 0; i < kRefinements; ++i) {
@@ -284,30 +307,18 @@ bool OptimalityCheck::Estimate() {
 }
 
 /// The Lagrangian's Hessian with the rows of side_ held by weights.
-bool OptimalityCheck::HoldRows(double curvature) {
-  WeighRows(kRowWeight * curvature, [this](int r) { return side_[r] != Side::kNone; });
+bool OptimalityCheck::HoldRows() {
+  WeighRows(Kept::kHeld);
   return EvaluateHessian(lambda_.data(), weight_.data(), 1.0);
-}
-
-/// Factors the Hessian, made definite where it is not.
-bool OptimalityCheck::Factor(double shift, double largest) {
-  for (int i = 0; i < kMostShifts; ++i) {
-    if (factor_.Factor(at_->hessian, shift, shift) == BorderedCholesky::Status::kDefinite) {
-      return true;
-    }
-    shift = std::max(kShiftGrowth * shift, kFirstShift * largest);
-  }
-  return false;
 }
 
 /// With the rows of side_ held, which are none for a backend's multipliers.
 Optimality OptimalityCheck::Weigh() {
   Optimality out;
   out.violation = Violation(u_);
+  shift_ = kInfinity;
   if (!EvaluateHessian(rows_.size() > 0 ? lambda_.data() : nullptr, nullptr, 1.0)) return {};
   out.evaluated = true;
-  const double largest = LargestElement(at_->hessian);
-  largest_ = largest;
   Residual(lambda_.data());
   // Of the rows together: multipliers of a pinched pair may be large, and cancel.
   double slope = Largest(gradient_), gap = 0.0;
@@ -315,111 +326,65 @@ Optimality OptimalityCheck::Weigh() {
     slope = std::max(slope, std::abs(residual_[i] - gradient_[i]));
   }
   for (int r = 0; r < rows_.size(); ++r) gap += std::abs(lambda_[r]) * WayTo(r, lambda_[r]);
-  const double gained = std::abs(first_cost_ - at_->full.value);
-  const double cost_size = std::max({gained, slope, std::numeric_limits<double>::min()});
+  cost_ = at_->full.value;
+  cost_size_ = std::max({std::abs(first_cost_ - cost_), slope, std::numeric_limits<double>::min()});
   const double least = kLeastCurvature * slope + std::numeric_limits<double>::min();
+  MeasureCurvature(least);
   step_ = residual_;
   const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
-  if (holds && !HoldRows(std::max(largest, least))) return {};
-  if (!Factor(least, largest)) return {};
+  if (holds && !HoldRows()) return {};
+  for (std::size_t i = 0; i < step_.size(); ++i) at_->hessian.Diagonal(static_cast<int>(i)) += least;
+  if (!FactorShifted()) return {};
   factor_.Solve(step_.data());
   double promised = 0.0;
   for (std::size_t i = 0; i < step_.size(); ++i) promised += 0.5 * residual_[i] * step_[i];
   out.step = Largest(step_);
-  out.gain = promised / cost_size;
-  const double value = std::max(std::abs(at_->full.value), kLeastCost);
-  out.left = promised / value;
-  out.gap = gap / cost_size;
-  out.gap_left = gap / value;
+  out.gain = promised / cost_size_;
+  out.left = promised / CostValue();
+  out.gap = gap / cost_size_;
+  out.gap_left = gap / CostValue();
   left_ = promised + gap;
-  cost_ = at_->full.value;
   return out;
 }
 
-/// Some point near, along the direction in which the Lagrangian curves least, keeps all rows and costs less, by more
-/// than what a stationary point may have left: y is a saddle, an inflection, or a maximum along its rows. Rows at a
-/// bound are left where they do not push, or held as well: of opposite ones none need push.
-bool OptimalityCheck::NeighbourCostsLess() {
-  for (const double pushes : {kPushes, 0.0}) {
-    if (!HoldPushing(pushes)) return false;
-    const bool upwards = CurvesUpwards();
-    if (SoftestDirection(upwards) && DescendsAlongIt(upwards)) return true;
-    if (upwards || rows_.size() == 0) return false;  // with more rows held it is no other
+/// Of the Hessian just evaluated.
+void OptimalityCheck::MeasureDiagonal() {
+  at_->hessian.LargestInRows(diagonal_.data());
+  const double largest = Largest(diagonal_);
+  const double least = largest > 0.0 ? kFirstShift * largest : 1.0;
+  for (double& element : diagonal_) element = std::max(element, least);
+}
+
+/// Of every variable, by the Hessian just evaluated.
+void OptimalityCheck::MeasureCurvature(double least) {
+  at_->hessian.LargestInRows(curvature_.data());
+  least = std::max(least, kLeastShare * Largest(curvature_));
+  for (double& curvature : curvature_) curvature = std::max(curvature, least);
+}
+
+double OptimalityCheck::Left(const Optimality& at) { return at.left + at.gap_left; }
+
+double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLeastCost); }
+
+/// Factors the Hessian with the first shift, a share of the diagonal, that makes it definite. Past the first one the
+/// metric says little of the softest directions.
+bool OptimalityCheck::FactorShifted() {
+  MeasureDiagonal();
+  double taken = 0.0;
+  for (double share = kFirstShift; share <= kLastShift; share *= kShiftGrowth) {
+    Shift(share - taken);
+    taken = share;
+    if (factor_.Factor(at_->hessian) != BorderedCholesky::Status::kDefinite) continue;
+    shift_ = share;
+    return true;
   }
   return false;
 }
 
-double OptimalityCheck::ClearlyLess() const {
-  return kClearlyLess * std::max(std::abs(cost_), kLeastCost) + kClearlyMore * left_;
-}
-
-/// On one side of y at least.
-bool OptimalityCheck::DescendsAlongIt(bool upwards) {
-  const double value = cost_, less = ClearlyLess();
-  // To come back to the rows.
-  WeighRows(kRowWeight, [this](int r) { return SideOf(r) != Side::kNone; });
-  if (!FactorRows()) return false;
-  // The cost may have scales of its own, shorter than the point's size.
-  for (double away = kNeighbour; away >= (upwards ? kNeighbour : kNearest); away *= 0.1) {
-    for (const double sign : {away, -away}) {
-      for (std::size_t i = 0; i < near_.size(); ++i) {
-        near_[i] = (*y_)[static_cast<Eigen::Index>(i)] + sign * size_[i] * soft_[i];
-      }
-      for (int i = 0; i < kMostCorrections; ++i) {
-        view_->MoveIntoBounds(near_.data());
-        if (!Evaluate(near_.data(), {}, {})) break;
-        rows_.Values(*at_, u_near_.data());
-        const bool keeps = Violation(u_near_) <= kNeighbourViolation;
-        if (keeps && at_->full.value < value - less) return true;
-        if (keeps) break;
-        ReturnToRows();
-      }
-    }
+void OptimalityCheck::Shift(double share) {
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+    at_->hessian.Diagonal(static_cast<int>(i)) += share * diagonal_[i];
   }
-  return false;
-}
-
-/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes: those of side_.
-bool OptimalityCheck::HoldPushing(double pushes) {
-  const double slope = Largest(gradient_) + largest_;
-  for (int r = 0; r < rows_.size(); ++r) {
-    const Side side = SideOf(r);
-    const bool held = side == Side::kBoth || std::abs(lambda_[r]) * norm_[r] >= pushes * slope;
-    side_[r] = held ? side : Side::kNone;
-  }
-  return HoldRows(largest_ + std::numeric_limits<double>::min());
-}
-
-/// In all directions that the rows held leave free, by what counts at a neighbour: y is a minimum, but where higher orders win.
-bool OptimalityCheck::CurvesUpwards() {
-  const double clearly =
-      std::max(kFirstShift * largest_, 2.0 * ClearlyLess() / (kNeighbour * kNeighbour));
-  return factor_.Factor(at_->hessian, -clearly, -clearly) == BorderedCholesky::Status::kDefinite;
-}
-
-/// soft_, of largest element 1, by inverse iteration on what HoldPushing evaluated, or CurvesUpwards factored.
-bool OptimalityCheck::SoftestDirection(bool factored) {
-  const double largest = largest_ + std::numeric_limits<double>::min();
-  if (!factored && !Factor(kFirstShift * largest, largest)) return false;
-  for (std::size_t i = 0; i < soft_.size(); ++i) soft_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);
-  for (int i = 0; i < (factored ? kFewInverseIterations : kInverseIterations); ++i) {
-    factor_.Solve(soft_.data());
-    const double scale = Largest(soft_);
-    if (!(scale > 0.0) || !std::isfinite(scale)) return false;
-    for (double& number : soft_) number /= scale;
-  }
-  return true;
-}
-
-/// near_, where rows have the values u_near_, is moved onto those that push, and into the others.
-void OptimalityCheck::ReturnToRows() {
-  StepOntoRows([this](int r) {
-    if (side_[r] == Side::kNone) {
-      return std::max(u_near_[r] - rows_.hi(r), 0.0) - std::max(rows_.lo(r) - u_near_[r], 0.0);
-    }
-    return u_near_[r] - (side_[r] == Side::kLower ? rows_.lo(r) : rows_.hi(r));
-  });
-  for (std::size_t i = 0; i < near_.size(); ++i) near_[i] += size_[i] * step_[i];
 }
 
 }  // namespace touchdown::solvers

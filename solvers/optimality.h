@@ -37,32 +37,45 @@ class OptimalityCheck {
   /// At which of its bounds a row is, by its multiplier's sign.
   enum class Side : signed char { kLower = -1, kNone = 0, kUpper = 1, kBoth = 2 };
 
+  /// Rows that are to be kept: those of side_, or all that are at a bound.
+  enum class Kept { kHeld, kAtBounds };
+  static constexpr double kFirstShift = 1e-15;  // rounding, share of the diagonal
+
   bool Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
              ViewEvaluation* storage);
   bool Evaluate(const double* y, Want want, const Lagrangian& lagrangian);
   void TakeMultipliers(const SolverResult& told);
   bool Estimate();
   Optimality Weigh();
-  double Violation(const std::vector<double>& u) const;
   double Beyond(int row, double u) const;
+  double Violation(int row, double u) const;
+  double Violation(const std::vector<double>& u) const;
+  double TotalViolation(const std::vector<double>& u) const;
   double WayTo(int row, double multiplier) const;
   Side SideOf(int row) const;
   bool EvaluateHessian(const double* multipliers, const double* weights, double cost_factor);
-  template <class Keeps>
-  void WeighRows(double weight, const Keeps& keeps);
+  void WeighRows(Kept kept);
   bool FactorRows();
-  template <class Off>
-  void StepOntoRows(const Off& off);
+  void StepOntoRows();
+  void MoveAway(double share, const std::vector<double>& way);
   void Residual(const double* lambda);
-  bool HoldRows(double curvature);
-  bool Factor(double shift, double largest);
-  bool NeighbourCostsLess();
+  bool HoldRows();
+  bool FactorShifted();
+  void Shift(double share);
+  void MeasureDiagonal();
+  void MeasureCurvature(double least);
+  static double Left(const Optimality& at);
+  double CostValue() const;
+  // optimality_neighbours.cc
+  void LookAround(Optimality* found);
+  bool Refutes(double nearest, double farthest, Optimality* found);
+  double Fall(double sign, double nearest, double farthest, double rise, double* where);
+  bool EvaluateOnRows();
+  double OffRow(int row) const;
   bool HoldPushing(double pushes);
+  bool HoldsAll() const;
   bool CurvesUpwards();
-  bool SoftestDirection(bool factored);
-  double ClearlyLess() const;
-  bool DescendsAlongIt(bool upwards);
-  void ReturnToRows();
+  bool SoftestWay(int iterations);
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;
@@ -71,13 +84,16 @@ class OptimalityCheck {
   int evaluations_ = 0;
   double first_cost_ = 0.0;
   double cost_ = 0.0;
-  double left_ = 0.0;     // of the cost, by the conditions
-  double largest_ = 0.0;  // element of the Lagrangian's Hessian
+  double cost_size_ = 0.0;  // what was gained, or its slope
+  double left_ = 0.0;       // of the cost, by the conditions
+  double shift_ = 0.0;      // that made the Hessian definite, share of the diagonal
   ConstraintRows rows_;  // bounds among them
   BorderedCholesky factor_;
   std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
-  std::vector<double> gradient_, residual_, step_, soft_, near_;
-  std::vector<double> u_, u_near_, jacobian_, norm_, lambda_, weight_;
+  std::vector<double> curvature_;  // of each variable, the Lagrangian's
+  std::vector<double> diagonal_;   // what shifts are a share of: the largest in each row of a Hessian
+  std::vector<double> gradient_, residual_, step_, way_, near_;
+  std::vector<double> u_, u_near_, off_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;
   std::vector<std::vector<double>> by_term_, weights_by_term_;
   std::vector<RowWeights> row_weights_;

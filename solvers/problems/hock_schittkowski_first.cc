@@ -203,8 +203,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                     u[1] = x[0] + std::sqrt(3.0) * x[1];
                                     u[2] = 6.0 - x[0] - std::sqrt(3.0) * x[1];
                                   })
-                     .BoundAll(0.0, kInfinity)
-                     .Other(0.0));
+                     .BoundAll(0.0, kInfinity));
   all->push_back(SmallProblem("HS26", {-2.6, 2.0, 2.0}, 0.0, form)
                      .Squares(2,
                               [](const auto* x, auto* u) {
@@ -235,8 +234,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                   [](const auto* x, auto* u) {
                                     u[0] =
                                         48.0 - x[0] * x[0] - 2.0 * x[1] * x[1] - 4.0 * x[2] * x[2];
-                                  })
-                     .Other(0.0));
+                                  }));
 }
 
 }  // namespace touchdown::solvers

@@ -81,8 +81,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                   })
                      .Bound(0, 0.0, kInfinity)
                      .Bound(1, 0.0, kInfinity)
-                     .Bound(2, 0.0, 5.0)
-                     .Other(-4.0));
+                     .Bound(2, 0.0, 5.0));
   all->push_back(SmallProblem("HS34", {0.0, 1.05, 2.9}, -std::log(std::log(10.0)), form)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0]; })
                      .AtLeastZero(2,
@@ -195,8 +194,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                      .Bound(1, 0.0, 2.0)
                      .Bound(2, 0.0, 3.0)
                      .Bound(3, 0.0, 4.0)
-                     .Bound(4, 0.0, 5.0)
-                     .Other(2.0));
+                     .Bound(4, 0.0, 5.0));
   all->push_back(SmallProblem("HS46", {std::sqrt(0.5), 1.75, 0.5, 2.0, 2.0}, 0.0, form)
                      .Other(0.0210889286)
                      .Other(3.95024704)
