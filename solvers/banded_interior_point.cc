@@ -249,7 +249,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
       // is of another valley, which steps uphill have left.
       const double last = evaluator->last().full.value;
       const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
-      const bool much_cheaper = evaluator->best_cost() < last - kMuchCheaper * std::abs(last);
+      const bool much_cheaper = evaluator->best_cost() < last - kMuchCheaper * std::abs(last) &&
+                                evaluator->best_violation() <= tolerances.violation;
       left_better_ = known_feasible && (errors.row > Evaluator::kFeasible || much_cheaper);
       if (!left_better_) evaluator->PreferLast();
       if (has_equalities_) CorrectEqualities(view, evaluator);
@@ -282,7 +283,9 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     std::swap(now_, next_);
     evaluator->FinishIteration(length.primal * std::sqrt(Dot(step_, step_)), errors.dual);
     evaluator->CheckStop();
-    stalls = length.primal < kStall ? stalls + 1 : 0;
+    // A far step goes as far as one step may.
+    const double allowed = std::min(1.0, kLongestStep * PointSize() / std::max(Largest(step_), 1e-300));
+    stalls = length.primal < kStall * allowed ? stalls + 1 : 0;
     if (stalls >= kMostStalls) break;
   }
   return evaluator->must_stop() ? evaluator->stop_status() : SolveStatus::kNumericalFailure;

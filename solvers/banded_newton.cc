@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortestStep = 1e-10;
+constexpr double kLongestStep = 10.0;  // over the point's size
 /// Below this share of the cost a decrease is rounding.
 constexpr double kRounding = 1e-15;
 /// What was gained counts for this share of the cost at least.
@@ -52,13 +53,14 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     if (Largest(gradient_) == 0.0) return SolveStatus::kConverged;
     if (!FactorDefinite(at.hessian, &factor_)) return SolveStatus::kNumericalFailure;
     NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
-    const double slope = Dot(gradient_, step_);
+    double slope = Dot(gradient_, step_);
     const double scale = std::max(std::abs(value), kSmallestCost);
     // Of the cost; of what was gained, where a constant in the cost must not end the solve.
     const double gained = std::abs(evaluator->first_cost() - value);
     const double whole =
         tolerances.of_gain ? std::clamp(gained, kLeastShare * scale, scale) : scale;
     if (-0.5 * slope <= tolerances.gap * whole) return SolveStatus::kConverged;
+    slope *= Shorten();
     const double length = LineSearch(value, slope, full_step, evaluator);
     full_step = length == 1.0;
     if (length == 0.0) {
@@ -69,6 +71,14 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     evaluator->CheckStop();
   }
   return evaluator->stop_status();
+}
+
+/// Where hardly anything curves, nothing tells how far a step may go.
+double BandedNewton::Shorten() {
+  const double share = kLongestStep * (1.0 + Largest(y_)) / Largest(step_);
+  if (share >= 1.0) return 1.0;
+  for (double& number : step_) number *= share;
+  return share;
 }
 
 /// Halves the step until it decreases the value enough; y_ becomes the accepted point, which is the

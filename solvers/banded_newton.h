@@ -24,6 +24,7 @@ class BandedNewton {
                   Evaluator* evaluator);
 
  private:
+  double Shorten();
   double LineSearch(double value, double slope, bool derivatives, Evaluator* evaluator);
 
   BorderedCholesky factor_;

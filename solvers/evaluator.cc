@@ -115,13 +115,15 @@ bool Evaluator::CheckStop() {
   const bool spent = iterations_ >= stop_->max_iterations ||
                      evaluations_ >= stop_->max_evaluations ||
                      evaluations_ / kMostPerIteration > stop_->max_iterations;
-  if (spent) {
-    stop_status_ = SolveStatus::kIterationLimit;
-  } else if (stop_->wall_limit_s < std::numeric_limits<double>::infinity() &&
-             elapsed_s() >= stop_->wall_limit_s) {
-    stop_status_ = SolveStatus::kTimeLimit;
-  }
-  return must_stop();
+  if (spent) stop_status_ = SolveStatus::kIterationLimit;
+  return spent || CheckClock();
+}
+
+bool Evaluator::CheckClock() {
+  if (stop_status_ == SolveStatus::kStopped) return true;
+  const bool limited = stop_->wall_limit_s < std::numeric_limits<double>::infinity();
+  if (limited && elapsed_s() >= stop_->wall_limit_s) stop_status_ = SolveStatus::kTimeLimit;
+  return stop_status_ == SolveStatus::kTimeLimit;
 }
 
 void Evaluator::AskCallback() {
@@ -147,6 +149,10 @@ void Evaluator::Track() {
 
 void Evaluator::PreferLast() {
   if (cache_valid_) Keep();
+}
+
+void Evaluator::PreferLastIfCloser() {
+  if (cache_valid_ && storage_.full.max_violation < best_violation_) Keep();
 }
 
 void Evaluator::Keep() {

@@ -223,9 +223,8 @@ void IpoptNlp::finalize_solution(Ipopt::SolverReturn status, Index n, const Numb
   if (view_->free_interval()) bound_multipliers_[n - 1] *= point_.interval_scale();
   // One on the way here may have cost less by as much as it was off its rows.
   const bool solved = status == Ipopt::SUCCESS || status == Ipopt::STOP_AT_ACCEPTABLE_POINT;
-  if (solved && !evaluator_->must_stop() && point_.Evaluate(x, false) &&
-      point_.last().full.max_violation < evaluator_->best_violation()) {
-    evaluator_->PreferLast();
+  if (solved && !evaluator_->must_stop() && point_.Evaluate(x, false)) {
+    evaluator_->PreferLastIfCloser();
   }
 }
 

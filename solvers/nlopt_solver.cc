@@ -146,6 +146,9 @@ class NloptSolver : public SolverBackend {
       if (code < 0 || violation <= Evaluator::kFeasible || violation > kCloser * before) break;
       before = violation;
     }
+    if (code > 0 && !evaluator_->must_stop() && point_.Evaluate(z_.data(), false)) {
+      evaluator_->PreferLastIfCloser();
+    }
     return code;
   }
 

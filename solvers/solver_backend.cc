@@ -16,7 +16,7 @@ namespace touchdown::solvers {
 
 namespace {
 
-/// A cost that has fallen by so many times its first value, and 1, has no end.
+/// A cost that has fallen by so many times its first value and its first slope has no end.
 constexpr double kEndless = 1e12;
 
 }  // namespace
@@ -155,11 +155,16 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   } else {
     DoSolve(view, warm, stop, &evaluator_, result);
   }
-  if (evaluator_.must_stop() && result->usable()) result->status = evaluator_.stop_status();
+  // A claim that the last iteration allowed has led to is looked at like others.
+  const bool claimed = result->status == SolveStatus::kConverged &&
+                       evaluator_.stop_status() == SolveStatus::kIterationLimit;
+  if (evaluator_.must_stop() && result->usable() && !claimed) {
+    result->status = evaluator_.stop_status();
+  }
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
 
   result->optimality = {};
-  if (n > 0 && stop.confirm) Judge(view, result);
+  if (n > 0 && stop.confirm) Judge(view, warm.y, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();
@@ -179,32 +184,48 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
 }
 
 /// What becomes of a backend's word.
-void SolverBackend::Judge(const View& view, SolverResult* result) {
+void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, SolverResult* result) {
   SolveStatus* status = &result->status;
-  const double first = evaluator_.first_cost(), best = evaluator_.best_cost();
-  if (evaluator_.best_violation() <= Evaluator::kFeasible &&
-      best < -kEndless * (1.0 + std::abs(first))) {
-    *status = SolveStatus::kUnbounded;
-  }
-  if (*status != SolveStatus::kConverged && *status != SolveStatus::kInfeasible) return;
   const ShareScope scope(&evaluator_, Share::kEvaluation);
-  const auto must_stop = [this] { return evaluator_.CheckStop(); };
+  const OptimalityCheck::MustStop must_stop = [this] { return evaluator_.CheckClock(); };
+  ViewEvaluation* storage = evaluator_.mutable_last();
   if (*status == SolveStatus::kInfeasible) {
-    const bool closer =
-        check_.CanGetCloser(view, evaluator_.best(), must_stop, evaluator_.mutable_last());
+    const bool closer = check_.CanGetCloser(view, evaluator_.best(), must_stop, storage);
     if (closer) *status = SolveStatus::kNumericalFailure;
-    return;
+  } else if (*status == SolveStatus::kConverged || *status == SolveStatus::kUnconfirmed) {
+    const Optimality at = check_.Look(view, evaluator_.best(), *result, evaluator_.first_cost(),
+                                      must_stop, storage);
+    result->optimality = at;
+    if (evaluator_.CheckClock()) {
+      *status = evaluator_.stop_status();
+    } else if (!at.feasible() || !at.stationary()) {
+      *status = SolveStatus::kUnconfirmed;
+    } else if (at.saddle) {
+      *status = SolveStatus::kSaddle;
+    } else {
+      *status = SolveStatus::kConverged;
+      return;
+    }
   }
-  result->optimality =
-      check_.Look(view, evaluator_.best(), *result, first, must_stop, evaluator_.mutable_last());
-  const Optimality& at = result->optimality;
-  if (evaluator_.must_stop()) {
-    *status = evaluator_.stop_status();
-  } else if (!at.feasible() || !at.stationary()) {
-    *status = SolveStatus::kUnconfirmed;
-  } else if (at.saddle) {
-    *status = SolveStatus::kSaddle;
+  if (FellWithoutEnd(view, start)) {
+    *status = SolveStatus::kUnbounded;
+  } else if (*status == SolveStatus::kUnbounded) {
+    *status = SolveStatus::kNumericalFailure;  // its points ran away, the cost did not
   }
+}
+
+/// By what a step as long as the start is large could have gained there, so many times.
+bool SolverBackend::FellWithoutEnd(const View& view, const Eigen::VectorXd& start) {
+  const double fallen = evaluator_.first_cost() - evaluator_.best_cost();
+  const bool feasible = evaluator_.has_best() && evaluator_.best_violation() <= Evaluator::kFeasible;
+  if (!feasible || !(fallen > kEndless * std::abs(evaluator_.first_cost()))) return false;
+  ViewEvaluation* at = evaluator_.mutable_last();
+  if (!view.Evaluate(start.data(), {.gradient = true}, {}, at)) return false;
+  double slope = 0.0;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    slope = std::max(slope, (1.0 + std::abs(start[i])) * std::abs(at->gradient[i]));
+  }
+  return fallen > kEndless * (std::abs(at->full.value) + slope);
 }
 
 const char* ToString(SolveStatus status) {

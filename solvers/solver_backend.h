@@ -67,7 +67,8 @@ class SolverBackend {
 
   std::string name_;
   SolverOptions options_;
-  void Judge(const View& view, SolverResult* result);
+  void Judge(const View& view, const Eigen::VectorXd& start, SolverResult* result);
+  bool FellWithoutEnd(const View& view, const Eigen::VectorXd& start);
 
   Evaluator evaluator_;
   OptimalityCheck check_;
