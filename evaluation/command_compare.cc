@@ -80,6 +80,19 @@ planning::TermSettings ParseTermSetting(const std::string& text,
   return settings;
 }
 
+/// Options that say nothing of what is asked for are refused, not ignored.
+void CheckApplies(const Command& command, const std::string& set) {
+  const bool landing = set == "landing";
+  const std::vector<std::string> of_sets{"--problem-set", "--starts", "--backends", "--seed",
+                                         "--pin",         "--db",     "--picture",  "--json",
+                                         "--allow-debug"};
+  for (const std::string& name : command.Given()) {
+    const bool of_set = std::find(of_sets.begin(), of_sets.end(), name) != of_sets.end();
+    if (landing ? name != "--starts" : of_set) continue;
+    throw BadInput(fmt::format("{} does not go with --problem-set {}.", name, set));
+  }
+}
+
 MachineState BeginTiming(std::optional<int> pin) {
   MachineState machine;
   machine.pinned = pin;
@@ -154,7 +167,7 @@ int Compare(CompareArguments arguments, const Registries& registries) {
 
 void AddCompareCommand(Command app, const Registries& registries, CommandRun* run) {
   const Command command =
-      app.AddCommand("compare", "Compare solver backends on random landing problems");
+      app.AddCommand("compare", "Compare solver backends on random landings, or on sets of known problems");
   const auto arguments = std::make_shared<CompareArguments>();
   CompareOptions& options = arguments->options;
   CaseOptions& cases = options.cases;
@@ -165,7 +178,7 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
       .ShowDefault();
   command
       .Add("--starts", arguments->references.starts,
-           "Of a known problem: the published one, and others around it")
+           "Of a known problem: the first is the published one, others are around it")
       .Check(Range(1, 1000))
       .ShowDefault();
   command.Add("--problems", options.problems, "Number of problems of each size")
@@ -185,7 +198,7 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   command.Add("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
       .Check(OneOf({"eliminated", "explicit"}))
       .ShowDefault();
-  command.AddList("--backends", &options.backends, "Which ones; default: all that can solve it",
+  command.AddList("--backends", &options.backends, "Which ones; default: all that can solve it. --problem-set shooting takes minutes with all",
                   "NAME,NAME,...", OneOf(BackendNames(registries)));
   command
       .Add("--set", arguments->set,
@@ -226,7 +239,8 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
                   "F.png");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
   command.AddFlag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
-  command.OnChosen([arguments, &registries, run] {
+  command.OnChosen([arguments, &registries, run, command] {
+    CheckApplies(command, arguments->problem_set);
     *run = [arguments, &registries] { return Compare(*arguments, registries); };
   });
 }

@@ -10,6 +10,7 @@
 
 #include "touchdown/evaluation/statistics.h"
 #include "touchdown/sim/random_stream.h"
+#include "touchdown/solvers/evaluator.h"
 #include "touchdown/solvers/problems/hock_schittkowski.h"
 #include "touchdown/solvers/problems/more_garbow_hillstrom.h"
 #include "touchdown/solvers/problems/shooting.h"
@@ -62,7 +63,11 @@ class Contest {
   /// After all were asked: the optimum may be the best that anybody found.
   std::vector<ReferenceCell> Judge() {
     for (ReferenceCell& cell : cells_) {
-      for (ReferenceSolve& solve : cell.solves) solve.verdict = Of(solve.summary);
+      for (ReferenceSolve& solve : cell.solves) {
+        solve.verdict = Of(solve.summary);
+        solve.best = solve.verdict == Verdict::kRight &&
+                     solve.summary.cost <= optimum() + kRight * std::max(1.0, std::abs(optimum()));
+      }
     }
     return std::move(cells_);
   }
@@ -77,7 +82,8 @@ class Contest {
     SolverResult result;
     backend->Solve(view_, solvers::WarmStart(Start(options_, problem_, index)), stop, &result);
     const bool claimed = result.status == SolveStatus::kConverged;
-    if (claimed && result.max_violation <= kFeasible) best_ = std::min(best_, result.cost);
+    // What a violation saves must not become the optimum of others.
+    if (claimed && result.max_violation <= solvers::Evaluator::kFeasible) best_ = std::min(best_, result.cost);
     return {.start = index, .summary = result};
   }
 
@@ -104,7 +110,7 @@ std::vector<double> CpuTimes(const ReferenceCell& cell) {
 }
 
 struct Total {
-  int right = 0, elsewhere = 0, unclaimed = 0, refused = 0;
+  int right = 0, best = 0, elsewhere = 0, unclaimed = 0, refused = 0;
   std::vector<double> cpu_ms;
 
   int solves() const { return right + elsewhere + unclaimed; }
@@ -115,6 +121,7 @@ Total TotalOf(const ReferenceResult& result, const std::string& backend) {
   for (const ReferenceCell& cell : result.cells) {
     if (cell.backend != backend) continue;
     total.right += cell.Count(Verdict::kRight);
+    total.best += cell.AtTheBest();
     total.elsewhere += cell.Count(Verdict::kElsewhere);
     total.unclaimed += cell.Count(Verdict::kNotClaimed);
     total.refused += cell.refusal.empty() ? 0 : 1;
@@ -145,6 +152,11 @@ int ReferenceCell::Count(Verdict verdict) const {
                     [verdict](const ReferenceSolve& solve) { return solve.verdict == verdict; }));
 }
 
+int ReferenceCell::AtTheBest() const {
+  return static_cast<int>(std::count_if(solves.begin(), solves.end(),
+                                        [](const ReferenceSolve& solve) { return solve.best; }));
+}
+
 ReferenceResult RunReferences(const ReferenceOptions& options,
                               const solvers::BackendRegistry& registry,
                               const std::function<void(int done, int all)>& report) {
@@ -161,6 +173,7 @@ ReferenceResult RunReferences(const ReferenceOptions& options,
       if (wanted && entry.make()->capabilities().compiled) contest.Ask(entry);
     }
     result.optima.push_back(contest.optimum());
+    result.others.push_back(problem.others);
     for (ReferenceCell& cell : contest.Judge()) {
       if (result.problems.size() == 1) result.backends.push_back(cell.backend);
       result.cells.push_back(std::move(cell));
@@ -173,16 +186,17 @@ ReferenceResult RunReferences(const ReferenceOptions& options,
 std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult& result) {
   const char* elsewhere = result.published ? "false claims" : "elsewhere";
   std::string text = fmt::format(
-      "Problem set {}: {} problems, {} starts each, seed {}. Right: converged, and within 1e-6 of {}.\n"
-      "  {:<15}{:>16}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n",
-      options.set, result.problems.size(), options.starts, options.seed,
-      result.published ? "a published optimum" : "the best that anybody found", "backend", "right",
-      elsewhere, "not claimed", "refused", "median ms", "p95", "largest");
+      "Problem set {}: {} problems, {} starts each, seed {}, at most {} iterations. Right: converged, and within 1e-6 of {}.\n"
+      "  {:<15}{:>16}{:>13}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n",
+      options.set, result.problems.size(), options.starts, options.seed, options.max_iterations,
+      result.published ? "an optimum that is known, which may be a local one"
+                       : "the best that anybody found",
+      "backend", "right", "at the best", elsewhere, "not claimed", "refused", "median ms", "p95", "largest");
   for (const std::string& backend : result.backends) {
     const Total total = TotalOf(result, backend);
     const Quantiles ms = QuantilesOf(total.cpu_ms);
-    text += fmt::format("  {:<15}{:>16}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n", backend,
-                        fmt::format("{} of {}", total.right, total.solves()), total.elsewhere,
+    text += fmt::format("  {:<15}{:>16}{:>13}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n", backend,
+                        fmt::format("{} of {}", total.right, total.solves()), total.best, total.elsewhere,
                         total.unclaimed, total.refused, Milliseconds(ms.median),
                         Milliseconds(ms.p95), Milliseconds(ms.max));
   }
@@ -216,6 +230,7 @@ nlohmann::ordered_json ReferenceJson(const ReferenceOptions& options,
     Json of_cell{{"problem", cell.problem},
                  {"backend", cell.backend},
                  {"right", cell.Count(Verdict::kRight)},
+                 {"best", cell.AtTheBest()},
                  {"elsewhere", cell.Count(Verdict::kElsewhere)},
                  {"unclaimed", cell.Count(Verdict::kNotClaimed)},
                  {"median_ms", median ? Json(*median) : Json()}};

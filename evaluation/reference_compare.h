@@ -23,7 +23,7 @@ struct ReferenceOptions {
   double most_seconds = 10.0;  ///< wall time of a solve
 };
 
-/// What a solve came to, judged by the optima that are known.
+/// What a solve came to, judged by the optima that are known, of which one may be local.
 enum class Verdict {
   kRight,       ///< converged to one, within 1e-6
   kElsewhere,   ///< converged to another point: a false claim, where all optima are published
@@ -36,6 +36,7 @@ struct ReferenceSolve {
   int start = 0;  ///< 0: the published one
   solvers::SolverSummary summary;
   Verdict verdict = Verdict::kNotClaimed;
+  bool best = false;  ///< right, and at the best of the optima that are known
 };
 
 /// One backend on one problem, from all starts.
@@ -45,12 +46,14 @@ struct ReferenceCell {
   std::vector<ReferenceSolve> solves;
 
   int Count(Verdict verdict) const;
+  int AtTheBest() const;
 };
 
 struct ReferenceResult {
   bool published = true;  ///< else the best cost of all solves is the optimum
   std::vector<std::string> problems, backends;
   std::vector<double> optima;        ///< [problem], the best known cost
+  std::vector<std::vector<double>> others;  ///< [problem], costs at other local optima
   std::vector<ReferenceCell> cells;  ///< [problem][backend]
 };
 

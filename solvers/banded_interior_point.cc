@@ -253,10 +253,12 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
                                 evaluator->best_violation() <= tolerances.violation;
       left_better_ = known_feasible && (errors.row > Evaluator::kFeasible || much_cheaper);
       if (!left_better_) evaluator->PreferLast();
+      if (errors.row > Evaluator::kFeasible) {
+        if (RowsContradict(evaluator->last().gradient)) return SolveStatus::kInfeasible;
+        break;  // the price is too low
+      }
       if (has_equalities_) CorrectEqualities(view, evaluator);
-      if (errors.row <= Evaluator::kFeasible) return SolveStatus::kConverged;
-      if (RowsContradict(evaluator->last().gradient)) return SolveStatus::kInfeasible;
-      break;  // the price is too low
+      return SolveStatus::kConverged;
     }
     const double least =
         kLeastTarget * tolerances.gap / std::max(errors.gap, 1e-300) * Complementarity({0.0, 0.0});

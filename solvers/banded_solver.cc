@@ -20,6 +20,23 @@ bool HasRows(const View& view) {
   return false;
 }
 
+/// In the result where a solve does not end as it should.
+const char* Words(SolveStatus status, bool has_rows) {
+  switch (status) {
+    case SolveStatus::kInfeasible:
+      return "the rows contradict each other near the least violation that was found";
+    case SolveStatus::kUnconfirmed:
+      return "the steps stalled, at a point that may be the optimum";
+    case SolveStatus::kEvaluationFailed:
+      return "a number is not finite where the solve began";
+    case SolveStatus::kNumericalFailure:
+      return has_rows ? "fast, elastic and careful steps stalled, all of them"
+                      : "no step along a descent direction lowers the cost";
+    default:
+      return "";
+  }
+}
+
 class BandedSolver : public SolverBackend {
  public:
   BandedSolver()
@@ -51,11 +68,13 @@ class BandedSolver : public SolverBackend {
     const double gap = (stop.confirm ? kConfirmedShare : 1.0) * options().Get("gap_tolerance");
     if (!has_rows_) {
       result->status = newton_.Run(view, warm.y.data(), {gap, stop.confirm}, evaluator);
+      result->message = Words(result->status, has_rows_);
       return;
     }
     result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
                                          {gap, options().Get("violation_tolerance"), stop.confirm},
                                          evaluator);
+    result->message = Words(result->status, has_rows_);
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
     for (int i = 0; i < view.problem().num_terms(); ++i) {
       result->multipliers[i] = interior_point_.multipliers(i);

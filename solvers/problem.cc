@@ -42,6 +42,21 @@ void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
                                 std::to_string(bounds.lo) + ", " + std::to_string(bounds.hi) +
                                 "], they must satisfy lo <= hi");
   }
+  if (role == Role::kConstraint && bounds.lo == -kInfinity && bounds.hi == kInfinity) {
+    throw std::invalid_argument("Problem: rows of term " + term->info().name +
+                                " have no bounds: a loss that is zero on an interval makes rows, "
+                                "as RangeLoss and SquareLoss do");
+  }
+  TermBlock block;
+  block.Resize(t);
+  term->Place(&block);
+  for (int k = 0; k < block.windows; ++k) {
+    const int first = block.first_block[k];
+    if (first >= 0 && first + t.window <= shape_.blocks) continue;
+    throw std::invalid_argument("Problem: term " + term->info().name + " has a window of blocks " +
+                                std::to_string(first) + " to " + std::to_string(first + t.window - 1) +
+                                ", they must be 0 to " + std::to_string(shape_.blocks - 1));
+  }
   half_bandwidth_ = std::max(half_bandwidth_, t.window - 1);
   terms_.push_back({std::move(term), role});
 }

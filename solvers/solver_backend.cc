@@ -18,6 +18,7 @@ namespace {
 
 /// A cost that has fallen by so many times its first value and its first slope has no end.
 constexpr double kEndless = 1e12;
+constexpr std::size_t kLongestMessage = 100;  // of backends of our own
 
 }  // namespace
 
@@ -115,6 +116,7 @@ void SolverBackend::Reserve(const View& view, SolverResult* result) {
   }
   ConstraintRows::Size(view, &result->multipliers);
   result->bound_multipliers.reserve(static_cast<std::size_t>(view.num_variables()));
+  result->message.reserve(kLongestMessage);
 }
 
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,

@@ -308,5 +308,14 @@ TEST(BandedEqualities, ASolveDoesNotAllocate) {
   EXPECT_EQ(AllocationCount() - before, 0);
 }
 
+TEST(BandedEqualities, ASwingThatTheTorqueDoesNotAllowIsInfeasible) {
+  const Problem weak = SwingUp(40, 1.5);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(120);
+  for (int k = 0; k < 40; ++k) start[3 * k] = 3.14159265358979 * k / 39.0;
+  const SolverResult result = SolveFrom(weak, start);
+  EXPECT_EQ(result.status, SolveStatus::kInfeasible);
+  EXPECT_NE(result.message, "");
+}
+
 }  // namespace
 }  // namespace touchdown::solvers

@@ -13,7 +13,7 @@
 
 #include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/problems/reference_problem.h"
-#include "touchdown/solvers/solve.h"
+#include "touchdown/solvers/solvers.h"
 #include "touchdown/solvers/test/test_terms.h"
 #include "touchdown/solvers/window_term.h"
 
@@ -329,6 +329,25 @@ TEST(BandedSolver, DoesNotAllocateInASolve) {
     EXPECT_EQ(AllocationCount() - before, 0) << (hard ? "hard" : "soft");
     EXPECT_EQ(result.status, SolveStatus::kConverged);
   }
+}
+
+TEST(BandedSolver, AFarStepWhereHardlyAnythingCurvesIsShortened) {
+  // Beyond a hair's width of its kink the cost is a line.
+  Problem kink({.blocks = 1, .block_size = 2});
+  kink.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "kink"}, FunctionShape{.block_size = 2},
+                                              LinearLoss(1.0),
+                                              [](const auto* x, auto* u) {
+                                                using std::sqrt;
+                                                u[0] = sqrt(x[0] * x[0] + 1e-12) + x[1] * x[1];
+                                              }),
+               Role::kCost);
+  const View view(kink);
+  const auto solver = MakeBackend(StandardBackends(), "banded");
+  solver->Prepare(view);
+  SolverResult result;
+  solver->Solve(view, WarmStart(Eigen::Vector2d(1.0, 0.5)), {}, &result);
+  EXPECT_EQ(result.status, SolveStatus::kConverged);
+  EXPECT_NEAR(result.cost, 1e-6, 1e-9);
 }
 
 }  // namespace

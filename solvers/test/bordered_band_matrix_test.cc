@@ -24,6 +24,18 @@ TEST(BorderedBandMatrix, AnswersForTheWholeSymmetricMatrix) {
   EXPECT_EQ(m.At(2, 5), 0.0);
 }
 
+TEST(BorderedBandMatrix, KnowsTheLargestOfEachRow) {
+  BorderedBandMatrix m;
+  m.Resize(4, 2, 1, true);
+  m.block(1, 0)[3] = -1.0;  // (3, 3)
+  m.block(1, 1)[1] = 5.0;   // (2, 5)
+  m.border()[3] = -7.0;     // (3, 8)
+  m.corner() = 2.0;
+  std::vector<double> largest(9);
+  m.LargestInRows(largest.data());
+  EXPECT_EQ(largest, (std::vector<double>{0.0, 0.0, 5.0, 7.0, 0.0, 5.0, 0.0, 0.0, 7.0}));
+}
+
 TEST(BorderedBandMatrix, ScalesRowsAndColumns) {
   BorderedBandMatrix m;
   m.Resize(4, 2, 1, true);

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/solvers.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -241,6 +242,29 @@ TEST(MoreThuente, MeetsBothConditions) {
       EXPECT_LE(evaluations, 16);
     }
   }
+}
+
+TEST(LbfgsSolver, AClaimOfTheLastIterationAllowedIsLookedAt) {
+  Problem problem({.blocks = 2, .block_size = 1});
+  problem.AddTerm(std::make_shared<FunctionTerm>(
+                      TermInfo{.name = "valley"}, FunctionShape{.window = 2, .outputs = 2}, SquareLoss(2.0),
+                      [](const auto* x, auto* u) {
+                        u[0] = 10.0 * (x[1] - x[0] * x[0]);
+                        u[1] = 1.0 - x[0];
+                      }),
+                  Role::kCost);
+  const View view(problem);
+  const auto solver = MakeBackend(StandardBackends(), "lbfgs");
+  solver->Prepare(view);
+  SolverResult result;
+  const Eigen::Vector2d start(-1.2, 1.0);
+  solver->Solve(view, WarmStart(start), {.max_iterations = 500}, &result);
+  ASSERT_EQ(result.status, SolveStatus::kConverged);
+  const int used = result.iterations;
+  solver->Solve(view, WarmStart(start), {.max_iterations = used}, &result);
+  EXPECT_EQ(result.status, SolveStatus::kConverged);
+  solver->Solve(view, WarmStart(start), {.max_iterations = used - 1}, &result);
+  EXPECT_EQ(result.status, SolveStatus::kIterationLimit);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <random>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include "touchdown/solvers/problems/hock_schittkowski.h"
 #include "touchdown/solvers/problems/more_garbow_hillstrom.h"
 #include "touchdown/solvers/test/every_backend.h"
@@ -94,6 +96,85 @@ TEST(Optimality, ANeighbourThatCostsLessRefutesAPoint) {
       EXPECT_TRUE(at.stationary());
       EXPECT_EQ(at.saddle, sign > 0.0);
     }
+  }
+}
+
+TEST(Optimality, NeitherAConstantNorAWideUnitHidesASaddle) {
+  for (const double constant : {0.0, 1e5, -1e7}) {
+    const ReferenceProblem p = SmallProblem("wells", {3.0, 0.0}, constant, EqualityForm::kRows)
+                                   .Cost([=](const auto* x, auto* u) {
+                                     const auto a = x[0] - 1.0, b = x[1] * x[1] - 1.0;
+                                     u[0] = constant + a * a + b * b;
+                                   });
+    EXPECT_TRUE(LookAt(p, {1.0, 0.0}).saddle) << constant;
+    EXPECT_FALSE(LookAt(p, {1.0, 1.0}).saddle) << constant;
+  }
+  for (const double width : {200.0, 1000.0}) {
+    const ReferenceProblem p = SmallProblem("wide", {3.0, 0.0}, 0.0, EqualityForm::kRows)
+                                   .Squares(2, [=](const auto* x, auto* u) {
+                                     u[0] = x[0] - 1.0;
+                                     u[1] = x[1] * x[1] / (width * width) - 1.0;
+                                   });
+    EXPECT_TRUE(LookAt(p, {1.0, 0.0}).saddle) << width;
+    EXPECT_FALSE(LookAt(p, {1.0, width}).saddle) << width;
+  }
+}
+
+TEST(Optimality, AStiffDirectionDoesNotHideASaddle) {
+  for (const double stiff : {1e6, 1e9, 1e12}) {
+    const ReferenceProblem p = SmallProblem("stiff", {1.5, 0.1}, -0.0625, EqualityForm::kRows)
+                                   .Cost([=](const auto* x, auto* u) {
+                                     const auto a = x[0] - 1.0, b = x[1] * x[1];
+                                     u[0] = 0.5 * stiff * a * a - 0.5 * b + b * b;
+                                   });
+    EXPECT_TRUE(LookAt(p, {1.0, 0.0}).saddle) << stiff;
+    EXPECT_FALSE(LookAt(p, {1.0, 0.5}).saddle) << stiff;
+  }
+}
+
+TEST(Optimality, AValleyBehindARiseIsAnotherOptimums) {
+  // A strict minimum 60,000 away from 0: a hundredth of that is a hundred waves.
+  const ReferenceProblem p = SmallProblem("waves", {62832.1}, 0.0, EqualityForm::kRows)
+                                 .Cost([](const auto* x, auto* u) {
+                                   using std::cos;
+                                   u[0] = -cos(x[0]) + 1e-3 * x[0];
+                                 });
+  const Optimality at = LookAt(p, {2e4 * std::acos(-1.0) - std::asin(1e-3)});
+  EXPECT_TRUE(at.stationary() && !at.saddle);
+}
+
+TEST(Optimality, ACornerWhereNothingPushesIsNoMinimum) {
+  const std::vector<std::pair<std::string, std::vector<double>>> corners = {
+      {"HS24", {0.0, 0.0}},
+      {"HS29", {0.0, 0.0, 0.0}},
+      {"HS33", {0.0, 0.0, 2.0}},
+      {"HS45", {0.0, 0.0, 1.0, 1.0, 1.0}}};
+  for (const ReferenceProblem& p : HockSchittkowski()) {
+    for (const auto& [name, corner] : corners) {
+      if (p.name != name) continue;
+      EXPECT_TRUE(LookAt(p, corner).saddle) << name;
+    }
+  }
+}
+
+TEST(Optimality, AMetricThatIsLostToRoundingProvesNothing) {
+  // Least squares with weights up to 1e14 along a row, all of it oblique: softly falling ways are below its rounding.
+  const ReferenceProblem p =
+      SmallProblem("oblique", {1.5, -1.0, 0.5}, 0.0, EqualityForm::kRows)
+          .Squares(3,
+                   [](const auto* x, auto* u) {
+                     const auto a = x[0] - 1.0, b = x[1] - 1.0, c = x[2] - 1.0;
+                     u[0] = 1e7 * (a + 0.7 * b - 0.4 * c);
+                     u[1] = 3e3 * (0.3 * a - b + 0.9 * c);
+                     u[2] = 0.8 * a + 0.5 * b + c;
+                   })
+          .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] - 0.6 * x[1] + 0.2 * x[2] - 0.6; });
+  EXPECT_TRUE(LookAt(p, {1.0, 1.0, 1.0}).stationary());
+  // On the row and the stiffest plane, which leave one way: rounding is all that its cost of 0.01 shares with the metric.
+  const Eigen::Vector3d way = Eigen::Vector3d(1.0, -0.6, 0.2).cross(Eigen::Vector3d(1.0, 0.7, -0.4));
+  for (const double away : {1e-3, 1e-2, 1e-1}) {
+    const Eigen::Vector3d at = Eigen::Vector3d::Ones() + away * way;
+    EXPECT_FALSE(LookAt(p, {at[0], at[1], at[2]}).stationary()) << away;
   }
 }
 
@@ -294,6 +375,51 @@ TEST_P(ClaimsOfEveryBackend, NobodyClaimsWhatIsNone) {
   }
 }
 
+TEST_P(ClaimsOfEveryBackend, NeitherUnboundedNorInfeasibleHasAUnit) {
+  for (const double factor : {1e-6, 1.0, 1e13}) {
+    const ReferenceProblem bowl =
+        SmallProblem("bowl", {0.0, 0.0}, -factor, EqualityForm::kRows)
+            .Cost([=](const auto* x, auto* u) {
+              u[0] = factor * (x[0] * x[0] - 2.0 * x[0] + x[1] * x[1]);
+            });
+    EXPECT_NE(SolveReference(bowl).status, SolveStatus::kUnbounded) << factor;
+  }
+  for (const double far : {10.0, 1e3, 1e6}) {
+    const ReferenceProblem corner = SmallProblem("far", {0.0, 0.0}, 1.25 * far * far, EqualityForm::kRows)
+                                        .Squares(2,
+                                                 [](const auto* x, auto* u) {
+                                                   u[0] = x[0];
+                                                   u[1] = x[1];
+                                                 })
+                                        .AtLeastZero(1, [=](const auto* x, auto* u) { u[0] = x[0] - far; })
+                                        .Zero(1, [](const auto* x, auto* u) { u[0] = x[1] - 0.5 * x[0]; });
+    const SolverResult result = SolveReference(corner);
+    EXPECT_NE(result.status, SolveStatus::kInfeasible) << far;
+    if (result.status == SolveStatus::kConverged) {
+      EXPECT_LT(corner.Off(result.cost), 1e-6) << far;
+    }
+  }
+}
+
+TEST_P(ClaimsOfEveryBackend, AStartThatIsFeasibleInTheRowsUnitIsNotTheBestPoint) {
+  // x = 0 violates the row by its unit alone, and costs nothing.
+  for (const double unit : {1.0, 1e-6}) {
+    const ReferenceProblem p = SmallProblem("unit", {0.0, 0.5}, 1.0, EqualityForm::kRows)
+                                   .Squares(2,
+                                            [](const auto* x, auto* u) {
+                                              u[0] = x[0];
+                                              u[1] = x[1];
+                                            })
+                                   .Zero(1, [=](const auto* x, auto* u) { u[0] = unit * (x[0] - 1.0); });
+    const SolverResult result = SolveReference(p);
+    const bool strong = Make()->capabilities().equality_rows;
+    EXPECT_EQ(result.status == SolveStatus::kConverged, strong) << unit;
+    if (strong) {
+      EXPECT_NEAR(result.cost, 1.0, 1e-6) << unit;
+    }
+  }
+}
+
 TEST_P(ClaimsOfEveryBackend, ClaimsInTheSetAreRight) {
   // Those whose numbers end with 2 or 7 are kept aside, for the table of the whole set.
   int claimed = 0;
@@ -388,6 +514,19 @@ TEST_P(ClaimsOfEveryBackend, ASaddleBesideALargeVariableIsNoOptimum) {
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ClaimsOfEveryBackend);
 INSTANTIATE_TEST_SUITE_P(Backends, ClaimsOfEveryBackend, ::testing::ValuesIn(CompiledBackends()),
                          TestName);
+
+TEST(Problem, RefusesRowsThatCouldNotBeMissed) {
+  Problem problem({.blocks = 3, .block_size = 1});
+  const auto sum = [](const auto* q, auto* u) { u[0] = q[0] + q[1]; };
+  const auto term = [&](const FunctionTerm::Loss& loss, int windows) {
+    return std::make_shared<FunctionTerm>(TermInfo{"sum"}, FunctionShape{.window = 2, .windows = windows},
+                                          loss, sum);
+  };
+  EXPECT_THROW(problem.AddTerm(term(LinearLoss(1.0), 2), Role::kConstraint), std::invalid_argument);
+  EXPECT_THROW(problem.AddTerm(term(SquareLoss(1.0), 3), Role::kCost), std::invalid_argument)
+      << "its last window would end beyond the last block";
+  EXPECT_NO_THROW(problem.AddTerm(term(LinearLoss(1.0), 2), Role::kCost));
+}
 
 TEST(Problem, RefusesRowsWithoutAnInterval) {
   struct Crossed : FunctionTerm {

@@ -29,16 +29,23 @@ TEST(Problem, RefusesAnIntervalWithoutEnd) {
       std::invalid_argument);
 }
 
-TEST(Problem, AWindowOutsideTheProblemIsAnEvaluationThatFails) {
+TEST(Problem, AWindowThatStraysOutOfTheProblemIsAnEvaluationThatFails) {
   class Stray : public WavyMap {
    public:
-    Stray() : WavyMap(1) {}
-    int first_block(int /*k*/) const { return 8; }
+    explicit Stray(const int* first) : WavyMap(1), first_(first) {}
+    int first_block(int /*k*/) const { return *first_; }
+
+   private:
+    const int* first_;
   };
+  int first = 8;
+  const auto stray = std::make_shared<WindowTerm<Stray, SquareLoss>>(
+      TermInfo{"stray", "", "", "", false}, Stray(&first), SquareLoss(1.0), 1);
   Problem problem({.blocks = 10, .block_size = 2});
-  problem.AddTerm(std::make_shared<WindowTerm<Stray, SquareLoss>>(
-                      TermInfo{"stray", "", "", "", false}, Stray(), SquareLoss(1.0), 1),
-                  Role::kCost);
+  EXPECT_THROW(problem.AddTerm(stray, Role::kCost), std::invalid_argument) << "it is outside";
+  first = 7;
+  problem.AddTerm(stray, Role::kCost);
+  first = 8;
   Evaluation e;
   problem.Resize(&e);
   // Room for the stray window's read; what it would write has none.

@@ -15,7 +15,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, compare, database  # noqa: E402
 from touchdown_report.style import STYLE, made_with, sign  # noqa: E402
 
-SUPPORTED_VERSION = "1"
+SUPPORTED_VERSION = "2"
 
 
 class ProblemSetError(Exception):
@@ -47,7 +47,7 @@ class ProblemSet:
 
 
 def headline(manifest):
-    judged = "a published optimum" if manifest["published"] == "1" else "the best that anybody found"
+    judged = "an optimum that is known" if manifest["published"] == "1" else "the best that anybody found"
     return (
         f"problem set {manifest['problem_set']}, {manifest['starts']} starts each, "
         f"seed {manifest['seed']}",

@@ -81,6 +81,11 @@ foreach(i RANGE ${last})
   endif()
 endforeach()
 
+run(0 "${WORK_DIR}/own_problem/swing_up")
+if(NOT output MATCHES "^converged after [0-9]+ iterations, effort 67.7")
+  message(FATAL_ERROR "swing_up: ${output}")
+endif()
+
 # `compare` judges the example backend: by the best cost that any backend found.
 build("${EXAMPLES}/own_backend" own_backend)
 set(own "${WORK_DIR}/own_backend/own_backend")
