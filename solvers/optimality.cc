@@ -3,7 +3,7 @@
 // Lagrangian's gradient is worth is told by its Hessian, for a backend's multipliers without the rows' weights: a metric
 // with large weights is blind to what lies across the rows. Multipliers are estimated as the least squares of that residual
 // over the rows at their bounds, without those of the wrong sign: across the rows that are kept nothing is left then, and
-// weights hold them. Weights and shifts are shares of what is there, variable by variable: a stiff variable must not hide a soft one.
+// weights hold them. Shifts are shares of what is there, variable by variable: a stiff variable must not hide a soft one.
 // (J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., chapters 12 and 18).
 
 #include "touchdown/solvers/optimality.h"
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "touchdown/solvers/newton_step.h"
 
@@ -21,7 +22,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAtBound = 1e-5;   // way of a row to its bound, along its slope
 constexpr double kRowWeight = 1e7;   // beside the curvature, of rows that are to be kept
-constexpr double kLeastShare = 1e-4;  // of the largest curvature, where variables have none of their own
 constexpr int kRefinements = 4;
 constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
 constexpr double kRounding = 1e-12;
@@ -39,7 +39,7 @@ void OptimalityCheck::Prepare(const View& view) {
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   factor_.Prepare(shape);
-  for (auto* vector : {&size_, &curvature_, &diagonal_, &gradient_, &residual_, &step_, &way_, &near_}) {
+  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &near_}) {
     vector->assign(n, 0.0);
   }
   ConstraintRows::Size(view, &by_term_);
@@ -64,10 +64,10 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
     const double shift = shift_;
     if (rows_.size() > 0 && !(shift <= kFirstShift && found.stationary()) && Estimate()) {
       const Optimality estimated = Weigh();
-      const bool better = estimated.stationary() != found.stationary() ? estimated.stationary()
-                          : shift_ != shift                            ? shift_ < shift
-                                                                       : Left(estimated) < Left(found);
-      if (better) {
+      const auto rank = [](const Optimality& at, double of_shift) {
+        return std::tuple(!at.stationary(), of_shift, at.left + at.gap_left);
+      };
+      if (rank(estimated, shift_) <= rank(found, shift)) {
         found = estimated;
       } else {
         TakeMultipliers(told);
@@ -107,7 +107,7 @@ bool OptimalityCheck::Begin(const View& view, const Eigen::VectorXd& y, const Mu
     norm_[r] = std::sqrt(sum);
   }
   side_.assign(m, Side::kNone);
-  curvature_.assign(size_.size(), 1.0);
+  curvature_ = 1.0;
   return true;
 }
 
@@ -179,29 +179,23 @@ OptimalityCheck::Side OptimalityCheck::SideOf(int row) const {
   return to_upper <= to_lower ? Side::kUpper : Side::kLower;
 }
 
-/// So that a row holds much more than the most curved of its variables; those that are not kept weigh nothing.
+/// Rows that are not kept weigh nothing.
 void OptimalityCheck::WeighRows(Kept kept) {
   for (int r = 0; r < rows_.size(); ++r) {
-    double most = 0.0;
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      most = std::max(most, curvature_[rows_.column(k)]);
-    }
     const Side side = kept == Kept::kHeld ? side_[r] : SideOf(r);
     const bool holds = side != Side::kNone && norm_[r] > 0.0;
-    weight_[r] = holds ? kRowWeight * most / (norm_[r] * norm_[r]) : 0.0;
+    weight_[r] = holds ? kRowWeight * curvature_ / (norm_[r] * norm_[r]) : 0.0;
   }
 }
 
-/// D + J^T weight J, D the curvatures.
+/// curvature I + J^T weight J.
 bool OptimalityCheck::FactorRows() {
-  if (!EvaluateHessian(nullptr, weight_.data(), 0.0)) return false;
-  for (std::size_t i = 0; i < curvature_.size(); ++i) {
-    at_->hessian.Diagonal(static_cast<int>(i)) += curvature_[i];
-  }
-  return factor_.Factor(at_->hessian) == BorderedCholesky::Status::kDefinite;
+  return EvaluateHessian(nullptr, weight_.data(), 0.0) &&
+         factor_.Factor(at_->hessian, curvature_, curvature_) ==
+             BorderedCholesky::Status::kDefinite;
 }
 
-/// step_ = the shortest way, by D, onto the rows that weigh, which are off_ by so much.
+/// step_ = the shortest way onto the rows that weigh, which are off_ by so much.
 void OptimalityCheck::StepOntoRows() {
   std::fill(step_.begin(), step_.end(), 0.0);
   for (int r = 0; r < rows_.size(); ++r) {
@@ -329,7 +323,7 @@ Optimality OptimalityCheck::Weigh() {
   cost_ = at_->full.value;
   cost_size_ = std::max({std::abs(first_cost_ - cost_), slope, std::numeric_limits<double>::min()});
   const double least = kLeastCurvature * slope + std::numeric_limits<double>::min();
-  MeasureCurvature(least);
+  curvature_ = std::max(LargestElement(at_->hessian), least);
   step_ = residual_;
   const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
   if (holds && !HoldRows()) return {};
@@ -354,15 +348,6 @@ void OptimalityCheck::MeasureDiagonal() {
   const double least = largest > 0.0 ? kFirstShift * largest : 1.0;
   for (double& element : diagonal_) element = std::max(element, least);
 }
-
-/// Of every variable, by the Hessian just evaluated.
-void OptimalityCheck::MeasureCurvature(double least) {
-  at_->hessian.LargestInRows(curvature_.data());
-  least = std::max(least, kLeastShare * Largest(curvature_));
-  for (double& curvature : curvature_) curvature = std::max(curvature, least);
-}
-
-double OptimalityCheck::Left(const Optimality& at) { return at.left + at.gap_left; }
 
 double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLeastCost); }
 

@@ -28,8 +28,8 @@ class OptimalityCheck {
   Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
                   double first_cost, const MustStop& must_stop, ViewEvaluation* storage);
 
-  /// By the slopes of the rows, a step no longer than y is large meets them twice as well: where a backend says that
-  /// they cannot be met, it only gave up.
+  /// A step along the slopes of the rows, or a part of it, meets them better by half of what they promise: where a
+  /// backend says that they cannot be met, it only gave up.
   bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
                     ViewEvaluation* storage);
 
@@ -63,8 +63,6 @@ class OptimalityCheck {
   bool FactorShifted();
   void Shift(double share);
   void MeasureDiagonal();
-  void MeasureCurvature(double least);
-  static double Left(const Optimality& at);
   double CostValue() const;
   // optimality_neighbours.cc
   void LookAround(Optimality* found);
@@ -85,13 +83,13 @@ class OptimalityCheck {
   double first_cost_ = 0.0;
   double cost_ = 0.0;
   double cost_size_ = 0.0;  // what was gained, or its slope
+  double curvature_ = 0.0;  // the most of the Lagrangian
   double left_ = 0.0;       // of the cost, by the conditions
   double shift_ = 0.0;      // that made the Hessian definite, share of the diagonal
   ConstraintRows rows_;  // bounds among them
   BorderedCholesky factor_;
   std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
-  std::vector<double> curvature_;  // of each variable, the Lagrangian's
-  std::vector<double> diagonal_;   // what shifts are a share of: the largest in each row of a Hessian
+  std::vector<double> diagonal_;  // what shifts are a share of: the largest in each row of a Hessian
   std::vector<double> gradient_, residual_, step_, way_, near_;
   std::vector<double> u_, u_near_, off_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;

@@ -123,14 +123,10 @@ double OptimalityCheck::OffRow(int row) const {
 
 /// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes: those of side_.
 bool OptimalityCheck::HoldPushing(double pushes) {
-  const double slope = Largest(gradient_);
+  const double least = pushes * std::max(Largest(gradient_), curvature_);
   for (int r = 0; r < rows_.size(); ++r) {
-    double most = slope;
-    for (int k = rows_.start(r); k < rows_.start(r + 1); ++k) {
-      most = std::max(most, curvature_[rows_.column(k)]);
-    }
     const Side side = SideOf(r);
-    const bool held = side == Side::kBoth || std::abs(lambda_[r]) * norm_[r] >= pushes * most;
+    const bool held = side == Side::kBoth || std::abs(lambda_[r]) * norm_[r] >= least;
     side_[r] = held ? side : Side::kNone;
   }
   return HoldRows();
