@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortestStep = 1e-10;
-constexpr double kLongestStep = 10.0;  // over the point's size
+constexpr double kLongestStep = 1e3;  // over the point's size
 /// Below this share of the cost a decrease is rounding.
 constexpr double kRounding = 1e-15;
 /// What was gained counts for this share of the cost at least.

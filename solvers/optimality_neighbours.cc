@@ -61,8 +61,9 @@ bool OptimalityCheck::Refutes(double nearest, double farthest, Optimality* found
     way_[i] /= longest;
     slope += residual_[i] * way_[i];
   }
-  const double less = kClearlyLess * std::min(cost_size_, CostValue()) +
-                      kCostRounding * std::abs(cost_) + kClearlyMore * left_;
+  double less = kClearlyLess * std::min(cost_size_, CostValue()) +
+                kCostRounding * std::abs(cost_) + kClearlyMore * left_;
+  for (int r = 0; r < rows_.size(); ++r) less += kOnRows * std::abs(lambda_[r]) * norm_[r];
   // To come back to the rows.
   WeighRows(Kept::kAtBounds);
   if (!FactorRows()) return false;
