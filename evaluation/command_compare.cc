@@ -83,9 +83,9 @@ planning::TermSettings ParseTermSetting(const std::string& text,
 /// Options that say nothing of what is asked for are refused, not ignored.
 void CheckApplies(const Command& command, const std::string& set) {
   const bool landing = set == "landing";
-  const std::vector<std::string> of_sets{"--problem-set", "--starts", "--backends", "--seed",
-                                         "--pin",         "--db",     "--picture",  "--json",
-                                         "--allow-debug"};
+  const std::vector<std::string> of_sets{"--problem-set", "--starts", "--backends",
+                                         "--seed",        "--pin",    "--db",
+                                         "--picture",     "--json",   "--allow-debug"};
   for (const std::string& name : command.Given()) {
     const bool of_set = std::find(of_sets.begin(), of_sets.end(), name) != of_sets.end();
     if (landing ? name != "--starts" : of_set) continue;
@@ -124,9 +124,8 @@ int CompareReferences(CompareArguments arguments, const Registries& registries) 
   } else {
     std::cout << ReferenceText(options, result) << std::flush;
   }
-  Keep(arguments, DrawProblemSet, [&](const std::string& path) {
-    WriteReferenceTable(path, options, result, machine);
-  });
+  Keep(arguments, DrawProblemSet,
+       [&](const std::string& path) { WriteReferenceTable(path, options, result, machine); });
   return kDone;
 }
 
@@ -157,17 +156,16 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   } else {
     std::cout << CompareText(options, result) << std::flush;
   }
-  Keep(arguments, DrawComparison, [&](const std::string& path) {
-    WriteCompareTable(path, options, result, machine);
-  });
+  Keep(arguments, DrawComparison,
+       [&](const std::string& path) { WriteCompareTable(path, options, result, machine); });
   return kDone;
 }
 
 }  // namespace
 
 void AddCompareCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command =
-      app.AddCommand("compare", "Compare solver backends on random landings, or on sets of known problems");
+  const Command command = app.AddCommand(
+      "compare", "Compare solver backends on random landings, or on sets of known problems");
   const auto arguments = std::make_shared<CompareArguments>();
   CompareOptions& options = arguments->options;
   CaseOptions& cases = options.cases;
@@ -198,8 +196,10 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   command.Add("--endpoint", arguments->endpoint, "Eliminated, or as equality constraints")
       .Check(OneOf({"eliminated", "explicit"}))
       .ShowDefault();
-  command.AddList("--backends", &options.backends, "Which ones; default: all that can solve it. --problem-set shooting takes minutes with all",
-                  "NAME,NAME,...", OneOf(BackendNames(registries)));
+  command.AddList(
+      "--backends", &options.backends,
+      "Which ones; default: all that can solve it. --problem-set shooting takes minutes with all",
+      "NAME,NAME,...", OneOf(BackendNames(registries)));
   command
       .Add("--set", arguments->set,
            "Change a term: terms.<term>.<key>=<number>, as in a scenario; may be given again")

@@ -33,8 +33,9 @@ std::vector<ReferenceProblem> Problems(const std::string& set) {
                                                      : solvers::EqualityForm::kRows);
 }
 
-/// The published start, then others around it: a fifth of a unit and a tenth of each number away where the set is one of long
-/// trajectories, up to a unit and half of each number where it is of a few variables.
+/// The published start, then others around it: a fifth of a unit and a tenth of each number away
+/// where the set is one of long trajectories, up to a unit and half of each number where it is of a
+/// few variables.
 Eigen::VectorXd Start(const ReferenceOptions& options, const ReferenceProblem& problem, int index) {
   Eigen::VectorXd start = problem.start;
   if (index == 0) return start;
@@ -83,7 +84,8 @@ class Contest {
     backend->Solve(view_, solvers::WarmStart(Start(options_, problem_, index)), stop, &result);
     const bool claimed = result.status == SolveStatus::kConverged;
     // What a violation saves must not become the optimum of others.
-    if (claimed && result.max_violation <= solvers::Evaluator::kFeasible) best_ = std::min(best_, result.cost);
+    if (claimed && result.max_violation <= solvers::Evaluator::kFeasible)
+      best_ = std::min(best_, result.cost);
     return {.start = index, .summary = result};
   }
 
@@ -186,18 +188,20 @@ ReferenceResult RunReferences(const ReferenceOptions& options,
 std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult& result) {
   const char* elsewhere = result.published ? "false claims" : "elsewhere";
   std::string text = fmt::format(
-      "Problem set {}: {} problems, {} starts each, seed {}, at most {} iterations. Right: converged, and within 1e-6 of {}.\n"
+      "Problem set {}: {} problems, {} starts each, seed {}, at most {} iterations. Right: "
+      "converged, and within 1e-6 of {}.\n"
       "  {:<15}{:>16}{:>13}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n",
       options.set, result.problems.size(), options.starts, options.seed, options.max_iterations,
       result.published ? "an optimum that is known, which may be a local one"
                        : "the best that anybody found",
-      "backend", "right", "at the best", elsewhere, "not claimed", "refused", "median ms", "p95", "largest");
+      "backend", "right", "at the best", elsewhere, "not claimed", "refused", "median ms", "p95",
+      "largest");
   for (const std::string& backend : result.backends) {
     const Total total = TotalOf(result, backend);
     const Quantiles ms = QuantilesOf(total.cpu_ms);
     text += fmt::format("  {:<15}{:>16}{:>13}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n", backend,
-                        fmt::format("{} of {}", total.right, total.solves()), total.best, total.elsewhere,
-                        total.unclaimed, total.refused, Milliseconds(ms.median),
+                        fmt::format("{} of {}", total.right, total.solves()), total.best,
+                        total.elsewhere, total.unclaimed, total.refused, Milliseconds(ms.median),
                         Milliseconds(ms.p95), Milliseconds(ms.max));
   }
   text += fmt::format("\nRight, of {} starts; ! {}; - refused\n  {:<22}", options.starts,
@@ -209,7 +213,8 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
     text += fmt::format("  {:<22}", problem);
     for (std::size_t b = 0; b < result.backends.size(); ++b) {
       const ReferenceCell& cell = result.cells[at++];
-      std::string of_cell = cell.refusal.empty() ? std::to_string(cell.Count(Verdict::kRight)) : "-";
+      std::string of_cell =
+          cell.refusal.empty() ? std::to_string(cell.Count(Verdict::kRight)) : "-";
       const int others = cell.Count(Verdict::kElsewhere);
       if (others > 0) of_cell += fmt::format(" {}!", others);
       text += fmt::format("{:>14}", of_cell);
@@ -222,8 +227,8 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
 nlohmann::ordered_json ReferenceJson(const ReferenceOptions& options,
                                      const ReferenceResult& result) {
   using Json = nlohmann::ordered_json;
-  Json json{{"problem_set", options.set}, {"starts", options.starts},
-            {"seed", options.seed},       {"max_iterations", options.max_iterations},
+  Json json{{"problem_set", options.set},    {"starts", options.starts},
+            {"seed", options.seed},          {"max_iterations", options.max_iterations},
             {"published", result.published}, {"cells", Json::array()}};
   for (const ReferenceCell& cell : result.cells) {
     const std::optional<double> median = Quantile(CpuTimes(cell), 0.5);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Primal-dual interior point for  min f(y)  s.t.  g(y) <= 0,  g a row with one of its bounds:
 //   g + s = e,  s v = mu,  grad f + G^T z = 0,  s, v > 0,  v = z,
-// where e = 0, or in the elastic mode e > 0 costs a price p each: e w = mu, w = p - z > 0. The slack of an equality costs
-// that price, too: v = p + z; and outside of the elastic mode it has neither s nor e. With s, z, e, w eliminated a
-// Newton step is
+// where e = 0, or in the elastic mode e > 0 costs a price p each: e w = mu, w = p - z > 0. The
+// slack of an equality costs that price, too: v = p + z; and outside of the elastic mode it has
+// neither s nor e. With s, z, e, w eliminated a Newton step is
 //   (H + G^T W G) dy = -grad f - G^T (z + W k),   W = 1 / (s/v + e/w),   k = g + mu/v - mu/w,
 //   dz = W (G dy + k),
 // with H the Lagrangian's Hessian, curvature of the rows included. Every row is a window, so that
-// G^T W G fills nothing: the matrix stays an arrowhead of the band, and one factor serves Mehrotra's
-// predictor and corrector. For an equality without s and e the same is a proximal step of the method of multipliers, with a W so large that
-// a step leaves little of the linear row, and that the matrix is definite where H is along the rows. A merit function guards the step where rows are curved or not convex;
-// where these fast steps stall, the barrier method's careful ones take over.
-// Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical Optimization,
-// 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev. 47 (2005) 99; equalities: M. Friedlander, D. Orban,
-// Math. Prog. Comp. 4 (2012) 71.
+// G^T W G fills nothing: the matrix stays an arrowhead of the band, and one factor serves
+// Mehrotra's predictor and corrector. For an equality without s and e the same is a proximal step
+// of the method of multipliers, with a W so large that a step leaves little of the linear row, and
+// that the matrix is definite where H is along the rows. A merit function guards the step where
+// rows are curved or not convex; where these fast steps stall, the barrier method's careful ones
+// take over. Sources: S. Mehrotra, SIAM J. Optim. 2 (1992) 575; J. Nocedal, S. Wright, Numerical
+// Optimization, 2nd ed., chapter 19; the elastic form: P. Gill, W. Murray, M. Saunders, SIAM Rev.
+// 47 (2005) 99; equalities: M. Friedlander, D. Orban, Math. Prog. Comp. 4 (2012) 71.
 
 #include "touchdown/solvers/banded_interior_point.h"
 
@@ -27,15 +28,15 @@ namespace touchdown::solvers {
 
 namespace {
 
-/// Share of the way to s = 0 or z = 0 that a step may go, at least; it nears 1 with the gap, so that
-/// the last steps converge quadratically.
+/// Share of the way to s = 0 or z = 0 that a step may go, at least; it nears 1 with the gap, so
+/// that the last steps converge quadratically.
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
 constexpr double kFirstRoom = 1e-2;  // of its variables to their bounds, share of these and of their distance
 constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
 constexpr double kNoCost = 1e-6;     // a cost that is less has not begun
-/// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N. Maratos,
-/// 1978); but so do steps that go round in circles: later ones may lose hardly anything.
+/// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N.
+/// Maratos, 1978); but so do steps that go round in circles: later ones may lose hardly anything.
 constexpr double kFastSlack = 1.0;
 constexpr double kLateSlack = 1e-4;
 constexpr double kCarefulSlack = 1e-12;  // rounding
@@ -176,8 +177,8 @@ SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
   std::copy(start, start + y_.size(), y_.begin());
   invariant_ = tolerances.invariant;
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
-  // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by the
-  // fast steps, then by the careful ones, each at a price and at a much higher one.
+  // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by
+  // the fast steps, then by the careful ones, each at a price and at a much higher one.
   const std::vector<std::vector<double>> none;
   const auto once_more = [&](const Mode& mode, const auto& known) {
     std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
@@ -189,8 +190,8 @@ SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
       if (failed()) once_more({true, careful, price}, none);
     }
   }
-  // The elastic mode has found rows that can be met; equalities it pinches from both sides, until rounding is all
-  // that is left of their metric.
+  // The elastic mode has found rows that can be met; equalities it pinches from both sides, until
+  // rounding is all that is left of their metric.
   const bool pinched = mode_.elastic && has_equalities_ && status == SolveStatus::kConverged;
   const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
   if (known_feasible && (failed() || pinched || status == SolveStatus::kInfeasible)) {
@@ -245,8 +246,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     if (errors.gap <= tolerances.gap && errors.worth <= tolerances.gap && stationary &&
         (errors.row <= tolerances.violation ||
          (mode.elastic && LargestMultiplier(0.0) > 0.5 * price_))) {
-      // An earlier point may cost less by what it violates within the tolerance. One that costs much less
-      // is of another valley, which steps uphill have left.
+      // An earlier point may cost less by what it violates within the tolerance. One that costs
+      // much less is of another valley, which steps uphill have left.
       const double last = evaluator->last().full.value;
       const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
       const bool much_cheaper = evaluator->best_cost() < last - kMuchCheaper * std::abs(last) &&
@@ -313,7 +314,8 @@ bool BandedInteriorPoint::Factor(Evaluator* evaluator, double* shift) {
   return FactorDefinite(H, &factor_, curvature_, shift);
 }
 
-/// The metric of a step is blind to what is left across an equality: its multiplier takes one step more.
+/// The metric of a step is blind to what is left across an equality: its multiplier takes one step
+/// more.
 void BandedInteriorPoint::CorrectEqualities(const View& view, Evaluator* evaluator) {
   SetCorrection(false);
   Direction(view, Complementarity({0.0, 0.0}), evaluator);
@@ -342,7 +344,8 @@ double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors
   return target;
 }
 
-/// The barrier method of Fiacco and McCormick: the target falls only where its own problem is solved.
+/// The barrier method of Fiacco and McCormick: the target falls only where its own problem is
+/// solved.
 double BandedInteriorPoint::CarefulDirection(const View& view, const Errors& errors, double least,
                                              double* barrier, Evaluator* evaluator) {
   const double mu = Complementarity({0.0, 0.0});
@@ -398,8 +401,8 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
 
 double BandedInteriorPoint::PointSize() const { return 1.0 + Largest(y_); }
 
-/// Whatever constant is in the cost: what has been gained, or the slope times the point's size; but no more than the
-/// cost itself, of which less may be left than was gained.
+/// Whatever constant is in the cost: what has been gained, or the slope times the point's size; but
+/// no more than the cost itself, of which less may be left than was gained.
 double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) const {
   const double value = at.full.value;
   const double slope = Largest(at.gradient);
@@ -407,7 +410,8 @@ double BandedInteriorPoint::CostSize(const ViewEvaluation& at, double first) con
   return std::max(std::min(gained, std::max(std::abs(value), kLeastCost)), kSmallestCost);
 }
 
-/// What rows gain together by any step that is as long as the point is large is little of what they violate.
+/// What rows gain together by any step that is as long as the point is large is little of what they
+/// violate.
 bool BandedInteriorPoint::RowsContradict(const std::vector<double>& gradient) const {
   double pull = 0.0, off = 0.0;
   for (std::size_t i = 0; i < right_.size(); ++i) {
@@ -439,7 +443,8 @@ double BandedInteriorPoint::Give(const Side& side, const Rows& rows, int i) cons
   return rows.s[i] / rows.v[i] + (Elastic(side) ? rows.e[i] / rows.w[i] : 0.0);
 }
 
-/// How far equalities give: by the cost's curvature in the most curved of the variables of each, and their slopes here.
+/// How far equalities give: by the cost's curvature in the most curved of the variables of each,
+/// and their slopes here.
 bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator) {
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return false;
   const ViewEvaluation& at = evaluator->last();
@@ -743,7 +748,8 @@ void BandedInteriorPoint::Move(const StepLengths& length) {
   }
 }
 
-/// f + p sum e - mu sum (log s + log e) + penalty sum |g + s - e|, with the rows just read; an equality's s costs p, too.
+/// f + p sum e - mu sum (log s + log e) + penalty sum |g + s - e|, with the rows just read; an
+/// equality's s costs p, too.
 double BandedInteriorPoint::Merit(double cost, double mu, double penalty, const Rows& rows) const {
   double merit = cost;
   for (const Side& side : sides_) {

@@ -9,8 +9,8 @@
 
 namespace touchdown::solvers {
 
-/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them, and with bounds on variables, inside
-/// of which all of its points are.
+/// A primal-dual interior point on a problem with rows lo <= u <= hi, equalities among them, and
+/// with bounds on variables, inside of which all of its points are.
 class BandedInteriorPoint {
  public:
   struct Tolerances {
@@ -20,8 +20,8 @@ class BandedInteriorPoint {
   };
 
   void Prepare(const View& view);
-  /// `multipliers` ([term][row], positive at an upper bound, negative at a lower one, either at an equality) may hold an
-  /// earlier solve's. Does not allocate.
+  /// `multipliers` ([term][row], positive at an upper bound, negative at a lower one, either at an
+  /// equality) may hold an earlier solve's. Does not allocate.
   SolveStatus Run(const View& view, const double* start,
                   const std::vector<std::vector<double>>& multipliers, const Tolerances& tolerances,
                   Evaluator* evaluator);
@@ -31,7 +31,8 @@ class BandedInteriorPoint {
   void BoundMultipliers(std::vector<double>* multipliers) const;
 
  private:
-  /// Variables with a lower bound, with an upper one, or with one value: y - bound are the rows of one more term.
+  /// Variables with a lower bound, with an upper one, or with one value: y - bound are the rows of
+  /// one more term.
   struct Box {
     std::vector<int> variable;
     std::vector<double> bound;
@@ -43,14 +44,15 @@ class BandedInteriorPoint {
     double sign = 1.0;
     double bound = 0.0;
     bool equality = false;
-    /// Another that may be of the same rows from the other side of the bound: these are equalities, and there are no slacks.
+    /// Another that may be of the same rows from the other side of the bound: these are equalities,
+    /// and there are no slacks.
     int opposite = -1;
     bool merged = false;  ///< in this solve it is so: one of the two is the equality, the other has no rows
     int first = 0;        ///< place in the flat arrays
     int rows = 0;         ///< active in this solve
   };
-  /// Of g + s = e: slack, multiplier, elastic part, and the multipliers v of the slack and w of the elastic part. All
-  /// but z are > 0; v is z, of an equality price + z.
+  /// Of g + s = e: slack, multiplier, elastic part, and the multipliers v of the slack and w of the
+  /// elastic part. All but z are > 0; v is z, of an equality price + z.
   struct Rows {
     std::vector<double> s, z, e, w, v;
   };

@@ -9,8 +9,8 @@ namespace touchdown::solvers {
 
 /// Cholesky factor of a BorderedBandMatrix A = L L^T, L lower triangular with A's band and border:
 ///   A = [B b; b^T c],   B = L_B L_B^T,   L = [L_B 0; (L_B^-1 b)^T s],   s^2 = c - |L_B^-1 b|^2.
-/// Blocks of 3 x 3 are factored by vectorised kernels; others as a scalar band, in time linear in the scalars and quadratic in
-/// the band.
+/// Blocks of 3 x 3 are factored by vectorised kernels; others as a scalar band, in time linear in
+/// the scalars and quadratic in the band.
 class BorderedCholesky {
  public:
   /// What a factorisation found.

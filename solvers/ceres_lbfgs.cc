@@ -36,7 +36,8 @@ class WhitenedObjective : public ceres::FirstOrderFunction {
     *cost = point_->value();
     if (!gradient) return true;
     point_->Gradient(gradient);
-    // The metric or the interval's angle may overflow; Ceres ends the process on what is not finite.
+    // The metric or the interval's angle may overflow; Ceres ends the process on what is not
+    // finite.
     return std::all_of(gradient, gradient + point_->size(), [](double g) { return std::isfinite(g); });
   }
 

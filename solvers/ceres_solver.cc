@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trust-region least squares by Ceres Solver. One residual block per window and term, on the reduced
-// blocks that the window reaches. All numbers of one point come from one pass over the Problem,
-// made in Ceres's evaluation callback; the residual blocks only copy their slice, so that the
-// problem is never evaluated twice and no term knows of Ceres. The trust region starts so wide that
-// the first step is Gauss-Newton's: the landing problem is nearly quadratic once its pairs are
+// Trust-region least squares by Ceres Solver. One residual block per window and term, on the
+// reduced blocks that the window reaches. All numbers of one point come from one pass over the
+// Problem, made in Ceres's evaluation callback; the residual blocks only copy their slice, so that
+// the problem is never evaluated twice and no term knows of Ceres. The trust region starts so wide
+// that the first step is Gauss-Newton's: the landing problem is nearly quadratic once its pairs are
 // fixed. Inside the region Powell's dogleg is the default: Levenberg-Marquardt's damping measures
 // steps in the unwhitened variables, and where it has to act on a long spline it crawls (a hundred
 // times the iterations on one problem in fifty). A rejected dogleg step needs no new factorisation.
@@ -23,8 +23,8 @@ namespace touchdown::solvers {
 
 namespace {
 
-/// The residuals of one window of one term and their Jacobian by reduced block, as Ceres wants them.
-/// Bound anew for every solve, filled at every point.
+/// The residuals of one window of one term and their Jacobian by reduced block, as Ceres wants
+/// them. Bound anew for every solve, filled at every point.
 class WindowResidual : public ceres::CostFunction {
  public:
   void Bind(const View& view, int term, int window, int first_block, double* y) {
@@ -144,8 +144,8 @@ class WindowResiduals : public ceres::EvaluationCallback {
   std::size_t bound_ = 0;               // those of this solve
 };
 
-/// Hands every iteration to the evaluator. Shrinking a dogleg's region may leave the rejected step as
-/// it was: nothing is evaluated then, and it does not count.
+/// Hands every iteration to the evaluator. Shrinking a dogleg's region may leave the rejected step
+/// as it was: nothing is evaluated then, and it does not count.
 class IterationWatch : public ceres::IterationCallback {
  public:
   explicit IterationWatch(Evaluator* evaluator)

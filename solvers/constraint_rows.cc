@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flat constraint rows in compressed-row form. A row's columns are those of the reduced blocks that
-// its window reaches, then the interval where it is free: nonzeros that happen to vanish stay in the
-// structure, which so depends on the windows alone.
+// its window reaches, then the interval where it is free: nonzeros that happen to vanish stay in
+// the structure, which so depends on the windows alone.
 
 #include "touchdown/solvers/constraint_rows.h"
 

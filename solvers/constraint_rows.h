@@ -14,8 +14,8 @@ namespace touchdown::solvers {
 /// it, so it is left out here and only its violation is kept.
 class ConstraintRows {
  public:
-  /// Allocates for the most rows that views of this structure can have. With `bounds` those of variables, the
-  /// interval's among them, follow the others as rows u = y_i.
+  /// Allocates for the most rows that views of this structure can have. With `bounds` those of
+  /// variables, the interval's among them, follow the others as rows u = y_i.
   void Prepare(const View& view, bool bounds = false);
   /// Takes the rows that are active in `evaluation`, which must have been evaluated. Does not
   /// allocate.
@@ -42,7 +42,8 @@ class ConstraintRows {
   /// Every nonzero; the evaluation must hold gradients.
   void Jacobian(const ViewEvaluation& evaluation, double* values) const;
 
-  /// Multipliers row by row to [term][window x output], without bounds, 0 at constant rows; sized by Prepare.
+  /// Multipliers row by row to [term][window x output], without bounds, 0 at constant rows; sized
+  /// by Prepare.
   void Spread(const double* flat, std::vector<std::vector<double>>* by_term) const;
   /// The inverse; false if `by_term` does not hold every row.
   bool Gather(const std::vector<std::vector<double>>& by_term, double* flat) const;

@@ -17,8 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Differences resolve a derivative up to so much of value / step: some ulps, over the relative error
-// that callers ask for.
+// Differences resolve a derivative up to so much of value / step: some ulps, over the relative
+// error that callers ask for.
 constexpr double kRounding = 1e6 * std::numeric_limits<double>::epsilon();
 // Share of a term's nominal curvature below which differences across a hinge's edge say nothing.
 constexpr double kReach = 1e-3;
@@ -95,8 +95,8 @@ double RelativeError(const MatrixXd& mine, const MatrixXd& difference, double fl
 
 double Largest(const MatrixXd& m) { return m.size() == 0 ? 0.0 : m.cwiseAbs().maxCoeff(); }
 
-/// Sizes of what goes into the compared numbers before it cancels: sum of |du| |x| over a window for
-/// the largest u and residual, and for the whole sum.
+/// Sizes of what goes into the compared numbers before it cancels: sum of |du| |x| over a window
+/// for the largest u and residual, and for the whole sum.
 struct Magnitudes {
   double u = 0.0, r = 0.0, value = 0.0, slope = 0.0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forward automatic differentiation with a fixed number of directions: Dual carries a gradient, SecondDual a Hessian as well.
-// A formula that is a template over its scalar takes both, and plain numbers.
+// Forward automatic differentiation with a fixed number of directions: Dual carries a gradient,
+// SecondDual a Hessian as well. A formula that is a template over its scalar takes both, and plain
+// numbers.
 #pragma once
 
 #include <array>
@@ -166,8 +167,9 @@ struct Dual : DualFunctions<Dual<n>> {
   }
 };
 
-/// Value, gradient and Hessian by n variables. Most numbers of a formula depend on few of these: two sets of bits tell by
-/// which of them a number has a slope, and between which it curves; what is outside of these is not stored.
+/// Value, gradient and Hessian by n variables. Most numbers of a formula depend on few of these:
+/// two sets of bits tell by which of them a number has a slope, and between which it curves; what
+/// is outside of these is not stored.
 template <int n>
 struct SecondDual : DualFunctions<SecondDual<n>> {
   static_assert(n <= 64, "more variables than a SecondDual has bits: write the curvature by hand");

@@ -45,7 +45,8 @@ class Evaluator {
   /// Makes the last evaluated point the one to return, though another violated less, or cost less
   /// within the tolerance: for a backend that knows it to be the optimum.
   void PreferLast();
-  /// The same, if it violates less than the one that would be returned, which may cost less by just that.
+  /// The same, if it violates less than the one that would be returned, which may cost less by just
+  /// that.
   void PreferLastIfCloser();
 
   /// Charges the time from now on to `share`; returns what it was charged to before.
@@ -56,8 +57,8 @@ class Evaluator {
   bool must_stop() const { return stop_status_ != SolveStatus::kConverged; }
   /// Asks the budgets and the clock again; the callback is asked once at each evaluation.
   bool CheckStop();
-  /// Asks the clock alone, whatever else is used up: for what comes after a solve. True also where the callback has
-  /// stopped it.
+  /// Asks the clock alone, whatever else is used up: for what comes after a solve. True also where
+  /// the callback has stopped it.
   bool CheckClock();
 
   int evaluations() const { return evaluations_; }

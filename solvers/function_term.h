@@ -20,13 +20,13 @@ struct FunctionShape {
   int windows = 1;     ///< they start at consecutive blocks
 };
 
-/// A term whose sizes are known at run time: for small problems, and where a WindowTerm for every size would
-/// take long to compile. Its function is written once,
+/// A term whose sizes are known at run time: for small problems, and where a WindowTerm for every
+/// size would take long to compile. Its function is written once,
 ///
 ///   [](const auto* q, auto* u) { u[0] = q[0] * q[1] - 1.0; }
 ///
-/// on the w d scalars of a window, and is differentiated twice, exactly. It does not see the interval. Some
-/// ten times slower than a WindowTerm of the same size.
+/// on the w d scalars of a window, and is differentiated twice, exactly. It does not see the
+/// interval. Some ten times slower than a WindowTerm of the same size.
 class FunctionTerm : public Term {
  public:
   static constexpr int kMostVariables = 32;  ///< w d

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The callbacks that Ipopt makes. It asks for objective, gradient, rows and Jacobian one by one; the
-// evaluator answers the repeated point from its cache, and every first question brings the gradients
-// along, since almost every trial point is accepted. A whitened row is dense from its first column
-// on (forward substitution), an unwhitened one holds its window.
+// The callbacks that Ipopt makes. It asks for objective, gradient, rows and Jacobian one by one;
+// the evaluator answers the repeated point from its cache, and every first question brings the
+// gradients along, since almost every trial point is accepted. A whitened row is dense from its
+// first column on (forward substitution), an unwhitened one holds its window.
 
 #include "touchdown/solvers/ipopt_nlp.h"
 
@@ -93,7 +93,8 @@ bool IpoptNlp::get_bounds_info(Index n, Number* x_l, Number* x_u, Index m, Numbe
   }
   int equalities = 0;
   for (int r = 0; r < m; ++r) equalities += rows_.lo(r) == rows_.hi(r);
-  // More equalities than variables are refused, though they may agree: as narrow rows they are solved.
+  // More equalities than variables are refused, though they may agree: as narrow rows they are
+  // solved.
   const double room = equalities > n ? kNarrow : 0.0;
   for (int r = 0; r < m; ++r) {
     const bool equality = rows_.lo(r) == rows_.hi(r);

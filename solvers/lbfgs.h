@@ -46,9 +46,9 @@ class LbfgsFunction {
   virtual void Accepted(double /*value*/, const Eigen::VectorXd& /*gradient*/) {}
 };
 
-/// Limited-memory BFGS. Source: J. Nocedal and S. Wright, "Numerical Optimization", 2nd ed., alg. 7.4
-/// (two-loop recursion, eq. 7.20 for its scale) and 7.5; line search: more_thuente.h. The first step
-/// has length 1. Deterministic. An exception of the function passes through.
+/// Limited-memory BFGS. Source: J. Nocedal and S. Wright, "Numerical Optimization", 2nd ed., alg.
+/// 7.4 (two-loop recursion, eq. 7.20 for its scale) and 7.5; line search: more_thuente.h. The first
+/// step has length 1. Deterministic. An exception of the function passes through.
 class Lbfgs {
  public:
   /// Allocates for n variables and `memory` remembered steps; throws std::invalid_argument unless

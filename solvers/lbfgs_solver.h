@@ -7,8 +7,8 @@
 
 namespace touchdown::solvers {
 
-/// The backend `lbfgs`: our limited-memory BFGS (lbfgs.h) on the whitened view, with the stop test of
-/// EGO-Planner's. Soft terms only. Solve does not allocate.
+/// The backend `lbfgs`: our limited-memory BFGS (lbfgs.h) on the whitened view, with the stop test
+/// of EGO-Planner's. Soft terms only. Solve does not allocate.
 std::unique_ptr<SolverBackend> MakeLbfgsSolver();
 
 }  // namespace touchdown::solvers

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Square, cubic-quadratic hinge, two-sided and linear losses. The hinge is the collision penalty of X. Zhou et al.,
-// "EGO-Planner: An ESDF-free gradient-based local planner for quadrotors", RA-L 2020, eq. 5.
+// Square, cubic-quadratic hinge, two-sided and linear losses. The hinge is the collision penalty of
+// X. Zhou et al., "EGO-Planner: An ESDF-free gradient-based local planner for quadrotors", RA-L
+// 2020, eq. 5.
 
 #include "touchdown/solvers/loss.h"
 

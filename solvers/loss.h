@@ -75,13 +75,14 @@ class HingeLoss {
   double s_;
 };
 
-/// A hinge on either side of an interval: zero for lo <= u <= hi, HingeLoss of what is beyond. A bound may be
-/// infinite, or kNoBound and more; lo = hi is an equality where the term is made hard.
+/// A hinge on either side of an interval: zero for lo <= u <= hi, HingeLoss of what is beyond. A
+/// bound may be infinite, or kNoBound and more; lo = hi is an equality where the term is made hard.
 class RangeLoss {
  public:
   static constexpr bool kQuadratic = false;
 
-  /// Throws std::invalid_argument unless lo <= hi, neither of which may be NaN, and as HingeLoss does.
+  /// Throws std::invalid_argument unless lo <= hi, neither of which may be NaN, and as HingeLoss
+  /// does.
   RangeLoss(LossBounds bounds, double weight, double width);
 
   LossValue Value(double u) const;

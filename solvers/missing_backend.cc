@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A backend that is listed and refuses. The base's Prepare throws its refusal and its Solve misses a
-// Prepare, so that neither function below is ever reached through it.
+// A backend that is listed and refuses. The base's Prepare throws its refusal and its Solve misses
+// a Prepare, so that neither function below is ever reached through it.
 
 #include "touchdown/solvers/missing_backend.h"
 

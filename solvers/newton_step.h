@@ -8,7 +8,8 @@
 
 namespace touchdown::solvers {
 
-/// Tolerances are relative to the cost, or to this where it is smaller: the cost of a hover is zero.
+/// Tolerances are relative to the cost, or to this where it is smaller: the cost of a hover is
+/// zero.
 inline constexpr double kSmallestCost = 1e-9;
 
 /// The largest by its absolute value; 0 without any.
@@ -21,15 +22,15 @@ double LargestDiagonal(const BorderedBandMatrix& H);
 double LargestElement(const BorderedBandMatrix& H);
 
 /// Factors H, shifted until it is positive definite where it is not; a border that alone is
-/// indefinite takes its absolute value. Shifts begin at a small share of `curvature`, or of H's largest diagonal element
-/// where that is 0; with `shift` they begin there instead, and the one that was taken is told. False if no shift helps. Does
-/// not allocate.
+/// indefinite takes its absolute value. Shifts begin at a small share of `curvature`, or of H's
+/// largest diagonal element where that is 0; with `shift` they begin there instead, and the one
+/// that was taken is told. False if no shift helps. Does not allocate.
 bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, double curvature = 0.0,
                     double* shift = nullptr);
 
 /// step = -H^-1 gradient with the factor of H, and a free interval kept in its bounds: where the
-/// step would leave them it ends on the bound, and the other variables take the best step with that.
-/// Does not allocate.
+/// step would leave them it ends on the bound, and the other variables take the best step with
+/// that. Does not allocate.
 void NewtonStep(const View& view, const double* y, const double* gradient,
                 const BorderedCholesky& factor, double* step);
 

@@ -34,8 +34,9 @@ constexpr double kCloser = 0.9;  // share of the violation that a repeated run m
 /// what was gained, is still to be gained.
 constexpr double kStationary = 1e-9;
 
-/// CCSAQ solves a dual problem of one variable a row, to rounding and without asking anybody: where rows pinch each
-/// other that never ends. Three times as many find 1 optimum in 30 more, in six times the time.
+/// CCSAQ solves a dual problem of one variable a row, to rounding and without asking anybody: where
+/// rows pinch each other that never ends. Three times as many find 1 optimum in 30 more, in six
+/// times the time.
 constexpr int kMostDualEvaluations = 1000;
 
 struct Method {
@@ -124,9 +125,9 @@ class NloptSolver : public SolverBackend {
     result->status = Status(code);
   }
 
-  /// NLopt, and again from where it ended at the end of a leg; or while it says that it has converged,
-  /// the rows are not met, and they get closer: SLSQP of version 2.7 looks at its tolerances whether
-  /// feasible or not.
+  /// NLopt, and again from where it ended at the end of a leg; or while it says that it has
+  /// converged, the rows are not met, and they get closer: SLSQP of version 2.7 looks at its
+  /// tolerances whether feasible or not.
   nlopt_result Run(const View& view) {
     nlopt_result code = NLOPT_FORCED_STOP;
     double value = 0.0;

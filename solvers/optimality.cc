@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The KKT conditions at one point, in variables that are each over their own size, 1 + |y_i|. What a residual of the
-// Lagrangian's gradient is worth is told by its Hessian, for a backend's multipliers without the rows' weights: a metric
-// with large weights is blind to what lies across the rows. Multipliers are estimated as the least squares of that residual
-// over the rows at their bounds, without those of the wrong sign: across the rows that are kept nothing is left then, and
-// weights hold them. Shifts are shares of what is there, variable by variable: a stiff variable must not hide a soft one.
-// (J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., chapters 12 and 18).
+// The KKT conditions at one point, in variables that are each over their own size, 1 + |y_i|. What
+// a residual of the Lagrangian's gradient is worth is told by its Hessian, for a backend's
+// multipliers without the rows' weights: a metric with large weights is blind to what lies across
+// the rows. Multipliers are estimated as the least squares of that residual over the rows at their
+// bounds, without those of the wrong sign: across the rows that are kept nothing is left then, and
+// weights hold them. Shifts are shares of what is there, variable by variable: a stiff variable
+// must not hide a soft one. (J. Nocedal, S. Wright, Numerical Optimization, 2nd ed., chapters 12
+// and 18).
 
 #include "touchdown/solvers/optimality.h"
 
@@ -21,7 +23,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAtBound = 1e-5;   // way of a row to its bound, along its slope
-constexpr double kRowWeight = 1e7;   // beside the curvature, of rows that are to be kept
+constexpr double kRowWeight = 1e7;  // beside the curvature, of rows that are to be kept
 constexpr int kRefinements = 4;
 constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
 constexpr double kRounding = 1e-12;
@@ -135,7 +137,8 @@ void OptimalityCheck::TakeMultipliers(const SolverResult& told) {
   // A fixed variable is none to many backends: its multiplier is what is left there.
   Residual(lambda_.data());
   for (int r = rows_.first_bound(); r < rows_.size(); ++r) {
-    if (rows_.lo(r) == rows_.hi(r)) lambda_[r] = -residual_[rows_.column(rows_.start(r))] / norm_[r];
+    if (rows_.lo(r) == rows_.hi(r))
+      lambda_[r] = -residual_[rows_.column(rows_.start(r))] / norm_[r];
   }
 }
 
@@ -145,7 +148,8 @@ double OptimalityCheck::WayTo(int row, double multiplier) const {
                            : std::abs(u_[row] - (multiplier > 0.0 ? rows_.hi(row) : rows_.lo(row)));
 }
 
-/// How far the value u of a row is beyond its upper bound or, negative, its lower one; 0 where that is rounding.
+/// How far the value u of a row is beyond its upper bound or, negative, its lower one; 0 where that
+/// is rounding.
 double OptimalityCheck::Beyond(int row, double u) const {
   const double bound = u > rows_.hi(row) ? rows_.hi(row) : rows_.lo(row);
   const bool between = u >= rows_.lo(row) && u <= rows_.hi(row);
@@ -325,9 +329,11 @@ Optimality OptimalityCheck::Weigh() {
   const double least = kLeastCurvature * slope + std::numeric_limits<double>::min();
   curvature_ = std::max(LargestElement(at_->hessian), least);
   step_ = residual_;
-  const bool holds = std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
+  const bool holds =
+      std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
   if (holds && !HoldRows()) return {};
-  for (std::size_t i = 0; i < step_.size(); ++i) at_->hessian.Diagonal(static_cast<int>(i)) += least;
+  for (std::size_t i = 0; i < step_.size(); ++i)
+    at_->hessian.Diagonal(static_cast<int>(i)) += least;
   if (!FactorShifted()) return {};
   factor_.Solve(step_.data());
   double promised = 0.0;
@@ -351,8 +357,8 @@ void OptimalityCheck::MeasureDiagonal() {
 
 double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLeastCost); }
 
-/// Factors the Hessian with the first shift, a share of the diagonal, that makes it definite. Past the first one the
-/// metric says little of the softest directions.
+/// Factors the Hessian with the first shift, a share of the diagonal, that makes it definite. Past
+/// the first one the metric says little of the softest directions.
 bool OptimalityCheck::FactorShifted() {
   MeasureDiagonal();
   double taken = 0.0;

@@ -21,15 +21,15 @@ class OptimalityCheck {
   /// Allocates for views of this structure.
   void Prepare(const View& view);
 
-  /// Looks at y. `told` has the backend's multipliers, or none: where they do not make the point stationary, they are
-  /// estimated from the rows and variables at their bounds. `first_cost`: where the solve began.
-  /// `storage` was sized by the view, and is overwritten. Asks `must_stop` before every evaluation, and ends with what it
-  /// has where the answer is yes. Does not allocate.
+  /// Looks at y. `told` has the backend's multipliers, or none: where they do not make the point
+  /// stationary, they are estimated from the rows and variables at their bounds. `first_cost`:
+  /// where the solve began. `storage` was sized by the view, and is overwritten. Asks `must_stop`
+  /// before every evaluation, and ends with what it has where the answer is yes. Does not allocate.
   Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
                   double first_cost, const MustStop& must_stop, ViewEvaluation* storage);
 
-  /// A step along the slopes of the rows, or a part of it, meets them better by half of what they promise: where a
-  /// backend says that they cannot be met, it only gave up.
+  /// A step along the slopes of the rows, or a part of it, meets them better by half of what they
+  /// promise: where a backend says that they cannot be met, it only gave up.
   bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
                     ViewEvaluation* storage);
 
@@ -86,10 +86,11 @@ class OptimalityCheck {
   double curvature_ = 0.0;  // the most of the Lagrangian
   double left_ = 0.0;       // of the cost, by the conditions
   double shift_ = 0.0;      // that made the Hessian definite, share of the diagonal
-  ConstraintRows rows_;  // bounds among them
+  ConstraintRows rows_;     // bounds among them
   BorderedCholesky factor_;
   std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
-  std::vector<double> diagonal_;  // what shifts are a share of: the largest in each row of a Hessian
+  std::vector<double>
+      diagonal_;  // what shifts are a share of: the largest in each row of a Hessian
   std::vector<double> gradient_, residual_, step_, way_, near_;
   std::vector<double> u_, u_near_, off_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is around a point that meets the first-order conditions: along the ways on which the cost might fall, the softest
-// ones, points are evaluated outwards for as long as it does not rise. One that costs clearly less refutes the point: a
-// saddle, an inflection, a plateau, or a valley whose metric is lost to rounding. What lies behind a rise is another
-// optimum's, and refutes nothing.
+// What is around a point that meets the first-order conditions: along the ways on which the cost
+// might fall, the softest ones, points are evaluated outwards for as long as it does not rise. One
+// that costs clearly less refutes the point: a saddle, an inflection, a plateau, or a valley whose
+// metric is lost to rounding. What lies behind a rise is another optimum's, and refutes nothing.
 
 #include <algorithm>
 #include <cmath>
@@ -25,16 +25,17 @@ constexpr double kCostRounding = 1e-13;
 constexpr double kClearlyMore = 10.0;  // than what the conditions leave
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr double kOnRows = 1e-10;
-constexpr int kMostCorrections = 40;  // a row and its opposite go half the way each time
+constexpr int kMostCorrections = 40;    // a row and its opposite go half the way each time
 constexpr int kInverseIterations = 40;  // a shift may be ten times what it need be
 constexpr int kFewInverseIterations = 5;
 constexpr double kRoundingShift = 1e-12;  // of rows held by their weights
-constexpr double kUpwards = 1e-10;  // curvature, share of what holds rows
-constexpr double kPushes = 1e-6;   // multiplier of a row, share of the slopes
+constexpr double kUpwards = 1e-10;        // curvature, share of what holds rows
+constexpr double kPushes = 1e-6;          // multiplier of a row, share of the slopes
 
 }  // namespace
 
-/// Rows at a bound are left where they do not push, or held as well: of opposite ones none need push.
+/// Rows at a bound are left where they do not push, or held as well: of opposite ones none need
+/// push.
 void OptimalityCheck::LookAround(Optimality* found) {
   if (shift_ > kFirstShift) {
     way_ = step_;
@@ -46,7 +47,9 @@ void OptimalityCheck::LookAround(Optimality* found) {
     if (!SoftestWay(upwards ? kFewInverseIterations : kInverseIterations)) return;
     // Near an inflection it curves upwards on one side.
     const double nearest = upwards ? kNeighbour : kNearest;
-    const double farthest = upwards ? kNeighbour : shift_ <= kRoundingShift ? kFarthest : kFarthestDown;
+    const double farthest = upwards                    ? kNeighbour
+                            : shift_ <= kRoundingShift ? kFarthest
+                                                       : kFarthestDown;
     if (Refutes(nearest, farthest, found)) return;
     if (HoldsAll()) return;
   }
@@ -61,8 +64,8 @@ bool OptimalityCheck::Refutes(double nearest, double farthest, Optimality* found
     way_[i] /= longest;
     slope += residual_[i] * way_[i];
   }
-  double less = kClearlyLess * std::min(cost_size_, CostValue()) +
-                kCostRounding * std::abs(cost_) + kClearlyMore * left_;
+  double less = kClearlyLess * std::min(cost_size_, CostValue()) + kCostRounding * std::abs(cost_) +
+                kClearlyMore * left_;
   for (int r = 0; r < rows_.size(); ++r) less += kOnRows * std::abs(lambda_[r]) * norm_[r];
   // To come back to the rows.
   WeighRows(Kept::kAtBounds);
@@ -83,7 +86,8 @@ bool OptimalityCheck::Refutes(double nearest, double farthest, Optimality* found
 }
 
 /// The most that the cost falls outwards along way_ before it rises by `rise`, and where.
-double OptimalityCheck::Fall(double sign, double nearest, double farthest, double rise, double* where) {
+double OptimalityCheck::Fall(double sign, double nearest, double farthest, double rise,
+                             double* where) {
   double most = 0.0;
   for (double away = nearest; away <= farthest; away *= kOutwards) {
     MoveAway(sign * away, way_);
@@ -122,7 +126,8 @@ double OptimalityCheck::OffRow(int row) const {
   return u - (side_[row] == Side::kLower ? rows_.lo(row) : rows_.hi(row));
 }
 
-/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes: those of side_.
+/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes:
+/// those of side_.
 bool OptimalityCheck::HoldPushing(double pushes) {
   const double least = pushes * std::max(Largest(gradient_), curvature_);
   for (int r = 0; r < rows_.size(); ++r) {
@@ -149,7 +154,8 @@ bool OptimalityCheck::CurvesUpwards() {
   return upwards;
 }
 
-/// way_, in which the Hessian that HoldPushing evaluated curves least, measured by the diagonal: by inverse iteration.
+/// way_, in which the Hessian that HoldPushing evaluated curves least, measured by the diagonal: by
+/// inverse iteration.
 bool OptimalityCheck::SoftestWay(int iterations) {
   if (!FactorShifted()) return false;
   for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);

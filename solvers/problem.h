@@ -63,13 +63,13 @@ class Problem {
   /// Throws std::invalid_argument if a size or an interval bound is out of range.
   explicit Problem(const ProblemShape& shape);
 
-  /// Adds a term. Throws std::invalid_argument if its block size differs, its window is longer than the
-  /// problem, or the bounds of its rows are not lo <= hi.
+  /// Adds a term. Throws std::invalid_argument if its block size differs, its window is longer than
+  /// the problem, or the bounds of its rows are not lo <= hi.
   void AddTerm(std::shared_ptr<const Term> term, Role role);
 
-  /// Bounds lower <= x <= upper of the blocks, N x d numbers each, infinite (or beyond kNoBound) where there is none: for
-  /// backends that keep them without rows (Capabilities). Throws std::invalid_argument on another size, or
-  /// where they are not lower <= upper.
+  /// Bounds lower <= x <= upper of the blocks, N x d numbers each, infinite (or beyond kNoBound)
+  /// where there is none: for backends that keep them without rows (Capabilities). Throws
+  /// std::invalid_argument on another size, or where they are not lower <= upper.
   void SetBounds(std::vector<double> lower, std::vector<double> upper);
   /// Has bounds but for the interval's.
   bool bounded() const { return !lower_.empty(); }

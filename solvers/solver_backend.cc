@@ -195,8 +195,8 @@ void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, Solver
     const bool closer = check_.CanGetCloser(view, evaluator_.best(), must_stop, storage);
     if (closer) *status = SolveStatus::kNumericalFailure;
   } else if (*status == SolveStatus::kConverged || *status == SolveStatus::kUnconfirmed) {
-    const Optimality at = check_.Look(view, evaluator_.best(), *result, evaluator_.first_cost(),
-                                      must_stop, storage);
+    const Optimality at =
+        check_.Look(view, evaluator_.best(), *result, evaluator_.first_cost(), must_stop, storage);
     result->optimality = at;
     if (evaluator_.CheckClock()) {
       *status = evaluator_.stop_status();
@@ -219,7 +219,8 @@ void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, Solver
 /// By what a step as long as the start is large could have gained there, so many times.
 bool SolverBackend::FellWithoutEnd(const View& view, const Eigen::VectorXd& start) {
   const double fallen = evaluator_.first_cost() - evaluator_.best_cost();
-  const bool feasible = evaluator_.has_best() && evaluator_.best_violation() <= Evaluator::kFeasible;
+  const bool feasible =
+      evaluator_.has_best() && evaluator_.best_violation() <= Evaluator::kFeasible;
   if (!feasible || !(fallen > kEndless * std::abs(evaluator_.first_cost()))) return false;
   ViewEvaluation* at = evaluator_.mutable_last();
   if (!view.Evaluate(start.data(), {.gradient = true}, {}, at)) return false;

@@ -47,10 +47,10 @@ class SolverBackend {
   /// Sizes a result for solves of this structure: so the first of them does not allocate it.
   static void Reserve(const View& view, SolverResult* result);
 
-  /// Solves from `warm` (view.num_variables() numbers; what is beyond its bounds is moved onto them).
-  /// The view must have the prepared structure; its parameters may have changed. Numerical outcomes
-  /// are in result->status. Throws std::invalid_argument on another structure, a wrong size, a
-  /// number that is not finite, or without Prepare.
+  /// Solves from `warm` (view.num_variables() numbers; what is beyond its bounds is moved onto
+  /// them). The view must have the prepared structure; its parameters may have changed. Numerical
+  /// outcomes are in result->status. Throws std::invalid_argument on another structure, a wrong
+  /// size, a number that is not finite, or without Prepare.
   void Solve(const View& view, const WarmStart& warm, const Stop& stop, SolverResult* result);
 
  protected:
@@ -59,9 +59,10 @@ class SolverBackend {
 
  private:
   virtual void DoPrepare(const View& view) = 0;
-  /// Runs the solver from `warm`, evaluating only through `evaluator`, and tells it of every finished
-  /// iteration. Sets status (converged is a claim that the base checks), native_status and message, multipliers if it has them; charges the time
-  /// inside its library to Share::kNative. The base fills in the rest from the evaluator.
+  /// Runs the solver from `warm`, evaluating only through `evaluator`, and tells it of every
+  /// finished iteration. Sets status (converged is a claim that the base checks), native_status and
+  /// message, multipliers if it has them; charges the time inside its library to Share::kNative.
+  /// The base fills in the rest from the evaluator.
   virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 

@@ -61,10 +61,11 @@ struct WarmStart {
   std::vector<std::vector<double>> multipliers;
 };
 
-/// What the conditions of Karush, Kuhn and Tucker say of a point y. Lengths are measured with each variable over its own
-/// size, 1 + |y_i|; the cost's size is what the solve has gained, or its slope where that is more. So they do not
-/// change with a factor of a row, or with the unit of a variable that is large beside 1. A constant in the cost changes
-/// `left` alone, and so does a factor of a cost whose optimum is near 0.
+/// What the conditions of Karush, Kuhn and Tucker say of a point y. Lengths are measured with each
+/// variable over its own size, 1 + |y_i|; the cost's size is what the solve has gained, or its
+/// slope where that is more. So they do not change with a factor of a row, or with the unit of a
+/// variable that is large beside 1. A constant in the cost changes `left` alone, and so does a
+/// factor of a cost whose optimum is near 0.
 struct Optimality {
   bool evaluated = false;  ///< false: a term or its derivatives are not finite there
   double violation = 0.0;  ///< way to the bound of the worst row along its slope
@@ -115,11 +116,12 @@ struct SolverSummary {
 
 struct SolverResult : SolverSummary {
   Eigen::VectorXd x;  ///< best feasible point, variables of the solved view
-  /// [term][window x output] of constraint terms at the backend's last point (x, where it converged),
-  /// empty where the backend has none.
+  /// [term][window x output] of constraint terms at the backend's last point (x, where it
+  /// converged), empty where the backend has none.
   std::vector<std::vector<double>> multipliers;
-  /// Of the variables' bounds, the interval's among them: positive at an upper one, negative at a lower one;
-  /// empty where the backend has none. Of a variable that is fixed it may be 0: some leave it out.
+  /// Of the variables' bounds, the interval's among them: positive at an upper one, negative at a
+  /// lower one; empty where the backend has none. Of a variable that is fixed it may be 0: some
+  /// leave it out.
   std::vector<double> bound_multipliers;
   std::string message;                 ///< the backend's own words
   std::vector<IterationRecord> trace;  ///< filled if Stop::trace asks for it

@@ -23,8 +23,8 @@ struct Stop {
   int max_iterations = 100;
   int max_evaluations = std::numeric_limits<int>::max();
   std::function<bool(const StopQuery&)> callback;  ///< true: stop now
-  /// Look at the point of a backend that says converged (OptimalityCheck). Without it the word stands: for
-  /// callers that judge the point themselves, as a replanning step does.
+  /// Look at the point of a backend that says converged (OptimalityCheck). Without it the word
+  /// stands: for callers that judge the point themselves, as a replanning step does.
   bool confirm = true;
   bool trace = false;   ///< record every iteration in the result (allocates)
   bool shares = false;  ///< time the solve's parts in the result (reads the clock often)

@@ -51,7 +51,8 @@ class View {
   bool identity() const;
   /// Variables but the interval have bounds.
   bool bounded() const { return problem_->bounded(); }
-  /// Bounds of variable i, the interval among them; but for that one only of use where the view is the identity.
+  /// Bounds of variable i, the interval among them; but for that one only of use where the view is
+  /// the identity.
   double lower(int i) const;
   double upper(int i) const;
   /// Moves what is beyond its bounds onto them. Does not allocate.
@@ -81,8 +82,8 @@ class View {
   /// The distinct reduced blocks that a window reaches, in order; at most `window` of them.
   /// Returns their number.
   int WindowBlocks(int first_block, int window, int* reduced) const;
-  /// `scale` times the derivative of one output of a window, `du` in its full blocks, by the reduced
-  /// blocks that WindowBlocks lists: `out` has d numbers for each.
+  /// `scale` times the derivative of one output of a window, `du` in its full blocks, by the
+  /// reduced blocks that WindowBlocks lists: `out` has d numbers for each.
   void WindowJacobian(const double* du, int first_block, int window, double scale,
                       double* out) const;
   /// Its derivative, unscaled, with respect to h, the moving offset included.

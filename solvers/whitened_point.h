@@ -9,10 +9,10 @@
 
 namespace touchdown::solvers {
 
-/// The evaluator as a backend sees it that works on whitened variables z (whitening.h): one point at
-/// a time, its objective, gradient and rows in z. Without whitening z is the view's y; so it is where
-/// the costs' nominal curvature is singular, as that of a linear cost: such a metric means nothing; and where
-/// variables have bounds, which are none in z.
+/// The evaluator as a backend sees it that works on whitened variables z (whitening.h): one point
+/// at a time, its objective, gradient and rows in z. Without whitening z is the view's y; so it is
+/// where the costs' nominal curvature is singular, as that of a linear cost: such a metric means
+/// nothing; and where variables have bounds, which are none in z.
 class WhitenedPoint {
  public:
   struct Settings {
@@ -29,9 +29,9 @@ class WhitenedPoint {
   /// cannot be evaluated. All arguments outlive the solve. Does not allocate.
   bool Begin(const View& view, const double* y, const Settings& settings, Evaluator* evaluator);
 
-  /// Goes on from z with the metric of that place; z() is then the same point in it. Where the point
-  /// cannot be evaluated the metric stays. For methods that have used up their leg (MetricLegs).
-  /// Does not allocate.
+  /// Goes on from z with the metric of that place; z() is then the same point in it. Where the
+  /// point cannot be evaluated the metric stays. For methods that have used up their leg
+  /// (MetricLegs). Does not allocate.
   void RenewMetric(const View& view, const double* z);
 
   int size() const { return static_cast<int>(z_.size()); }
@@ -52,9 +52,10 @@ class WhitenedPoint {
   /// In place: a dense row in y becomes one in z.
   void RowToWhite(double* row) const;
 
-  /// Whether the decrease that the metric still promises at the best point, |g|^2 / 2 in z without a
-  /// component of the interval out of its bounds, is negligible beside its cost (or a small share of
-  /// the first one). Never without whitening, where |g| has no such meaning. Moves to that point.
+  /// Whether the decrease that the metric still promises at the best point, |g|^2 / 2 in z without
+  /// a component of the interval out of its bounds, is negligible beside its cost (or a small share
+  /// of the first one). Never without whitening, where |g| has no such meaning. Moves to that
+  /// point.
   bool StationaryAtBest(double first_cost);
 
   /// The best point so far changed since the last call, or since Begin. `step` receives how far it

@@ -7,9 +7,9 @@
 
 namespace touchdown::solvers {
 
-/// Problems of W. Hock, K. Schittkowski, "Test Examples for Nonlinear Programming Codes", Springer 1981, with at
-/// most 10 variables, by their numbers: HS1 to HS113. Left out are those that no multipliers certify (HS13), tables of
-/// data, and near relatives of others.
+/// Problems of W. Hock, K. Schittkowski, "Test Examples for Nonlinear Programming Codes", Springer
+/// 1981, with at most 10 variables, by their numbers: HS1 to HS113. Left out are those that no
+/// multipliers certify (HS13), tables of data, and near relatives of others.
 std::vector<ReferenceProblem> HockSchittkowski(EqualityForm form = EqualityForm::kRows);
 
 }  // namespace touchdown::solvers

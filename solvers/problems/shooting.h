@@ -7,9 +7,10 @@
 
 namespace touchdown::solvers {
 
-/// Ten multiple-shooting problems: a block of states and inputs for each time, the dynamics as equality rows between
-/// neighbours (trapezoidal rule), ends, waypoints and actuator limits as bounds on variables, and the effort as cost.
-/// 20 to 200 steps, blocks of 3 to 16. Their optima are not published: `cost` is NaN.
+/// Ten multiple-shooting problems: a block of states and inputs for each time, the dynamics as
+/// equality rows between neighbours (trapezoidal rule), ends, waypoints and actuator limits as
+/// bounds on variables, and the effort as cost. 20 to 200 steps, blocks of 3 to 16. Their optima
+/// are not published: `cost` is NaN.
 std::vector<ReferenceProblem> ShootingProblems();
 
 }  // namespace touchdown::solvers

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Equality rows in `banded`: right ones are met from everywhere, redundant ones are rows, and multiple shooting is at
-// home.
+// Equality rows in `banded`: right ones are met from everywhere, redundant ones are rows, and
+// multiple shooting is at home.
 
 #include <gtest/gtest.h>
 
@@ -23,13 +23,13 @@ namespace {
 template <class Cost, class Rows>
 Problem WithEqualities(int n, Cost cost, int outputs, Rows rows) {
   Problem problem({.blocks = 1, .block_size = n});
-  problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "cost"},
-                                                 FunctionShape{.block_size = n}, LinearLoss(1.0),
-                                                 cost),
-                  Role::kCost);
-  problem.AddTerm(std::make_shared<FunctionTerm>(
-                      TermInfo{.name = "rows"},
-                      FunctionShape{.block_size = n, .outputs = outputs}, SquareLoss(1.0), rows),
+  problem.AddTerm(
+      std::make_shared<FunctionTerm>(TermInfo{.name = "cost"}, FunctionShape{.block_size = n},
+                                     LinearLoss(1.0), cost),
+      Role::kCost);
+  problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "rows"},
+                                                 FunctionShape{.block_size = n, .outputs = outputs},
+                                                 SquareLoss(1.0), rows),
                   Role::kConstraint);
   return problem;
 }
@@ -158,13 +158,14 @@ TEST(BandedEqualities, ACircleIsMetFromEverywhere) {
         u[0] = x[0] * x[0] + x[1] * x[1] - radius * radius;
       };
       const double best = -std::sqrt(2.0) * slope * radius;
-      const std::vector<std::pair<double, double>> starts = {
-          {0.6, 0.8},   {0.06, 0.08}, {1e-4, 1e-4}, {3.0, 0.5}, {-0.1, -2.0},
-          {0.01, 0.0}, {1.0, 1.0},   {-1.0, 1.01}, {7.0, -5.0}};
+      const std::vector<std::pair<double, double>> starts = {{0.6, 0.8}, {0.06, 0.08}, {1e-4, 1e-4},
+                                                             {3.0, 0.5}, {-0.1, -2.0}, {0.01, 0.0},
+                                                             {1.0, 1.0}, {-1.0, 1.01}, {7.0, -5.0}};
       for (const auto& [x, y] : starts) {
         const SolverResult result = SolveFrom(WithEqualities(2, sum(slope), 1, circle),
                                               Eigen::Vector2d(x * radius, y * radius));
-        // From the diagonal every step stays on it: the maximum is all that can be found, and is none.
+        // From the diagonal every step stays on it: the maximum is all that can be found, and is
+        // none.
         const bool diagonal = x == y;
         const SolveStatus status = result.status;
         EXPECT_NE(status, SolveStatus::kInfeasible) << slope << " " << radius << " " << x;
@@ -237,7 +238,8 @@ TEST(BandedEqualities, ForgetAnEarlierProblem) {
   }
 }
 
-/// A pendulum that swings up: blocks of angle, rate and torque, its dynamics rows between neighbours.
+/// A pendulum that swings up: blocks of angle, rate and torque, its dynamics rows between
+/// neighbours.
 Problem SwingUp(int blocks, double most_torque) {
   const double dt = 5.0 / (blocks - 1);
   Problem problem({.blocks = blocks, .block_size = 3});

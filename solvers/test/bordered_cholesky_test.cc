@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The factor of random arrowheads against Eigen's dense one, for blocks of three and of other sizes.
+// The factor of random arrowheads against Eigen's dense one, for blocks of three and of other
+// sizes.
 
 #include "touchdown/solvers/bordered_cholesky.h"
 

@@ -80,18 +80,19 @@ TEST(Optimality, ANeighbourThatCostsLessRefutesAPoint) {
                                     .Bound(0, 0.0, 1.0);
   EXPECT_TRUE(LookAt(edge, {0.0}).saddle);
   EXPECT_FALSE(LookAt(edge, {1.0}).saddle);
-  const ReferenceProblem bend = SmallProblem("bend", {0.5}, 0.0, EqualityForm::kRows)
-                                    .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[0] * x[0]; });
+  const ReferenceProblem bend =
+      SmallProblem("bend", {0.5}, 0.0, EqualityForm::kRows).Cost([](const auto* x, auto* u) {
+        u[0] = x[0] * x[0] * x[0];
+      });
   EXPECT_TRUE(LookAt(bend, {0.0}).stationary());
   EXPECT_TRUE(LookAt(bend, {0.0}).saddle);
   for (const EqualityForm form : {EqualityForm::kRows, EqualityForm::kPairs}) {
     for (const double sign : {1.0, -1.0}) {
       // Along the row the cost is 1 - t^2 / 2 or its opposite, and nothing pushes.
-      const ReferenceProblem top = SmallProblem("circle", {1.0, 0.5}, -1.0, form)
-                                       .Cost([sign](const auto* x, auto* u) { u[0] = sign * x[1]; })
-                                       .Zero(1, [](const auto* x, auto* u) {
-                                         u[0] = x[0] * x[0] + x[1] * x[1] - 1.0;
-                                       });
+      const ReferenceProblem top =
+          SmallProblem("circle", {1.0, 0.5}, -1.0, form)
+              .Cost([sign](const auto* x, auto* u) { u[0] = sign * x[1]; })
+              .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] * x[0] + x[1] * x[1] - 1.0; });
       const Optimality at = LookAt(top, {0.0, 1.0});
       EXPECT_TRUE(at.stationary());
       EXPECT_EQ(at.saddle, sign > 0.0);
@@ -134,11 +135,11 @@ TEST(Optimality, AStiffDirectionDoesNotHideASaddle) {
 
 TEST(Optimality, AValleyBehindARiseIsAnotherOptimums) {
   // A strict minimum 60,000 away from 0: a hundredth of that is a hundred waves.
-  const ReferenceProblem p = SmallProblem("waves", {62832.1}, 0.0, EqualityForm::kRows)
-                                 .Cost([](const auto* x, auto* u) {
-                                   using std::cos;
-                                   u[0] = -cos(x[0]) + 1e-3 * x[0];
-                                 });
+  const ReferenceProblem p =
+      SmallProblem("waves", {62832.1}, 0.0, EqualityForm::kRows).Cost([](const auto* x, auto* u) {
+        using std::cos;
+        u[0] = -cos(x[0]) + 1e-3 * x[0];
+      });
   const Optimality at = LookAt(p, {2e4 * std::acos(-1.0) - std::asin(1e-3)});
   EXPECT_TRUE(at.stationary() && !at.saddle);
 }
@@ -158,7 +159,8 @@ TEST(Optimality, ACornerWhereNothingPushesIsNoMinimum) {
 }
 
 TEST(Optimality, AMetricThatIsLostToRoundingProvesNothing) {
-  // Least squares with weights up to 1e14 along a row, all of it oblique: softly falling ways are below its rounding.
+  // Least squares with weights up to 1e14 along a row, all of it oblique: softly falling ways are
+  // below its rounding.
   const ReferenceProblem p =
       SmallProblem("oblique", {1.5, -1.0, 0.5}, 0.0, EqualityForm::kRows)
           .Squares(3,
@@ -170,8 +172,10 @@ TEST(Optimality, AMetricThatIsLostToRoundingProvesNothing) {
                    })
           .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] - 0.6 * x[1] + 0.2 * x[2] - 0.6; });
   EXPECT_TRUE(LookAt(p, {1.0, 1.0, 1.0}).stationary());
-  // On the row and the stiffest plane, which leave one way: rounding is all that its cost of 0.01 shares with the metric.
-  const Eigen::Vector3d way = Eigen::Vector3d(1.0, -0.6, 0.2).cross(Eigen::Vector3d(1.0, 0.7, -0.4));
+  // On the row and the stiffest plane, which leave one way: rounding is all that its cost of 0.01
+  // shares with the metric.
+  const Eigen::Vector3d way =
+      Eigen::Vector3d(1.0, -0.6, 0.2).cross(Eigen::Vector3d(1.0, 0.7, -0.4));
   for (const double away : {1e-3, 1e-2, 1e-1}) {
     const Eigen::Vector3d at = Eigen::Vector3d::Ones() + away * way;
     EXPECT_FALSE(LookAt(p, {at[0], at[1], at[2]}).stationary()) << away;
@@ -179,11 +183,11 @@ TEST(Optimality, AMetricThatIsLostToRoundingProvesNothing) {
 }
 
 TEST(Optimality, WhatWasGainedDoesNotHideWhatIsLeft) {
-  ReferenceProblem p = SmallProblem("quartic", {1001.0}, 0.0, EqualityForm::kRows)
-                           .Cost([](const auto* x, auto* u) {
-                             const auto a = (x[0] - 1.0) * (x[0] - 1.0);
-                             u[0] = a * a;
-                           });
+  ReferenceProblem p =
+      SmallProblem("quartic", {1001.0}, 0.0, EqualityForm::kRows).Cost([](const auto* x, auto* u) {
+        const auto a = (x[0] - 1.0) * (x[0] - 1.0);
+        u[0] = a * a;
+      });
   EXPECT_FALSE(LookAt(p, {4.43}).stationary()) << "137 of 1e12 are left";
   EXPECT_TRUE(LookAt(p, {1.001}).stationary());
 }
@@ -193,7 +197,8 @@ TEST(Optimality, ALargeVariableDoesNotHideASmallOne) {
     u[0] = x[0] - 1e6;
     u[1] = x[1];
   };
-  const ReferenceProblem p = SmallProblem("far", {1e6, 0.5}, 0.0, EqualityForm::kRows).Squares(2, far);
+  const ReferenceProblem p =
+      SmallProblem("far", {1e6, 0.5}, 0.0, EqualityForm::kRows).Squares(2, far);
   EXPECT_FALSE(LookAt(p, {1e6, 0.5}).stationary());
   EXPECT_TRUE(LookAt(p, {1e6, 1e-7}).stationary());
   const ReferenceProblem row = SmallProblem("far", {1e6, 0.5}, 1.0, EqualityForm::kRows)
@@ -204,11 +209,11 @@ TEST(Optimality, ALargeVariableDoesNotHideASmallOne) {
 }
 
 TEST(Optimality, FarOutASmallShareOfAVariableIsALongWay) {
-  const ReferenceProblem wave = SmallProblem("wave", {0.0}, -1.0, EqualityForm::kRows)
-                                    .Cost([](const auto* x, auto* u) {
-                                      using std::sin;
-                                      u[0] = sin(x[0]);
-                                    });
+  const ReferenceProblem wave =
+      SmallProblem("wave", {0.0}, -1.0, EqualityForm::kRows).Cost([](const auto* x, auto* u) {
+        using std::sin;
+        u[0] = sin(x[0]);
+      });
   const double lowest = 1.5 * std::acos(-1.0);
   EXPECT_TRUE(LookAt(wave, {lowest}).stationary());
   EXPECT_FALSE(LookAt(wave, {lowest + 2e5 * std::acos(-1.0) + 0.5}).stationary());
@@ -377,22 +382,22 @@ TEST_P(ClaimsOfEveryBackend, NobodyClaimsWhatIsNone) {
 
 TEST_P(ClaimsOfEveryBackend, NeitherUnboundedNorInfeasibleHasAUnit) {
   for (const double factor : {1e-6, 1.0, 1e13}) {
-    const ReferenceProblem bowl =
-        SmallProblem("bowl", {0.0, 0.0}, -factor, EqualityForm::kRows)
-            .Cost([=](const auto* x, auto* u) {
-              u[0] = factor * (x[0] * x[0] - 2.0 * x[0] + x[1] * x[1]);
-            });
+    const ReferenceProblem bowl = SmallProblem("bowl", {0.0, 0.0}, -factor, EqualityForm::kRows)
+                                      .Cost([=](const auto* x, auto* u) {
+                                        u[0] = factor * (x[0] * x[0] - 2.0 * x[0] + x[1] * x[1]);
+                                      });
     EXPECT_NE(SolveReference(bowl).status, SolveStatus::kUnbounded) << factor;
   }
   for (const double far : {10.0, 1e3, 1e6}) {
-    const ReferenceProblem corner = SmallProblem("far", {0.0, 0.0}, 1.25 * far * far, EqualityForm::kRows)
-                                        .Squares(2,
-                                                 [](const auto* x, auto* u) {
-                                                   u[0] = x[0];
-                                                   u[1] = x[1];
-                                                 })
-                                        .AtLeastZero(1, [=](const auto* x, auto* u) { u[0] = x[0] - far; })
-                                        .Zero(1, [](const auto* x, auto* u) { u[0] = x[1] - 0.5 * x[0]; });
+    const ReferenceProblem corner =
+        SmallProblem("far", {0.0, 0.0}, 1.25 * far * far, EqualityForm::kRows)
+            .Squares(2,
+                     [](const auto* x, auto* u) {
+                       u[0] = x[0];
+                       u[1] = x[1];
+                     })
+            .AtLeastZero(1, [=](const auto* x, auto* u) { u[0] = x[0] - far; })
+            .Zero(1, [](const auto* x, auto* u) { u[0] = x[1] - 0.5 * x[0]; });
     const SolverResult result = SolveReference(corner);
     EXPECT_NE(result.status, SolveStatus::kInfeasible) << far;
     if (result.status == SolveStatus::kConverged) {
@@ -404,13 +409,14 @@ TEST_P(ClaimsOfEveryBackend, NeitherUnboundedNorInfeasibleHasAUnit) {
 TEST_P(ClaimsOfEveryBackend, AStartThatIsFeasibleInTheRowsUnitIsNotTheBestPoint) {
   // x = 0 violates the row by its unit alone, and costs nothing.
   for (const double unit : {1.0, 1e-6}) {
-    const ReferenceProblem p = SmallProblem("unit", {0.0, 0.5}, 1.0, EqualityForm::kRows)
-                                   .Squares(2,
-                                            [](const auto* x, auto* u) {
-                                              u[0] = x[0];
-                                              u[1] = x[1];
-                                            })
-                                   .Zero(1, [=](const auto* x, auto* u) { u[0] = unit * (x[0] - 1.0); });
+    const ReferenceProblem p =
+        SmallProblem("unit", {0.0, 0.5}, 1.0, EqualityForm::kRows)
+            .Squares(2,
+                     [](const auto* x, auto* u) {
+                       u[0] = x[0];
+                       u[1] = x[1];
+                     })
+            .Zero(1, [=](const auto* x, auto* u) { u[0] = unit * (x[0] - 1.0); });
     const SolverResult result = SolveReference(p);
     const bool strong = Make()->capabilities().equality_rows;
     EXPECT_EQ(result.status == SolveStatus::kConverged, strong) << unit;
@@ -475,9 +481,8 @@ TEST_P(ClaimsOfEveryBackend, ARedundantRowIsNotInfeasible) {
 
 TEST_P(ClaimsOfEveryBackend, NothingIsPrinted) {
   // Ceres's line search warns of polynomials that are constant.
-  const ReferenceProblem endless =
-      SmallProblem("endless", {1.0, 1.0}, 0.0, EqualityForm::kRows)
-          .Cost([](const auto* x, auto* u) { u[0] = x[0] + x[1]; });
+  const ReferenceProblem endless = SmallProblem("endless", {1.0, 1.0}, 0.0, EqualityForm::kRows)
+                                       .Cost([](const auto* x, auto* u) { u[0] = x[0] + x[1]; });
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   SolveReference(endless);
@@ -501,12 +506,11 @@ TEST_P(ClaimsOfEveryBackend, EvaluationsCountAgainstTheBudget) {
 }
 
 TEST_P(ClaimsOfEveryBackend, ASaddleBesideALargeVariableIsNoOptimum) {
-  const ReferenceProblem valleys =
-      SmallProblem("valleys", {103.0, 0.0}, 0.0, EqualityForm::kRows)
-          .Squares(2, [](const auto* x, auto* u) {
-            u[0] = x[0] - 100.0;
-            u[1] = 4.0 * (x[1] * x[1] - 0.25);
-          });
+  const ReferenceProblem valleys = SmallProblem("valleys", {103.0, 0.0}, 0.0, EqualityForm::kRows)
+                                       .Squares(2, [](const auto* x, auto* u) {
+                                         u[0] = x[0] - 100.0;
+                                         u[1] = 4.0 * (x[1] * x[1] - 0.25);
+                                       });
   const SolverResult result = SolveReference(valleys);
   EXPECT_FALSE(result.status == SolveStatus::kConverged && result.cost > 1e-6) << result.cost;
 }
@@ -519,8 +523,8 @@ TEST(Problem, RefusesRowsThatCouldNotBeMissed) {
   Problem problem({.blocks = 3, .block_size = 1});
   const auto sum = [](const auto* q, auto* u) { u[0] = q[0] + q[1]; };
   const auto term = [&](const FunctionTerm::Loss& loss, int windows) {
-    return std::make_shared<FunctionTerm>(TermInfo{"sum"}, FunctionShape{.window = 2, .windows = windows},
-                                          loss, sum);
+    return std::make_shared<FunctionTerm>(
+        TermInfo{"sum"}, FunctionShape{.window = 2, .windows = windows}, loss, sum);
   };
   EXPECT_THROW(problem.AddTerm(term(LinearLoss(1.0), 2), Role::kConstraint), std::invalid_argument);
   EXPECT_THROW(problem.AddTerm(term(SquareLoss(1.0), 3), Role::kCost), std::invalid_argument)

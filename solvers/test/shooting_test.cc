@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The set of multiple-shooting problems: every backend that takes one finds the same optimum, or claims none.
+// The set of multiple-shooting problems: every backend that takes one finds the same optimum, or
+// claims none.
 
 #include "touchdown/solvers/problems/shooting.h"
 

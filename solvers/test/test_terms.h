@@ -77,8 +77,8 @@ class CurvedOffset : public LiftOffset {
   int n_;
 };
 
-/// Blocks 0 and 1 fixed, the last three folded onto one reduced block, as a landing's ends are, with a
-/// CurvedOffset. Blocks of two.
+/// Blocks 0 and 1 fixed, the last three folded onto one reduced block, as a landing's ends are,
+/// with a CurvedOffset. Blocks of two.
 inline View FoldedView(const Problem& problem) {
   AffineLift lift;
   const int n = problem.shape().blocks;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A pendulum that swings up within two seconds: states and inputs as blocks, dynamics as rows between neighbours.
+// A pendulum that swings up within two seconds: states and inputs as blocks, dynamics as rows
+// between neighbours.
 #include <cmath>
 #include <iostream>
 #include "touchdown/solvers/solvers.h"
@@ -10,7 +11,8 @@ int main() {
   constexpr int kAngle = 0, kRate = 1, kTorque = 2, kSize = 3;  // the numbers of each
   constexpr double kStep = 2.0 / N, kPi = 3.14159265358979, kInf = INFINITY;
   Problem problem({.blocks = N, .block_size = kSize});
-  // Rows, of each block q and the next, q + kSize: x_k+1 - x_k - h f(x_k, u_k) = 0. SquareLoss makes u = 0 of them.
+  // Rows, of each block q and the next, q + kSize: x_k+1 - x_k - h f(x_k, u_k) = 0. SquareLoss
+  // makes u = 0 of them.
   problem.AddTerm(std::make_shared<FunctionTerm>(
       TermInfo{"dynamics"},
       FunctionShape{.block_size = kSize, .window = 2, .outputs = 2, .windows = N - 1}, SquareLoss(1.0),
