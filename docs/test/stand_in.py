@@ -20,7 +20,8 @@ BUILD = Path(os.environ.get("TOUCHDOWN_BUILD", ""))
 # Options that say how much work there is: never more than this ...
 SHORT = {"--trials": 1, "--problems": 1, "--scenes": 1, "--flights": 1, "--poses": 1, "--repeats": 1, "--starts": 1}
 # ... which these sub-commands are given where the document leaves them to their default.
-GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"], "study replan": ["--scenes"],
+GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"],
+         "compare --problem-set": ["--starts"], "study replan": ["--scenes"],
          "study pad": ["--trials"], "study hostile": ["--flights"], "study tags": ["--poses"]}  # fmt: skip
 # Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
 # pad` draws nothing of shorter ones.
@@ -41,6 +42,8 @@ def shortened(arguments):
     """The arguments of the program in their short form."""
     words = 2 if arguments[:1] == ["study"] else 1
     command = " ".join(arguments[:words])
+    if "--problem-set" in arguments:
+        command += " --problem-set"
     short = []
     for before, word in zip([""] + arguments, arguments):
         if before in SHORT and word.isdigit():

@@ -7,7 +7,7 @@
 using namespace touchdown::solvers;
 
 int main() {
-  constexpr int N = 60;                                       // blocks
+  constexpr int N = 60;  // blocks
   constexpr int kAngle = 0, kRate = 1, kTorque = 2, kSize = 3;  // the numbers of each
   constexpr double kStep = 2.0 / N, kPi = 3.14159265358979, kInf = INFINITY;
   Problem problem({.blocks = N, .block_size = kSize});
