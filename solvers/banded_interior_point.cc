@@ -137,8 +137,8 @@ void BandedInteriorPoint::AddBox(int sign, const View& view) {
     const double bound = sign < 0 ? lower : upper;
     if (!std::isfinite(bound) || (lower == upper) != (sign == 0)) continue;
     box.variable.push_back(i);
-    box.bound.push_back(bound);
   }
+  box.bound.resize(box.variable.size());
   if (box.variable.empty()) return;
   const int term = terms_ + static_cast<int>(boxes_.size());
   sides_.push_back({term, 1, sign < 0 ? -1.0 : 1.0, 0.0, sign == 0});
@@ -151,6 +151,18 @@ void BandedInteriorPoint::AddBox(int sign, const View& view) {
 
 const BandedInteriorPoint::Box* BandedInteriorPoint::BoxOf(const Side& side) const {
   return side.term < terms_ ? nullptr : &boxes_[side.term - terms_];
+}
+
+/// Their values may be others in each solve.
+void BandedInteriorPoint::ReadBounds(const View& view) {
+  for (const Side& side : sides_) {
+    if (side.term < terms_) continue;
+    Box& box = boxes_[side.term - terms_];
+    for (std::size_t j = 0; j < box.variable.size(); ++j) {
+      const int i = box.variable[j];
+      box.bound[j] = side.sign > 0.0 ? view.upper(i) : view.lower(i);
+    }
+  }
 }
 
 void BandedInteriorPoint::BoundMultipliers(std::vector<double>* multipliers) const {
@@ -174,6 +186,7 @@ SolveStatus BandedInteriorPoint::Run(const View& view, const double* start,
 SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
                                           const std::vector<std::vector<double>>& multipliers,
                                           const Tolerances& tolerances, Evaluator* evaluator) {
+  ReadBounds(view);
   std::copy(start, start + y_.size(), y_.begin());
   invariant_ = tolerances.invariant;
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);

@@ -97,6 +97,7 @@ class BandedInteriorPoint {
   bool Elastic(const Side& side) const { return mode_.elastic && !BoxOf(side); }
   bool HasSlack(const Side& side) const { return !side.equality || Elastic(side); }
   void AddBox(int sign, const View& view);
+  void ReadBounds(const View& view);
   void MoveInside(const View& view);
   void AddRowsTransposed(const View& view, Evaluator* evaluator);
   void MultiplyRows(const View& view, Evaluator* evaluator);

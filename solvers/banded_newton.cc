@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortestStep = 1e-10;
+constexpr double kLessShift = 1e5;  // 0.1 of the last one, which is 1e-6 of this
 constexpr double kLongestStep = 1e3;  // over the point's size
 /// Below this share of the cost a decrease is rounding.
 constexpr double kRounding = 1e-15;
@@ -46,13 +47,19 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
                               Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
   bool full_step = true;
+  double curvature = 0.0;  // what the first shift is a share of; 0: the largest of the diagonal
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return SolveStatus::kEvaluationFailed;
   while (!evaluator->must_stop()) {
     const ViewEvaluation& at = evaluator->last();
     gradient_ = at.gradient;
     const double value = at.full.value;
     if (Largest(gradient_) == 0.0) return SolveStatus::kConverged;
-    if (!FactorDefinite(at.hessian, &factor_)) return SolveStatus::kNumericalFailure;
+    // Where nothing curves at all a first step goes far beyond the point.
+    if (curvature == 0.0 && LargestElement(at.hessian) == 0.0) curvature = Largest(gradient_);
+    double shift = 0.0;
+    if (!FactorDefinite(at.hessian, &factor_, curvature, &shift)) {
+      return SolveStatus::kNumericalFailure;
+    }
     NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
     double slope = Dot(gradient_, step_);
     const double scale = std::max(std::abs(value), kSmallestCost);
@@ -64,9 +71,12 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     slope *= Shorten();
     const double length = LineSearch(value, slope, full_step, evaluator);
     full_step = length == 1.0;
+    // A shift shortens steps: where they succeed, the next one is smaller.
+    if (tolerances.of_gain) curvature = full_step && shift > 0.0 ? kLessShift * shift : 0.0;
     if (length == 0.0) {
       // Nothing along a descent direction is lower: what is left is rounding, or the step is wrong.
-      return -slope <= 1e-9 * scale ? SolveStatus::kConverged : SolveStatus::kNumericalFailure;
+      const double least = 1e-9 * (tolerances.of_gain ? std::max(scale, gained) : scale);
+      return -slope <= least ? SolveStatus::kConverged : SolveStatus::kNumericalFailure;
     }
     evaluator->FinishIteration(length * std::sqrt(Dot(step_, step_)), Largest(gradient_));
     evaluator->CheckStop();

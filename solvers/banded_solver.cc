@@ -27,8 +27,6 @@ const char* Words(SolveStatus status, bool has_rows) {
       return "the rows contradict each other near the least violation that was found";
     case SolveStatus::kUnconfirmed:
       return "the steps stalled, at a point that may be the optimum";
-    case SolveStatus::kEvaluationFailed:
-      return "a number is not finite where the solve began";
     case SolveStatus::kNumericalFailure:
       return has_rows ? "fast, elastic and careful steps stalled, all of them"
                       : "no step along a descent direction lowers the cost";

@@ -151,8 +151,8 @@ void Evaluator::PreferLast() {
   if (cache_valid_) Keep();
 }
 
-void Evaluator::PreferLastIfCloser() {
-  if (cache_valid_ && storage_.full.max_violation < best_violation_) Keep();
+void Evaluator::PreferLastIfFeasible() {
+  if (cache_valid_ && storage_.full.max_violation <= kFeasible) Keep();
 }
 
 void Evaluator::Keep() {

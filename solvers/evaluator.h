@@ -45,9 +45,8 @@ class Evaluator {
   /// Makes the last evaluated point the one to return, though another violated less, or cost less
   /// within the tolerance: for a backend that knows it to be the optimum.
   void PreferLast();
-  /// The same, if it violates less than the one that would be returned, which may cost less by just
-  /// that.
-  void PreferLastIfCloser();
+  /// The same, if it is feasible: another may cost less by what it violates within the tolerance.
+  void PreferLastIfFeasible();
 
   /// Charges the time from now on to `share`; returns what it was charged to before.
   Share SwitchShare(Share share);

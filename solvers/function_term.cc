@@ -4,6 +4,7 @@
 #include "touchdown/solvers/function_term.h"
 
 #include <algorithm>
+#include <limits>
 #include <array>
 #include <stdexcept>
 #include <string>
@@ -79,10 +80,16 @@ void FunctionTerm::Evaluate(const TermInput& input, const TermRequest& request, 
 
 void FunctionTerm::EvaluateFunction(const double* q, bool derivatives, double* u,
                                     double* du) const {
-  if (!derivatives) return functions_.value(q, u);
+  // An output that the function forgets must not count as 0.
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!derivatives) {
+    std::fill_n(u, shape_.outputs, kNone);
+    return functions_.value(q, u);
+  }
   std::array<First, kMostVariables> in;
   std::array<First, kMostOutputs> out;
   for (int i = 0; i < variables_; ++i) in[i] = First(q[i], i);
+  for (int c = 0; c < shape_.outputs; ++c) out[c] = First(kNone);
   functions_.first(in.data(), out.data());
   for (int c = 0; c < shape_.outputs; ++c) {
     u[c] = out[c].v;

@@ -225,7 +225,7 @@ void IpoptNlp::finalize_solution(Ipopt::SolverReturn status, Index n, const Numb
   // One on the way here may have cost less by as much as it was off its rows.
   const bool solved = status == Ipopt::SUCCESS || status == Ipopt::STOP_AT_ACCEPTABLE_POINT;
   if (solved && !evaluator_->must_stop() && point_.Evaluate(x, false)) {
-    evaluator_->PreferLastIfCloser();
+    evaluator_->PreferLastIfFeasible();
   }
 }
 

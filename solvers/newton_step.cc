@@ -50,7 +50,7 @@ bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, doubl
     const Status status = factor->Factor(H, shift, shift);
     if (taken != nullptr) *taken = shift;
     if (status != Status::kIndefinite && factor->corner() > 0.0) return true;
-    most = kMostShift * LargestElement(H);
+    most = kMostShift * std::max(LargestElement(H), curvature);
     const double size = curvature > 0.0 ? curvature : LargestDiagonal(H);
     shift = shift > 0.0 ? kShiftGrowth * shift : kFirstShift * size;
   }

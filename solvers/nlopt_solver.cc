@@ -105,6 +105,7 @@ class NloptSolver : public SolverBackend {
     evaluator_ = evaluator;
     max_iterations_ = stop.max_iterations;
     failures_ = repeats_ = 0;
+    lost_ = false;
     improvement_ = HUGE_VAL;
     error_ = nullptr;
     const WhitenedPoint::Settings settings{.whiten = options().Get("whiten") != 0.0,
@@ -148,7 +149,7 @@ class NloptSolver : public SolverBackend {
       before = violation;
     }
     if (code > 0 && !evaluator_->must_stop() && point_.Evaluate(z_.data(), false)) {
-      evaluator_->PreferLastIfCloser();
+      evaluator_->PreferLastIfFeasible();
     }
     return code;
   }
@@ -218,6 +219,12 @@ class NloptSolver : public SolverBackend {
       nlopt_force_stop(opt_);
       return false;
     }
+    // A library may lose itself: the terms have nothing to do with that.
+    lost_ = lost_ || !std::all_of(z, z + point_.size(), [](double x) { return std::isfinite(x); });
+    if (lost_) {
+      nlopt_force_stop(opt_);
+      return false;
+    }
     bool ok = false;
     try {
       ok = point_.Evaluate(z, gradient);
@@ -278,6 +285,7 @@ class NloptSolver : public SolverBackend {
 
   SolveStatus Status(nlopt_result code) {
     if (evaluator_->must_stop()) return evaluator_->stop_status();
+    if (lost_) return SolveStatus::kNumericalFailure;
     if (failures_ >= kMostFailures) return SolveStatus::kEvaluationFailed;
     const bool gave_up = code < 0;
     if (rows_.constant_violation() > Evaluator::kFeasible ||
@@ -307,6 +315,7 @@ class NloptSolver : public SolverBackend {
   std::vector<Side> equalities_, inequalities_;
   int max_iterations_ = 0;
   int failures_ = 0;
+  bool lost_ = false;  // a point that was asked for is not finite
   int repeats_ = 0;
   double first_cost_ = 0.0;
   double improvement_ = HUGE_VAL;  // of the cost, by the last better point

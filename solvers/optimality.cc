@@ -41,9 +41,10 @@ void OptimalityCheck::Prepare(const View& view) {
   shape.Resize(view.blocks(), view.block_size(), view.problem().half_bandwidth(),
                view.free_interval());
   factor_.Prepare(shape);
-  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &near_}) {
+  for (auto* vector : {&size_, &diagonal_, &gradient_, &residual_, &step_, &way_, &soft_, &near_}) {
     vector->assign(n, 0.0);
   }
+  order_.assign(n, 0);
   ConstraintRows::Size(view, &by_term_);
   ConstraintRows::Size(view, &weights_by_term_);
   row_weights_.assign(by_term_.size(), {});
@@ -331,10 +332,11 @@ Optimality OptimalityCheck::Weigh() {
   step_ = residual_;
   const bool holds =
       std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::kNone; });
-  if (holds && !HoldRows()) return {};
+  out.step = out.gain = out.left = kInfinity;  // until it is known
+  if (holds && !HoldRows()) return out;
   for (std::size_t i = 0; i < step_.size(); ++i)
     at_->hessian.Diagonal(static_cast<int>(i)) += least;
-  if (!FactorShifted()) return {};
+  if (!FactorShifted()) return out;
   factor_.Solve(step_.data());
   double promised = 0.0;
   for (std::size_t i = 0; i < step_.size(); ++i) promised += 0.5 * residual_[i] * step_[i];

@@ -39,6 +39,11 @@ class OptimalityCheck {
 
   /// Rows that are to be kept: those of side_, or all that are at a bound.
   enum class Kept { kHeld, kAtBounds };
+  enum class Metric { kSizes, kDiagonal };
+  /// Of a walk from y outwards: each point so many times as far as the one before.
+  struct Reach {
+    double outwards, farthest;
+  };
   static constexpr double kFirstShift = 1e-15;  // rounding, share of the diagonal
 
   bool Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
@@ -66,14 +71,15 @@ class OptimalityCheck {
   double CostValue() const;
   // optimality_neighbours.cc
   void LookAround(Optimality* found);
-  bool Refutes(double nearest, double farthest, Optimality* found);
-  double Fall(double sign, double nearest, double farthest, double rise, double* where);
+  bool RefutesSoftWays(Optimality* found);
+  bool Refutes(const Reach& reach, Optimality* found);
+  double Fall(double sign, const Reach& reach, double rise, double* where);
   bool EvaluateOnRows();
   double OffRow(int row) const;
   bool HoldPushing(double pushes);
   bool HoldsAll() const;
   bool CurvesUpwards();
-  bool SoftestWay(int iterations);
+  bool SoftestWay(Metric metric);
 
   const View* view_ = nullptr;
   const Eigen::VectorXd* y_ = nullptr;
@@ -91,7 +97,8 @@ class OptimalityCheck {
   std::vector<double> size_;  // of each variable, 1 + |y_i|; what follows is in variables over it
   std::vector<double>
       diagonal_;  // what shifts are a share of: the largest in each row of a Hessian
-  std::vector<double> gradient_, residual_, step_, way_, near_;
+  std::vector<double> gradient_, residual_, step_, way_, soft_, near_;
+  std::vector<int> order_;
   std::vector<double> u_, u_near_, off_, jacobian_, norm_, lambda_, weight_;
   std::vector<Side> side_;
   std::vector<std::vector<double>> by_term_, weights_by_term_;

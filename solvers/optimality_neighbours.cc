@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "touchdown/solvers/newton_step.h"
 #include "touchdown/solvers/optimality.h"
@@ -16,47 +17,72 @@ namespace touchdown::solvers {
 namespace {
 
 constexpr double kNearest = 1e-8;  // of the sizes; the cost may have shorter scales than the point
-constexpr double kNeighbour = 1e-2;
 constexpr double kFarthest = 1.0;
 constexpr double kFarthestDown = 100.0;  // where it curves downwards
 constexpr double kOutwards = 10.0;
+constexpr double kOutwardsUp = 100.0;  // where it curves upwards
 constexpr double kClearlyLess = 1e-8;  // share of the cost
 constexpr double kCostRounding = 1e-13;
 constexpr double kClearlyMore = 10.0;  // than what the conditions leave
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 constexpr double kOnRows = 1e-10;
-constexpr int kMostCorrections = 40;    // a row and its opposite go half the way each time
-constexpr int kInverseIterations = 40;  // a shift may be ten times what it need be
+constexpr int kMostCorrections = 40;  // two rows that oppose each other converge by halves
+constexpr int kInverseIterations = 40;
 constexpr int kFewInverseIterations = 5;
 constexpr double kRoundingShift = 1e-12;  // of rows held by their weights
 constexpr double kUpwards = 1e-10;        // curvature, share of what holds rows
-constexpr double kPushes = 1e-6;          // multiplier of a row, share of the slopes
+constexpr double kPushes = 1e-6;          // multiplier of a row, share of slope and curvature
+constexpr int kSoftWays = 2;
+constexpr int kMostAxes = 8;
 
 }  // namespace
 
 /// Rows at a bound are left where they do not push, or held as well: of opposite ones none need
-/// push.
+/// push. Where the Hessian curves upwards its softest way is enough, which near an inflection turns
+/// downwards; where it does not, several ways may be flat.
 void OptimalityCheck::LookAround(Optimality* found) {
   if (shift_ > kFirstShift) {
     way_ = step_;
-    if (Refutes(kNearest, kFarthest, found)) return;
+    if (Refutes({kOutwards, kFarthest}, found)) return;
   }
   for (const double pushes : {kPushes, 0.0}) {
     if (!HoldPushing(pushes)) return;
-    const bool upwards = CurvesUpwards();
-    if (!SoftestWay(upwards ? kFewInverseIterations : kInverseIterations)) return;
-    // Near an inflection it curves upwards on one side.
-    const double nearest = upwards ? kNeighbour : kNearest;
-    const double farthest = upwards                    ? kNeighbour
-                            : shift_ <= kRoundingShift ? kFarthest
-                                                       : kFarthestDown;
-    if (Refutes(nearest, farthest, found)) return;
+    if (CurvesUpwards()) {
+      if (!SoftestWay(Metric::kSizes)) return;
+      if (Refutes({kOutwardsUp, kFarthest}, found)) return;
+    } else if (RefutesSoftWays(found)) {
+      return;
+    }
     if (HoldsAll()) return;
   }
 }
 
+bool OptimalityCheck::RefutesSoftWays(Optimality* found) {
+  Reach reach{kOutwards, kFarthest};
+  std::fill(soft_.begin(), soft_.end(), 0.0);
+  for (int way = 0; way < kSoftWays; ++way) {
+    if (way > 0 && !HoldRows()) return false;
+    if (!SoftestWay(Metric::kDiagonal)) return false;
+    if (shift_ > kRoundingShift) reach.farthest = kFarthestDown;
+    soft_ = way_;
+    if (Refutes(reach, found)) return true;
+  }
+  // Of variables that hardly curve, or not at all.
+  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);
+  const auto axes = std::min<std::size_t>(kMostAxes, order_.size());
+  std::partial_sort(
+      order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(axes), order_.end(),
+      [this](int a, int b) { return std::pair(diagonal_[a], a) < std::pair(diagonal_[b], b); });
+  for (std::size_t i = 0; i < axes; ++i) {
+    std::fill(way_.begin(), way_.end(), 0.0);
+    way_[order_[i]] = 1.0;
+    if (Refutes(reach, found)) return true;
+  }
+  return false;
+}
+
 /// Along way_, on one side of y at least.
-bool OptimalityCheck::Refutes(double nearest, double farthest, Optimality* found) {
+bool OptimalityCheck::Refutes(const Reach& reach, Optimality* found) {
   const double longest = Largest(way_);
   if (!(longest > 0.0) || !std::isfinite(longest)) return false;
   double slope = 0.0;
@@ -64,18 +90,17 @@ bool OptimalityCheck::Refutes(double nearest, double farthest, Optimality* found
     way_[i] /= longest;
     slope += residual_[i] * way_[i];
   }
-  double less = kClearlyLess * std::min(cost_size_, CostValue()) + kCostRounding * std::abs(cost_) +
-                kClearlyMore * left_;
-  for (int r = 0; r < rows_.size(); ++r) less += kOnRows * std::abs(lambda_[r]) * norm_[r];
+  double least_fall = kClearlyLess * std::min(cost_size_, CostValue()) +
+                      kCostRounding * std::abs(cost_) + kClearlyMore * left_;
+  for (int r = 0; r < rows_.size(); ++r) least_fall += kOnRows * std::abs(lambda_[r]) * norm_[r];
   // To come back to the rows.
   WeighRows(Kept::kAtBounds);
   if (!FactorRows()) return false;
   for (const double sign : {1.0, -1.0}) {
     double where = 0.0;
-    double most = Fall(sign, nearest, farthest, less, &where);
-    if (most > less && nearest > kNearest) most = Fall(sign, kNearest, farthest, less, &where);
-    if (most <= less) continue;
-    if (-sign * where * slope < 0.5 * most) {
+    const double fall = Fall(sign, reach, least_fall, &where);
+    if (fall <= least_fall) continue;
+    if (-sign * where * slope < 0.5 * fall) {
       found->saddle = true;
     } else {
       found->step = found->left = found->gain = kUnknown;  // the metric was blind to it
@@ -86,10 +111,9 @@ bool OptimalityCheck::Refutes(double nearest, double farthest, Optimality* found
 }
 
 /// The most that the cost falls outwards along way_ before it rises by `rise`, and where.
-double OptimalityCheck::Fall(double sign, double nearest, double farthest, double rise,
-                             double* where) {
+double OptimalityCheck::Fall(double sign, const Reach& reach, double rise, double* where) {
   double most = 0.0;
-  for (double away = nearest; away <= farthest; away *= kOutwards) {
+  for (double away = kNearest; away <= 1.01 * reach.farthest; away *= reach.outwards) {
     MoveAway(sign * away, way_);
     if (!EvaluateOnRows()) break;
     const double fall = cost_ - at_->full.value;
@@ -110,7 +134,9 @@ bool OptimalityCheck::EvaluateOnRows() {
     double most = 0.0;
     for (int r = 0; r < rows_.size(); ++r) {
       off_[r] = OffRow(r);
-      if (off_[r] != 0.0) most = std::max(most, std::abs(off_[r]) / norm_[r]);
+      if (off_[r] == 0.0) continue;
+      most = std::max(most, std::abs(off_[r]) / norm_[r]);
+      if (weight_[r] == 0.0) return false;  // of a row that is far from y nothing leads back
     }
     if (most <= kOnRows) return true;
     StepOntoRows();
@@ -126,8 +152,8 @@ double OptimalityCheck::OffRow(int row) const {
   return u - (side_[row] == Side::kLower ? rows_.lo(row) : rows_.hi(row));
 }
 
-/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the slopes:
-/// those of side_.
+/// Evaluates the Lagrangian's Hessian with the rows held that push, by this share of the cost's slope
+/// and curvature: those of side_.
 bool OptimalityCheck::HoldPushing(double pushes) {
   const double least = pushes * std::max(Largest(gradient_), curvature_);
   for (int r = 0; r < rows_.size(); ++r) {
@@ -154,13 +180,24 @@ bool OptimalityCheck::CurvesUpwards() {
   return upwards;
 }
 
-/// way_, in which the Hessian that HoldPushing evaluated curves least, measured by the diagonal: by
-/// inverse iteration.
-bool OptimalityCheck::SoftestWay(int iterations) {
+/// way_, in which the Hessian that was evaluated last curves least and which is not soft_, by inverse
+/// iteration: measured by the point's size, or by the diagonal, of which the shift is a share: so a
+/// direction that falls steeply is not shifted above one that rises softly.
+bool OptimalityCheck::SoftestWay(Metric metric) {
   if (!FactorShifted()) return false;
   for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = i % 2 == 0 ? 1.0 : 0.5 + 1.0 / (2.0 + i);
-  for (int i = 0; i < iterations; ++i) {
-    for (std::size_t k = 0; k < way_.size(); ++k) way_[k] *= diagonal_[k];
+  const bool by_diagonal = metric == Metric::kDiagonal;
+  const auto weight = [&](std::size_t i) { return by_diagonal ? diagonal_[i] : 1.0; };
+  for (int i = 0; i < (by_diagonal ? kInverseIterations : kFewInverseIterations); ++i) {
+    double shared = 0.0, own = 0.0;
+    for (std::size_t k = 0; k < way_.size() && by_diagonal; ++k) {
+      shared += weight(k) * way_[k] * soft_[k];
+      own += weight(k) * soft_[k] * soft_[k];
+    }
+    for (std::size_t k = 0; k < way_.size(); ++k) {
+      if (own > 0.0) way_[k] -= shared / own * soft_[k];
+      way_[k] *= weight(k);
+    }
     factor_.Solve(way_.data());
     const double scale = Largest(way_);
     if (!(scale > 0.0) || !std::isfinite(scale)) return false;

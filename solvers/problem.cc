@@ -28,6 +28,7 @@ Problem::Problem(const ProblemShape& shape) : shape_(shape) {
 }
 
 void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
+  if (!term) throw std::invalid_argument("Problem: the term is a null pointer");
   const TermShape& t = term->shape();
   const int longest = std::min(kMaxWindow, shape_.blocks);
   if (t.block_size != shape_.block_size || t.window < 1 || t.window > longest) {
@@ -54,8 +55,9 @@ void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
     const int first = block.first_block[k];
     if (first >= 0 && first + t.window <= shape_.blocks) continue;
     throw std::invalid_argument("Problem: term " + term->info().name + " has a window of blocks " +
-                                std::to_string(first) + " to " + std::to_string(first + t.window - 1) +
-                                ", they must be 0 to " + std::to_string(shape_.blocks - 1));
+                                std::to_string(first) + " to " +
+                                std::to_string(first + t.window - 1) + ", they must be 0 to " +
+                                std::to_string(shape_.blocks - 1));
   }
   half_bandwidth_ = std::max(half_bandwidth_, t.window - 1);
   terms_.push_back({std::move(term), role});
@@ -135,6 +137,8 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
   const TermInput input{x, h, t0_, shape_.free_interval};
   evaluation->value = 0.0;
   evaluation->max_violation = 0.0;
+  evaluation->failed_term = -1;
+  evaluation->failure.clear();
   want.gradient = want.gradient || want.hessian;
   const TermSums sums{evaluation->gradient.data(), evaluation->row_gradient.data(),
                       shape_.blocks * shape_.block_size, &evaluation->hessian};
@@ -145,6 +149,7 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
     if (want.hessian) StartHessian(lagrangian, input, sums, evaluation);
     for (std::size_t i = 0; i < terms_.size(); ++i) {
       const Entry& entry = terms_[i];
+      evaluation->failed_term = static_cast<int>(i);
       const bool held = HeldConstant(entry, *evaluation);
       TermRequest request{.want = want,
                           .role = entry.role,
@@ -159,9 +164,13 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
         return false;
       }
     }
+  } catch (const std::exception& error) {  // cannot be evaluated here: the caller sees a status
+    evaluation->failure = error.what();
+    return false;
   } catch (...) {
-    return false;  // a term that throws cannot be evaluated here: the caller sees a status
+    return false;
   }
+  evaluation->failed_term = -1;
   if (want.gradient || want.residual) evaluation->constant_jacobian_ = evaluation->hold_;
   return !want.gradient || IsFinite(evaluation->gradient.data(), evaluation->gradient.size());
 }

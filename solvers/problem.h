@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "touchdown/solvers/bordered_band_matrix.h"
@@ -29,6 +30,8 @@ struct Lagrangian {
 /// Result storage of one evaluation; one per thread. Sized by Problem::Resize.
 struct Evaluation {
   bool ok = false;                   ///< false: a value or a slope is not finite, or a term threw
+  int failed_term = -1;              ///< which one; -1: none, or the gradient of the sum
+  std::string failure;               ///< what it threw
   double value = 0.0;                ///< sum of the cost terms
   double max_violation = 0.0;        ///< worst violation of a constraint row or a bound
   std::vector<double> gradient;      ///< of the objective: blocks x d, then h if free

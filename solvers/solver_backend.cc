@@ -10,13 +10,14 @@
 #include <stdexcept>
 
 #include "touchdown/solvers/constraint_rows.h"
+#include "touchdown/solvers/newton_step.h"
 #include "touchdown/solvers/thread_clock.h"
 
 namespace touchdown::solvers {
 
 namespace {
 
-/// A cost that has fallen by so many times its first value and its first slope has no end.
+/// A cost that has fallen by so many times its first value, slope and curvature has no end.
 constexpr double kEndless = 1e12;
 constexpr std::size_t kLongestMessage = 100;  // of backends of our own
 
@@ -68,8 +69,10 @@ void ForEachStructureNumber(const View& view, Visit&& visit) {
   for (const int block : view.lift().block) visit(block);
   for (const double coefficient : view.lift().coefficient) visit(coefficient);
   for (int i = 0; view.bounded() && i < view.num_variables(); ++i) {
-    visit(view.lower(i));
-    visit(view.upper(i));
+    // Their values may be others in each solve.
+    visit(std::isfinite(view.lower(i)));
+    visit(std::isfinite(view.upper(i)));
+    visit(view.lower(i) == view.upper(i));
   }
   visit(problem.num_terms());
   for (int i = 0; i < problem.num_terms(); ++i) {
@@ -119,12 +122,24 @@ void SolverBackend::Reserve(const View& view, SolverResult* result) {
   result->message.reserve(kLongestMessage);
 }
 
+namespace {
+
+std::string WhatFailed(const Problem& problem, const Evaluation& at) {
+  const std::string term =
+      at.failed_term >= 0 ? "term " + problem.term(at.failed_term).info().name : "the gradient";
+  return at.failure.empty() ? term + " is not finite" : term + ": " + at.failure;
+}
+
+}  // namespace
+
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,
                           SolverResult* result) {
   const int n = view.num_variables();
   if (!Matches(view, prepared_)) {
-    throw std::invalid_argument("backend " + name_ +
-                                ": this view does not have the structure it was prepared for");
+    throw std::invalid_argument(
+        "backend " + name_ +
+        ": this view does not have the structure it was prepared for: sizes, "
+        "terms, their rows' bounds, and which variables have bounds");
   }
   if (warm.y.size() != n || !warm.y.allFinite()) {
     throw std::invalid_argument("backend " + name_ + ": the warm start has " +
@@ -164,6 +179,9 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     result->status = evaluator_.stop_status();
   }
   if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
+  if (result->status == SolveStatus::kEvaluationFailed) {
+    result->message = WhatFailed(view.problem(), evaluator_.last().full);
+  }
 
   result->optimality = {};
   if (n > 0 && stop.confirm) Judge(view, warm.y, result);
@@ -223,12 +241,14 @@ bool SolverBackend::FellWithoutEnd(const View& view, const Eigen::VectorXd& star
       evaluator_.has_best() && evaluator_.best_violation() <= Evaluator::kFeasible;
   if (!feasible || !(fallen > kEndless * std::abs(evaluator_.first_cost()))) return false;
   ViewEvaluation* at = evaluator_.mutable_last();
-  if (!view.Evaluate(start.data(), {.gradient = true}, {}, at)) return false;
-  double slope = 0.0;
+  if (!view.Evaluate(start.data(), {.gradient = true, .hessian = true}, {}, at)) return false;
+  double slope = 0.0, size = 1.0;
   for (Eigen::Index i = 0; i < start.size(); ++i) {
     slope = std::max(slope, (1.0 + std::abs(start[i])) * std::abs(at->gradient[i]));
+    size = std::max(size, 1.0 + std::abs(start[i]));
   }
-  return fallen > kEndless * (std::abs(at->full.value) + slope);
+  const double could = std::abs(at->full.value) + slope + size * size * LargestElement(at->hessian);
+  return could > 0.0 && fallen > kEndless * could;
 }
 
 const char* ToString(SolveStatus status) {

@@ -66,11 +66,11 @@ class SolverBackend {
   virtual void DoSolve(const View& view, const WarmStart& warm, const Stop& stop,
                        Evaluator* evaluator, SolverResult* result) = 0;
 
-  std::string name_;
-  SolverOptions options_;
   void Judge(const View& view, const Eigen::VectorXd& start, SolverResult* result);
   bool FellWithoutEnd(const View& view, const Eigen::VectorXd& start);
 
+  std::string name_;
+  SolverOptions options_;
   Evaluator evaluator_;
   OptimalityCheck check_;
   WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the bounds

@@ -334,8 +334,8 @@ TEST(BandedSolver, DoesNotAllocateInASolve) {
 TEST(BandedSolver, AFarStepWhereHardlyAnythingCurvesIsShortened) {
   // Beyond a hair's width of its kink the cost is a line.
   Problem kink({.blocks = 1, .block_size = 2});
-  kink.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "kink"}, FunctionShape{.block_size = 2},
-                                              LinearLoss(1.0),
+  kink.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "kink"},
+                                              FunctionShape{.block_size = 2}, LinearLoss(1.0),
                                               [](const auto* x, auto* u) {
                                                 using std::sqrt;
                                                 u[0] = sqrt(x[0] * x[0] + 1e-12) + x[1] * x[1];
@@ -348,6 +348,21 @@ TEST(BandedSolver, AFarStepWhereHardlyAnythingCurvesIsShortened) {
   solver->Solve(view, WarmStart(Eigen::Vector2d(1.0, 0.5)), {}, &result);
   EXPECT_EQ(result.status, SolveStatus::kConverged);
   EXPECT_NEAR(result.cost, 1e-6, 1e-9);
+}
+
+TEST(BandedSolver, ACostThatFallsWithoutEndIsUnbounded) {
+  const auto status = [](auto cost) {
+    Problem problem({.blocks = 1, .block_size = 2});
+    problem.AddTerm(
+        std::make_shared<FunctionTerm>(TermInfo{.name = "cost"}, FunctionShape{.block_size = 2},
+                                       LinearLoss(1.0), cost),
+        Role::kCost);
+    return Solve(problem, Eigen::Vector2d(1.0, 1.0)).status;
+  };
+  EXPECT_EQ(status([](const auto* x, auto* u) { u[0] = x[0] + 2.0 * x[1]; }),
+            SolveStatus::kUnbounded);
+  EXPECT_EQ(status([](const auto* x, auto* u) { u[0] = x[0] + x[1] * x[1]; }),
+            SolveStatus::kUnbounded);
 }
 
 }  // namespace

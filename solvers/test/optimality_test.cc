@@ -121,6 +121,59 @@ TEST(Optimality, NeitherAConstantNorAWideUnitHidesASaddle) {
   }
 }
 
+TEST(Optimality, NearAnInflectionItCurvesUpwardsOnOneSide) {
+  const ReferenceProblem p =
+      SmallProblem("inflection", {1.0, 1.0}, 0.0, EqualityForm::kRows)
+          .Cost([](const auto* x, auto* u) { u[0] = x[0] * x[0] * x[0] + x[1] * x[1]; });
+  for (const double away : {0.0, 1e-9, 1e-7, 1e-5, 3e-4})
+    EXPECT_TRUE(LookAt(p, {away, 0.0}).saddle);
+}
+
+TEST(Optimality, OfSeveralFlatWaysOneMayGoDown) {
+  const ReferenceProblem quartic = SmallProblem("quartic", {1.0, 0.0}, 0.0, EqualityForm::kRows)
+                                       .Cost([](const auto* x, auto* u) {
+                                         const auto a = x[0] * x[0], b = x[1] * x[1];
+                                         u[0] = a * a - b * b + b * b * b;
+                                       });
+  EXPECT_TRUE(LookAt(quartic, {0.0, 0.0}).saddle);
+  const ReferenceProblem cross =
+      SmallProblem("cross", {0.5, 0.5}, 0.0, EqualityForm::kRows).Cost([](const auto* x, auto* u) {
+        const auto a = x[0] * x[0], b = x[1] * x[1];
+        u[0] = 6.0 * a * b - a * a - b * b + a * a * a + b * b * b;
+      });
+  EXPECT_TRUE(LookAt(cross, {0.0, 0.0}).saddle);
+  // Two curved pairs: the one that curves more is kept by its bounds.
+  const ReferenceProblem pairs =
+      SmallProblem("pairs", {1.0, 1.0, 0.0, 0.0}, -0.125, EqualityForm::kRows)
+          .Cost([](const auto* x, auto* u) {
+            const auto c = x[2] * x[2], d = x[3] * x[3];
+            u[0] = 0.5 * (x[0] * x[0] + x[1] * x[1]) + 10.0 * x[0] * x[1] + 0.5 * (c + d) -
+                   2.0 * x[2] * x[3] + c * c + d * d;
+          })
+          .BoundAll(0.0, SmallProblem::kInfinity);
+  EXPECT_TRUE(LookAt(pairs, {0.0, 0.0, 0.0, 0.0}).saddle);
+}
+
+TEST(Optimality, AnInflectionIsNoMinimum) {
+  const ReferenceProblem cubic = SmallProblem("cubic", {-1.0, 0.3}, 0.0, EqualityForm::kRows)
+                                     .Squares(2, [](const auto* x, auto* u) {
+                                       u[0] = x[0] * x[0] * x[0] - 8.0;
+                                       u[1] = x[1] - 1.0;
+                                     });
+  EXPECT_FALSE(LookAt(cubic, {0.0, 1.0}).stationary() && !LookAt(cubic, {0.0, 1.0}).saddle);
+  const Optimality before = LookAt(cubic, {-0.0042, 1.0});
+  EXPECT_FALSE(before.stationary() && !before.saddle);
+  for (const double scale : {1.0, 1e3}) {
+    const ReferenceProblem p = SmallProblem("shelf", {-1.0}, -1.0 / 12.0, EqualityForm::kRows)
+                                   .Cost([=](const auto* x, auto* u) {
+                                     const auto t = scale * x[0];
+                                     u[0] = t * t * t * t * 0.25 - t * t * t / 3.0;
+                                   });
+    EXPECT_TRUE(LookAt(p, {0.0}).saddle) << scale;
+    EXPECT_FALSE(LookAt(p, {1.0 / scale}).saddle) << scale;
+  }
+}
+
 TEST(Optimality, AStiffDirectionDoesNotHideASaddle) {
   for (const double stiff : {1e6, 1e9, 1e12}) {
     const ReferenceProblem p = SmallProblem("stiff", {1.5, 0.1}, -0.0625, EqualityForm::kRows)
@@ -406,6 +459,18 @@ TEST_P(ClaimsOfEveryBackend, NeitherUnboundedNorInfeasibleHasAUnit) {
   }
 }
 
+TEST_P(ClaimsOfEveryBackend, AStartWhereNothingSlopesTellsNothingOfUnbounded) {
+  const ReferenceProblem product =
+      SmallProblem("product", {0.0, 0.0, 0.0}, -std::pow(3.0, -1.5), EqualityForm::kRows)
+          .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
+          .AtLeastZero(1,
+                       [](const auto* x, auto* u) {
+                         u[0] = 1e-6 * (1.0 - x[0] * x[0] - x[1] * x[1] - x[2] * x[2]);
+                       })
+          .BoundAll(0.0, SmallProblem::kInfinity);
+  EXPECT_NE(SolveReference(product).status, SolveStatus::kUnbounded);
+}
+
 TEST_P(ClaimsOfEveryBackend, AStartThatIsFeasibleInTheRowsUnitIsNotTheBestPoint) {
   // x = 0 violates the row by its unit alone, and costs nothing.
   for (const double unit : {1.0, 1e-6}) {
@@ -458,6 +523,21 @@ TEST_P(ClaimsOfEveryBackend, AnInfiniteSlopeIsAStatus) {
                                       u[0] = 1.0 - sqrt(x[0]);
                                     });
   EXPECT_FALSE(SolveReference(root).status == SolveStatus::kConverged);
+}
+
+TEST_P(ClaimsOfEveryBackend, WhatFailedIsNamed) {
+  for (const bool throws : {true, false}) {
+    const ReferenceProblem sensor = SmallProblem("sensor", {-1.0}, 0.0, EqualityForm::kRows)
+                                        .Squares(1, [=](const auto* x, auto* u) {
+                                          using std::sqrt;
+                                          if (throws) throw std::range_error("out of its range");
+                                          u[0] = sqrt(x[0]);
+                                        });
+    const SolverResult result = SolveReference(sensor);
+    EXPECT_EQ(result.status, SolveStatus::kEvaluationFailed);
+    EXPECT_EQ(result.message,
+              throws ? "term squares: out of its range" : "term squares is not finite");
+  }
 }
 
 TEST_P(ClaimsOfEveryBackend, ARedundantRowIsNotInfeasible) {

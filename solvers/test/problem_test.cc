@@ -15,6 +15,7 @@ TEST(Problem, RefusesTermsThatDoNotFit) {
   const auto wavy = std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
       TermInfo{"wavy", "", "", "", false}, WavyMap(1), SquareLoss(1.0), 1);
   EXPECT_THROW(problem.AddTerm(wavy, Role::kCost), std::invalid_argument);
+  EXPECT_THROW(problem.AddTerm(nullptr, Role::kCost), std::invalid_argument);
   EXPECT_THROW(Problem({.blocks = 0}), std::invalid_argument);
   Problem scalars({.blocks = 9, .block_size = 1});
   const auto sum = [](const auto* x, auto* u) { u[0] = x[0] + x[6]; };

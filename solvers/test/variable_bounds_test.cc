@@ -82,14 +82,13 @@ TEST_P(BoundsOfEveryBackend, HoldWhereTheCostPushes) {
 }
 
 TEST_P(BoundsOfEveryBackend, NothingIsEvaluatedBeyondThem) {
-  const ReferenceProblem p =
-      SmallProblem("logarithm", {9.0, -3.0}, 0.0, EqualityForm::kRows)
-          .Cost([](const auto* x, auto* u) {
-            using std::log;
-            u[0] = x[0] - 0.1 * log(x[0]) + x[1] * x[1];
-          })
-          .Bound(0, 1e-9, 10.0)
-          .Bound(1, 1.0, 1.0 + 1e-3);
+  const ReferenceProblem p = SmallProblem("logarithm", {9.0, -3.0}, 0.0, EqualityForm::kRows)
+                                 .Cost([](const auto* x, auto* u) {
+                                   using std::log;
+                                   u[0] = x[0] - 0.1 * log(x[0]) + x[1] * x[1];
+                                 })
+                                 .Bound(0, 1e-9, 10.0)
+                                 .Bound(1, 1.0, 1.0 + 1e-3);
   SolverResult result;
   Stop stop;
   stop.callback = [](const StopQuery& query) {
@@ -128,6 +127,35 @@ TEST_P(BoundsOfEveryBackend, AHillIsLeftFromEverywhere) {
     EXPECT_EQ(result.status, SolveStatus::kConverged) << start << " " << ToString(result.status);
     EXPECT_LE(std::min(std::abs(result.cost + 4.0), std::abs(result.cost + 1.0)), 1e-6) << start;
   }
+}
+
+TEST_P(BoundsOfEveryBackend, MayHaveOtherValuesInTheNextSolve) {
+  Problem problem({.blocks = 1, .block_size = 3});
+  problem.AddTerm(
+      std::make_shared<FunctionTerm>(TermInfo{.name = "square"},
+                                     FunctionShape{.block_size = 3, .outputs = 3}, SquareLoss(2.0),
+                                     [](const auto* x, auto* u) {
+                                       for (int i = 0; i < 3; ++i) u[i] = x[i];
+                                     }),
+      Role::kCost);
+  const auto backend = Make();
+  if (!backend->capabilities().variable_bounds) return;
+  for (const double at : {1.0, 2.0, 3.0}) {
+    problem.SetBounds({at, at, -kInfinity}, {at, kInfinity, -at});
+    const View view(problem);
+    if (at == 1.0) backend->Prepare(view);
+    SolverResult result;
+    backend->Solve(view, WarmStart(Eigen::Vector3d(7.0, 7.0, -7.0)), {.max_iterations = 300},
+                   &result);
+    EXPECT_TRUE(result.usable()) << at;
+    EXPECT_NEAR(result.cost, 3.0 * at * at, 1e-5 * at * at) << at;
+  }
+  problem.SetBounds({1.0, -kInfinity, -kInfinity}, {1.0, kInfinity, -1.0});
+  SolverResult result;
+  EXPECT_THROW(
+      backend->Solve(View(problem), WarmStart(Eigen::Vector3d(1.0, 1.0, -1.0)), {}, &result),
+      std::invalid_argument)
+      << "a variable has lost its bound";
 }
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BoundsOfEveryBackend);
