@@ -71,7 +71,7 @@ class OptimalityCheck {
   double CostValue() const;
   // optimality_neighbours.cc
   void LookAround(Optimality* found);
-  bool RefutesSoftWays(Optimality* found);
+  bool RefuteSoftWays(Optimality* found);
   bool Refutes(const Reach& reach, Optimality* found);
   double Fall(double sign, const Reach& reach, double rise, double* where);
   bool EvaluateOnRows();

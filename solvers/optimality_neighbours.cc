@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "touchdown/solvers/newton_step.h"
@@ -33,47 +34,42 @@ constexpr double kRoundingShift = 1e-12;  // of rows held by their weights
 constexpr double kUpwards = 1e-10;        // curvature, share of what holds rows
 constexpr double kPushes = 1e-6;          // multiplier of a row, share of slope and curvature
 constexpr int kSoftWays = 2;
-constexpr int kMostAxes = 8;
+constexpr std::size_t kMostAxes = 8;
 
 }  // namespace
 
 /// Rows at a bound are left where they do not push, or held as well: of opposite ones none need
-/// push. Where the Hessian curves upwards its softest way is enough, which near an inflection turns
-/// downwards; where it does not, several ways may be flat.
+/// push.
 void OptimalityCheck::LookAround(Optimality* found) {
   if (shift_ > kFirstShift) {
     way_ = step_;
     if (Refutes({kOutwards, kFarthest}, found)) return;
   }
   for (const double pushes : {kPushes, 0.0}) {
-    if (!HoldPushing(pushes)) return;
-    if (CurvesUpwards()) {
-      if (!SoftestWay(Metric::kSizes)) return;
-      if (Refutes({kOutwardsUp, kFarthest}, found)) return;
-    } else if (RefutesSoftWays(found)) {
-      return;
-    }
-    if (HoldsAll()) return;
+    if (!HoldPushing(pushes) || RefuteSoftWays(found) || HoldsAll()) return;
   }
 }
 
-bool OptimalityCheck::RefutesSoftWays(Optimality* found) {
-  Reach reach{kOutwards, kFarthest};
+/// Along the softest ways, and the axes of variables that hardly curve. Where the Hessian curves
+/// upwards only an inflection can turn downwards; there axes are for few variables.
+bool OptimalityCheck::RefuteSoftWays(Optimality* found) {
+  const bool upwards = CurvesUpwards();
+  Reach reach{upwards ? kOutwardsUp : kOutwards, kFarthest};
   std::fill(soft_.begin(), soft_.end(), 0.0);
   for (int way = 0; way < kSoftWays; ++way) {
     if (way > 0 && !HoldRows()) return false;
-    if (!SoftestWay(Metric::kDiagonal)) return false;
-    if (shift_ > kRoundingShift) reach.farthest = kFarthestDown;
+    if (!SoftestWay(upwards ? Metric::kSizes : Metric::kDiagonal)) return false;
+    if (!upwards && shift_ > kRoundingShift) reach.farthest = kFarthestDown;
     soft_ = way_;
     if (Refutes(reach, found)) return true;
   }
-  // Of variables that hardly curve, or not at all.
-  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);
-  const auto axes = std::min<std::size_t>(kMostAxes, order_.size());
-  std::partial_sort(
-      order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(axes), order_.end(),
-      [this](int a, int b) { return std::pair(diagonal_[a], a) < std::pair(diagonal_[b], b); });
-  for (std::size_t i = 0; i < axes; ++i) {
+  if (upwards && order_.size() > kMostAxes) return false;
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto axes = static_cast<std::ptrdiff_t>(std::min(kMostAxes, order_.size()));
+  std::partial_sort(order_.begin(), order_.begin() + axes, order_.end(), [this](int a, int b) {
+    return std::pair(diagonal_[a], a) < std::pair(diagonal_[b], b);
+  });
+  for (std::ptrdiff_t i = 0; i < axes; ++i) {
     std::fill(way_.begin(), way_.end(), 0.0);
     way_[order_[i]] = 1.0;
     if (Refutes(reach, found)) return true;
@@ -190,7 +186,7 @@ bool OptimalityCheck::SoftestWay(Metric metric) {
   const auto weight = [&](std::size_t i) { return by_diagonal ? diagonal_[i] : 1.0; };
   for (int i = 0; i < (by_diagonal ? kInverseIterations : kFewInverseIterations); ++i) {
     double shared = 0.0, own = 0.0;
-    for (std::size_t k = 0; k < way_.size() && by_diagonal; ++k) {
+    for (std::size_t k = 0; k < way_.size(); ++k) {
       shared += weight(k) * way_[k] * soft_[k];
       own += weight(k) * soft_[k] * soft_[k];
     }
