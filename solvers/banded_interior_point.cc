@@ -191,10 +191,13 @@ SolveStatus BandedInteriorPoint::Attempts(const View& view, const double* start,
   invariant_ = tolerances.invariant;
   SolveStatus status = Attempt(view, {}, multipliers, tolerances, evaluator);
   // Rows that cannot be met, or too bent a problem: the least costly violation instead, first by
-  // the fast steps, then by the careful ones, each at a price and at a much higher one.
+  // the fast steps, then by the careful ones, each at a price and at a much higher one. They go on
+  // from where the last ones stalled: the best point may be a feasible start, far from anything.
   const std::vector<std::vector<double>> none;
   const auto once_more = [&](const Mode& mode, const auto& known) {
-    std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
+    if (!mode.elastic) {
+      std::copy(evaluator->best().data(), evaluator->best().data() + y_.size(), y_.begin());
+    }
     status = Attempt(view, mode, known, tolerances, evaluator);
   };
   const auto failed = [&status] { return status == SolveStatus::kNumericalFailure; };

@@ -15,6 +15,7 @@
 #include "touchdown/solvers/backend_registry.h"
 #include "touchdown/solvers/banded_solver.h"
 #include "touchdown/solvers/function_term.h"
+#include "touchdown/solvers/solve.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -317,6 +318,56 @@ TEST(BandedEqualities, ASwingThatTheTorqueDoesNotAllowIsInfeasible) {
   const SolverResult result = SolveFrom(weak, start);
   EXPECT_EQ(result.status, SolveStatus::kInfeasible);
   EXPECT_NE(result.message, "");
+}
+
+TEST(BandedEqualities, AUnicycleThatStandsGoesRoundAPillar) {
+  // Blocks of x, y, heading, speed, turn rate; the start stands still throughout.
+  constexpr int kSteps = 31, kSize = 5;
+  constexpr double kStep = 0.2;
+  const double at[] = {0.286, 0.349, 0.345};
+  Problem problem({.blocks = kSteps, .block_size = kSize});
+  const auto add = [&](const char* name, FunctionShape shape, FunctionTerm::Loss loss, Role role,
+                       auto function) {
+    shape.block_size = kSize;
+    problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = name}, shape, loss, function),
+                    role);
+  };
+  add("dynamics", {.window = 2, .outputs = 3, .windows = kSteps - 1}, SquareLoss(1.0),
+      Role::kConstraint, [=](const auto* q, auto* u) {
+        using std::cos, std::sin;
+        const auto* next = q + kSize;
+        u[0] = next[0] - q[0] - kStep * q[3] * cos(q[2]);
+        u[1] = next[1] - q[1] - kStep * q[3] * sin(q[2]);
+        u[2] = next[2] - q[2] - kStep * q[4];
+      });
+  add("stage", {.outputs = 4, .windows = kSteps}, SquareLoss(2.0), Role::kCost,
+      [](const auto* q, auto* u) {
+        u[0] = 0.3 * (q[0] - 4.0);
+        u[1] = 0.3 * q[1];
+        u[2] = 0.2 * q[3];
+        u[3] = 0.4 * q[4];
+      });
+  add("end", {.outputs = 3, .first = kSteps - 1}, SquareLoss(2.0), Role::kCost,
+      [](const auto* q, auto* u) {
+        u[0] = 3.0 * (q[0] - 4.0);
+        u[1] = 3.0 * q[1];
+        u[2] = q[2];
+      });
+  add("pillar", {.first = 1, .windows = kSteps - 1}, RangeLoss({0.36, INFINITY}, 1.0, 1.0),
+      Role::kConstraint, [](const auto* q, auto* u) {
+        u[0] = (q[0] - 2.0) * (q[0] - 2.0) + (q[1] - 0.116) * (q[1] - 0.116);
+      });
+  std::vector<double> lower(kSteps * kSize, -INFINITY), upper(kSteps * kSize, INFINITY);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(kSteps * kSize);
+  for (int k = 0; k < kSteps; ++k) {
+    lower[kSize * k + 3] = -0.2, upper[kSize * k + 3] = 1.0;
+    lower[kSize * k + 4] = -1.0, upper[kSize * k + 4] = 1.0;
+    for (int i = 0; i < 3; ++i) start[kSize * k + i] = at[i];
+  }
+  for (int i = 0; i < 3; ++i) lower[i] = upper[i] = at[i];
+  problem.SetBounds(lower, upper);
+  const SolverResult result = Solve(problem, start, "banded", {.max_iterations = 500});
+  EXPECT_EQ(result.status, SolveStatus::kConverged) << result.message;
 }
 
 }  // namespace
