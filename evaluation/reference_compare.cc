@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -132,6 +133,15 @@ Total TotalOf(const ReferenceResult& result, const std::string& backend) {
   return total;
 }
 
+/// Of how many problems, by their reasons.
+std::map<std::string, int> Refusals(const ReferenceResult& result) {
+  std::map<std::string, int> problems;
+  for (const ReferenceCell& cell : result.cells) {
+    if (!cell.refusal.empty()) ++problems[cell.refusal];
+  }
+  return problems;
+}
+
 std::string Milliseconds(std::optional<double> ms) { return ms ? fmt::format("{:.3g}", *ms) : "-"; }
 
 }  // namespace
@@ -203,6 +213,9 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
                         fmt::format("{} of {}", total.right, total.solves()), total.best,
                         total.elsewhere, total.unclaimed, total.refused, Milliseconds(ms.median),
                         Milliseconds(ms.p95), Milliseconds(ms.max));
+  }
+  for (const auto& [reason, problems] : Refusals(result)) {
+    text += fmt::format("  refused, {} problems: {}\n", problems, reason);
   }
   text += fmt::format("\nRight, of {} starts; ! {}; - refused\n  {:<22}", options.starts,
                       result.published ? "false claims" : "claims elsewhere", "");

@@ -29,6 +29,8 @@ TEST(ReferenceCompare, BandedIsRightOnEveryShootingProblem) {
   const std::string text = ReferenceText(options, result);
   EXPECT_NE(text.find("10 of 10"), std::string::npos) << text;
   EXPECT_NE(text.find("mass_chain_100"), std::string::npos) << text;
+  EXPECT_NE(text.find("refused, 10 problems: backend lbfgs takes no bounds"), std::string::npos)
+      << text;
 }
 
 TEST(ReferenceCompare, StartsRepeatAndEveryOneIsCounted) {
