@@ -46,7 +46,7 @@ constexpr double kShortestStep = 1e-8;
 /// So many steps in a row that hardly move: this mode leads nowhere.
 constexpr int kMostStalls = 3;
 constexpr double kStall = 1e-2;
-constexpr int kMostFastSteps = 30;  // they converge in 5 to 15 where they do
+constexpr int kMostFastSteps = 20;  // they converge in 5 to 15 where they do
 constexpr int kMostCarefulSteps = 200;
 constexpr double kRounding = 1e-8;
 constexpr double kLeastTarget = 0.1;  // of the gap asked for
