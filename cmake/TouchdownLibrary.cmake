@@ -24,7 +24,8 @@ function(touchdown_compile_options target)
   # bounds.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13
      AND "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE}" MATCHES "-march=native")
-    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized -Wno-array-bounds)
+    target_compile_options(${target} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized
+                                             -Wno-array-bounds)
   endif()
   if(TOUCHDOWN_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
