@@ -72,6 +72,7 @@ class OptimalityCheck {
   // optimality_neighbours.cc
   void LookAround(Optimality* found);
   bool RefuteSoftWays(Optimality* found);
+  bool FactorRowsAtBounds();
   bool Refutes(const Reach& reach, Optimality* found);
   double Fall(double sign, const Reach& reach, double rise, double* where);
   bool EvaluateOnRows();

@@ -43,7 +43,7 @@ constexpr std::size_t kMostAxes = 8;
 void OptimalityCheck::LookAround(Optimality* found) {
   if (shift_ > kFirstShift) {
     way_ = step_;
-    if (Refutes({kOutwards, kFarthest}, found)) return;
+    if (FactorRowsAtBounds() && Refutes({kOutwards, kFarthest}, found)) return;
   }
   for (const double pushes : {kPushes, 0.0}) {
     if (!HoldPushing(pushes) || RefuteSoftWays(found) || HoldsAll()) return;
@@ -61,6 +61,7 @@ bool OptimalityCheck::RefuteSoftWays(Optimality* found) {
     if (!SoftestWay(upwards ? Metric::kSizes : Metric::kDiagonal)) return false;
     if (!upwards && shift_ > kRoundingShift) reach.farthest = kFarthestDown;
     soft_ = way_;
+    if (!FactorRowsAtBounds()) return false;
     if (Refutes(reach, found)) return true;
   }
   if (upwards && order_.size() > kMostAxes) return false;
@@ -77,7 +78,13 @@ bool OptimalityCheck::RefuteSoftWays(Optimality* found) {
   return false;
 }
 
-/// Along way_, on one side of y at least.
+/// For EvaluateOnRows, which comes back to them. Where there are none nothing needs to.
+bool OptimalityCheck::FactorRowsAtBounds() {
+  WeighRows(Kept::kAtBounds);
+  return rows_.size() == 0 || FactorRows();
+}
+
+/// Along way_, on one side of y at least, by what FactorRowsAtBounds factored.
 bool OptimalityCheck::Refutes(const Reach& reach, Optimality* found) {
   const double longest = Largest(way_);
   if (!(longest > 0.0) || !std::isfinite(longest)) return false;
@@ -89,9 +96,6 @@ bool OptimalityCheck::Refutes(const Reach& reach, Optimality* found) {
   double least_fall = kClearlyLess * std::min(cost_size_, CostValue()) +
                       kCostRounding * std::abs(cost_) + kClearlyMore * left_;
   for (int r = 0; r < rows_.size(); ++r) least_fall += kOnRows * std::abs(lambda_[r]) * norm_[r];
-  // To come back to the rows.
-  WeighRows(Kept::kAtBounds);
-  if (!FactorRows()) return false;
   for (const double sign : {1.0, -1.0}) {
     double where = 0.0;
     const double fall = Fall(sign, reach, least_fall, &where);
