@@ -9,10 +9,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 namespace touchdown::solvers {
+
+namespace {
+
+/// The first block of a window that is not inside `blocks`.
+std::optional<int> StrayWindow(const TermBlock& block, int window, int blocks) {
+  for (int k = 0; k < block.windows; ++k) {
+    const int first = block.first_block[k];
+    if (first < 0 || first + window > blocks) return first;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 Problem::Problem(const ProblemShape& shape) : shape_(shape) {
   if (shape.blocks < 1 || shape.block_size < 1) {
@@ -51,12 +65,10 @@ void Problem::AddTerm(std::shared_ptr<const Term> term, Role role) {
   TermBlock block;
   block.Resize(t);
   term->Place(&block);
-  for (int k = 0; k < block.windows; ++k) {
-    const int first = block.first_block[k];
-    if (first >= 0 && first + t.window <= shape_.blocks) continue;
+  if (const std::optional<int> first = StrayWindow(block, t.window, shape_.blocks)) {
     throw std::invalid_argument("Problem: term " + term->info().name + " has a window of blocks " +
-                                std::to_string(first) + " to " +
-                                std::to_string(first + t.window - 1) + ", they must be 0 to " +
+                                std::to_string(*first) + " to " +
+                                std::to_string(*first + t.window - 1) + ", they must be 0 to " +
                                 std::to_string(shape_.blocks - 1));
   }
   half_bandwidth_ = std::max(half_bandwidth_, t.window - 1);
@@ -180,10 +192,7 @@ bool Problem::Place(Evaluation* evaluation) const {
   for (std::size_t i = 0; i < terms_.size(); ++i) {
     TermBlock& block = evaluation->terms[i];
     terms_[i].term->Place(&block);
-    for (int k = 0; k < block.windows; ++k) {
-      const int first = block.first_block[k];
-      if (first < 0 || first + terms_[i].term->shape().window > shape_.blocks) return false;
-    }
+    if (StrayWindow(block, terms_[i].term->shape().window, shape_.blocks)) return false;
   }
   evaluation->placed_ = evaluation->hold_;
   return true;
