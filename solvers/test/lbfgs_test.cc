@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "touchdown/solvers/allocation_count.h"
-#include "touchdown/solvers/solvers.h"
+#include "touchdown/solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -245,15 +245,8 @@ TEST(MoreThuente, MeetsBothConditions) {
 }
 
 TEST(LbfgsSolver, AClaimOfTheLastIterationAllowedIsLookedAt) {
-  Problem problem({.blocks = 2, .block_size = 1});
-  problem.AddTerm(
-      std::make_shared<FunctionTerm>(TermInfo{.name = "valley"},
-                                     FunctionShape{.window = 2, .outputs = 2}, SquareLoss(2.0),
-                                     [](const auto* x, auto* u) {
-                                       u[0] = 10.0 * (x[1] - x[0] * x[0]);
-                                       u[1] = 1.0 - x[0];
-                                     }),
-      Role::kCost);
+  Problem problem = Scalars(2);
+  problem.AddTerm(solvers::Rosenbrock(), Role::kCost);
   const View view(problem);
   const auto solver = MakeBackend(StandardBackends(), "lbfgs");
   solver->Prepare(view);
