@@ -30,6 +30,20 @@ std::string CpuInfo(const std::string& field) {
   return "unknown";
 }
 
+/// That the compiler was allowed to use; preset `native` takes the widest that the CPU has.
+constexpr const char* kInstructionSet =
+#if defined(__AVX512F__)
+    "AVX-512";
+#elif defined(__AVX2__)
+    "AVX2";
+#elif defined(__AVX__)
+    "AVX";
+#elif defined(__x86_64__)
+    "x86-64";
+#else
+    "another architecture";
+#endif
+
 std::string Kernel() {
   utsname name{};
   return uname(&name) == 0 ? fmt::format("{} {} {}", name.sysname, name.release, name.machine)
@@ -53,6 +67,11 @@ std::string HashOf(const std::string& bytes) {
   return to_string(boost::uuids::name_generator_sha1(boost::uuids::ns::x500dn())(bytes));
 }
 
+std::string BuildLine() {
+  return fmt::format("version {} ({}), {} for {}, {}", TOUCHDOWN_VERSION, TOUCHDOWN_REVISION,
+                     TOUCHDOWN_BUILD_TYPE, kInstructionSet, CpuInfo("model name"));
+}
+
 std::string BuildHash() {
   const Pairs facts = BuildManifest();
   return std::find_if(facts.begin(), facts.end(),
@@ -67,6 +86,7 @@ Pairs BuildManifest() {
       {"build_type", TOUCHDOWN_BUILD_TYPE},
       {"compiler", __VERSION__},
       {"compiler_flags", TOUCHDOWN_CXX_FLAGS},
+      {"instruction_set", kInstructionSet},
       {"eigen",
        fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"ceres", TOUCHDOWN_CERES_VERSION},

@@ -15,6 +15,9 @@ std::vector<std::pair<std::string, std::string>> BuildManifest();
 /// The `build_hash` alone.
 std::string BuildHash();
 
+/// Of build and CPU in a line, for figures of time: "version 0.1.0 (3b4db16), Release for AVX-512, AMD EPYC".
+std::string BuildLine();
+
 /// SHA-1 of any bytes, in the shape of a version 5 UUID.
 std::string HashOf(const std::string& bytes);
 

@@ -136,10 +136,10 @@ std::string Difference(const Manifest& there, const Manifest& here) {
     if (words.empty()) words = "its trials are others, or a file that they name has changed";
   }
   if (words.empty() && Fact(there, "build_hash") != Fact(here, "build_hash")) {
-    words =
-        FirstOther(there, here,
-                   {"touchdown_version", "revision", "build_type", "compiler", "compiler_flags",
-                    "eigen", "ceres", "nlopt", "ipopt", "mujoco", "sqlite", "cpu", "cpu_flags"});
+    words = FirstOther(there, here,
+                       {"touchdown_version", "revision", "build_type", "compiler", "compiler_flags",
+                        "instruction_set", "eigen", "ceres", "nlopt", "ipopt", "mujoco", "sqlite",
+                        "cpu", "cpu_flags"});
     if (words.empty()) words = "another build of the program wrote it";
   }
   return words;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/compare_summary.h"
 
 namespace touchdown::evaluation {
@@ -212,8 +213,8 @@ Json BackendsJson(const CompareResult& result, int points) {
 std::string CompareText(const CompareOptions& options, const CompareResult& result) {
   std::string text = fmt::format(
       "Thread CPU time to within {:.0e} of the best known cost, feasible; judged outside the "
-      "solvers\n",
-      options.gap);
+      "solvers\n{}\n",
+      options.gap, BuildLine());
   for (const int points : options.points) {
     text += ProblemsText(options, result, points) + Table(result, points);
     if (options.deadline_ms) text += DeadlineTable(options, result, points);

@@ -85,6 +85,7 @@ std::string ProfileText(const Profile& profile) {
   std::string text = fmt::format("{}, planner {}, backend {}: {}\n", profile.scenario.name,
                                  FindScenarioKey("planner")->get(profile.scenario),
                                  BackendName(profile.scenario), Source(profile));
+  text += fmt::format("  {}\n", BuildLine());
   text += fmt::format("  {:<12}{:>8}{:>36}   {:>36}   {:>15}\n", "", "", "thread CPU time [ms]",
                       "wall time [ms]", "allocations");
   text += fmt::format("  {:<12}{:>8}{:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>7}{:>8}\n",
