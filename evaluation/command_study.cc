@@ -17,17 +17,20 @@
 #include "touchdown/evaluation/ego_fidelity.h"
 #include "touchdown/evaluation/forest_flight_report.h"
 #include "touchdown/evaluation/machine.h"
+#include "touchdown/evaluation/oracle_book.h"
 #include "touchdown/evaluation/progress.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/replan_report.h"
 #include "touchdown/evaluation/replan_study.h"
 #include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/scene_sets.h"
 
 namespace touchdown::evaluation {
 namespace {
 
 struct StudyArguments {
   std::vector<std::string> parts = {"safety"};
+  std::vector<std::string> sets = {"crossing"};
   std::vector<std::string> kinds = {"A", "B", "C", "D"};
   std::vector<std::string> planners = {"landing", "ego"};
   int flights = 100;
@@ -37,20 +40,28 @@ struct StudyArguments {
   std::optional<int> pin;
   std::string db;
   std::string picture;
+  std::string verdicts;
   bool json = false;
   bool allow_debug = false;
 };
 
 void RunSafety(const StudyArguments& arguments, const Registries& registries,
                std::vector<ReplanStudyPart>* parts) {
-  for (const std::string& kind : arguments.kinds) {
-    ReplanStudyPart part;
-    part.part = "safety";
-    part.options = arguments.options;
-    part.options.scenes.kind = SceneKindNamed(kind);
-    part.rows = RunReplanStudy(part.options, registries.backends,
-                               Progress({.things = "scenes", .of = "kind " + kind}));
-    parts->push_back(std::move(part));
+  for (const std::string& set : arguments.sets) {
+    for (const std::string& kind : arguments.kinds) {
+      ReplanStudyPart part;
+      part.part = "safety";
+      part.options = arguments.options;
+      part.options.scenes.set = set;
+      part.options.scenes.kind = SceneKindNamed(kind);
+      part.options.verdict = [book = StandardOracleBook()](const SceneOptions& scenes, int index) {
+        return book.Find(scenes, index);
+      };
+      part.rows = RunReplanStudy(
+          part.options, registries.backends,
+          Progress({.things = "scenes", .of = fmt::format("{}, kind {}", set, kind)}));
+      parts->push_back(std::move(part));
+    }
   }
 }
 
@@ -164,6 +175,13 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
     if (!command.Given(option) || !flights || Named(arguments.planners, "landing")) continue;
     throw BadInput(fmt::format("{} is of the planner landing: name it in --planners.", option));
   }
+  for (const char* option : {"--sets", "--later", "--oracle"}) {
+    if (!command.Given(option) || Named(arguments.parts, "safety")) continue;
+    throw BadInput(fmt::format("{} goes with --parts safety.", option));
+  }
+  if (command.Given("--verdicts") && !command.Given("--oracle")) {
+    throw BadInput("--verdicts goes with --oracle.");
+  }
   const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
   if (only_growth && command.Given("--kinds") && arguments.kinds.size() != 1) {
     throw BadInput("--kinds: the part growth is of one kind.");
@@ -176,8 +194,10 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
 /// No accepted plan that was looked at collides or is beyond a limit.
 bool AllSafe(const std::vector<ReplanStudyPart>& parts) {
   return std::all_of(parts.begin(), parts.end(), [](const ReplanStudyPart& part) {
-    const ReplanSummary summary = Summarise(part.rows);
-    return summary.colliding == 0 && summary.beyond_limits == 0;
+    return std::all_of(std::begin(kSceneSteps), std::end(kSceneSteps), [&](SceneStep step) {
+      const ReplanSummary summary = Summarise(part.rows, step);
+      return summary.colliding == 0 && summary.beyond_limits == 0;
+    });
   });
 }
 
@@ -208,6 +228,13 @@ int Study(StudyArguments arguments, const Registries& registries) {
   }
   const auto write = [&](const std::string& path) { WriteReplanStudy(path, parts, machine); };
   if (!arguments.db.empty()) write(arguments.db);
+  if (!arguments.verdicts.empty()) {
+    OracleBook book;
+    for (const ReplanStudyPart& part : parts) {
+      if (part.varied.empty()) book.Add(part.options.scenes, part.rows);
+    }
+    book.Write(arguments.verdicts);
+  }
   if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawGrowth);
   return AllSafe(parts) ? kDone : kFellShort;
 }
@@ -234,6 +261,16 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   command.Add("--scenes", options.count, "Scenes of each kind")
       .Check(Range(1, 100000))
       .ShowDefault();
+  command.AddList("--sets", &arguments->sets, "Sets of scenes, of the part safety", "crossing,...",
+                  OneOf(SceneSetNames()));
+  command.AddFlag("--later", options.later,
+                  "Ask for the steps 0.1 and 0.2 s after the first one, too");
+  command.AddFlag(
+      "--oracle", options.oracle,
+      "Ask in each scene whether there is a plan at all, up to seconds; else what is known "
+      "of it counts");
+  command.AddFile("--verdicts", &arguments->verdicts,
+                  "Write what the oracle says, a letter a scene", "F.csv");
   command.AddList("--kinds", &arguments->kinds, "Kinds of scenes", "A,B,...",
                   OneOf({"A", "B", "C", "D"}));
   command.Add("--flights", arguments->flights, "Flights of each kind and planner")

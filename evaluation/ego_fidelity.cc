@@ -102,14 +102,7 @@ class UpstreamTable {
 
 }  // namespace
 
-std::string EgoQuantilesPath() {
-  constexpr const char* kFile = "ego_upstream_quantiles.csv";
-  for (const std::string& directory : DataDirectories()) {
-    const std::string path = directory + "/" + kFile;
-    if (std::ifstream(path)) return path;
-  }
-  throw BadInput(fmt::format("{}: is neither installed nor in the source tree.", kFile));
-}
+std::string EgoQuantilesPath() { return DataPath("ego_upstream_quantiles.csv"); }
 
 std::vector<EgoFidelityRow> CompareWithUpstream(const SceneKind& kind,
                                                 const std::vector<EgoSceneResult>& results,

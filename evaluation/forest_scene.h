@@ -31,6 +31,7 @@ const std::vector<SceneKind>& SceneKinds();
 /// What is drawn.
 struct SceneOptions {
   SceneKind kind;
+  std::string set = "crossing";  ///< of replanning steps (scene_sets.h)
   double horizon = 7.5;     ///< start to target [m]
   double resolution = 0.1;  ///< of the map [m]
   double density = 0.0;     ///< pillars per square metre; 0: the kind's own

@@ -37,7 +37,7 @@ std::vector<GrowthPoint> GrowthPoints(const ReplanStudyOptions& usual) {
   for (const Varied& one : AllVaried()) {
     for (const double value : one.values) {
       GrowthPoint& point = points.emplace_back(GrowthPoint{one.name, usual});
-      point.options.check = false;
+      point.options.check = point.options.later = point.options.oracle = false;
       point.options.scenes.*one.option = value;
     }
   }

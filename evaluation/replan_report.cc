@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
@@ -15,18 +16,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr ResultFormat kFormat{"touchdown replan study", 3};
+constexpr ResultFormat kFormat{"touchdown replan study", 4};
 
 constexpr char kSchema[] = R"sql(
-CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, varied TEXT, kind TEXT, backend TEXT, arrival TEXT,
+CREATE TABLE part(part INTEGER PRIMARY KEY, name TEXT, varied TEXT, scene_set TEXT, kind TEXT, backend TEXT, arrival TEXT,
   limits TEXT, guides INTEGER, horizon_m REAL, resolution_m REAL, inflation_m REAL,
   density_per_m2 REAL, speed_limit_mps REAL, acceleration_limit_mps2 REAL, seed INTEGER);
-CREATE TABLE step(part INTEGER, scene INTEGER, feasible INTEGER, straight_blocked INTEGER,
+CREATE TABLE step(part INTEGER, scene INTEGER, step TEXT, feasible INTEGER, straight_blocked INTEGER,
   target_moved_m REAL, status TEXT, reason TEXT, solves INTEGER, pairs INTEGER, guides INTEGER,
-  duration_s REAL, stretch REAL, jerk_m2ps5 REAL, length_m REAL, beyond_limits INTEGER,
+  duration_s REAL, stretch REAL, lateness REAL, cost REAL, jerk_m2ps5 REAL, length_m REAL, beyond_limits INTEGER,
   map_blocked INTEGER, truly_near INTEGER, true_clearance_m REAL, predict_wall_ms REAL,
   check_wall_ms REAL, search_wall_ms REAL, pairs_wall_ms REAL, solve_wall_ms REAL,
-  certificate_wall_ms REAL, total_wall_ms REAL, total_ms REAL, PRIMARY KEY(part, scene));
+  certificate_wall_ms REAL, total_wall_ms REAL, total_ms REAL, oracle_found INTEGER,
+  oracle_found_by TEXT, oracle_end_blocked INTEGER, oracle_cannot_stop INTEGER,
+  oracle_solves INTEGER, PRIMARY KEY(part, scene, step));
 )sql";
 
 const char* Arrival(const ReplanStudyOptions& options) {
@@ -64,18 +67,21 @@ Json OfChecked(const ReplanSummary& summary, int count) {
   return summary.checked > 0 ? Json(count) : Json();
 }
 
-std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows) {
+std::map<std::string, int> FailuresByReason(const std::vector<ReplanRow>& rows, SceneStep step) {
   std::map<std::string, int> count;
   for (const ReplanRow& row : rows) {
-    if (row.feasible && !row.planned()) ++count[planning::ToString(row.reason)];
+    const bool plan_exists = row.oracle ? row.oracle->found : row.feasible;
+    if (row.step == step && plan_exists && !row.planned()) {
+      ++count[planning::ToString(row.reason)];
+    }
   }
   return count;
 }
 
 std::string SceneText(const ReplanStudyPart& part) {
   const SceneOptions& scenes = part.options.scenes;
-  return fmt::format("{}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m", scenes.kind.name,
-                     scenes.kind.limits.speed, scenes.kind.limits.acceleration,
+  return fmt::format("{}, set {}, {:.4g} m/s, {:.4g} m/s^2, inflation {:.4g} m", scenes.kind.name,
+                     scenes.set, scenes.kind.limits.speed, scenes.kind.limits.acceleration,
                      scenes.kind.inflation);
 }
 
@@ -85,15 +91,24 @@ std::string PlannerText(const ReplanStudyPart& part) {
                      part.options.replanner.max_guides, part.options.scenes.seed);
 }
 
-std::string SafetyText(const ReplanStudyPart& part) {
-  const ReplanSummary s = Summarise(part.rows);
-  std::string text = fmt::format("kind {}, horizon {:.4g} m, {}", SceneText(part),
-                                 part.options.scenes.horizon, PlannerText(part));
-  text += fmt::format(
-      "  first step planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
+std::string OracleText(const ReplanSummary& s) {
+  return fmt::format(
+      "  the oracle finds a plan in {} of {} scenes, the first step in {} of these; in {} only the "
+      "step does\n"
+      "    of those without a plan the end is blocked in {}, and {} more cannot stop in time\n",
+      s.found, s.asked, s.met, s.missed, s.end_blocked, s.cannot_stop);
+}
+
+std::string StepText(const ReplanStudyPart& part, SceneStep step) {
+  const ReplanSummary s = Summarise(part.rows, step);
+  if (s.scenes == 0) return {};
+  std::string text = fmt::format(
+      "  {} step: planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
       "all\n",
-      s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi, s.scenes);
-  for (const auto& [reason, count] : FailuresByReason(part.rows)) {
+      ToString(step), s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi,
+      s.scenes);
+  if (s.asked > 0) text += OracleText(s);
+  for (const auto& [reason, count] : FailuresByReason(part.rows, step)) {
     text += fmt::format("    not planned: {} x {}\n", count, reason);
   }
   text += fmt::format(
@@ -101,10 +116,27 @@ std::string SafetyText(const ReplanStudyPart& part) {
       "on "
       "{}\n",
       s.accepted, s.checked, s.colliding, s.beyond_limits, s.disagreeing);
+  if (s.lateness) {
+    text += fmt::format(
+        "  medians: arrival {:.3f} times the earliest possible, cost {:.4g}, jerk {:.4g} m^2/s^5\n",
+        *s.lateness, *s.cost, *s.jerk);
+  }
+  text += fmt::format(
+      "  share of the time: search {:.0f} %, pairs {:.0f} %, solve {:.0f} %, check {:.0f} %, "
+      "certificate {:.0f} %\n",
+      100.0 * s.shares.search, 100.0 * s.shares.pairs, 100.0 * s.shares.solve,
+      100.0 * s.shares.check, 100.0 * s.shares.certificate);
   text += TimesHead("  thread CPU time [ms]");
   text += LatencyText("  all scenes", s.all);
   text += LatencyText("  straight way free", s.clear);
   text += LatencyText("  obstacle in the way", s.blocked);
+  return text;
+}
+
+std::string SafetyText(const ReplanStudyPart& part) {
+  std::string text = fmt::format("kind {}, horizon {:.4g} m, {}", SceneText(part),
+                                 part.options.scenes.horizon, PlannerText(part));
+  for (const SceneStep step : kSceneSteps) text += StepText(part, step);
   return text;
 }
 
@@ -131,7 +163,7 @@ std::string GrowthText(const std::vector<const ReplanStudyPart*>& parts) {
 }  // namespace
 
 std::string ReplanStudyText(const std::vector<ReplanStudyPart>& parts) {
-  std::string text;
+  std::string text = BuildLine() + '\n';
   std::vector<const ReplanStudyPart*> growth;
   for (const ReplanStudyPart& part : parts) {
     if (part.varied.empty()) {
@@ -144,12 +176,60 @@ std::string ReplanStudyText(const std::vector<ReplanStudyPart>& parts) {
   return text;
 }
 
+namespace {
+
+Json StepJson(const ReplanStudyPart& part, SceneStep step) {
+  const ReplanSummary s = Summarise(part.rows, step);
+  const auto number = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json();
+  };
+  Json json = {{"step", ToString(step)},
+               {"scenes", s.scenes},
+               {"feasible", s.feasible},
+               {"succeeded", s.succeeded},
+               {"success_interval_95", {s.success.lo, s.success.hi}},
+               {"failures", FailuresByReason(part.rows, step)},
+               {"accepted", s.accepted},
+               {"checked", s.checked},
+               {"colliding", OfChecked(s, s.colliding)},
+               {"disagreeing", OfChecked(s, s.disagreeing)},
+               {"beyond_limits", OfChecked(s, s.beyond_limits)},
+               {"median_lateness", number(s.lateness)},
+               {"median_cost", number(s.cost)},
+               {"median_jerk_m2ps5", number(s.jerk)},
+               {"share_of_time",
+                {{"search", s.shares.search},
+                 {"pairs", s.shares.pairs},
+                 {"solve", s.shares.solve},
+                 {"check", s.shares.check},
+                 {"certificate", s.shares.certificate}}},
+               {"time_ms",
+                {{"all", LatencyJson(s.all)},
+                 {"straight_free", LatencyJson(s.clear)},
+                 {"straight_blocked", LatencyJson(s.blocked)}}}};
+  if (s.asked > 0) {
+    json["oracle"] = {{"asked", s.asked},
+                      {"found", s.found},
+                      {"met_by_step", s.met},
+                      {"missed", s.missed},
+                      {"end_blocked", s.end_blocked},
+                      {"cannot_stop", s.cannot_stop}};
+  }
+  return json;
+}
+
+}  // namespace
+
 Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineState& machine) {
   Json json;
   json["parts"] = Json::array();
   for (const ReplanStudyPart& part : parts) {
-    const ReplanSummary s = Summarise(part.rows);
+    Json steps = Json::array();
+    for (const SceneStep step : kSceneSteps) {
+      if (Summarise(part.rows, step).scenes > 0) steps.push_back(StepJson(part, step));
+    }
     json["parts"].push_back({{"part", part.part},
+                             {"set", part.options.scenes.set},
                              {"varied", part.varied.empty() ? Json() : Json(part.varied)},
                              {"kind", part.options.scenes.kind.name},
                              {"backend", part.options.replanner.backend},
@@ -160,20 +240,7 @@ Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineSta
                              {"resolution_m", part.options.scenes.resolution},
                              {"density_per_m2", part.options.scenes.density},
                              {"seed", part.options.scenes.seed},
-                             {"scenes", s.scenes},
-                             {"feasible", s.feasible},
-                             {"succeeded", s.succeeded},
-                             {"success_interval_95", {s.success.lo, s.success.hi}},
-                             {"failures", FailuresByReason(part.rows)},
-                             {"accepted", s.accepted},
-                             {"checked", s.checked},
-                             {"colliding", OfChecked(s, s.colliding)},
-                             {"disagreeing", OfChecked(s, s.disagreeing)},
-                             {"beyond_limits", OfChecked(s, s.beyond_limits)},
-                             {"time_ms",
-                              {{"all", LatencyJson(s.all)},
-                               {"straight_free", LatencyJson(s.clear)},
-                               {"straight_blocked", LatencyJson(s.blocked)}}}});
+                             {"steps", steps}});
   }
   json["machine"] = {{"pinned_cpu", machine.pinned ? Json(*machine.pinned) : Json()},
                      {"load_before", machine.load_before},
@@ -187,14 +254,14 @@ void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart
   AddMachine(machine, &facts);
   WriteResultFile(path, kFormat, kSchema, facts, [&](SqliteDb& db) {
     SqliteStatement insert_part =
-        db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+        db.Prepare("INSERT INTO part VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement insert = db.Prepare(
         "INSERT INTO step VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-        "?, ?, ?, ?)");
+        "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const int number = static_cast<int>(i);
       const ReplanStudyOptions& o = parts[i].options;
-      insert_part.Run(number, parts[i].part, parts[i].varied, o.scenes.kind.name,
+      insert_part.Run(number, parts[i].part, parts[i].varied, o.scenes.set, o.scenes.kind.name,
                       o.replanner.backend, Arrival(o), Limits(o), o.replanner.max_guides,
                       o.scenes.horizon, o.scenes.resolution, o.scenes.kind.inflation,
                       o.scenes.density, o.scenes.kind.limits.speed,
@@ -205,14 +272,21 @@ void WriteReplanStudy(const std::string& path, const std::vector<ReplanStudyPart
           using Value = std::decay_t<decltype(row.check.value().*member)>;
           return row.check ? std::optional<Value>(row.check.value().*member) : std::nullopt;
         };
-        insert.Run(number, row.index, row.feasible, row.straight_blocked, row.target_moved,
-                   planning::ToString(row.status), planning::ToString(row.reason), row.solves,
-                   row.pairs, row.guides, row.duration, row.stretch, row.jerk,
-                   checked(&PlanCheck::length), checked(&PlanCheck::beyond_limits),
-                   checked(&PlanCheck::map_blocked), checked(&PlanCheck::truly_near),
-                   checked(&PlanCheck::true_clearance), 1e3 * t.predict.wall, 1e3 * t.check.wall,
-                   1e3 * t.search.wall, 1e3 * t.pairs.wall, 1e3 * t.solve.wall,
-                   1e3 * t.certificate.wall, 1e3 * t.total.wall, 1e3 * t.total.cpu);
+        const auto oracle = [&row](auto member) {
+          using Value = std::decay_t<decltype(row.oracle.value().*member)>;
+          return row.oracle ? std::optional<Value>(row.oracle.value().*member) : std::nullopt;
+        };
+        insert.Run(number, row.index, ToString(row.step), row.feasible, row.straight_blocked,
+                   row.target_moved, planning::ToString(row.status), planning::ToString(row.reason),
+                   row.solves, row.pairs, row.guides, row.duration, row.stretch, row.lateness,
+                   row.cost, row.jerk, checked(&PlanCheck::length),
+                   checked(&PlanCheck::beyond_limits), checked(&PlanCheck::map_blocked),
+                   checked(&PlanCheck::truly_near), checked(&PlanCheck::true_clearance),
+                   1e3 * t.predict.wall, 1e3 * t.check.wall, 1e3 * t.search.wall,
+                   1e3 * t.pairs.wall, 1e3 * t.solve.wall, 1e3 * t.certificate.wall,
+                   1e3 * t.total.wall, 1e3 * t.total.cpu, oracle(&OracleVerdict::found),
+                   oracle(&OracleVerdict::found_by), oracle(&OracleVerdict::end_blocked),
+                   oracle(&OracleVerdict::cannot_stop), oracle(&OracleVerdict::solves));
       }
     }
   });

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The moving end is the one difference from the published scenes: theirs is a point and a velocity
-// near the speed limit, whenever it is reached. Here the point is where a pad will be: it moves in any
-// direction with up to half the speed limit, and passes the point when the replanner's own guess of the
+// The published scenes' end is a point and a velocity near the speed limit, whenever it is reached: the set
+// point_ahead. In the others the point is where a pad will be: it passes the point when the replanner's own guess of the
 // duration says, so that a plan that is on time ends there.
 #include "touchdown/evaluation/replan_scene.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -15,6 +14,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/field_map.h"
+#include "touchdown/evaluation/scene_sets.h"
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/grid_search.h"
@@ -27,7 +27,6 @@ namespace {
 using sim::RandomStream;
 
 constexpr double kBeyondTarget = 4.0;  // that is known [m]
-constexpr double kEndSpeed = 0.5;      // largest, of the speed limit
 constexpr double kMostMoved = 1.0;     // of a target, in a feasible scene [m]
 constexpr double kMostDetour = 1.3;
 constexpr int kExpansions = 2000000;
@@ -56,19 +55,12 @@ planning::OccupancyMapOptions MapOptions(const SceneOptions& options) {
   return map;
 }
 
-/// The end itself: no height above it.
-planning::EndpointTarget Target() {
-  planning::EndpointTarget target;
-  target.height = 0.0;
-  return target;
-}
-
 // Where the end is at the start and how long the flight takes depend on each other. False if they do not
 // come together.
 bool SetEnd(const Eigen::Vector3d& v_end, const planning::Limits& limits, ReplanScene* scene) {
   const auto guess_for = [&](double T) {
     const MovingTarget end(scene->target, v_end, T);
-    return planning::GuessDuration(scene->start, 0.0, end, Target(), limits, 1.0);
+    return planning::GuessDuration(scene->start, 0.0, end, scene->endpoint, limits, 1.0);
   };
   const auto late = [&](double T) { return std::min(guess_for(T), kLongest) - T; };
   if (!(late(kShortest) > 0.0) || !(late(0.99 * kLongest) < 0.0)) return false;
@@ -97,6 +89,16 @@ bool Joined(const ReplanScene& scene, const planning::FreeSpace& space) {
   return planning::PathLength(path) <= kMostDetour * (scene.target - scene.start.p).norm();
 }
 
+/// Farthest that a point gets along a line in `time`, from speed s0 to s1 along it.
+double MostProgress(double s0, double s1, double time, const planning::Limits& limits) {
+  const double a = limits.acceleration;
+  s0 = std::min(s0, limits.speed);
+  if (std::abs(s1 - s0) > a * time) return -std::numeric_limits<double>::infinity();
+  const double top = std::min(0.5 * (s0 + s1 + a * time), limits.speed);
+  const double ramps = (2.0 * top * top - s0 * s0 - s1 * s1) / (2.0 * a);
+  return ramps + top * (time - (2.0 * top - s0 - s1) / a);
+}
+
 }  // namespace
 
 estimation::PadState MovingTarget::At(double t) const noexcept {
@@ -120,12 +122,14 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
   const planning::Limits& limits = options.kind.limits;
   for (int draw = 0; draw < kForestSceneDraws; ++draw) {
     RandomStream stream = SceneStream(options, index, draw);
-    ForestScene forest = DrawForestScene(options, &stream);
+    SceneSketch sketch = SceneSetNamed(options.set).draw(options, stream);
     ReplanScene scene;
-    scene.start = forest.start;
-    scene.field = std::move(forest.field);
+    scene.start = sketch.start;
+    scene.endpoint.height = 0.0;
+    scene.endpoint.passing_W = sketch.passing;
+    scene.field = std::move(sketch.field);
     scene.map = std::make_unique<planning::OccupancyMap>(MapOptions(options));
-    scene.map->Recentre({scene.start.p.x(), scene.start.p.y(), 0.5 * forest.height});
+    scene.map->Recentre({scene.start.p.x(), scene.start.p.y(), 0.5 * sketch.height});
     FillMap(scene.field, scene.map.get());
     planning::FreeSpace space;
     space.map = scene.map.get();
@@ -133,16 +137,13 @@ ReplanScene DrawReplanScene(const SceneOptions& options, int index) {
     space.ceiling = kForestCeiling;
     if (space.Blocked(scene.start.p)) continue;
 
-    const Eigen::Vector3d wanted = scene.start.p + options.horizon * forest.ahead;
-    planning::CellIndex cell = scene.map->CellOf(wanted);
+    planning::CellIndex cell = scene.map->CellOf(sketch.target);
     const bool blocked = space.Blocked(cell);
-    const bool found = planning::GridSearch::NearestFree(space, &cell);
-    scene.target = blocked && found ? scene.map->CentreOf(cell) : wanted;
-    scene.target_moved = (scene.target - wanted).norm();
-    const double end_speed = stream.Uniform(0.0, kEndSpeed * limits.speed);
-    const double end_course = stream.Uniform(-std::numbers::pi, std::numbers::pi);
-    const Eigen::Vector3d end_ahead(std::cos(end_course), std::sin(end_course), 0.0);
-    if (!SetEnd(end_speed * end_ahead, limits, &scene)) continue;
+    const bool found =
+        sketch.target_moves ? planning::GridSearch::NearestFree(space, &cell) : !blocked;
+    scene.target = blocked && found ? scene.map->CentreOf(cell) : sketch.target;
+    scene.target_moved = (scene.target - sketch.target).norm();
+    if (!SetEnd(sketch.v_end, limits, &scene)) continue;
     scene.straight_blocked = false;
     planning::TraverseCells(scene.start.p, scene.target, scene.map->resolution(),
                             [&](const planning::CellIndex& passed) {
@@ -171,8 +172,40 @@ planning::ReplanInput AskAt(const ReplanScene& scene, planning::Replanner* repla
   input.vehicle.p_WB = scene.start.p;
   input.vehicle.v_WB = scene.start.v;
   input.pad = scene.end.get();
-  input.endpoint = Target();
+  input.endpoint = scene.endpoint;
   return input;
+}
+
+// At an arrival the end lies ahead by some distance, in some direction. Along that direction alone the point has to
+// get as far, and from its own speed to the end's.
+double EarliestArrival(const ReplanScene& scene, const planning::Limits& limits) {
+  constexpr double kClock = 0.01;
+  double T = kClock;
+  for (; T < kLongest; T += kClock) {
+    const planning::SplineState end = planning::EndStateAt(*scene.end, scene.endpoint, T).state;
+    const Eigen::Vector3d way = end.p - scene.start.p;
+    const Eigen::Vector3d along = way.stableNormalized();
+    if (MostProgress(scene.start.v.dot(along), end.v.dot(along), T, limits) >= way.norm()) break;
+  }
+  return T - kClock;
+}
+
+void LearnWithin(const planning::OccupancyMap& all, const Eigen::Vector3d& centre, double radius,
+                 planning::OccupancyMap* map) {
+  const planning::CellIndex low = all.CellOf(centre.array() - radius).cwiseMax(all.origin());
+  const planning::CellIndex high =
+      all.CellOf(centre.array() + radius)
+          .cwiseMin(all.origin() + all.size() - planning::CellIndex::Ones());
+  planning::CellIndex cell;
+  for (cell.z() = low.z(); cell.z() <= high.z(); ++cell.z()) {
+    for (cell.y() = low.y(); cell.y() <= high.y(); ++cell.y()) {
+      for (cell.x() = low.x(); cell.x() <= high.x(); ++cell.x()) {
+        const bool near = (all.CentreOf(cell) - centre).norm() <= radius;
+        if (near && all.IsOccupied(cell)) map->SetState(cell, planning::CellState::kOccupied);
+      }
+    }
+  }
+  map->MarkFree(centre, radius);
 }
 
 }  // namespace touchdown::evaluation

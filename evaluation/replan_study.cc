@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "touchdown/sim/true_clearance.h"
 
@@ -34,14 +35,16 @@ bool DeepInBlocked(const planning::OccupancyMap& map, const Eigen::Vector3d& p) 
 }  // namespace
 
 PlanCheck CheckPlan(const UniformBspline& curve, const ReplanScene& scene,
-                    const planning::Limits& limits) {
+                    const planning::Limits& limits, const KnownBall& ball) {
   PlanCheck check;
   const sim::TrueClearance truth(scene.field, PointVehicle());
   const double inflation = scene.map->options().inflation_radius;
   check.true_clearance = std::numeric_limits<double>::infinity();
+  const double within = ball.radius - inflation - std::numbers::sqrt3 * scene.map->resolution();
   // An obstacle beyond the window's edge is not known either.
   const auto known = [&](const Eigen::Vector3d& p) {
-    return scene.map->InWindow(scene.map->CellOf(p.array() - inflation)) &&
+    return (p - ball.centre).norm() <= within &&
+           scene.map->InWindow(scene.map->CellOf(p.array() - inflation)) &&
            scene.map->InWindow(scene.map->CellOf(p.array() + inflation));
   };
   Eigen::Vector3d last = curve.Evaluate(curve.t0()).p_WB;
@@ -71,60 +74,202 @@ RowTimes TimesOf(const std::vector<const ReplanRow*>& rows) {
   return {static_cast<int>(ms.size()), QuantilesOf(ms)};
 }
 
-std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
-                                      const solvers::BackendRegistry& backends,
-                                      const std::function<void(int done, int all)>& report) {
-  planning::Replanner replanner(SceneReplannerOptions(options.scenes, options.replanner), backends);
-  std::vector<ReplanRow> rows;
-  for (int index = 0; index < options.count; ++index) {
-    const ReplanScene scene = DrawReplanScene(options.scenes, index);
+const char* ToString(SceneStep step) {
+  switch (step) {
+    case SceneStep::kFirst:
+      return "first";
+    case SceneStep::kTenth:
+      return "0.1 s on";
+    case SceneStep::kFifth:
+      return "0.2 s on";
+    case SceneStep::kGrown:
+      return "0.2 s on, map grown";
+  }
+  return "";
+}
+
+namespace {
+
+/// The steps of one scene after another.
+class SceneAsker {
+ public:
+  SceneAsker(const ReplanStudyOptions& options, const solvers::BackendRegistry& backends)
+      : options_(options),
+        replanner_(SceneReplannerOptions(options.scenes, options.replanner), backends) {
+    if (options.oracle) {
+      oracle_.emplace(SceneReplannerOptions(options.scenes, options.replanner), backends);
+    }
+    for (const planning::TermEntry& entry : options.replanner.problem.terms) {
+      if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
+    }
+  }
+
+  void AskAll(int index, std::vector<ReplanRow>* rows) {
+    const ReplanScene scene = DrawReplanScene(options_.scenes, index);
+    index_ = index;
+    earliest_ = EarliestArrival(scene, options_.scenes.kind.limits);
+    const planning::ReplanInput first = AskAt(scene, &replanner_);
+    if (index == 0) replanner_.Replan(first, *scene.map);  // pays for pages, caches and lazy set-up
+    rows->push_back(Ask(scene, SceneStep::kFirst, *scene.map, AskAt(scene, &replanner_), {}));
+    if (oracle_) {
+      const OracleAnswer answer = oracle_->Ask(scene);
+      rows->back().oracle = {answer.plan.has_value(), answer.found_by, answer.end_blocked,
+                             answer.cannot_stop, answer.solves};
+    } else if (options_.verdict) {
+      rows->back().oracle = options_.verdict(options_.scenes, index);
+    }
+    if (!options_.later) return;
+    if (rows->back().planned()) {
+      const planning::ReplannerState flown = replanner_.state();
+      for (const SceneStep step : {SceneStep::kTenth, SceneStep::kFifth}) {
+        replanner_.Restore(flown);
+        const planning::ReplanInput input = Later(first, step == SceneStep::kTenth ? 0.1 : 0.2);
+        rows->push_back(Ask(scene, step, *scene.map, input, {}));
+      }
+    }
+    AskGrown(scene, rows);
+  }
+
+ private:
+  /// In perfect tracking, with nothing in between.
+  planning::ReplanInput Later(planning::ReplanInput input, double t) const {
+    const planning::FlatState at = replanner_.Reference(t);
+    input.t_now = input.t_start = t;
+    input.vehicle.p_WB = at.p_WB;
+    input.vehicle.v_WB = at.v_WB;
+    return input;
+  }
+
+  void AskGrown(const ReplanScene& scene, std::vector<ReplanRow>* rows) {
+    constexpr double kSeen = 5.0;  // [m]
+    planning::OccupancyMap map(scene.map->options());
+    map.MoveWindow(scene.map->origin());
+    LearnWithin(*scene.map, scene.start.p, kSeen, &map);
+    const planning::ReplanInput first = AskAt(scene, &replanner_);
+    if (replanner_.Replan(first, map).status != planning::ReplanStatus::kPlanned) return;
+    const planning::ReplanInput input = Later(first, 0.2);
+    LearnWithin(*scene.map, input.vehicle.p_WB, kSeen, &map);
+    rows->push_back(Ask(scene, SceneStep::kGrown, map, input, {input.vehicle.p_WB, kSeen}));
+  }
+
+  /// From the present state of the replanner.
+  ReplanRow Ask(const ReplanScene& scene, SceneStep step, const planning::OccupancyMap& map,
+                const planning::ReplanInput& input, const KnownBall& known) {
     ReplanRow row;
-    row.index = index;
+    row.index = index_;
+    row.step = step;
     row.feasible = scene.feasible;
     row.straight_blocked = scene.straight_blocked;
     row.target_moved = scene.target_moved;
-    if (index == 0) {  // first steps pay for pages, caches and lazy set-up
-      replanner.Replan(AskAt(scene, &replanner), *scene.map);
-    }
+    const planning::ReplannerState from = replanner_.state();
     std::vector<planning::StageTimes> times;
-    UniformBspline plan;
-    for (int repeat = 0; repeat < options.repeats; ++repeat) {
-      const planning::ReplanInput input = AskAt(scene, &replanner);
-      const ReplanResult& result = replanner.Replan(input, *scene.map);
+    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+      replanner_.Restore(from);
+      const ReplanResult& result = replanner_.Replan(input, map);
       times.push_back(result.times);
-      if (repeat > 0) continue;
-      row.status = result.status;
-      row.reason = result.reason;
-      row.solves = result.solves;
-      row.pairs = result.pairs;
-      row.guides = static_cast<int>(result.guide_paths.size());
-      plan = result.curve;
-    }
-    if (row.planned()) {
-      row.duration = plan.duration();
-      row.stretch = plan.duration() / scene.duration;
-      row.jerk = plan.SquaredJerk();
-      if (options.check) row.check = CheckPlan(plan, scene, options.scenes.kind.limits);
+      if (repeat == 0) Enter(result, scene, known, &row);
     }
     std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end(),
                      [](const auto& a, const auto& b) { return a.total.cpu < b.total.cpu; });
     row.times = times[times.size() / 2];
-    rows.push_back(row);
+    return row;
+  }
+
+  void Enter(const ReplanResult& result, const ReplanScene& scene, const KnownBall& known,
+             ReplanRow* row) const {
+    row->status = result.status;
+    row->reason = result.reason;
+    row->solves = result.solves;
+    row->pairs = result.pairs;
+    row->guides = static_cast<int>(result.guide_paths.size());
+    if (!row->planned()) return;
+    const UniformBspline& plan = result.curve;
+    row->duration = plan.duration();
+    if (row->step == SceneStep::kFirst) row->stretch = plan.duration() / scene.duration;
+    row->lateness = plan.t_end() / earliest_;
+    row->jerk = plan.SquaredJerk();
+    row->cost = 0.0;
+    for (const solvers::TermCost& term : result.solver.cost_by_term) {
+      const bool counts = std::find(pressed_.begin(), pressed_.end(), term.name) == pressed_.end();
+      if (counts) *row->cost += term.cost;
+    }
+    if (options_.check) {
+      row->check = CheckPlan(plan, scene, options_.scenes.kind.limits, known);
+    }
+  }
+
+  const ReplanStudyOptions& options_;
+  planning::Replanner replanner_;
+  std::optional<PlanOracle> oracle_;
+  std::vector<std::string> pressed_;  // terms whose weights grow within a step
+  int index_ = 0;
+  double earliest_ = 0.0;  // arrival [s]
+};
+
+template <class Value>
+std::optional<double> MedianOf(const std::vector<const ReplanRow*>& rows, Value value) {
+  std::vector<double> values;
+  for (const ReplanRow* row : rows) {
+    if ((row->*value).has_value()) values.push_back(*(row->*value));
+  }
+  return QuantilesOf(values).median;
+}
+
+StageShares SharesOf(const std::vector<const ReplanRow*>& rows) {
+  StageShares sum;
+  double total = 0.0;
+  for (const ReplanRow* row : rows) {
+    const planning::StageTimes& times = row->times;
+    sum.search += times.search.wall;
+    sum.pairs += times.pairs.wall;
+    sum.solve += times.solve.wall;
+    sum.check += times.check.wall;
+    sum.certificate += times.certificate.wall;
+    total += times.total.wall;
+  }
+  if (total <= 0.0) return {};
+  return {sum.search / total, sum.pairs / total, sum.solve / total, sum.check / total,
+          sum.certificate / total};
+}
+
+}  // namespace
+
+std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
+                                      const solvers::BackendRegistry& backends,
+                                      const std::function<void(int done, int all)>& report) {
+  SceneAsker asker(options, backends);
+  std::vector<ReplanRow> rows;
+  for (int index = 0; index < options.count; ++index) {
+    asker.AskAll(index, &rows);
     report(index + 1, options.count);
   }
   return rows;
 }
 
-ReplanSummary Summarise(const std::vector<ReplanRow>& rows) {
+ReplanSummary Summarise(const std::vector<ReplanRow>& rows, SceneStep step) {
   ReplanSummary summary;
-  summary.scenes = static_cast<int>(rows.size());
   std::vector<const ReplanRow*> all, clear, blocked;
   for (const ReplanRow& row : rows) {
+    if (row.step != step) continue;
+    ++summary.scenes;
     all.push_back(&row);
     (row.straight_blocked ? blocked : clear).push_back(&row);
     if (row.feasible) {
       ++summary.feasible;
       if (row.planned()) ++summary.succeeded;
+    }
+    if (row.oracle) {
+      ++summary.asked;
+      if (row.oracle->found) {
+        ++summary.found;
+        if (row.planned()) ++summary.met;
+      } else if (row.planned()) {
+        ++summary.missed;
+      } else if (row.oracle->end_blocked) {
+        ++summary.end_blocked;
+      } else if (row.oracle->cannot_stop) {
+        ++summary.cannot_stop;
+      }
     }
     if (!row.planned()) continue;
     ++summary.accepted;
@@ -138,6 +283,10 @@ ReplanSummary Summarise(const std::vector<ReplanRow>& rows) {
   summary.all = TimesOf(all);
   summary.clear = TimesOf(clear);
   summary.blocked = TimesOf(blocked);
+  summary.shares = SharesOf(all);
+  summary.lateness = MedianOf(all, &ReplanRow::lateness);
+  summary.cost = MedianOf(all, &ReplanRow::cost);
+  summary.jerk = MedianOf(all, &ReplanRow::jerk);
   return summary;
 }
 

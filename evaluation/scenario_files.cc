@@ -81,9 +81,15 @@ std::vector<std::string> PythonDirectories() {
                               fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "python"});
 }
 
-std::vector<std::string> DataDirectories() {
-  return ExistingDirectories({ProgramDirectory() / "../share/touchdown/data",
-                              fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "data"});
+std::string DataPath(const std::string& file) {
+  for (const std::string& directory :
+       ExistingDirectories({ProgramDirectory() / "../share/touchdown/data",
+                            fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "data"})) {
+    std::error_code ignored;
+    const fs::path path = fs::path(directory) / file;
+    if (fs::is_regular_file(path, ignored)) return path.string();
+  }
+  throw BadInput(fmt::format("{}: is neither installed nor in the source tree.", file));
 }
 
 std::string FindScenario(const std::string& name_or_path) {

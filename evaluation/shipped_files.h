@@ -9,7 +9,7 @@ namespace touchdown::evaluation {
 /// Directories that hold the Python package touchdown_report, first hit first.
 std::vector<std::string> PythonDirectories();
 
-/// Directories that hold measured data, first hit first.
-std::vector<std::string> DataDirectories();
+/// The path of a file of measured data. @throws BadInput if it is neither installed nor in the source tree.
+std::string DataPath(const std::string& file);
 
 }  // namespace touchdown::evaluation

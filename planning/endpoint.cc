@@ -2,7 +2,7 @@
 // The moving endpoint (eq. 17-18): the predicted pad plus a height above it that may sink. While
 // the height sinks, the approach velocity is the sinking itself, so that consecutive plans join;
 // once it rests on its floor the approach velocity is that of the contact, zero if there is none.
-// Only the height's own rate moves the end as the arrival time does.
+// A point that is passed adds a velocity of its own. Only the height's own rate moves the end as the arrival time does.
 
 #include "touchdown/planning/endpoint.h"
 
@@ -15,7 +15,7 @@ EndState EndStateAt(const estimation::PadPrediction& pad, const EndpointTarget& 
   const bool sinking = sunk > target.height_floor;
   const Eigen::Vector3d offset(0.0, 0.0, sinking ? sunk : target.height_floor);
   const Eigen::Vector3d offset_rate(0.0, 0.0, sinking ? -target.sink_rate : 0.0);
-  const Eigen::Vector3d contact(0.0, 0.0, -target.arrival_sink);
+  const Eigen::Vector3d contact = target.passing_W - Eigen::Vector3d(0.0, 0.0, target.arrival_sink);
 
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();
 

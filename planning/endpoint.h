@@ -20,6 +20,9 @@ struct EndpointTarget {
   /// The end stands still, whatever velocity the pad has: w alone is its velocity. To show what the
   /// moving end is worth.
   bool at_rest = false;
+  /// Velocity relative to the pad's with which the end is passed, in W [m/s]: of a point on the way that is no
+  /// place to stay. No record holds it: no mission asks for it.
+  Eigen::Vector3d passing_W = Eigen::Vector3d::Zero();
 
   /// Whether the plan is to end in contact.
   bool touches() const { return arrival_sink > 0.0; }

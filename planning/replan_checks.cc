@@ -41,7 +41,8 @@ bool TargetValid(const ReplanInput& input) {
   const EndpointTarget& end = input.endpoint;
   return std::isfinite(end.height) && std::isfinite(end.sink_rate) &&
          std::isfinite(end.height_floor) && std::isfinite(end.t_reference) &&
-         std::isfinite(end.arrival_sink) && end.arrival_sink >= 0.0 && PadValid(input);
+         std::isfinite(end.arrival_sink) && end.arrival_sink >= 0.0 && end.passing_W.allFinite() &&
+         PadValid(input);
 }
 
 bool PadValid(const ReplanInput& input) {

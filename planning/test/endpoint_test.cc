@@ -26,6 +26,18 @@ TEST(Endpoint, SinksAtItsRateDownToItsFloor) {
   EXPECT_NEAR(EndStateAt(pad, target, 9.0).state.v.z(), 0.0, 1e-14);
 }
 
+TEST(Endpoint, APointThatIsPassedStandsWhenItIsMetLater) {
+  const ArcPad pad({1, 2, 0.3}, 0.0, 0.0, 0.2);
+  EndpointTarget target{0.0, 0.0};
+  target.passing_W = {1.5, -0.5, 0.1};
+  for (const double t : {1.0, 4.0}) {
+    const EndState end = EndStateAt(pad, target, t);
+    EXPECT_EQ(end.state.v, pad.At(t).v_WP + target.passing_W);
+    EXPECT_EQ(end.derivative.p, pad.At(t).v_WP);
+    EXPECT_EQ(end.derivative.v, pad.At(t).a_WP);
+  }
+}
+
 TEST(Endpoint, ContactIsMetSinkingAtTheDeck) {
   Draw draw(43);
   const ArcPad pad = draw.Pad();

@@ -15,7 +15,7 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-SUPPORTED_VERSION = "3"
+SUPPORTED_VERSION = "4"
 STAGES = ["predict", "check", "search", "pairs", "solve", "certificate"]
 COLOURS = ["#999999", "#56B4E9", "#E69F00", "#CC79A7", "#0072B2", "#009E73"]
 # Column of table `part`, label of the axis.
