@@ -53,7 +53,8 @@ CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t RE
   noise_turn REAL);
 CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, cov2 REAL, cov3 REAL,
   cov4 REAL, PRIMARY KEY(plan, i));
-CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, look_x REAL,
+CREATE TABLE bound_part(plan INTEGER, i INTEGER, t_from REAL, t_to REAL);
+CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, looked_t REAL, look_x REAL,
   look_y REAL, look_z REAL, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
@@ -105,7 +106,8 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
       db.Prepare("INSERT INTO reference VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement rotor = db.Prepare("INSERT INTO rotor VALUES(?, ?, ?, ?, ?)");
   SqliteStatement air = db.Prepare("INSERT INTO air VALUES(?, ?, ?, ?)");
-  SqliteStatement disturbance = db.Prepare("INSERT INTO disturbance VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement disturbance =
+      db.Prepare("INSERT INTO disturbance VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement mode = db.Prepare("INSERT INTO mode VALUES(?, ?)");
   for (const RecordSample& s : samples) {
     WriteVehicle(vehicle, s.vehicle, s.t, "true");
@@ -171,7 +173,8 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement bound = db.Prepare("INSERT INTO bound_part VALUES(?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const RecordPlan& row : plans) {
@@ -188,13 +191,15 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
     const auto look = [&s](int axis) -> std::optional<double> {
       return s.looks_at_W ? std::optional<double>((*s.looks_at_W)[axis]) : std::nullopt;
     };
-    state.Run(id, s.planned, s.around_unseen, look(0), look(1), look(2), s.climb, s.strip_t,
-              s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(), s.strip_floor,
-              s.current.curve.t0(),
-              s.current.curve.interval(), s.current.stop.t0(), s.current.stop.interval(),
-              s.next.curve.t0(), s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
-              FiniteOrNone(s.current.t_stop), s.current.proven, FiniteOrNone(s.next.t_stop),
-              s.next.proven);
+    for (std::size_t i = 0; i < s.bound.size(); ++i) {
+      bound.Run(id, static_cast<int>(i), s.bound[i].from, s.bound[i].to);
+    }
+    state.Run(id, s.planned, s.around_unseen, s.looked_t, look(0), look(1), look(2), s.climb,
+              s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(),
+              s.strip_floor, s.current.curve.t0(), s.current.curve.interval(), s.current.stop.t0(),
+              s.current.stop.interval(), s.next.curve.t0(), s.next.curve.interval(),
+              s.next.stop.t0(), s.next.stop.interval(), FiniteOrNone(s.current.t_stop),
+              s.current.proven, FiniteOrNone(s.next.t_stop), s.next.proven);
     WritePoints(point, id, "current", s.current.curve.control_points());
     WritePoints(point, id, "current_stop", s.current.stop.control_points());
     WritePoints(point, id, "next", s.next.curve.control_points());

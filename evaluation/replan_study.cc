@@ -101,6 +101,7 @@ class SceneAsker {
     }
     for (const planning::TermEntry& entry : options.replanner.problem.terms) {
       if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
+      if (entry.use == planning::TermUse::kFreeArrival) time_ = &entry;
     }
   }
 
@@ -188,10 +189,11 @@ class SceneAsker {
     if (row->step == SceneStep::kFirst) row->stretch = plan.duration() / scene.duration;
     row->lateness = plan.t_end() / earliest_;
     row->jerk = plan.SquaredJerk();
-    row->cost = 0.0;
+    // A plan with a fixed arrival pays for its time, too: both sorts are compared.
+    row->cost = time_ ? time_->default_weight * plan.duration() : 0.0;
     for (const solvers::TermCost& term : result.solver.cost_by_term) {
-      const bool counts = std::find(pressed_.begin(), pressed_.end(), term.name) == pressed_.end();
-      if (counts) *row->cost += term.cost;
+      const bool pressed = std::find(pressed_.begin(), pressed_.end(), term.name) != pressed_.end();
+      if (!pressed && !(time_ && term.name == time_->info.name)) *row->cost += term.cost;
     }
     if (options_.check) {
       row->check = CheckPlan(plan, scene, options_.scenes.kind.limits, known);
@@ -202,6 +204,7 @@ class SceneAsker {
   planning::Replanner replanner_;
   std::optional<PlanOracle> oracle_;
   std::vector<std::string> pressed_;  // terms whose weights grow within a step
+  const planning::TermEntry* time_ = nullptr;
   int index_ = 0;
   double earliest_ = 0.0;  // arrival [s]
 };

@@ -75,7 +75,7 @@ struct ReplanRow {
   std::optional<double> duration;  ///< [s]
   std::optional<double> stretch;   ///< duration over the guessed one, of a first step
   std::optional<double> lateness;  ///< its arrival over the earliest possible (EarliestArrival)
-  std::optional<double> cost;      ///< without obstacles and limits
+  std::optional<double> cost;      ///< without obstacles and limits; time has its usual price
   std::optional<double> jerk;      ///< integral of squared jerk [m^2/s^5]
   std::optional<PlanCheck> check;  ///< none also where it was not asked for
   std::optional<OracleVerdict> oracle;  ///< of a first step, where it was asked

@@ -26,6 +26,9 @@ class CommittedWay {
 
   bool known() const { return !places_.empty(); }
 
+  /// Nothing blocks the curve: the way is the curve itself.
+  bool clear() const { return known() && runs_.empty(); }
+
   /// At a share of the time that the committed curve has left, in [0, 1]. @pre known().
   Eigen::Vector3d At(double share) const { return AtTime(TimeOf(share)); }
 

@@ -37,6 +37,9 @@ class GuideFinder {
     return committed_.known() && barriers_.empty() && !run.at_start;
   }
 
+  /// Nothing blocks the curve that is kept.
+  bool KeepsClear() const { return committed_.clear(); }
+
   /// Ends a run that is kept only where the curve is on the committed curve's side of everything: a curve
   /// that leaves an obstacle seen from the front is behind its front, not past it. @pre Keeps(*run).
   void EndBesideKept(const FreeSpace& space, const UniformBspline& curve, BlockedRun* run) const;

@@ -110,6 +110,39 @@ void PairBinder::Start(const UniformBspline& curve) {
   corners_.clear();
 }
 
+void PairBinder::Remember(const UniformBspline& curve, BoundParts* parts) const {
+  parts->clear();
+  const double half = 0.5 * curve.interval();
+  bool inside = false;
+  for (std::size_t i = 0; i < bound_.size(); ++i) {
+    const double t = TimeOf(curve, static_cast<int>(i));
+    if (bound_[i] && !inside) parts->push_back({t - half, t + half});
+    if (bound_[i]) parts->back().to = t + half;
+    inside = bound_[i];
+  }
+  for (const Corner& corner : corners_) {
+    if (parts->size() < kMostControlPoints) parts->push_back({corner.t, corner.t});
+  }
+}
+
+void PairBinder::Recall(const UniformBspline& curve, const BoundParts& parts) {
+  const int n = static_cast<int>(bound_.size());
+  for (const BoundPart& part : parts) {
+    if (part.from < part.to) {
+      for (int i = kFirstFree; i < n - kFirstFree; ++i) {
+        const double t = TimeOf(curve, i);
+        bound_[i] |= t >= part.from && t <= part.to;
+      }
+    } else if (part.from >= curve.t0() && part.from <= curve.t_end()) {
+      BindCorner(curve, part.from, curve.Position(part.from));
+    }
+  }
+}
+
+void PairBinder::BindCorner(const UniformBspline& curve, double t, const Eigen::Vector3d& p) {
+  corners_.push_back({t, static_cast<int>((t - curve.t0()) / curve.interval()) + 1, p});
+}
+
 void PairBinder::Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
                         const FreeSpace& space) {
   PathWalk walk(guide);
@@ -129,7 +162,7 @@ void PairBinder::AddCorner(const UniformBspline& curve, const BlockedRun& run,
                            const GuidePath& guide, const FreeSpace& space) {
   const double t = 0.5 * (run.t_in + run.t_out);
   const Eigen::Vector3d p = BesideObstacle(space, PathWalk(guide).At(0.5), curve.Position(t));
-  corners_.push_back({static_cast<int>((t - curve.t0()) / curve.interval()) + 1, p});
+  BindCorner(curve, t, p);
 }
 
 void PairBinder::Bind(const FreeSpace& space, std::vector<ObstaclePair>* pairs) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "touchdown/planning/bound_part.h"
 #include "touchdown/planning/corridor.h"
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/grid_search.h"
@@ -29,6 +30,11 @@ class PairBinder {
   /// A round begins: the control points are wanted on this curve.
   void Start(const UniformBspline& curve);
 
+  /// What is bound now, in time on this curve. Does not allocate once `parts` has room for kMostControlPoints.
+  void Remember(const UniformBspline& curve, BoundParts* parts) const;
+  /// Binds that again on another curve: the control points are wanted where they are on it.
+  void Recall(const UniformBspline& curve, const BoundParts& parts);
+
   /// Where the curve is blocked in `run`, its control points are wanted along the guide, which has one
   /// point at least.
   void Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
@@ -45,6 +51,7 @@ class PairBinder {
 
  private:
   struct Corner {
+    double t;    // on the curve of the round [s]
     int before;  // the control point that comes before it
     Eigen::Vector3d p;
   };
@@ -52,6 +59,8 @@ class PairBinder {
   Corridor corridor_;
   int planes_;     // of a control point, besides those for floor and ceiling
   int per_point_;  // with those
+  void BindCorner(const UniformBspline& curve, double t, const Eigen::Vector3d& p);
+
   std::vector<char> bound_;
   std::array<Eigen::Vector3d, kMostControlPoints> reference_;  // where control points are wanted
   std::vector<Corner> corners_;

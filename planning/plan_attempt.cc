@@ -25,7 +25,12 @@ constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded gr
 constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit
 constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
-constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
+constexpr double kLeastClosing =
+    0.1;  // share of the speed limit at which an end ahead is caught up with
+constexpr double kLongerWay = 1.05;  // than the first way around: another is not followed then
+constexpr double kLaterThanPromised =
+    1.06;                             // share of the time left: what is committed is not kept then
+constexpr double kMuchCheaper = 0.8;  // share of the cost that makes a change of side worth while
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
 double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
@@ -57,6 +62,7 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
   }
   // Room for all that usually comes.
+  for (Candidate* candidate : {&best_, &other_}) candidate->bound.reserve(kMostControlPoints);
   for (GuidePath* guide : {&first_guide_, &guide_}) guide->reserve(1024);
   pairs_.reserve(static_cast<std::size_t>(options.problem.max_pairs_per_point) *
                  kMostControlPoints);
@@ -84,10 +90,7 @@ bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
-  best_.certificate.reset();
-  best_.solved = false;
-  best_.pairs = 0;
-  best_.round = -1;
+  Clear(&best_);
   best_.reason = Try(request, result);
   if (request.arrival == ArrivalMode::kFree && best_.solved)
     duration_ = best_.pair.curve.duration();
@@ -97,6 +100,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   }
   result->certificate = best_.certificate.value_or(Certificate());
   result->pairs = best_.pairs;
+  result->bound = best_.bound;
   if (request.log) {
     request.log->duration = duration_;
     request.log->arrival = request.arrival;
@@ -106,6 +110,14 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
     request.log->reason = best_.reason;
   }
   return best_.reason;
+}
+
+void PlanAttempt::Clear(Candidate* candidate) const {
+  candidate->certificate.reset();
+  candidate->solved = false;
+  candidate->pairs = 0;
+  candidate->bound.clear();
+  candidate->round = -1;
 }
 
 /// Refuses ends that no plan can have.
@@ -172,19 +184,45 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, ReplanResult* re
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
   finder_.Begin(request.at_rest);
+  // Shortly before contact there is no time for a way around.
+  const bool leads_around = options_.max_rebinds > 0 && request.pair_end != PairEnd::kContact;
+  const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
+  if (warm && leads_around && !request.looks) {
+    const ReplanReason reason = KeepCommitted(request, result);
+    if (reason == ReplanReason::kNone || reason == ReplanReason::kUnobserved) return reason;
+    Clear(&best_);
+  }
   pairs_.clear();
   pressure_ = {};
   segments_ = request.segments;
-  const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
   ReplanReason reason = SolveWithoutPairs(request, warm, result);
   if (reason == ReplanReason::kNone && ObstacleNear(request) && segments_ < request.near_segments) {
     reason = Refine(request, result);
   }
   if (reason != ReplanReason::kNone) return reason;
-  // Shortly before contact there is no time for a way around.
-  const bool leads_around = options_.max_rebinds > 0 && request.pair_end != PairEnd::kContact;
   if (!runs_.empty() && leads_around) return TryGuides(request, result);
   return KeepLimits(request, &best_, result);
+}
+
+/// The committed plan is the best that is known: its rest, bound as it was, but to the map of now, takes one
+/// solve while it holds. What has come to block it leads to further rounds.
+ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanResult* result) {
+  segments_ = request.segments;
+  const ReplanReason refused = SetEnds(request);
+  if (refused != ReplanReason::kNone) return refused;
+  {
+    StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
+    finder_.Keep(*request.previous, request.t0, *request.space);
+  }
+  LandingProblem& problem = *now_->problem;
+  problem.WarmGuess(*request.previous, &now_->start.y);
+  problem.Curve(now_->start.y, &best_.pair.curve);
+  runs_.clear();
+  if (!finder_.KeepsClear()) {
+    StageTimer timer(&result->times.check, StageTimer::kWhileLogged);
+    FindBlockedRuns(best_.pair.curve, request.t0, *request.space, &runs_);
+  }
+  return Follow(request, Lead::kCommitted, &best_, result);
 }
 
 // The way around the first obstacle makes the difference: behind it the usual choices follow.
@@ -203,11 +241,16 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* r
   const bool keeps_side = finder_.Keeps(span);
   if (keeps_side) finder_.EndBesideKept(*request.space, first_curve_, &span);
   const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
+  double shortest = 0.0;
   for (int i = 0; i < guides; ++i) {
     if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;
     const ReplanReason found = FindGuide(request, first_curve_, /*local=*/false, &span, result);
     if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
     if (found != ReplanReason::kNone) return found;
+    // Of two ways the longer one is hardly ever the cheaper: its length tells before it is solved for.
+    const double length = PathLength(guide_);
+    if (i == 0) shortest = length;
+    if (best_.reason == ReplanReason::kNone && length > kLongerWay * shortest) break;
     if (i == 0 && !request.previous) Postpone(span, &request);
     first_guide_ = guide_;
     Candidate* candidate = i == 0 ? &best_ : &other_;
@@ -215,7 +258,7 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* r
     candidate->certificate.reset();
     now_->start.y = now_->first_guess;
     runs_.assign(1, span);
-    candidate->reason = Follow(request, candidate, result);
+    candidate->reason = Follow(request, Lead::kGuide, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
     if (i + 1 == guides) break;
     const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
@@ -249,20 +292,25 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
 }
 
 /// Binds pairs along the guide and solves again until the curve is clear, or hardly clearer than before. In
-/// the first round they lead along the guide, and later ones bind what is still blocked.
-ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Candidate* candidate,
+/// the first round they lead along the guide, or are those of the committed plan; later ones bind what is still
+/// blocked. What is kept may not arrive much later than was promised.
+ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Lead lead, Candidate* candidate,
                                  ReplanResult* result) {
+  const double latest = lead == Lead::kCommitted
+                            ? kLaterThanPromised * (request.previous->t_end() - request.t0)
+                            : std::numeric_limits<double>::infinity();
   binder_.Begin(candidate->pair.curve.segments() + 3);
   pressure_ = {};
   double blocked = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= options_.max_rebinds; ++round) {
-    const bool guide_is_known = round == 1;
-    ReplanReason reason = Bind(request, candidate->pair.curve, guide_is_known, result);
+    ReplanReason reason = Bind(request, candidate->pair.curve,
+                               round == 1 ? std::optional(lead) : std::nullopt, result);
     if (reason != ReplanReason::kNone) return reason;
-    if (!guide_is_known) pressure_.pairs *= kPressure;
+    if (round > 1) pressure_.pairs *= kPressure;
     ++result->rebinds;
     reason = SolveAndCheck(request, candidate, result);
     if (reason != ReplanReason::kNone) return reason;
+    if (candidate->pair.curve.duration() > latest) return ReplanReason::kCollisionRemains;
     // A blocked start alone is for the certificate: it may be an escape.
     const bool only_start = runs_.size() == 1 && runs_.front().at_start;
     if (runs_.empty() || only_start) {
@@ -314,6 +362,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   ++result->solves;
   candidate->solver = now_->solver;
   candidate->pairs = static_cast<int>(pairs_.size());
+  candidate->bound.clear();
   if (request.log) {
     const int guide = finder_.ways_closed();
     candidate->round = static_cast<int>(request.log->rounds.size());
@@ -323,6 +372,7 @@ ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate
   if (!now_->solver.usable()) return ReplanReason::kSolverFailed;
   now_->start.y = now_->solver.x;
   problem.Curve(now_->start.y, &candidate->pair.curve);
+  if (!pairs_.empty()) binder_.Remember(candidate->pair.curve, &candidate->bound);
   candidate->solved = true;
   {
     StageTimer timer(&result->times.check, StageTimer::kWhileLogged);
@@ -363,14 +413,15 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
                                               : ReplanReason::kLimitsExceeded;
 }
 
-/// In the first round guide_ is the way past all that is in the way. What is blocked later gets guides
-/// of its own: corners that the curve cuts.
+/// In the first round guide_ is the way past all that is in the way, or the committed plan's parts are bound again.
+/// What is blocked otherwise gets guides of its own: corners that the curve cuts.
 ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
-                               bool guide_is_known, ReplanResult* result) {
+                               std::optional<Lead> lead, ReplanResult* result) {
   binder_.Start(curve);
+  if (lead == Lead::kCommitted) binder_.Recall(curve, *request.bound);
   for (BlockedRun& run : runs_) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
-    if (!guide_is_known) {
+    if (lead != Lead::kGuide) {
       const ReplanReason reason =
           FindGuide(request, curve, /*local=*/!request.at_rest, &run, result);
       // A corner that cannot be looked past is one that a slower plan may not cut.

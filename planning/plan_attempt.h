@@ -34,8 +34,10 @@ struct AttemptRequest {
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   PairEnd pair_end = PairEnd::kRest;
   bool at_rest = false;                      ///< there is time to look for long ways round
-  const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice
-  AttemptLog* log = nullptr;                 ///< filled if not null (allocates)
+  const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice ...
+  const BoundParts* bound = nullptr;         ///< ... and what it was bound to
+  bool looks = true;  ///< for the best way anew; else what is committed is kept while it holds
+  AttemptLog* log = nullptr;  ///< filled if not null (allocates)
 };
 
 /// Solve, check the whole curve, bind pairs where it is blocked, solve again, until it is clear or
@@ -71,10 +73,13 @@ class PlanAttempt {
     std::optional<Certificate> certificate;
     solvers::SolverSummary solver;
     int pairs = 0;
+    BoundParts bound;
     bool solved = false;
     int round = -1;  // of the log
     ReplanReason reason = ReplanReason::kNone;
   };
+
+  void Clear(Candidate* candidate) const;
 
   /// Factors on weights.
   struct Pressure {
@@ -88,15 +93,19 @@ class PlanAttempt {
   ReplanReason Refine(const AttemptRequest& request, ReplanResult* result);
   bool ObstacleNear(const AttemptRequest& request) const;
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason KeepCommitted(const AttemptRequest& request, ReplanResult* result);
   ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
   ReplanReason SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
                              ReplanResult* result);
   ReplanReason KeepLimits(const AttemptRequest& request, Candidate* candidate,
                           ReplanResult* result);
   void Postpone(const BlockedRun& span, AttemptRequest* request);
-  ReplanReason Follow(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
-  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve, bool guide_is_known,
-                    ReplanResult* result);
+  /// What the pairs of the first round lead along.
+  enum class Lead { kGuide, kCommitted };
+  ReplanReason Follow(const AttemptRequest& request, Lead lead, Candidate* candidate,
+                      ReplanResult* result);
+  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve,
+                    std::optional<Lead> lead, ReplanResult* result);
   ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
   ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve, bool local,
                          BlockedRun* run, ReplanResult* result);

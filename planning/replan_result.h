@@ -13,6 +13,7 @@
 
 #include "touchdown/estimation/pad_prediction.h"
 #include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/planning/bound_part.h"
 #include "touchdown/planning/certificate.h"
 #include "touchdown/planning/endpoint.h"
 #include "touchdown/planning/flight_pair.h"
@@ -160,6 +161,7 @@ struct ReplanResult : FlightPair {
   std::optional<Eigen::Vector3d> unseen_W;
   PathList guide_paths;           ///< A* paths of this step
   int pairs = 0;                  ///< {p, v} pairs bound at the end
+  BoundParts bound;               ///< what of that plan they bind
   int solves = 0;                 ///< solver calls
   int rebinds = 0;                ///< of these, after a re-binding
   solvers::SolverSummary solver;  ///< of the last solve of that plan

@@ -29,6 +29,7 @@ constexpr double kLaterArrival = 1.05;  // ... and while the pad's end is blocke
 constexpr double kLongestGrid = 1.2;    // segments are for so many times the first arrival at most
 constexpr int kRescueGuides = 2;        // ways around an obstacle that later attempts try
 constexpr int kGuidesAtRest = 4;        // ... and from rest
+constexpr double kLookEvery = 0.5;      // for other ways than the committed one [s]
 constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter replaces the arrival
 constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;         // room for those of one step
@@ -55,6 +56,9 @@ class Replanner::Impl {
       curve->Reserve(PlanAttempt::kMostControlPoints);
     }
     result_.guide_paths.Reserve(kUsualPaths, kUsualPathPoints);
+    for (BoundParts* parts : {&bound_, &result_.bound}) {
+      parts->reserve(PlanAttempt::kMostControlPoints);
+    }
   }
 
   void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }
@@ -125,6 +129,8 @@ class Replanner::Impl {
   UnseenZone unseen_;
   bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
   bool around_unseen_ = false;   // ... and it led around cells that were not seen
+  BoundParts bound_;             // what of it is bound to free space
+  double looked_t_ = 0.0;        // when other ways were last looked for [s]
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
   std::optional<Eigen::Vector3d> looks_at_W_;  // the committed curve leads to where it is in sight
@@ -166,6 +172,8 @@ ReplannerState Replanner::Impl::State() const {
   state.next = next_;
   state.planned = planned_before_;
   state.around_unseen = around_unseen_;
+  state.bound = bound_;
+  state.looked_t = looked_t_;
   state.looks_at_W = looks_at_W_;
   if (climbing_ >= 0.0) state.climb = climbing_;
   if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
@@ -181,6 +189,8 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   takes_over_ = next_.curve.t0();
   planned_before_ = state.planned;
   around_unseen_ = state.around_unseen;
+  bound_ = state.bound;
+  looked_t_ = state.looked_t;
   looks_at_W_ = state.looks_at_W;
   climbing_ = state.climb.value_or(-1.0);
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
@@ -267,6 +277,7 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
+    bound_ = result_.bound;
     Commit(input.t_start);
     result_.unseen_W = NeededNext(input, HullIn(strip_, input.pad));
     return result_;
@@ -483,6 +494,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_.curve : nullptr;
+    request.bound = &bound_;
+    request.looks = i > 0 || result_.from_odometry || input.t_start - looked_t_ >= kLookEvery;
+    if (request.looks) looked_t_ = input.t_start;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);
     if (reason == ReplanReason::kNone) {

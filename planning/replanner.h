@@ -16,12 +16,14 @@ namespace touchdown::planning {
 /// All that a replanner remembers from one step to the next. Plain data: with the same options, map
 /// and input the next step gives the same bits.
 struct ReplannerState {
-  FlightPair current;           ///< flown before `next` takes over
-  FlightPair next;              ///< committed
-  bool planned = false;         ///< `next` is a plan to the pad: its arrival is kept ...
-  bool around_unseen = false;   ///< ... and it led around cells that were not seen
+  FlightPair current;          ///< flown before `next` takes over
+  FlightPair next;             ///< committed
+  bool planned = false;        ///< `next` is a plan to the pad: its arrival is kept ...
+  bool around_unseen = false;  ///< ... and it led around cells that were not seen
+  BoundParts bound;            ///< what of it is bound to free space
+  double looked_t = 0.0;       ///< when other ways were last looked for [s]
   std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
-  std::optional<double> climb;  ///< `next` is the caller's rest with this climb [m]
+  std::optional<double> climb;                ///< `next` is the caller's rest with this climb [m]
   std::optional<double>
       strip_t;  ///< when the strip over the pad was last known [s], and the strip:
   Eigen::Vector2d strip_from = Eigen::Vector2d::Zero();  ///< in W [m]

@@ -122,5 +122,45 @@ TEST(PairBinder, RefusesWhatItCannotHold) {
   EXPECT_THROW(binder.Begin(PairBinder::kMostControlPoints + 1), std::invalid_argument);
 }
 
+TEST(PairBinder, WhatWasBoundIsBoundAgainOnTheRestOfTheCurve) {
+  Wall wall;
+  PairBinder binder{LandingProblemOptions()};
+  binder.Begin(kPoints);
+  binder.Start(wall.curve);
+  binder.Follow(wall.curve, wall.runs.front(), wall.guide, wall.space);
+  binder.AddCorner(wall.curve, wall.runs.front(), wall.guide, wall.space);
+  std::vector<ObstaclePair> pairs;
+  binder.Bind(wall.space, &pairs);
+  const std::set<int> before = ControlPointsOf(pairs);
+  BoundParts parts;
+  binder.Remember(wall.curve, &parts);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_LT(parts[0].from, parts[0].to);
+  EXPECT_EQ(parts[1].from, parts[1].to);
+
+  // Two intervals later, on a curve that keeps off the wall.
+  constexpr int kGone = 2;
+  ControlPoints rest = wall.curve.control_points().rightCols(kPoints - kGone);
+  rest.row(1).array() += 0.5;
+  const UniformBspline later(rest, kInterval, kGone * kInterval);
+  binder.Begin(kPoints - kGone);
+  binder.Start(later);
+  binder.Recall(later, parts);
+  binder.Bind(wall.space, &pairs);
+  std::set<int> after;
+  for (const int i : ControlPointsOf(pairs)) after.insert(i + kGone);
+  EXPECT_EQ(after, before);
+  for (const ObstaclePair& pair : pairs) {  // to the side on which the curve is
+    const double t = later.t0() + (pair.control_point - 1) * kInterval;
+    EXPECT_GT((later.Position(t) - pair.p).dot(pair.v), 0.0);
+  }
+  // What is over is forgotten.
+  binder.Begin(kPoints - kGone);
+  binder.Start(later);
+  binder.Recall(later, {{-1.0, -0.5}, {-2.0, -2.0}});
+  binder.Bind(wall.space, &pairs);
+  EXPECT_TRUE(pairs.empty());
+}
+
 }  // namespace
 }  // namespace touchdown::planning

@@ -88,6 +88,45 @@ TEST(ReplannerGuides, ASideOnceFlownIsKept) {
   }
 }
 
+// Between two looks for other ways a plan that holds costs one solve and no search, and another step is as a
+// replanner finds it that was given the same memory.
+TEST(ReplannerGuides, APlanThatHoldsCostsOneSolve) {
+  Draw draw(43);
+  int steps = 0, solves = 0, looks = 0;
+  for (int trial = 0; trial < 10; ++trial) {
+    OccupancyMap map = ObservedMap();
+    for (double dy = -0.4; dy <= 0.4; dy += 0.4) {
+      AddPillar(0.0, draw.Uniform(-0.3, 0.3) + dy, &map);
+    }
+    const ArcPad pad({4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    ReplannerOptions options = WithGuides(2);
+    options.arrival = ArrivalMode::kFree;
+    Replanner replanner(options, solvers::StandardBackends());
+    Replanner other(options, solvers::StandardBackends());
+    FlyAlong({-4.0, 0.0, 1.6}, {1.0, 0.0, 0.0}, &replanner);
+    for (double t = 0.0; t < 1.45; t += 0.1) {
+      ReplanInput input = Input(replanner.Reference(t).p_WB, pad, t);
+      input.vehicle.v_WB = replanner.Reference(t).v_WB;
+      const ReplannerState memory = replanner.state();
+      const ReplanResult& result = replanner.Replan(input, map);
+      ASSERT_EQ(result.status, ReplanStatus::kPlanned) << t;
+      other.Restore(memory);
+      const ReplanResult& again = other.Replan(input, map);
+      ASSERT_EQ(again.curve.control_points(), result.curve.control_points()) << t;
+      if (replanner.state().looked_t == t) {
+        ++looks;
+        continue;
+      }
+      ++steps;
+      solves += result.solves;
+      EXPECT_TRUE(result.guide_paths.empty()) << t;
+    }
+  }
+  EXPECT_EQ(looks, 30);
+  EXPECT_EQ(steps, 120);
+  EXPECT_LE(solves, 140);
+}
+
 // The end of a wall comes into sight bit by bit. What is flown moves with it, without a search for another
 // way and without trying another arrival.
 TEST(ReplannerGuides, AWallThatTurnsOutLongerMovesTheWay) {

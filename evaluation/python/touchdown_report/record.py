@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "10"
+SUPPORTED_VERSION = "11"
 
 
 class RecordError(Exception):
