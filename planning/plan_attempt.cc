@@ -25,11 +25,9 @@ constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded gr
 constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit
 constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
-constexpr double kLeastClosing =
-    0.1;  // share of the speed limit at which an end ahead is caught up with
-constexpr double kLongerWay = 1.05;  // than the first way around: another is not followed then
-constexpr double kLaterThanPromised =
-    1.06;                             // share of the time left: what is committed is not kept then
+constexpr double kLongerWay = 1.05;     // than the first way around: another is not followed then
+constexpr double kLatestKept =
+    1.06;  // of the time left: a plan that would arrive later is not kept
 constexpr double kMuchCheaper = 0.8;  // share of the cost that makes a change of side worth while
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
@@ -297,7 +295,7 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Lead lead, Candidate* candidate,
                                  ReplanResult* result) {
   const double latest = lead == Lead::kCommitted
-                            ? kLaterThanPromised * (request.previous->t_end() - request.t0)
+                            ? kLatestKept * (request.previous->t_end() - request.t0)
                             : std::numeric_limits<double>::infinity();
   binder_.Begin(candidate->pair.curve.segments() + 3);
   pressure_ = {};
