@@ -10,6 +10,7 @@
 #include "touchdown/evaluation/field_map.h"
 #include "touchdown/evaluation/motion_search.h"
 #include "touchdown/evaluation/oracle_book.h"
+#include "touchdown/evaluation/scene_sets.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -139,6 +140,22 @@ TEST_F(OracleBookFile, IsRefusedWithItsLine) {
   EXPECT_TRUE(refused("slits,A,one,ppp"));
   EXPECT_TRUE(refused("slits,A,1,ppq"));
   EXPECT_FALSE(refused("slits,A,1,ppx"));
+}
+
+// The verdicts that are shipped are the oracle's, of the scenes that are drawn today.
+TEST(OracleBook, TheShippedOneSaysWhatTheOracleDoes) {
+  const OracleBook book = StandardOracleBook();
+  for (const std::string& set : SceneSetNames()) {
+    const SceneOptions options = Of(set, "C");
+    PlanOracle oracle(SceneReplannerOptions(options, Base()), solvers::StandardBackends());
+    for (const int index : {0, 299}) {
+      const auto verdict = book.Find(options, index);
+      ASSERT_TRUE(verdict) << set;
+      const OracleAnswer answer = oracle.Ask(DrawReplanScene(options, index));
+      EXPECT_EQ(verdict->found, answer.plan.has_value()) << set << ' ' << index;
+      EXPECT_EQ(verdict->found_by, answer.found_by) << set << ' ' << index;
+    }
+  }
 }
 
 }  // namespace
