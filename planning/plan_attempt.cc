@@ -26,9 +26,8 @@ constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a 
 constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
 constexpr double kLongerWay = 1.05;     // than the first way around: another is not followed then
-constexpr double kLatestKept =
-    1.06;  // of the time left: a plan that would arrive later is not kept
-constexpr double kMuchCheaper = 0.8;  // share of the cost that makes a change of side worth while
+constexpr double kLatestKept = 1.06;    // of the time left: what arrives later is not kept
+constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
 double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
@@ -294,9 +293,10 @@ void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
 /// blocked. What is kept may not arrive much later than was promised.
 ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Lead lead, Candidate* candidate,
                                  ReplanResult* result) {
-  const double latest = lead == Lead::kCommitted
-                            ? kLatestKept * (request.previous->t_end() - request.t0)
-                            : std::numeric_limits<double>::infinity();
+  const double latest =
+      lead == Lead::kCommitted
+          ? kLatestKept * std::max(request.duration, request.previous->t_end() - request.t0)
+          : std::numeric_limits<double>::infinity();
   binder_.Begin(candidate->pair.curve.segments() + 3);
   pressure_ = {};
   double blocked = std::numeric_limits<double>::infinity();

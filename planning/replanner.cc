@@ -495,7 +495,9 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_.curve : nullptr;
     request.bound = &bound_;
-    request.looks = i > 0 || result_.from_odometry || input.t_start - looked_t_ >= kLookEvery;
+    // On the way to contact as well: what was bound before would push the vehicle there.
+    request.looks = request.previous == nullptr || result_.from_odometry ||
+                    input.endpoint.leads_to_contact() || input.t_start - looked_t_ >= kLookEvery;
     if (request.looks) looked_t_ = input.t_start;
     request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
     reason = attempt_.Run(request, &result_);

@@ -149,7 +149,10 @@ TEST(PairBinder, WhatWasBoundIsBoundAgainOnTheRestOfTheCurve) {
   binder.Bind(wall.space, &pairs);
   std::set<int> after;
   for (const int i : ControlPointsOf(pairs)) after.insert(i + kGone);
-  EXPECT_EQ(after, before);
+  // What needed no pairs on the way along the guide may need some here.
+  EXPECT_TRUE(std::includes(after.begin(), after.end(), before.begin(), before.end()));
+  EXPECT_EQ(*after.begin(), *before.begin());
+  EXPECT_EQ(*after.rbegin(), *before.rbegin());
   for (const ObstaclePair& pair : pairs) {  // to the side on which the curve is
     const double t = later.t0() + (pair.control_point - 1) * kInterval;
     EXPECT_GT((later.Position(t) - pair.p).dot(pair.v), 0.0);

@@ -113,7 +113,7 @@ TEST(ReplannerGuides, APlanThatHoldsCostsOneSolve) {
       other.Restore(memory);
       const ReplanResult& again = other.Replan(input, map);
       ASSERT_EQ(again.curve.control_points(), result.curve.control_points()) << t;
-      if (replanner.state().looked_t == t) {
+      if (replanner.state().looked_t == input.t_start) {
         ++looks;
         continue;
       }
