@@ -179,9 +179,6 @@ std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& row
         "  {} landed without a ratio to T*: they once exceeded a limit that T* keeps to\n",
         without);
   }
-  if (const std::vector<double> times = ReplanTimes(rows); !times.empty()) {
-    text += fmt::format("  replanning steps: {}\n", SlowStepsText(times, LateSteps(rows)));
-  }
   std::map<std::string, std::vector<const SweepRow*>> failures;
   for (const SweepRow& row : rows) {
     if (!row.result.succeeded()) failures[ToString(row.result.outcome)].push_back(&row);
