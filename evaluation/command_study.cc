@@ -47,6 +47,9 @@ struct StudyArguments {
 
 void RunSafety(const StudyArguments& arguments, const Registries& registries,
                std::vector<ReplanStudyPart>* parts) {
+  const auto verdict = [book = StandardOracleBook()](const SceneOptions& scenes, int index) {
+    return book.Find(scenes, index);
+  };
   for (const std::string& set : arguments.sets) {
     for (const std::string& kind : arguments.kinds) {
       ReplanStudyPart part;
@@ -54,9 +57,7 @@ void RunSafety(const StudyArguments& arguments, const Registries& registries,
       part.options = arguments.options;
       part.options.scenes.set = set;
       part.options.scenes.kind = SceneKindNamed(kind);
-      part.options.verdict = [book = StandardOracleBook()](const SceneOptions& scenes, int index) {
-        return book.Find(scenes, index);
-      };
+      part.options.verdict = verdict;
       part.rows = RunReplanStudy(
           part.options, registries.backends,
           Progress({.things = "scenes", .of = fmt::format("{}, kind {}", set, kind)}));

@@ -33,8 +33,8 @@ constexpr double kLimitPressure = 4.0;
 constexpr int kLimitRounds = 5;
 constexpr int kPathExpansions = 300000;
 constexpr int kLocalExpansions = 20000;
-constexpr double kSegmentShares[] = {0.67, 0.45, 1.0};           // of the longest segment of a plan
-constexpr double kLongestSegment = 0.75, kSlowestSegment = 0.3;  // as those of a plan [m, s]
+constexpr double kSegmentShares[] = {planning::kFineSegments, 0.45,
+                                     1.0};  // of the longest segment of a plan
 
 planning::ReplannerOptions OwnFormulation(planning::ReplannerOptions options) {
   options.backend = "banded";
@@ -192,15 +192,14 @@ bool PlanOracle::Impl::TryMotions() {
 }
 
 bool PlanOracle::Impl::TryWay(const TimedWay& way, double T, const char* name) {
-  const double longest = std::min(kSlowestSegment, kLongestSegment / options_.limits.speed);
   int last = 0;
   for (const double share : kSegmentShares) {
-    const int wanted = static_cast<int>(std::ceil(T / (share * longest)));
-    const int segments = std::clamp((wanted + 3) / 4 * 4, 12, 128);
+    const int segments = planning::SegmentsFor(T, options_.limits, share);
     if (segments == last) continue;
     last = segments;
     ++answer_.tries;
     if (!Polish(way, segments, T)) continue;
+    answer_.found = true;
     answer_.found_by = name;
     return true;
   }

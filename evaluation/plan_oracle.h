@@ -11,15 +11,19 @@
 
 namespace touchdown::evaluation {
 
-/// What the oracle says of a scene. A plan that it found has the certificate of plans that are flown; that it
-/// found none proves nothing.
-struct OracleAnswer {
-  std::optional<planning::UniformBspline> plan;
-  std::string found_by;  ///< "path", "wide path", "motion"; empty: no plan
-  int tries = 0;         ///< ways times arrivals times segments that were tried
-  int solves = 0;
+/// What the oracle says of a scene. That it found no plan proves nothing.
+struct OracleVerdict {
+  bool found = false;        ///< there is a plan
+  std::string found_by;      ///< "path", "wide path", "motion"; empty: no plan
   bool end_blocked = false;  ///< the end is in an obstacle at every arrival that was tried
   bool cannot_stop = false;  ///< braking from the start meets an obstacle
+  int solves = 0;
+};
+
+/// With the plan that it found, which has the certificate of plans that are flown.
+struct OracleAnswer : OracleVerdict {
+  std::optional<planning::UniformBspline> plan;
+  int tries = 0;  ///< ways times arrivals times segments that were tried
 };
 
 /// Tries many ways around obstacles, arrival times and segments, each with many rounds of binding; takes

@@ -113,9 +113,7 @@ class SceneAsker {
     if (index == 0) replanner_.Replan(first, *scene.map);  // pays for pages, caches and lazy set-up
     rows->push_back(Ask(scene, SceneStep::kFirst, *scene.map, AskAt(scene, &replanner_), {}));
     if (oracle_) {
-      const OracleAnswer answer = oracle_->Ask(scene);
-      rows->back().oracle = {answer.plan.has_value(), answer.found_by, answer.end_blocked,
-                             answer.cannot_stop, answer.solves};
+      rows->back().oracle = oracle_->Ask(scene);
     } else if (options_.verdict) {
       rows->back().oracle = options_.verdict(options_.scenes, index);
     }

@@ -17,15 +17,6 @@
 
 namespace touchdown::evaluation {
 
-/// What the oracle says of a scene, without its plan.
-struct OracleVerdict {
-  bool found = false;        ///< there is a plan
-  std::string found_by;      ///< the sort of way that led to it
-  bool end_blocked = false;  ///< why there may be none: the end is in an obstacle ...
-  bool cannot_stop = false;  ///< ... or the start leaves no time to brake
-  int solves = 0;
-};
-
 struct ReplanStudyOptions {
   SceneOptions scenes;
   planning::ReplannerOptions replanner;

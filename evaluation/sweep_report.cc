@@ -134,12 +134,6 @@ std::vector<double> ReplanTimes(const std::vector<SweepRow>& rows) {
   return times;
 }
 
-int LateSteps(const std::vector<SweepRow>& rows) {
-  int late = 0;
-  for (const SweepRow& row : rows) late += row.result.timing.deadline_misses;
-  return late;
-}
-
 Json TrialJson(const SweepRow& row) {
   Json json = LandJson(row.trial.scenario, row.result);
   json.erase("wall_clock");
@@ -225,13 +219,15 @@ Json SweepJson(const Campaign& campaign, const std::vector<SweepRow>& rows) {
   json["results"] = Json::array();
   double wall = 0.0;
   double simulated = 0.0;
+  int misses = 0;
   for (const SweepRow& row : rows) {
     json["results"].push_back(TrialJson(row));
     wall += row.result.timing.wall_s;
     simulated += row.result.timing.simulated_s;
+    misses += row.result.timing.deadline_misses;
   }
   json["wall_clock"] = {{"replan_latency_ms", QuantilesJson(ReplanTimes(rows))},
-                        {"deadline_misses", LateSteps(rows)},
+                        {"deadline_misses", misses},
                         {"realtime_factor", wall > 0.0 ? Json(simulated / wall) : Json()}};
   return json;
 }

@@ -2,8 +2,6 @@
 // The machine-readable result of one trial. Fields that do not apply are null, never left out.
 #include "touchdown/evaluation/trial_json.h"
 
-#include <fmt/format.h>
-
 #include "touchdown/evaluation/degrees.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
@@ -142,11 +140,6 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["seed"] = result.seed;
   json["wall_clock"] = WallClockJson(result.timing);
   return json;
-}
-
-std::string SlowStepsText(const std::vector<double>& wall_ms, int late) {
-  return fmt::format("largest {:.2f} ms, {} of {} longer than their latency",
-                     *Quantile(wall_ms, 1.0), late, wall_ms.size());
 }
 
 }  // namespace touchdown::evaluation

@@ -56,11 +56,11 @@ class PairBinder {
     Eigen::Vector3d p;
   };
 
+  void BindCorner(const UniformBspline& curve, double t, const Eigen::Vector3d& p);
+
   Corridor corridor_;
   int planes_;     // of a control point, besides those for floor and ceiling
   int per_point_;  // with those
-  void BindCorner(const UniformBspline& curve, double t, const Eigen::Vector3d& p);
-
   std::vector<char> bound_;
   std::array<Eigen::Vector3d, kMostControlPoints> reference_;  // where control points are wanted
   std::vector<Corner> corners_;

@@ -19,7 +19,6 @@ constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 5e-
                                                            {"function_tolerance", 1e-5}};
 constexpr double kLongestSegment = 0.75;  // at full speed [m]
 constexpr double kSlowestSegment = 0.30;  // [s]
-constexpr double kFine = 0.67;            // of these
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = PairBinder::kMostControlPoints - 3;
 constexpr int kSegmentStep = 4;  // keeps the number of prepared problems small
@@ -46,9 +45,8 @@ PreparedProblem Prepare(const ReplannerOptions& options, const solvers::BackendR
 
 }  // namespace
 
-int SegmentsFor(double duration, const Limits& limits, bool fine) {
-  const double coarse = std::min(kSlowestSegment, kLongestSegment / limits.speed);
-  const double interval = fine ? kFine * coarse : coarse;
+int SegmentsFor(double duration, const Limits& limits, double share) {
+  const double interval = share * std::min(kSlowestSegment, kLongestSegment / limits.speed);
   const int wanted = static_cast<int>(std::ceil(duration / interval));
   const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
   return std::clamp(rounded, kFewestSegments, kMostSegments);

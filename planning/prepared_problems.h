@@ -14,8 +14,12 @@ namespace touchdown::planning {
 /// The options of the landing problems that a replanner with these options solves.
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
 
-/// Number of segments of a plan that takes so long [s] at these limits: few, or `fine` half as many again.
-int SegmentsFor(double duration, const Limits& limits, bool fine);
+/// Number of segments of a plan that takes so long [s] at these limits; each is at most this share of the
+/// longest segment that a plan may have.
+int SegmentsFor(double duration, const Limits& limits, double share);
+
+/// The share where an obstacle is near.
+inline constexpr double kFineSegments = 0.67;
 
 /// A landing problem and its backend, to be solved again and again.
 struct PreparedProblem {

@@ -482,8 +482,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
     const double longest = std::min(T, kLongestGrid * std::max(first, fresh));
-    request.segments = SegmentsFor(longest, limits_, false);
-    request.near_segments = SegmentsFor(longest, limits_, true);
+    request.segments = SegmentsFor(longest, limits_, 1.0);
+    request.near_segments = SegmentsFor(longest, limits_, kFineSegments);
     request.space = &space;
     const HullSpace hull = HullIn(space, input.pad);
     request.hull = &hull;
