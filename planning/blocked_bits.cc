@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of the map's inflated grid, the floor, the ceiling and the barriers as words of bits; and of these
-// the blocks of 2 x 2 x 2 cells: four rows laid over each other, then neighbouring bits.
+// Rows of the map's inflated grid, the floor, the ceiling and the barriers as words of bits.
 
 #include "touchdown/planning/blocked_bits.h"
 
@@ -13,31 +12,17 @@ namespace {
 
 constexpr int kWord = 64;  // cells
 
-/// The bits at even places of (bits | bits >> 1), brought together in the lower half.
-std::uint64_t PairsToBits(std::uint64_t bits) {
-  bits = (bits | bits >> 1) & 0x5555'5555'5555'5555;
-  bits = (bits | bits >> 1) & 0x3333'3333'3333'3333;
-  bits = (bits | bits >> 2) & 0x0f0f'0f0f'0f0f'0f0f;
-  bits = (bits | bits >> 4) & 0x00ff'00ff'00ff'00ff;
-  bits = (bits | bits >> 8) & 0x0000'ffff'0000'ffff;
-  return (bits | bits >> 16) & 0x0000'0000'ffff'ffff;
-}
-
 }  // namespace
 
 void BlockedBits::Reserve(const OccupancyMap& map) {
-  if (map.size() == size(Lattice::kCells)) return;
+  if (map.size() == size_) return;
   number_ = 0;
-  for (const Lattice lattice : {Lattice::kCells, Lattice::kBlocks}) {
-    Layer& l = layer(lattice);
-    const int side = lattice == Lattice::kCells ? 1 : kBlock;
-    l.size = map.size() / side;
-    l.words_per_row = (l.size.x() + kWord - 1) / kWord;
-    const auto words = static_cast<std::size_t>(l.words_per_row) *
-                       static_cast<std::size_t>(l.size.y()) * static_cast<std::size_t>(l.size.z());
-    l.words.assign(words, 0);
-    l.made.assign(words, 0);
-  }
+  size_ = map.size();
+  words_per_row_ = (size_.x() + kWord - 1) / kWord;
+  const auto words = static_cast<std::size_t>(words_per_row_) *
+                     static_cast<std::size_t>(size_.y()) * static_cast<std::size_t>(size_.z());
+  words_.assign(words, 0);
+  made_.assign(words, 0);
 }
 
 void BlockedBits::Begin(const FreeSpace& space, std::span<const Barrier> barriers) {
@@ -45,67 +30,42 @@ void BlockedBits::Begin(const FreeSpace& space, std::span<const Barrier> barrier
   space_ = space;
   barriers_ = barriers;
   if (++number_ != 0) return;
-  for (Layer& l : layers_) std::fill(l.made.begin(), l.made.end(), 0);  // wrapped around
+  std::fill(made_.begin(), made_.end(), 0);  // wrapped around
   number_ = 1;
 }
 
-std::uint64_t BlockedBits::Word(Lattice lattice, int row, int word) {
-  Layer& l = layer(lattice);
-  const auto i = static_cast<std::size_t>(row * l.words_per_row + word);
-  if (l.made[i] != number_) {
-    l.words[i] = lattice == Lattice::kCells ? OfCells(row, word) : OfBlocks(row, word);
-    l.made[i] = number_;
+std::uint64_t BlockedBits::Word(int y, int z, int word) {
+  const auto i = static_cast<std::size_t>((z * size_.y() + y) * words_per_row_ + word);
+  if (made_[i] != number_) {
+    words_[i] = Make(y, z, word);
+    made_[i] = number_;
   }
-  return l.words[i];
+  return words_[i];
 }
 
-bool BlockedBits::Blocked(Lattice lattice, const CellIndex& cell) {
-  const int row = cell.z() * size(lattice).y() + cell.y();
-  return (Word(lattice, row, cell.x() / kWord) >> (cell.x() % kWord) & 1u) != 0;
-}
-
-std::uint32_t BlockedBits::Around(Lattice lattice, const CellIndex& cell) {
-  const Layer& l = layer(lattice);
+std::uint32_t BlockedBits::Around(const CellIndex& cell) {
   const int word = cell.x() / kWord, bit = cell.x() % kWord;
   std::uint32_t around = 0;
-  for (int z = -1; z <= 1; ++z) {
-    if (cell.z() + z < 0 || cell.z() + z >= l.size.z()) continue;
-    for (int y = -1; y <= 1; ++y) {
-      if (cell.y() + y < 0 || cell.y() + y >= l.size.y()) continue;
-      const int row = (cell.z() + z) * l.size.y() + cell.y() + y;
-      std::uint64_t three = Word(lattice, row, word);
+  for (int dz = -1; dz <= 1; ++dz) {
+    const int z = cell.z() + dz;
+    if (z < 0 || z >= size_.z()) continue;
+    for (int dy = -1; dy <= 1; ++dy) {
+      const int y = cell.y() + dy;
+      if (y < 0 || y >= size_.y()) continue;
+      std::uint64_t three = Word(y, z, word);
       if (bit > 0) {
         three >>= bit - 1;
       } else {
         three <<= 1;
-        if (word > 0) three |= Word(lattice, row, word - 1) >> (kWord - 1);
+        if (word > 0) three |= Word(y, z, word - 1) >> (kWord - 1);
       }
-      if (bit == kWord - 1 && word + 1 < l.words_per_row) {
-        three |= (Word(lattice, row, word + 1) & 1u) << 2;
+      if (bit == kWord - 1 && word + 1 < words_per_row_) {
+        three |= (Word(y, z, word + 1) & 1u) << 2;
       }
-      around |= static_cast<std::uint32_t>(three & 7u) << (9 * (z + 1) + 3 * (y + 1));
+      around |= static_cast<std::uint32_t>(three & 7u) << (9 * (dz + 1) + 3 * (dy + 1));
     }
   }
   return around;
-}
-
-std::uint64_t BlockedBits::OfBlocks(int row, int word) {
-  const Layer& cells = layer(Lattice::kCells);
-  const CellIndex& size = layer(Lattice::kBlocks).size;
-  const int y = kBlock * (row % size.y()), z = kBlock * (row / size.y());
-  std::uint64_t bits = 0;
-  for (int half = 0; half < kBlock; ++half) {
-    const int from = kBlock * word + half;
-    if (from >= cells.words_per_row) break;
-    std::uint64_t over = 0;
-    for (int dz = 0; dz < kBlock; ++dz) {
-      for (int dy = 0; dy < kBlock; ++dy) {
-        over |= Word(Lattice::kCells, (z + dz) * cells.size.y() + y + dy, from);
-      }
-    }
-    bits |= PairsToBits(over) << (half * kWord / kBlock);
-  }
-  return bits;
 }
 
 /// Of the cells of a row from `first` on, those over the pad: only within the strip's box need to be asked.
@@ -155,11 +115,10 @@ std::uint64_t BlockedBits::Of(const Barrier& barrier, const CellIndex& first, in
 }
 
 /// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
-std::uint64_t BlockedBits::OfCells(int row, int word) const {
+std::uint64_t BlockedBits::Make(int y, int z, int word) const {
   const OccupancyMap& map = *space_.map;
-  const CellIndex& size = layer(Lattice::kCells).size;
-  const CellIndex first = map.origin() + CellIndex(word * kWord, row % size.y(), row / size.y());
-  const int count = std::min(kWord, size.x() - word * kWord);
+  const CellIndex first = map.origin() + CellIndex(word * kWord, y, z);
+  const int count = std::min(kWord, size_.x() - word * kWord);
   const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
   const Eigen::Vector3d centre = map.CentreOf(first);
   const double half = 0.5 * map.resolution();

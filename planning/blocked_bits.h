@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,18 +10,8 @@
 
 namespace touchdown::planning {
 
-/// Cells to a side of a block.
-inline constexpr int kBlock = 2;
-
-/// The lattices that a window is looked at on.
-enum class Lattice {
-  kCells,
-  kBlocks,  ///< kBlock cells to a side, from the window's lowest cell on; blocked if one of them is
-};
-
-/// The blocked cells of a window, or the blocked blocks of cells, as bits, 64 along x to a word. A word is
-/// made when it is first asked for: a search asks for the same cell from up to 26 sides, and only where it
-/// comes.
+/// The blocked cells of a window as bits, 64 along x to a word. A word is made when it is first asked for: a
+/// search asks for the same cell from up to 26 sides, and only where it comes.
 class BlockedBits {
  public:
   /// Makes room for this map's window, which Begin does otherwise.
@@ -32,35 +21,28 @@ class BlockedBits {
   /// to grow to a high-water mark.
   void Begin(const FreeSpace& space, std::span<const Barrier> barriers);
 
-  /// Cells of the window on a lattice.
-  const CellIndex& size(Lattice lattice) const { return layer(lattice).size; }
+  /// Cells of the window.
+  const CellIndex& size() const { return size_; }
 
-  /// The 3 x 3 x 3 cells around a cell of the lattice, counted from the window's lowest one: bit
+  /// The cells 64 `word` to 64 `word` + 63 of the row at y and z, counted from the window's lowest one. Bits
+  /// beyond the window are not set.
+  std::uint64_t Word(int y, int z, int word);
+
+  /// The 3 x 3 x 3 cells around a cell, counted from the window's lowest one: bit
   /// 9 (z + 1) + 3 (y + 1) + x + 1 for the cell at the offset (x, y, z). Out of the window: not set.
-  std::uint32_t Around(Lattice lattice, const CellIndex& cell);
-
-  /// One cell of the lattice, which must be in the window.
-  bool Blocked(Lattice lattice, const CellIndex& cell);
+  std::uint32_t Around(const CellIndex& cell);
 
  private:
-  struct Layer {
-    CellIndex size = CellIndex::Zero();
-    int words_per_row = 0;
-    std::vector<std::uint64_t> words;
-    std::vector<std::uint32_t> made;  // with which number; 0: never
-  };
-
-  const Layer& layer(Lattice lattice) const { return layers_[static_cast<std::size_t>(lattice)]; }
-  Layer& layer(Lattice lattice) { return layers_[static_cast<std::size_t>(lattice)]; }
-  std::uint64_t Word(Lattice lattice, int row, int word);
-  std::uint64_t OfCells(int row, int word) const;
+  std::uint64_t Make(int y, int z, int word) const;
   std::uint64_t OverPad(const CellIndex& first, int count) const;
   std::uint64_t Of(const Barrier& barrier, const CellIndex& first, int count) const;
-  std::uint64_t OfBlocks(int row, int word);
 
   FreeSpace space_;
   std::span<const Barrier> barriers_;
-  std::array<Layer, 2> layers_;
+  CellIndex size_ = CellIndex::Zero();
+  int words_per_row_ = 0;
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> made_;  // with which number; 0: never
   std::uint32_t number_ = 0;
 };
 

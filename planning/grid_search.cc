@@ -8,15 +8,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include <boost/heap/d_ary_heap.hpp>
-
-#include "touchdown/planning/voxel_traversal.h"
+#include "touchdown/planning/search_queue.h"
 
 namespace touchdown::planning {
 
@@ -54,45 +51,7 @@ void ForEachOnShell(const CellIndex& centre, int n, Visit&& visit) {
   }
 }
 
-/// In W [m]: the corner that its cells share. `block` counts from the window's lowest one.
-Eigen::Vector3d CentreOfBlock(const OccupancyMap& map, const CellIndex& block) {
-  const double to_middle = 0.5 * (kBlock - 1) * map.resolution();
-  return map.CentreOf(kBlock * block + map.origin()).array() + to_middle;
-}
-
 }  // namespace
-
-// Addresses, the least f first, and of these the one that came first.
-class GridSearch::Queue {
- public:
-  void Reserve(std::size_t size) { nodes_.reserve(size); }
-  void Clear() {
-    nodes_.clear();
-    order_ = 0;
-  }
-  bool empty() const { return nodes_.empty(); }
-  void Push(float f, std::uint32_t address) {
-    // The bits of positive floats are ordered as they are.
-    const auto upper = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(f)) << 32;
-    nodes_.push({upper | order_++, address});
-  }
-  std::uint32_t Pop() {
-    const std::uint32_t address = nodes_.top().address;
-    nodes_.pop();
-    return address;
-  }
-
- private:
-  struct Node {
-    std::uint64_t key;  // f, then the order of insertion
-    std::uint32_t address;
-    bool operator>(const Node& other) const { return key > other.key; }
-  };
-  // With four children a node: half the levels of a binary heap, and these are next to each other.
-  boost::heap::d_ary_heap<Node, boost::heap::arity<4>, boost::heap::compare<std::greater<Node>>>
-      nodes_;
-  std::uint32_t order_ = 0;
-};
 
 double PathLength(const GuidePath& path) {
   double length = 0.0;
@@ -100,14 +59,13 @@ double PathLength(const GuidePath& path) {
   return length;
 }
 
-GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost, bool blocks_first)
+GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
     : vertical_cost_(static_cast<float>(vertical_cost)),
       slanted_(std::sqrt(1.0f + vertical_cost_ * vertical_cost_)),
       cubic_(std::sqrt(2.0f + vertical_cost_ * vertical_cost_)),
       greed_(static_cast<float>(greed)),
       tight_cost_(static_cast<float>(tight_cost)),
-      blocks_first_(blocks_first),
-      queue_(std::make_unique<Queue>()) {
+      queue_(std::make_unique<SearchQueue>()) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
                                 ", it must be >= 1");
@@ -180,18 +138,19 @@ void GridSearch::Reserve(const OccupancyMap& map) {
 
 /// The steps that leave the window.
 std::uint32_t GridSearch::Outside(const CellIndex& cell) const {
+  const CellIndex& size = blocked_.size();
   std::uint32_t outside = 0;
   for (int axis = 0; axis < 3; ++axis) {
     if (cell[axis] == 0) outside |= kBelow[axis];
-    if (cell[axis] == size_[axis] - 1) outside |= kAbove[axis];
+    if (cell[axis] == size[axis] - 1) outside |= kAbove[axis];
   }
   return outside;
 }
 
-void GridSearch::Begin(Lattice lattice) {
-  size_ = blocked_.size(lattice);
+void GridSearch::Begin() {
+  const CellIndex& size = blocked_.size();
   for (Step& step : steps_) {
-    step.address = (step.offset.z() * size_.y() + step.offset.y()) * size_.x() + step.offset.x();
+    step.address = (step.offset.z() * size.y() + step.offset.y()) * size.x() + step.offset.x();
   }
   if (++search_ > kMostSearches) {
     std::fill(cells_.begin(), cells_.end(), Cell());
@@ -199,33 +158,6 @@ void GridSearch::Begin(Lattice lattice) {
   }
   queue_->Clear();
   way_.clear();
-}
-
-/// The nearest free block whose centre can be seen from the cell's.
-bool GridSearch::BlockNear(const FreeSpace& space, const CellIndex& cell, CellIndex* block) {
-  constexpr int kReach = 2;  // blocks
-  const OccupancyMap& map = *space.map;
-  const Eigen::Vector3d from = map.CentreOf(cell + map.origin());
-  const CellIndex around = cell / kBlock;
-  const CellIndex& size = blocked_.size(Lattice::kBlocks);
-  const auto is_free = [&](const CellIndex& c) { return !space.Blocked(c); };
-  double best = std::numeric_limits<double>::infinity();
-  const auto offer = [&](const CellIndex& candidate) {
-    if ((candidate.array() < 0).any() || (candidate.array() >= size.array()).any()) return;
-    if (blocked_.Blocked(Lattice::kBlocks, candidate)) return;
-    const Eigen::Vector3d to = CentreOfBlock(map, candidate);
-    const double distance2 = (to - from).squaredNorm();
-    if (distance2 >= best || !TraverseCells(from, to, map.resolution(), is_free)) return;
-    best = distance2;
-    *block = candidate;
-  };
-  for (int n = 0; n <= kReach; ++n) {
-    // The cell is within its own block, so that blocks n away are at least so far.
-    const double nearest = (kBlock * n - 0.5 * (kBlock - 1)) * map.resolution();
-    if (nearest > 0.0 && nearest * nearest > best) break;
-    ForEachOnShell(around, n, offer);
-  }
-  return std::isfinite(best);
 }
 
 SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& from,
@@ -243,33 +175,21 @@ SearchStatus GridSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
   // From here on cells are counted from the window's lowest one.
   start -= map.origin();
   goal -= map.origin();
-  const auto add = [&](const CellIndex& cell) {
-    path->push_back(map.CentreOf(cell + map.origin()));
-  };
-  CellIndex first, last;
-  if (blocks_first_ && BlockNear(space, start, &first) && BlockNear(space, goal, &last) &&
-      SearchOn(Lattice::kBlocks, first, last, max_expansions) == SearchStatus::kFound) {
-    add(start);
-    for (const CellIndex& block : way_) path->push_back(CentreOfBlock(map, block));
-    add(goal);
-    return SearchStatus::kFound;
-  }
-  const SearchStatus status = SearchOn(Lattice::kCells, start, goal, max_expansions);
-  for (const CellIndex& cell : way_) add(cell);
+  const SearchStatus status = SearchOn(start, goal, max_expansions);
+  for (const CellIndex& cell : way_) path->push_back(map.CentreOf(cell + map.origin()));
   return status;
 }
 
-SearchStatus GridSearch::SearchOn(Lattice lattice, const CellIndex& start, const CellIndex& goal,
+SearchStatus GridSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
                                   int max_expansions) {
-  Begin(lattice);
-  // A block beside a blocked one has more room than a cell has.
-  const float tight_cost = lattice == Lattice::kBlocks ? std::sqrt(tight_cost_) : tight_cost_;
+  Begin();
+  const CellIndex& size = blocked_.size();
   const auto address = [&](const CellIndex& cell) {
-    return static_cast<std::uint32_t>((cell.z() * size_.y() + cell.y()) * size_.x() + cell.x());
+    return static_cast<std::uint32_t>((cell.z() * size.y() + cell.y()) * size.x() + cell.x());
   };
   const auto cell_at = [&](std::uint32_t a) {
     const int i = static_cast<int>(a);
-    return CellIndex(i % size_.x(), i / size_.x() % size_.y(), i / (size_.x() * size_.y()));
+    return CellIndex(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y()));
   };
   const auto estimate = [&](const CellIndex& cell) { return greed_ * LatticeDistance(cell, goal); };
   const std::uint32_t goal_address = address(goal);
@@ -294,8 +214,8 @@ SearchStatus GridSearch::SearchOn(Lattice lattice, const CellIndex& start, const
     if (expansions_ >= max_expansions) return SearchStatus::kExpansionLimit;
     ++expansions_;
     const CellIndex cell = cell_at(here);
-    const std::uint32_t blocked = blocked_.Around(lattice, cell) & ~(1u << kSelf);
-    const float factor = blocked != 0 ? tight_cost : 1.0f;
+    const std::uint32_t blocked = blocked_.Around(cell) & ~(1u << kSelf);
+    const float factor = blocked != 0 ? tight_cost_ : 1.0f;
     const float g_here = cells_[here].g;
     std::uint32_t open = ~(blocked | Outside(cell) | 1u << kSelf) & kAllSteps;
     for (; open != 0; open &= open - 1) {

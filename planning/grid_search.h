@@ -29,15 +29,13 @@ enum class SearchStatus {
   kExpansionLimit,  ///< the budget of expansions was used up
 };
 
+class SearchQueue;
+
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + greed h, h the exact
 /// distance on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
 /// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
 /// nearest free cell within `kEndSearchRadius`. Deterministic: ties are broken by the order of
 /// insertion. Its arrays have the size of the map's window and are kept between searches.
-///
-/// With `blocks_first` it looks for a path of whole blocks of 2 x 2 x 2 free cells before one of cells: an
-/// eighth of the lattice, which matters where a goal behind an obstacle has a hollow before it to be filled,
-/// and paths keep off corners. What only fits between blocks is then found on the cells.
 class GridSearch {
  public:
   static constexpr double kEndSearchRadius = 1.5;  ///< [m]
@@ -45,8 +43,7 @@ class GridSearch {
   /// With `greed` > 1 cells near the goal come first: a path costs at most so many times the least, and
   /// is found after far fewer expansions. A step from a cell beside a blocked one costs `tight_cost`
   /// times as much: wide passages are preferred. Throws std::invalid_argument unless all are >= 1.
-  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0,
-                      bool blocks_first = false);
+  explicit GridSearch(double vertical_cost = 1.0, double greed = 1.0, double tight_cost = 1.0);
   ~GridSearch();
   /// What was moved from may only be assigned to or destroyed.
   GridSearch(GridSearch&&) noexcept;
@@ -55,9 +52,8 @@ class GridSearch {
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
 
-  /// Finds a path of cell centres, or of block centres between the cells of its ends, from `from` to `to`,
-  /// the (moved) ends included. Expands at most `max_expansions` cells and blocks. Allocates only to grow
-  /// to a high-water mark.
+  /// Finds a path of cell centres from `from` to `to`, the (moved) ends included. Expands at most
+  /// `max_expansions` cells. Allocates only to grow to a high-water mark.
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
                       std::span<const Barrier> barriers = {});
@@ -69,8 +65,6 @@ class GridSearch {
   int expansions() const { return expansions_; }
 
  private:
-  class Queue;  // of the cells to be expanded
-
   static constexpr std::uint32_t kMostSearches = (1u << 26) - 1;
   static constexpr std::uint32_t kSelf = 13;  // the middle of 27 steps: no step at all
 
@@ -91,24 +85,20 @@ class GridSearch {
     float length;
     int address;  // difference of the addresses
   };
-  SearchStatus SearchOn(Lattice lattice, const CellIndex& start, const CellIndex& goal,
-                        int max_expansions);
-  void Begin(Lattice lattice);
+  SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, int max_expansions);
+  void Begin();
   float LatticeDistance(const CellIndex& a, const CellIndex& b) const;
   std::uint32_t Outside(const CellIndex& cell) const;
-  bool BlockNear(const FreeSpace& space, const CellIndex& cell, CellIndex* block);
 
   float vertical_cost_;
   float slanted_, cubic_;  // lengths of steps up and along one axis, up and along both
   float greed_;
   float tight_cost_;
   std::array<Step, 27> steps_;  // in the order of BlockedBits::Around
-  bool blocks_first_;
   BlockedBits blocked_;
-  CellIndex size_ = CellIndex::Zero();  // of the lattice that is searched
   std::vector<Cell> cells_;
-  std::unique_ptr<Queue> queue_;
-  std::vector<CellIndex> way_;  // what a search found, of its lattice
+  std::unique_ptr<SearchQueue> queue_;
+  std::vector<CellIndex> way_;  // what a search found
   std::uint32_t search_ = 0;
   int expansions_ = 0;
 };

@@ -125,22 +125,31 @@ void PairBinder::Remember(const UniformBspline& curve, BoundParts* parts) const 
   }
 }
 
-void PairBinder::Recall(const UniformBspline& curve, const BoundParts& parts) {
+void PairBinder::Lead(const TimedWay& way, const BoundParts& more) {
   const int n = static_cast<int>(bound_.size());
-  for (const BoundPart& part : parts) {
+  const double interval = (way.t_end() - way.t0()) / (n - kFirstFree);
+  const auto time_of = [&](int i) { return way.t0() + (i - 1) * interval; };
+  const auto bind = [&](double from, double to) {
+    for (int i = kFirstFree; i < n - kFirstFree; ++i) {
+      bound_[i] |= time_of(i) >= from && time_of(i) <= to;
+    }
+  };
+  for (int i = 0; i < n; ++i) reference_[i] = way.At(time_of(i));
+  corners_.clear();
+  const double beside = kBoundBeside * interval;
+  for (const BoundPart& part : way.bound()) bind(part.from - beside, part.to + beside);
+  for (const BoundPart& part : more) {
     if (part.from < part.to) {
-      for (int i = kFirstFree; i < n - kFirstFree; ++i) {
-        const double t = TimeOf(curve, i);
-        bound_[i] |= t >= part.from && t <= part.to;
-      }
-    } else if (part.from >= curve.t0() && part.from <= curve.t_end()) {
-      BindCorner(curve, part.from, curve.Position(part.from));
+      bind(part.from, part.to);
+    } else if (part.from >= way.t0() && part.from <= way.t_end()) {
+      BindCorner((part.from - way.t0()) / interval, part.from, way.At(part.from));
     }
   }
 }
 
-void PairBinder::BindCorner(const UniformBspline& curve, double t, const Eigen::Vector3d& p) {
-  corners_.push_back({t, static_cast<int>((t - curve.t0()) / curve.interval()) + 1, p});
+/// @param place on the curve [intervals].
+void PairBinder::BindCorner(double place, double t, const Eigen::Vector3d& p) {
+  corners_.push_back({t, static_cast<int>(place) + 1, p});
 }
 
 void PairBinder::Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
@@ -162,7 +171,7 @@ void PairBinder::AddCorner(const UniformBspline& curve, const BlockedRun& run,
                            const GuidePath& guide, const FreeSpace& space) {
   const double t = 0.5 * (run.t_in + run.t_out);
   const Eigen::Vector3d p = BesideObstacle(space, PathWalk(guide).At(0.5), curve.Position(t));
-  BindCorner(curve, t, p);
+  BindCorner((t - curve.t0()) / curve.interval(), t, p);
 }
 
 void PairBinder::Bind(const FreeSpace& space, std::vector<ObstaclePair>* pairs) {

@@ -7,8 +7,8 @@
 #include "touchdown/planning/bound_part.h"
 #include "touchdown/planning/corridor.h"
 #include "touchdown/planning/curve_check.h"
-#include "touchdown/planning/grid_search.h"
 #include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/timed_way.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {
@@ -27,16 +27,18 @@ class PairBinder {
   /// Nothing is bound any more. Throws std::invalid_argument for more than kMostControlPoints.
   void Begin(int control_points);
 
-  /// A round begins: the control points are wanted on this curve.
+  /// The first round of a way: its parts that have to be bound are, with what is beside them, and `more` of its
+  /// time. The control points are wanted on the way, in even steps of its time.
+  void Lead(const TimedWay& way, const BoundParts& more);
+
+  /// A later round: the control points are wanted on this curve.
   void Start(const UniformBspline& curve);
 
   /// What is bound now, in time on this curve. Does not allocate once `parts` has room for kMostControlPoints.
   void Remember(const UniformBspline& curve, BoundParts* parts) const;
-  /// Binds that again on another curve: the control points are wanted where they are on it.
-  void Recall(const UniformBspline& curve, const BoundParts& parts);
 
   /// Where the curve is blocked in `run`, its control points are wanted along the guide, which has one
-  /// point at least.
+  /// point at least, as near to the curve as the obstacle allows.
   void Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
               const FreeSpace& space);
 
@@ -56,7 +58,7 @@ class PairBinder {
     Eigen::Vector3d p;
   };
 
-  void BindCorner(const UniformBspline& curve, double t, const Eigen::Vector3d& p);
+  void BindCorner(double place, double t, const Eigen::Vector3d& p);
 
   Corridor corridor_;
   int planes_;     // of a control point, besides those for floor and ceiling

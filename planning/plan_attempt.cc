@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One attempt at a plan: solve without obstacles, then find a guide past what is in the way, bind the
-// control points to free space along it, solve and check, until the whole curve is clear. Pairs start
-// empty at every attempt, so that none outlives the obstacle it was made for; the side of an obstacle is
-// kept by taking the committed curve as the guide, and only where it knows no way a new A* path.
+// One attempt at a plan, top to bottom:
+//   Pose    sets the problem's ends, or refuses them;
+//   Solve   without obstacles, which nearly always says how the plan looks;
+//   KeepWay, LayWay  lay a way past all that blocks that curve;
+//   Follow  binds control points to free space along the way, solves, binds what is still blocked, until the
+//           whole curve is clear;
+//   Finish  certifies it.
+// Pairs are bound to the map of now at every attempt, so that none outlives the obstacle it was made for. What
+// lasts is the way: the committed curve is the first that is tried.
 
 #include "touchdown/planning/plan_attempt.h"
 
@@ -25,9 +30,10 @@ constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded gr
 constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit
 constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
-constexpr double kLongerWay = 1.05;     // than the first way around: another is not followed then
+constexpr double kDearerWay = 1.05;     // than the first way around: another is not looked for then
 constexpr double kLatestKept = 1.06;    // of the time left: what arrives later is not kept
 constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
 double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
@@ -36,16 +42,11 @@ double ShareOfLimits(const Certificate& certificate, const Limits& limits) {
                   certificate.acceleration_bound / limits.acceleration);
 }
 
-double LengthOf(const UniformBspline& curve, double from, double to) {
-  constexpr int kChords = 24;
-  double length = 0.0;
-  Eigen::Vector3d last = curve.Position(from);
-  for (int i = 1; i <= kChords; ++i) {
-    const Eigen::Vector3d p = curve.Position(from + i * (to - from) / kChords);
-    length += (p - last).norm();
-    last = p;
-  }
-  return length;
+/// [s]
+double BlockedTime(const std::vector<BlockedRun>& blocked) {
+  double sum = 0.0;
+  for (const BlockedRun& run : blocked) sum += run.t_out - run.t_in;
+  return sum;
 }
 
 }  // namespace
@@ -59,35 +60,30 @@ PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::Backend
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
   }
   // Room for all that usually comes.
-  for (Candidate* candidate : {&best_, &other_}) candidate->bound.reserve(kMostControlPoints);
-  for (GuidePath* guide : {&first_guide_, &guide_}) guide->reserve(1024);
-  pairs_.reserve(static_cast<std::size_t>(options.problem.max_pairs_per_point) *
-                 kMostControlPoints);
-  runs_.reserve(64);
-  for (UniformBspline* curve : {&first_curve_, &best_.pair.curve, &best_.pair.stop,
-                                &other_.pair.curve, &other_.pair.stop}) {
-    curve->Reserve(kMostControlPoints);
+  const auto most_pairs = static_cast<std::size_t>(options.problem.max_pairs_per_point) *
+                          static_cast<std::size_t>(kMostControlPoints);
+  for (Candidate* candidate : {&best_, &other_}) {
+    candidate->pairs.reserve(most_pairs);
+    candidate->blocked.reserve(64);
+    candidate->bound.reserve(kMostControlPoints);
+    candidate->pair.curve.Reserve(kMostControlPoints);
+    candidate->pair.stop.Reserve(kMostControlPoints);
   }
+  path_.reserve(1024);
+  first_curve_.Reserve(kMostControlPoints);
 }
 
-/// Without the terms whose weights grow from round to round.
-double PlanAttempt::CostOfShape(const solvers::SolverSummary& solver) const {
-  double cost = 0.0;
-  for (const solvers::TermCost& term : solver.cost_by_term) {
-    if (std::find(pressed_.begin(), pressed_.end(), term.name) == pressed_.end()) cost += term.cost;
-  }
-  return cost;
-}
-
-bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) const {
-  if (a.reason != ReplanReason::kNone) return false;
-  if (b.reason != ReplanReason::kNone) return true;
-  const double share = keeps_side ? kMuchCheaper : 1.0;
-  return CostOfShape(a.solver) < share * CostOfShape(b.solver);
+void PlanAttempt::Begin(Candidate* candidate) {
+  candidate->pairs.clear();
+  candidate->pressure = {};
+  candidate->blocked.clear();
+  candidate->certificate.reset();
+  candidate->bound.clear();
+  candidate->solved = false;
+  candidate->round = -1;
 }
 
 ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* result) {
-  Clear(&best_);
   best_.reason = Try(request, result);
   if (request.arrival == ArrivalMode::kFree && best_.solved)
     duration_ = best_.pair.curve.duration();
@@ -96,7 +92,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
     result->solver = best_.solver;
   }
   result->certificate = best_.certificate.value_or(Certificate());
-  result->pairs = best_.pairs;
+  result->pairs = static_cast<int>(best_.pairs.size());
   result->bound = best_.bound;
   if (request.log) {
     request.log->duration = duration_;
@@ -109,18 +105,37 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
   return best_.reason;
 }
 
-void PlanAttempt::Clear(Candidate* candidate) const {
-  candidate->certificate.reset();
-  candidate->solved = false;
-  candidate->pairs = 0;
-  candidate->bound.clear();
-  candidate->round = -1;
+ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
+  finder_.Begin(request.limits.speed);
+  kept_.Clear();
+  kept_asked_ = false;
+  // Shortly before contact there is no time for a way around.
+  const bool leads_around = options_.max_rebinds > 0 && request.pair_end != PairEnd::kContact;
+  const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
+  if (warm && leads_around && !request.looks) {
+    const ReplanReason reason = KeepCommitted(request, result);
+    if (reason == ReplanReason::kNone || reason == ReplanReason::kUnobserved) return reason;
+  }
+  Begin(&best_);
+  Posed posed;
+  ReplanReason reason = SolveWithoutPairs(request, request.segments, warm, &posed, &best_, result);
+  if (reason != ReplanReason::kNone) return reason;
+  // So near that the first control point that is free comes too late to pass it.
+  const bool near = !best_.blocked.empty() && !best_.blocked.front().at_start &&
+                    best_.blocked.front().t_in - request.t0 < kNear * best_.pair.curve.interval();
+  if (near && request.segments < request.near_segments) {
+    reason = Refine(request, &posed, &best_, result);
+    if (reason != ReplanReason::kNone) return reason;
+  }
+  if (!best_.blocked.empty() && leads_around) return TryWays(request, &posed, result);
+  return KeepLimits(request, posed, &best_, result);
 }
 
 /// Refuses ends that no plan can have.
-ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
-  now_ = &problems_.At(segments_, request.arrival);
-  LandingProblem& problem = *now_->problem;
+ReplanReason PlanAttempt::Pose(const AttemptRequest& request, int segments, Posed* posed) {
+  posed->prepared = &problems_.At(segments, request.arrival);
+  posed->segments = segments_ = segments;
+  LandingProblem& problem = *posed->prepared->problem;
   problem.SetBoundary(request.start, request.t0, *request.pad, request.target, request.pull_W);
   problem.SetDuration(request.duration);
   duration_ = request.duration;
@@ -135,131 +150,120 @@ ReplanReason PlanAttempt::SetEnds(const AttemptRequest& request) {
   return ReplanReason::kNone;
 }
 
-ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request,
-                                            const UniformBspline* guess, ReplanResult* result) {
-  const ReplanReason refused = SetEnds(request);
+ReplanReason PlanAttempt::SolveWithoutPairs(const AttemptRequest& request, int segments,
+                                            const UniformBspline* guess, Posed* posed,
+                                            Candidate* candidate, ReplanResult* result) {
+  const ReplanReason refused = Pose(request, segments, posed);
   if (refused != ReplanReason::kNone) return refused;
-  LandingProblem& problem = *now_->problem;
+  PreparedProblem& prepared = *posed->prepared;
   if (guess) {
-    problem.WarmGuess(*guess, &now_->start.y);
+    prepared.problem->WarmGuess(*guess, &prepared.start.y);
   } else {
-    problem.Guess(&now_->start.y);
+    prepared.problem->Guess(&prepared.start.y);
   }
-  now_->first_guess = now_->start.y;
-  return SolveAndCheck(request, &best_, result);
-}
-
-/// So near that the first control point that is free comes too late to pass it.
-bool PlanAttempt::ObstacleNear(const AttemptRequest& request) const {
-  if (runs_.empty() || runs_.front().at_start) return false;
-  return runs_.front().t_in - request.t0 < kNear * best_.pair.curve.interval();
+  prepared.first_guess = prepared.start.y;
+  return Solve(request, *posed, candidate, result);
 }
 
 /// The curve on shorter segments, before it is led past what is in its way. Where the arrival is fixed its
 /// optimum there is cheap, and a better start. Where it is free the solve would cost more than the rounds
 /// after it gain: there the curve is only interpolated, to within millimetres, so that the blocked runs
 /// stand. If no round can be solved then, the next attempt fixes the arrival.
-ReplanReason PlanAttempt::Refine(const AttemptRequest& request, ReplanResult* result) {
-  first_curve_ = best_.pair.curve;
-  segments_ = request.near_segments;
+ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
+                                 ReplanResult* result) {
+  first_curve_ = candidate->pair.curve;
   const bool interpolates = request.arrival == ArrivalMode::kFree && options_.max_rebinds > 0 &&
                             options_.problem.endpoint == EndpointMode::kEliminated;
   if (!interpolates) {
-    const ReplanReason reason = SolveWithoutPairs(request, &first_curve_, result);
+    const ReplanReason reason =
+        SolveWithoutPairs(request, request.near_segments, &first_curve_, posed, candidate, result);
     if (reason != ReplanReason::kSolverFailed) return reason;
-    segments_ = request.segments;  // the coarse ones will have to do
-    return SolveWithoutPairs(request, &first_curve_, result);
+    // The coarse ones will have to do.
+    return SolveWithoutPairs(request, request.segments, &first_curve_, posed, candidate, result);
   }
-  SetEnds(request);  // refused by the coarse problem, if at all
-  LandingProblem& problem = *now_->problem;
-  problem.SetDuration(first_curve_.duration());
-  problem.WarmGuess(first_curve_, &now_->start.y);
-  now_->first_guess = now_->start.y;
-  problem.Curve(now_->start.y, &best_.pair.curve);
+  Pose(request, request.near_segments, posed);  // refused by the coarse problem, if at all
+  PreparedProblem& prepared = *posed->prepared;
+  prepared.problem->SetDuration(first_curve_.duration());
+  prepared.problem->WarmGuess(first_curve_, &prepared.start.y);
+  prepared.first_guess = prepared.start.y;
+  prepared.problem->Curve(prepared.start.y, &candidate->pair.curve);
   return ReplanReason::kNone;
 }
 
-ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
-  finder_.Begin(request.at_rest);
-  // Shortly before contact there is no time for a way around.
-  const bool leads_around = options_.max_rebinds > 0 && request.pair_end != PairEnd::kContact;
-  const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
-  if (warm && leads_around && !request.looks) {
-    const ReplanReason reason = KeepCommitted(request, result);
-    if (reason == ReplanReason::kNone || reason == ReplanReason::kUnobserved) return reason;
-    Clear(&best_);
-  }
-  pairs_.clear();
-  pressure_ = {};
-  segments_ = request.segments;
-  ReplanReason reason = SolveWithoutPairs(request, warm, result);
-  if (reason == ReplanReason::kNone && ObstacleNear(request) && segments_ < request.near_segments) {
-    reason = Refine(request, result);
-  }
-  if (reason != ReplanReason::kNone) return reason;
-  if (!runs_.empty() && leads_around) return TryGuides(request, result);
-  return KeepLimits(request, &best_, result);
+/// The committed way on the map of now, once an attempt.
+void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
+  if (std::exchange(kept_asked_, true)) return;
+  if (!request.previous || request.previous->t_end() <= request.t0) return;
+  StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
+  finder_.Keep(*request.previous, request.t0, *request.space, &kept_);
+}
+
+/// A new way past all of `span`.
+ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun& span,
+                                 double max_cost, ReplanResult* result) {
+  StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
+  const SearchStatus status = finder_.LeadPast(first_curve_, span, *request.space, &way_, max_cost);
+  // The search moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
+  if (span.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
+  if (status == SearchStatus::kFound) result->guide_paths.Add(finder_.detour());
+  return way_.known() ? ReplanReason::kNone : ReplanReason::kSearchFailed;
 }
 
 /// The committed plan is the best that is known: its rest, bound as it was, but to the map of now, takes one
 /// solve while it holds. What has come to block it leads to further rounds.
 ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanResult* result) {
-  segments_ = request.segments;
-  const ReplanReason refused = SetEnds(request);
+  KeepWay(request, result);
+  if (!kept_.known()) return ReplanReason::kCollisionRemains;
+  Posed posed;
+  const ReplanReason refused = Pose(request, request.segments, &posed);
   if (refused != ReplanReason::kNone) return refused;
-  {
-    StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
-    finder_.Keep(*request.previous, request.t0, *request.space);
-  }
-  LandingProblem& problem = *now_->problem;
-  problem.WarmGuess(*request.previous, &now_->start.y);
-  problem.Curve(now_->start.y, &best_.pair.curve);
-  runs_.clear();
-  if (!finder_.KeepsClear()) {
-    StageTimer timer(&result->times.check, StageTimer::kWhileLogged);
-    FindBlockedRuns(best_.pair.curve, request.t0, *request.space, &runs_);
-  }
-  return Follow(request, Lead::kCommitted, &best_, result);
+  posed.prepared->problem->WarmGuess(*request.previous, &posed.prepared->start.y);
+  Begin(&best_);
+  const double left = request.previous->t_end() - request.t0;
+  return Follow(request, kept_, *request.bound, kLatestKept * std::max(request.duration, left),
+                posed, &best_, result);
 }
 
-// The way around the first obstacle makes the difference: behind it the usual choices follow.
-ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* result) {
+/// One way leads past everything that is in the way, so that one detour does not lead into the next. The way
+/// around the first obstacle makes the difference: another way is another way around that.
+ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, ReplanResult* result) {
   AttemptRequest request = asked;
-  if (!request.previous) now_->first_guess = now_->start.y;
+  if (!request.previous) posed->prepared->first_guess = posed->prepared->start.y;
   first_curve_ = best_.pair.curve;
-  const BlockedRun first = runs_.front();
-  if (runs_.back().at_end) return ReplanReason::kGoalBlocked;
-  if (request.previous && request.previous->t_end() > request.t0) {
-    StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
-    finder_.Keep(*request.previous, request.t0, *request.space);
+  if (best_.blocked.back().at_end) return ReplanReason::kGoalBlocked;
+  const BlockedRun first = best_.blocked.front();
+  BlockedRun span = {first.t_in, best_.blocked.back().t_out, first.at_start, false};
+  if (!first.at_start) KeepWay(request, result);
+  const bool keeps_side = kept_.known();
+  if (keeps_side) {
+    EndBeside(kept_, first_curve_, *request.space, &span);
+    const double share = (kept_.t_end() - kept_.t0()) / first_curve_.duration();
+    kept_.Bind({kept_.t0() + share * (span.t_in - request.t0),
+                kept_.t0() + share * (span.t_out - request.t0)});
   }
-  // One path past everything that is in the way, so that one detour does not lead into the next.
-  BlockedRun span = {first.t_in, runs_.back().t_out, first.at_start, false};
-  const bool keeps_side = finder_.Keeps(span);
-  if (keeps_side) finder_.EndBesideKept(*request.space, first_curve_, &span);
-  const int guides = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
-  double shortest = 0.0;
-  for (int i = 0; i < guides; ++i) {
-    if (i >= options_.max_guides && best_.reason == ReplanReason::kNone) break;
-    const ReplanReason found = FindGuide(request, first_curve_, /*local=*/false, &span, result);
-    if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
-    if (found != ReplanReason::kNone) return found;
-    // Of two ways the longer one is hardly ever the cheaper: its length tells before it is solved for.
-    const double length = PathLength(guide_);
-    if (i == 0) shortest = length;
-    if (best_.reason == ReplanReason::kNone && length > kLongerWay * shortest) break;
-    if (i == 0 && !request.previous) Postpone(span, &request);
-    first_guide_ = guide_;
+  const int ways = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
+  double first_cost = kNoBound;
+  for (int i = 0; i < ways; ++i) {
+    const bool planned = i > 0 && best_.reason == ReplanReason::kNone;
+    if (i >= options_.max_guides && planned) break;
+    const bool kept = i == 0 && keeps_side;
+    if (!kept) {
+      const ReplanReason found =
+          LayWay(request, span, planned ? kDearerWay * first_cost : kNoBound, result);
+      if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
+      if (found != ReplanReason::kNone) return found;
+    }
+    const TimedWay& way = kept ? kept_ : way_;
+    if (i == 0 && !kept) first_cost = finder_.cost();
+    if (i == 0 && !request.previous) Postpone(way, posed, &request);
     Candidate* candidate = i == 0 ? &best_ : &other_;
-    candidate->pair.curve = first_curve_;
-    candidate->certificate.reset();
-    now_->start.y = now_->first_guess;
-    runs_.assign(1, span);
-    candidate->reason = Follow(request, Lead::kGuide, candidate, result);
+    posed->prepared->start.y = posed->prepared->first_guess;
+    Begin(candidate);
+    candidate->reason = Follow(request, way, {}, kNoBound, *posed, candidate, result);
     if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
-    if (i + 1 == guides) break;
+    way.Sample(way.bound().back().from, way.bound().back().to, &path_);
     const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
-    const std::optional<Barrier> barrier = CloseWay(first_guide_, through);
+    const std::optional<Barrier> barrier = CloseWay(path_, through);
     if (!barrier) break;
     finder_.Close(*barrier);
   }
@@ -268,119 +272,136 @@ ReplanReason PlanAttempt::TryGuides(const AttemptRequest& asked, ReplanResult* r
 
 /// The way round takes longer than the straight one, by as much as it is longer at full speed. An arrival
 /// that others reckon with already is not put off like that.
-void PlanAttempt::Postpone(const BlockedRun& span, AttemptRequest* request) {
+void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request) {
   if (request->arrival == ArrivalMode::kFree) return;
-  const double longer = PathLength(guide_) - LengthOf(first_curve_, span.t_in, span.t_out);
   AttemptRequest later = *request;
-  later.duration = std::min(request->duration + std::max(0.0, longer) / request->limits.speed,
-                            options_.max_duration);
+  later.duration = std::min(request->duration + way.delay(), options_.max_duration);
   if (later.duration <= request->duration) return;
   later_space_ = *request->space;
   later.space = &later_space_;
   LayPadStrip(*request->pad, request->target, request->start.p, request->t0,
               request->t0 + later.duration, later_space_.pad_radius, options_.contact_height,
               &later_space_);
-  if (SetEnds(later) == ReplanReason::kNone) {
+  if (Pose(later, posed->segments, posed) == ReplanReason::kNone) {
     *request = later;
-    now_->problem->WarmGuess(first_curve_, &now_->first_guess);
+    posed->prepared->problem->WarmGuess(first_curve_, &posed->prepared->first_guess);
   } else {
-    SetEnds(*request);
+    Pose(*request, posed->segments, posed);
   }
 }
 
-/// Binds pairs along the guide and solves again until the curve is clear, or hardly clearer than before. In
-/// the first round they lead along the guide, or are those of the committed plan; later ones bind what is still
-/// blocked. What is kept may not arrive much later than was promised.
-ReplanReason PlanAttempt::Follow(const AttemptRequest& request, Lead lead, Candidate* candidate,
-                                 ReplanResult* result) {
-  const double latest =
-      lead == Lead::kCommitted
-          ? kLatestKept * std::max(request.duration, request.previous->t_end() - request.t0)
-          : std::numeric_limits<double>::infinity();
-  binder_.Begin(candidate->pair.curve.segments() + 3);
-  pressure_ = {};
+/// Binds control points along the way and solves, until the curve is clear, or hardly clearer than before. The
+/// first round binds what of the way needs it, and `more`; later ones what is still blocked. A plan that ends
+/// `latest` after the start [s] or later is none.
+ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& way,
+                                 const BoundParts& more, double latest, const Posed& posed,
+                                 Candidate* candidate, ReplanResult* result) {
+  binder_.Begin(posed.segments + 3);
   double blocked = std::numeric_limits<double>::infinity();
   for (int round = 1; round <= options_.max_rebinds; ++round) {
-    ReplanReason reason = Bind(request, candidate->pair.curve,
-                               round == 1 ? std::optional(lead) : std::nullopt, result);
-    if (reason != ReplanReason::kNone) return reason;
-    if (round > 1) pressure_.pairs *= kPressure;
+    {
+      StageTimer timer(&result->times.pairs, StageTimer::kWhileLogged);
+      if (round == 1) {
+        binder_.Lead(way, more);
+      } else {
+        const ReplanReason reason = BindBlocked(request, way, *candidate);
+        if (reason != ReplanReason::kNone) return reason;
+        candidate->pressure.pairs *= kPressure;
+      }
+      binder_.Bind(*request.space, &candidate->pairs);
+    }
     ++result->rebinds;
-    reason = SolveAndCheck(request, candidate, result);
+    const ReplanReason reason = Solve(request, posed, candidate, result);
     if (reason != ReplanReason::kNone) return reason;
     if (candidate->pair.curve.duration() > latest) return ReplanReason::kCollisionRemains;
     // A blocked start alone is for the certificate: it may be an escape.
-    const bool only_start = runs_.size() == 1 && runs_.front().at_start;
-    if (runs_.empty() || only_start) {
-      reason = KeepLimits(request, candidate, result);
-      if (runs_.empty() || only_start) return reason;
+    const auto& runs = candidate->blocked;
+    const bool only_start = runs.size() == 1 && runs.front().at_start;
+    if (runs.empty() || only_start) {
+      const ReplanReason end = KeepLimits(request, posed, candidate, result);
+      if (runs.empty() || (runs.size() == 1 && runs.front().at_start)) return end;
     }
-    const double before = std::exchange(blocked, BlockedTime());
+    const double before = std::exchange(blocked, BlockedTime(runs));
     if (blocked > kProgress * before) break;
   }
   return Finish(request, candidate, result);
 }
 
-/// Of the latest curve [s].
-double PlanAttempt::BlockedTime() const {
-  double sum = 0.0;
-  for (const BlockedRun& run : runs_) sum += run.t_out - run.t_in;
-  return sum;
-}
-
-/// Certifies a clear candidate; where only limits are exceeded, presses these harder and solves
-/// again.
-ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, Candidate* candidate,
-                                     ReplanResult* result) {
-  for (int round = 0;; ++round) {
-    const ReplanReason reason = Finish(request, candidate, result);
-    const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
-    if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
-    const double share = ShareOfLimits(*candidate->certificate, request.limits);
-    pressure_.limits *= share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
-    // The last curve stands where the solver fails under the pressure.
-    if (SolveAndCheck(request, candidate, result) != ReplanReason::kNone) return reason;
+/// What is blocked is led to the way, with a plane at the corner that is cut.
+ReplanReason PlanAttempt::BindBlocked(const AttemptRequest& request, const TimedWay& way,
+                                      const Candidate& candidate) {
+  const UniformBspline& curve = candidate.pair.curve;
+  binder_.Start(curve);
+  for (const BlockedRun& run : candidate.blocked) {
+    if (run.at_end) return ReplanReason::kGoalBlocked;
+    if (!way.SampleBetween(curve.Position(run.t_in), curve.Position(run.t_out), &path_)) {
+      return ReplanReason::kCollisionRemains;
+    }
+    binder_.AddCorner(curve, run, path_, *request.space);
+    binder_.Follow(curve, run, path_, *request.space);
   }
+  return ReplanReason::kNone;
 }
 
-ReplanReason PlanAttempt::SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
-                                        ReplanResult* result) {
-  LandingProblem& problem = *now_->problem;
-  problem.SetPairs(pairs_);
-  problem.SetPairWeightScale(pressure_.pairs);
-  problem.SetLimitWeightScale(pressure_.limits);
+/// Solves with the candidate's pairs and pressure, and checks its curve.
+ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& posed,
+                                Candidate* candidate, ReplanResult* result) {
+  PreparedProblem& prepared = *posed.prepared;
+  LandingProblem& problem = *prepared.problem;
+  problem.SetPairs(candidate->pairs);
+  problem.SetPairWeightScale(candidate->pressure.pairs);
+  problem.SetLimitWeightScale(candidate->pressure.limits);
   solvers::Stop stop;
   stop.max_iterations = options_.max_iterations;
   stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
   {
     StageTimer timer(&result->times.solve, StageTimer::kWhileLogged);
-    now_->backend->Solve(problem.view(), now_->start, stop, &now_->solver);
+    prepared.backend->Solve(problem.view(), prepared.start, stop, &prepared.solver);
   }
   ++result->solves;
-  candidate->solver = now_->solver;
-  candidate->pairs = static_cast<int>(pairs_.size());
+  candidate->solver = prepared.solver;
   candidate->bound.clear();
   if (request.log) {
-    const int guide = finder_.ways_closed();
     candidate->round = static_cast<int>(request.log->rounds.size());
-    request.log->rounds.push_back(
-        {pressure_.pairs, pressure_.limits, pairs_, now_->solver, {}, {}, guide});
+    request.log->rounds.push_back({candidate->pressure.pairs,
+                                   candidate->pressure.limits,
+                                   candidate->pairs,
+                                   prepared.solver,
+                                   {},
+                                   {},
+                                   finder_.ways_closed()});
   }
-  if (!now_->solver.usable()) return ReplanReason::kSolverFailed;
-  now_->start.y = now_->solver.x;
-  problem.Curve(now_->start.y, &candidate->pair.curve);
-  if (!pairs_.empty()) binder_.Remember(candidate->pair.curve, &candidate->bound);
+  if (!prepared.solver.usable()) return ReplanReason::kSolverFailed;
+  prepared.start.y = prepared.solver.x;
+  problem.Curve(prepared.start.y, &candidate->pair.curve);
+  if (!candidate->pairs.empty()) binder_.Remember(candidate->pair.curve, &candidate->bound);
   candidate->solved = true;
   {
     StageTimer timer(&result->times.check, StageTimer::kWhileLogged);
-    FindBlockedRuns(candidate->pair.curve, request.t0, *request.space, &runs_);
+    FindBlockedRuns(candidate->pair.curve, request.t0, *request.space, &candidate->blocked);
   }
   if (request.log) {
     request.log->rounds.back().curve = candidate->pair.curve;
-    request.log->rounds.back().blocked = runs_;
+    request.log->rounds.back().blocked = candidate->blocked;
   }
   return ReplanReason::kNone;
+}
+
+/// Certifies a clear candidate; where only limits are exceeded, presses these harder and solves
+/// again.
+ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed& posed,
+                                     Candidate* candidate, ReplanResult* result) {
+  for (int round = 0;; ++round) {
+    const ReplanReason reason = Finish(request, candidate, result);
+    const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
+    if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
+    const double share = ShareOfLimits(*candidate->certificate, request.limits);
+    candidate->pressure.limits *=
+        share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
+    // The last curve stands where the solver fails under the pressure.
+    if (Solve(request, posed, candidate, result) != ReplanReason::kNone) return reason;
+  }
 }
 
 /// Certifies a candidate that has been solved for the last time.
@@ -404,46 +425,28 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
   const bool rows_kept = candidate->solver.max_violation <= kRowTolerance;
   if (certificate.passed() && rows_kept) return ReplanReason::kNone;
   if (!certificate.clear && !certificate.escaping) {
-    return runs_.front().at_start ? ReplanReason::kStartBlocked : ReplanReason::kCollisionRemains;
+    return candidate->blocked.front().at_start ? ReplanReason::kStartBlocked
+                                               : ReplanReason::kCollisionRemains;
   }
   if (!certificate.start_met() || !certificate.endpoint_met()) return ReplanReason::kSolverFailed;
   return certificate.limits_kept && rows_kept ? ReplanReason::kUnobserved
                                               : ReplanReason::kLimitsExceeded;
 }
 
-/// In the first round guide_ is the way past all that is in the way, or the committed plan's parts are bound again.
-/// What is blocked otherwise gets guides of its own: corners that the curve cuts.
-ReplanReason PlanAttempt::Bind(const AttemptRequest& request, const UniformBspline& curve,
-                               std::optional<Lead> lead, ReplanResult* result) {
-  binder_.Start(curve);
-  if (lead == Lead::kCommitted) binder_.Recall(curve, *request.bound);
-  for (BlockedRun& run : runs_) {
-    if (run.at_end) return ReplanReason::kGoalBlocked;
-    if (lead != Lead::kGuide) {
-      const ReplanReason reason =
-          FindGuide(request, curve, /*local=*/!request.at_rest, &run, result);
-      // A corner that cannot be looked past is one that a slower plan may not cut.
-      if (reason == ReplanReason::kSearchFailed) return ReplanReason::kCollisionRemains;
-      if (reason != ReplanReason::kNone) return reason;
-      binder_.AddCorner(curve, run, guide_, *request.space);
-    }
-    binder_.Follow(curve, run, guide_, *request.space);
+/// Without the terms whose weights grow from round to round.
+double PlanAttempt::CostOfShape(const solvers::SolverSummary& solver) const {
+  double cost = 0.0;
+  for (const solvers::TermCost& term : solver.cost_by_term) {
+    if (std::find(pressed_.begin(), pressed_.end(), term.name) == pressed_.end()) cost += term.cost;
   }
-  StageTimer timer(&result->times.pairs, StageTimer::kWhileLogged);
-  binder_.Bind(*request.space, &pairs_);
-  return ReplanReason::kNone;
+  return cost;
 }
 
-ReplanReason PlanAttempt::FindGuide(const AttemptRequest& request, const UniformBspline& curve,
-                                    bool local, BlockedRun* run, ReplanResult* result) {
-  StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
-  const bool searches = !finder_.Keeps(*run);
-  const SearchStatus status = finder_.Find(*request.space, curve, local, run, &guide_);
-  // A* moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
-  if (run->at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
-  if (status == SearchStatus::kFound && searches) result->guide_paths.Add(guide_);
-  const bool led = status == SearchStatus::kFound || status == SearchStatus::kEndsOutside;
-  return led ? ReplanReason::kNone : ReplanReason::kSearchFailed;
+bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) const {
+  if (a.reason != ReplanReason::kNone) return false;
+  if (b.reason != ReplanReason::kNone) return true;
+  const double share = keeps_side ? kMuchCheaper : 1.0;
+  return CostOfShape(a.solver) < share * CostOfShape(b.solver);
 }
 
 }  // namespace touchdown::planning

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "touchdown/planning/certificate.h"
-#include "touchdown/planning/guide_finder.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/pair_binder.h"
 #include "touchdown/planning/prepared_problems.h"
 #include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/replan_result.h"
 #include "touchdown/planning/stored_stop.h"
+#include "touchdown/planning/timed_way.h"
+#include "touchdown/planning/way_finder.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
@@ -33,18 +34,16 @@ struct AttemptRequest {
   const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
   int rescue_guides = 1;  ///< ways that are tried while none of max_guides leads to a plan
   PairEnd pair_end = PairEnd::kRest;
-  bool at_rest = false;                      ///< there is time to look for long ways round
-  const UniformBspline* previous = nullptr;  ///< committed curve: the guide of choice ...
+  const UniformBspline* previous = nullptr;  ///< committed curve: the way of choice ...
   const BoundParts* bound = nullptr;         ///< ... and what it was bound to
   bool looks = true;  ///< for the best way anew; else what is committed is kept while it holds
   AttemptLog* log = nullptr;  ///< filled if not null (allocates)
 };
 
-/// Solve, check the whole curve, bind pairs where it is blocked, solve again, until it is clear or
-/// out of rounds; then certify. Where the straight way is blocked, up to max_guides ways around the
-/// first obstacle are tried like that, each a candidate, and the cheapest that is certified wins;
-/// against the side that is flown already another has to be much cheaper. Keeps one prepared problem
-/// and backend per number of segments.
+/// One attempt at a plan, in stages (plan_attempt.cc): pose the problem, solve it without obstacles, lay ways past
+/// what blocks that, follow each with pairs that are bound along it until the curve is clear, certify, and
+/// choose the cheapest that is certified. Against the side that is flown already another has to be much
+/// cheaper. Keeps one prepared problem and backend per number of segments.
 class PlanAttempt {
  public:
   static constexpr int kMostControlPoints = PairBinder::kMostControlPoints;  ///< of a plan
@@ -67,69 +66,76 @@ class PlanAttempt {
   double duration() const { return duration_; }
 
  private:
-  /// A plan that was tried, and how it ended.
-  struct Candidate {
-    FlightPair pair;
-    std::optional<Certificate> certificate;
-    solvers::SolverSummary solver;
-    int pairs = 0;
-    BoundParts bound;
-    bool solved = false;
-    int round = -1;  // of the log
-    ReplanReason reason = ReplanReason::kNone;
-  };
-
-  void Clear(Candidate* candidate) const;
-
   /// Factors on weights.
   struct Pressure {
     double pairs = 1.0;
     double limits = 1.0;
   };
 
-  ReplanReason SetEnds(const AttemptRequest& request);
-  ReplanReason SolveWithoutPairs(const AttemptRequest& request, const UniformBspline* guess,
-                                 ReplanResult* result);
-  ReplanReason Refine(const AttemptRequest& request, ReplanResult* result);
-  bool ObstacleNear(const AttemptRequest& request) const;
+  /// A problem with its ends set, and the point that the next solve of it starts from.
+  struct Posed {
+    PreparedProblem* prepared = nullptr;
+    int segments = 0;
+  };
+
+  /// A plan on its way through the stages.
+  struct Candidate {
+    std::vector<ObstaclePair> pairs;
+    Pressure pressure;
+    FlightPair pair;
+    std::vector<BlockedRun> blocked;  // of its curve
+    std::optional<Certificate> certificate;
+    solvers::SolverSummary solver;
+    BoundParts bound;
+    bool solved = false;
+    int round = -1;  // of the log
+    ReplanReason reason = ReplanReason::kNone;
+  };
+
+  static void Begin(Candidate* candidate);
+
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason KeepCommitted(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason TryGuides(const AttemptRequest& request, ReplanResult* result);
-  ReplanReason SolveAndCheck(const AttemptRequest& request, Candidate* candidate,
-                             ReplanResult* result);
-  ReplanReason KeepLimits(const AttemptRequest& request, Candidate* candidate,
-                          ReplanResult* result);
-  void Postpone(const BlockedRun& span, AttemptRequest* request);
-  /// What the pairs of the first round lead along.
-  enum class Lead { kGuide, kCommitted };
-  ReplanReason Follow(const AttemptRequest& request, Lead lead, Candidate* candidate,
+
+  ReplanReason Pose(const AttemptRequest& request, int segments, Posed* posed);
+  ReplanReason SolveWithoutPairs(const AttemptRequest& request, int segments,
+                                 const UniformBspline* guess, Posed* posed, Candidate* candidate,
+                                 ReplanResult* result);
+  ReplanReason Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
                       ReplanResult* result);
-  ReplanReason Bind(const AttemptRequest& request, const UniformBspline& curve,
-                    std::optional<Lead> lead, ReplanResult* result);
+  void KeepWay(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason LayWay(const AttemptRequest& request, const BlockedRun& span, double max_cost,
+                      ReplanResult* result);
+  void Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request);
+  ReplanReason KeepCommitted(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason TryWays(const AttemptRequest& request, Posed* posed, ReplanResult* result);
+  ReplanReason Follow(const AttemptRequest& request, const TimedWay& way, const BoundParts& more,
+                      double latest, const Posed& posed, Candidate* candidate,
+                      ReplanResult* result);
+  ReplanReason BindBlocked(const AttemptRequest& request, const TimedWay& way,
+                           const Candidate& candidate);
+  ReplanReason Solve(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                     ReplanResult* result);
+  ReplanReason KeepLimits(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                          ReplanResult* result);
   ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
-  ReplanReason FindGuide(const AttemptRequest& request, const UniformBspline& curve, bool local,
-                         BlockedRun* run, ReplanResult* result);
-  double BlockedTime() const;
   double CostOfShape(const solvers::SolverSummary& solver) const;
   bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
 
   ReplannerOptions options_;
   PreparedProblems problems_;
-  GuideFinder finder_;
+  WayFinder finder_;
   PairBinder binder_;
   std::vector<std::string> pressed_;  // terms whose weights are scaled
 
-  // Of the attempt under way.
-  int segments_ = 0;
-  PreparedProblem* now_ = nullptr;
-  Pressure pressure_;
+  // Room of the attempt under way.
   double duration_ = 0.0;
-  FreeSpace later_space_;
-  UniformBspline first_curve_;  // before any pair
-  std::vector<BlockedRun> runs_;
+  int segments_ = 0;
   Candidate best_, other_;
-  std::vector<ObstaclePair> pairs_;
-  GuidePath first_guide_, guide_;
+  UniformBspline first_curve_;  // before any pair
+  TimedWay kept_, way_;
+  bool kept_asked_ = false;
+  FreeSpace later_space_;
+  GuidePath path_;
 };
 
 }  // namespace touchdown::planning

@@ -19,7 +19,7 @@ LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMod
 int SegmentsFor(double duration, const Limits& limits, double share);
 
 /// The share where an obstacle is near.
-inline constexpr double kFineSegments = 0.67;
+inline constexpr double kFineSegments = 0.5;
 
 /// A landing problem and its backend, to be solved again and again.
 struct PreparedProblem {

@@ -471,19 +471,19 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.pair_end = lands_soon                ? PairEnd::kContact
                      : result_.ends_in_contact ? PairEnd::kRestOrContact
                                                : PairEnd::kRest;
-  request.at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
+  const bool at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   ReplanReason reason = ReplanReason::kPadUnreachable;
   for (int i = 0; i < kMaxAttempts; ++i) {
-    if (i > 0 && !request.at_rest && result_.solves >= options_.max_solves) return reason;
+    if (i > 0 && !at_rest && result_.solves >= options_.max_solves) return reason;
     if (request.arrival == ArrivalMode::kFixed && !lands_soon) T = FirstFreeArrival(input, T, map);
     FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
     // From rest there is time for long searches.
-    if (i == 0 || request.at_rest) attempt_.RefillExpansions();
+    if (i == 0 || at_rest) attempt_.RefillExpansions();
     request.duration = T;
     // A stretched plan is slower, not longer: it needs hardly more control points.
     const double longest = std::min(T, kLongestGrid * std::max(first, fresh));
-    request.segments = SegmentsFor(longest, limits_, 1.0);
     request.near_segments = SegmentsFor(longest, limits_, kFineSegments);
+    request.segments = i == 0 ? SegmentsFor(longest, limits_, 1.0) : request.near_segments;
     request.space = &space;
     const HullSpace hull = HullIn(space, input.pad);
     request.hull = &hull;
@@ -491,7 +491,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       unseen_.Build(hull, start.p, unseen_reach);
       space.unseen = &unseen_;
     }
-    request.rescue_guides = i == 0 ? 1 : request.at_rest ? kGuidesAtRest : kRescueGuides;
+    request.rescue_guides = i == 0 ? 1 : at_rest ? kGuidesAtRest : kRescueGuides;
     // The committed side of an obstacle is tried once; if it fails, the map decides anew.
     request.previous = i == 0 && planned_before_ ? &next_.curve : nullptr;
     request.bound = &bound_;
@@ -517,7 +517,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       continue;
     }
     // What is not seen yet may soon be: as long as it can, the committed curve goes on.
-    if (reason == ReplanReason::kUnobserved && i == 0 && on_plan && !request.at_rest &&
+    if (reason == ReplanReason::kUnobserved && i == 0 && on_plan && !at_rest &&
         GoesOn(input, hull)) {
       return reason;
     }
@@ -530,7 +530,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       unseen_reach = kUnseenReach;
       continue;
     }
-    if (request.at_rest && unseen_reach > 0.0) {
+    if (at_rest && unseen_reach > 0.0) {
       if (unseen_reach == kLeastReach) return ReplanReason::kUnobserved;
       unseen_reach = kLeastReach;
       continue;

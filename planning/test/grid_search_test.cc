@@ -162,57 +162,6 @@ TEST(GridSearch, WidePassagesArePreferredToTightOnes) {
   EXPECT_GT(crosses_at(GridSearch(kUp, 1.0, 8.0)), 0.6);
 }
 
-/// Its points are free and follow each other in steps of neighbouring cells or blocks.
-bool IsFree(const FreeSpace& space, const GuidePath& path) {
-  const double block = kBlock * space.map->resolution();
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    if (space.Blocked(path[i])) return false;
-    if (i > 0 && (path[i] - path[i - 1]).norm() > std::sqrt(3.0) * block + 1e-9) return false;
-  }
-  return true;
-}
-
-// A deep cup before the goal: the lattice of blocks fills it with an eighth of the expansions.
-TEST(GridSearch, BlocksFillAHollowSooner) {
-  OccupancyMap map(SmallMap(0.0));
-  for (double y = -1.15; y < 1.2; y += 0.1) {
-    for (double z = -1.55; z < 1.6; z += 0.1) {
-      map.SetOccupied({1.05, y, z});
-      map.SetOccupied({1.15, y, z});
-    }
-  }
-  for (double x = -0.95; x < 1.0; x += 0.1) {
-    for (double z = -1.55; z < 1.6; z += 0.1) {
-      for (const double y : {-1.15, -1.05, 1.05, 1.15}) map.SetOccupied({x, y, z});
-    }
-  }
-  const FreeSpace space = SpaceOf(map);
-  const Eigen::Vector3d from(0.55, 0.05, 0.05), to(1.65, 0.05, 0.05);
-  GridSearch cells(kUp, 1.5), blocks(kUp, 1.5, 1.0, true);
-  GuidePath path;
-  ASSERT_EQ(cells.Search(space, from, to, 500000, &path), SearchStatus::kFound);
-  ASSERT_EQ(blocks.Search(space, from, to, 500000, &path), SearchStatus::kFound);
-  EXPECT_TRUE(IsFree(space, path));
-  EXPECT_EQ(map.CellOf(path.front()), map.CellOf(from));
-  EXPECT_EQ(map.CellOf(path.back()), map.CellOf(to));
-  EXPECT_LT(blocks.expansions(), cells.expansions() / 4);
-}
-
-// A gap of one cell fits between no blocks: it is found on the cells after all.
-TEST(GridSearch, WhatFitsBetweenBlocksIsFoundOnCells) {
-  OccupancyMap map(SmallMap(0.0));
-  for (double y = -3.15; y < 3.2; y += 0.1) {
-    if (std::abs(y - 0.05) < 0.01) continue;
-    for (double z = -1.55; z < 1.6; z += 0.1) map.SetOccupied({0.05, y, z});
-  }
-  const FreeSpace space = SpaceOf(map);
-  GridSearch search(kUp, 1.0, 1.0, true);
-  GuidePath path;
-  ASSERT_EQ(search.Search(space, {-1.55, 1.05, 0.05}, {1.55, 1.05, 0.05}, 500000, &path),
-            SearchStatus::kFound);
-  EXPECT_TRUE(IsFree(space, path));
-}
-
 TEST(GridSearch, ASearchThatCannotBeginExpandsNothing) {
   OccupancyMap map(SmallMap(0.1));
   const FreeSpace space = SpaceOf(map);

@@ -114,6 +114,30 @@ TEST(PairBinder, NeverGivesMorePairsThanTheProblemHolds) {
   }
 }
 
+// A detour takes longer than what it replaces: control points are wanted on it in even steps of that time.
+TEST(PairBinder, AWayIsBoundAlongItsDetourAndBesideIt) {
+  Wall wall;
+  TimedWay way;
+  const BlockedRun& run = wall.runs.front();
+  way.AddCurve(wall.curve, 0.0, run.t_in);
+  way.AddDetour(wall.curve, run, wall.guide, 1.0);
+  way.AddCurve(wall.curve, run.t_out, wall.curve.t_end());
+  ASSERT_GT(way.delay(), 0.5);
+  PairBinder binder{LandingProblemOptions()};
+  binder.Begin(kPoints);
+  binder.Lead(way, {});
+  std::vector<ObstaclePair> pairs;
+  binder.Bind(wall.space, &pairs);
+  const double interval = (way.t_end() - way.t0()) / (kPoints - 3);
+  ASSERT_FALSE(pairs.empty());
+  for (const ObstaclePair& pair : pairs) {
+    const double t = way.t0() + (pair.control_point - 1) * interval;
+    EXPECT_GT(t, way.bound().front().from - 2.5 * interval);
+    EXPECT_LT(t, way.bound().front().to + 2.5 * interval);
+    EXPECT_GT((way.At(t) - pair.p).dot(pair.v), 0.0);  // the side of the way
+  }
+}
+
 TEST(PairBinder, RefusesWhatItCannotHold) {
   LandingProblemOptions options;
   options.max_pairs_per_point = 1;
@@ -143,9 +167,10 @@ TEST(PairBinder, WhatWasBoundIsBoundAgainOnTheRestOfTheCurve) {
   ControlPoints rest = wall.curve.control_points().rightCols(kPoints - kGone);
   rest.row(1).array() += 0.5;
   const UniformBspline later(rest, kInterval, kGone * kInterval);
+  TimedWay way;
+  way.AddCurve(later, later.t0(), later.t_end());
   binder.Begin(kPoints - kGone);
-  binder.Start(later);
-  binder.Recall(later, parts);
+  binder.Lead(way, parts);
   binder.Bind(wall.space, &pairs);
   std::set<int> after;
   for (const int i : ControlPointsOf(pairs)) after.insert(i + kGone);
@@ -159,8 +184,7 @@ TEST(PairBinder, WhatWasBoundIsBoundAgainOnTheRestOfTheCurve) {
   }
   // What is over is forgotten.
   binder.Begin(kPoints - kGone);
-  binder.Start(later);
-  binder.Recall(later, {{-1.0, -0.5}, {-2.0, -2.0}});
+  binder.Lead(way, {{-1.0, -0.5}, {-2.0, -2.0}});
   binder.Bind(wall.space, &pairs);
   EXPECT_TRUE(pairs.empty());
 }

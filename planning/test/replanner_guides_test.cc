@@ -33,6 +33,8 @@ TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
     OccupancyMap map = ObservedMap();
     const double y = draw.Uniform(-0.3, 0.3);
     for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar(0.0, y + dy, &map);
+    // Others stand beside the ways around these.
+    for (int i = 0; i < 6; ++i) AddPillar(draw.Uniform(-2, 2), draw.Uniform(-3, 3), &map);
     const ArcPad pad({4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
     const Eigen::Vector3d start(-4.0, 0.0, 1.6);
     // The shortest way around is not always the cheapest for a vehicle that drifts sideways.
@@ -163,7 +165,7 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
   int followed = 0, held_back = 0, planned = 0;
   for (int trial = 0; trial < 40; ++trial) {
     OccupancyMap map = ObservedMap();
-    for (int i = 0; i < 14; ++i) AddPillar(draw.Uniform(-3, 3), draw.Uniform(-2, 2), &map);
+    for (int i = 0; i < 34; ++i) AddPillar(draw.Uniform(-3, 3), draw.Uniform(-2, 2), &map);
     const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
     Replanner replanner(WithGuides(1), solvers::StandardBackends());
     ReplanLog log;
@@ -185,8 +187,8 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
       EXPECT_TRUE(attempt.rounds.front().pairs.empty()) << "everything is decided anew, " << trial;
       const UniformBspline& curve = attempt.rounds.front().curve;
       const double counted = std::min(curve.duration(), 1.2 * before.duration());
-      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, 1.0)) << trial;
-      held_back += curve.segments() < SegmentsFor(curve.duration(), limits, 1.0);
+      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, kFineSegments)) << trial;
+      held_back += curve.segments() < SegmentsFor(curve.duration(), limits, kFineSegments);
     }
     planned += status == ReplanStatus::kPlanned;
   }

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "touchdown/planning/column_spans.h"
+#include "touchdown/planning/grid_search.h"
+
+namespace touchdown::planning {
+
+class SearchQueue;
+
+/// What a way costs, in [m] of level flight with room on both sides.
+struct WayCost {
+  double vertical = 2.0;  ///< a metre up or down; going around is preferred to going over ...
+  double tight = 1.0;     ///< a metre beside something: wide passages are preferred
+};
+
+/// A* on the free spans of the map's columns (column_spans.h) instead of its cells: a wall that a vehicle
+/// looks along is filled in two dimensions, not in three. A node is a span, with the height at which it was
+/// reached; who goes on to the next column keeps its height as long as that column is free there. The
+/// heights of the way that was found are straightened in the end. Not exact: a span remembers only the
+/// cheapest height. Deterministic: ties are broken by the order of insertion. Its arrays have the size of
+/// the map's window and are kept between searches.
+class SpanSearch {
+ public:
+  /// With `greed` > 1 spans near the goal come first: a way costs at most so many times the least on this
+  /// graph, and is found after fewer expansions. Throws std::invalid_argument unless all are >= 1.
+  explicit SpanSearch(const WayCost& cost = {}, double greed = 1.0);
+  ~SpanSearch();
+  /// What was moved from may only be assigned to or destroyed.
+  SpanSearch(SpanSearch&&) noexcept;
+  SpanSearch& operator=(SpanSearch&&) noexcept;
+
+  /// Makes room for searches on maps with this one's window, which the first search does otherwise.
+  void Reserve(const OccupancyMap& map);
+
+  /// Finds a path of places in free cells, one a column, from `from` to `to`. A blocked end is first moved to
+  /// the nearest free cell within GridSearch::kEndSearchRadius. Expands at most `max_expansions` spans, and
+  /// looks at no way that costs more than `max_cost` [m]. Allocates only to grow to a high-water mark.
+  SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& to, int max_expansions, GuidePath* path,
+                      std::span<const Barrier> barriers = {},
+                      double max_cost = std::numeric_limits<double>::infinity());
+
+  int expansions() const { return expansions_; }
+  /// Of the path that was found last [m].
+  double cost() const { return cost_; }
+
+ private:
+  // What a search knows of a span, if it has seen it.
+  struct Node {
+    float g = 0.0f;  // [cells]
+    std::uint32_t search : 31 = 0;
+    std::uint32_t closed : 1 = 0;
+    std::int16_t z = 0;        // at which it was reached
+    std::uint8_t step = 0;     // by which it was reached; kSelf: the start ...
+    std::uint8_t from_id = 0;  // ... from this span of the column there
+  };
+  // A span of the way that was found.
+  struct Place {
+    int x, y;
+    FreeSpan span;
+  };
+  // Heights at which a way may pass from a column to the next [cells].
+  struct Gate {
+    double at;  // along the way [cells]
+    double low, high;
+    double z;
+  };
+
+  SearchStatus SearchOn(const CellIndex& start, const CellIndex& goal, int max_expansions,
+                        float max_cost);
+  void TraceBack(int x, int y, int id);
+  void Straighten(double from, double to);
+
+  static constexpr std::uint32_t kMostSearches = (1u << 31) - 1;
+
+  float vertical_cost_, tight_cost_, greed_;
+  ColumnSpans columns_;
+  std::vector<Node> nodes_;
+  std::unique_ptr<SearchQueue> queue_;
+  std::vector<Place> way_;
+  std::vector<Gate> gates_;
+  std::uint32_t search_ = 0;
+  int expansions_ = 0;
+  double cost_ = 0.0;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "touchdown/planning/barrier.h"
+#include "touchdown/planning/span_search.h"
+#include "touchdown/planning/timed_way.h"
+
+namespace touchdown::planning {
+
+/// Finds ways past what blocks a curve: along it, with detours. Of the committed curve these are short ones, so
+/// that its side of an obstacle is kept. All searches share a budget until it is refilled.
+class WayFinder {
+ public:
+  explicit WayFinder(double vertical_cost);
+
+  /// Makes room for searches on maps with this one's window.
+  void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
+
+  /// @param expansions of all searches from now on.
+  void Refill(int expansions) { expansions_left_ = expansions; }
+
+  /// An attempt begins: no way is closed. @param speed of detours [m/s].
+  void Begin(double speed);
+
+  /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
+  /// not found soon or is much longer than what it replaces.
+  void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space, TimedWay* way);
+
+  /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends is cut
+  /// there: the search knows no more; one that begins out of it is led along the curve, between floor and
+  /// ceiling. kFound and kEndsOutside leave a way.
+  /// @param max_cost of the detour; ways that cost more are not looked at [m].
+  SearchStatus LeadPast(const UniformBspline& curve, BlockedRun run, const FreeSpace& space,
+                        TimedWay* way, double max_cost = std::numeric_limits<double>::infinity());
+  /// Of the detour that was found last: its cost [m], and the places.
+  double cost() const { return search_.cost(); }
+  const GuidePath& detour() const { return detour_; }
+
+  /// From here on ways do not cross this.
+  void Close(const Barrier& barrier) { barriers_.push_back(barrier); }
+  int ways_closed() const { return static_cast<int>(barriers_.size()); }
+
+ private:
+  SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
+                      const Eigen::Vector3d& to, int budget, double max_cost);
+
+  SpanSearch search_;
+  std::vector<Barrier> barriers_;
+  std::vector<BlockedRun> runs_;
+  GuidePath detour_;
+  double speed_ = 1.0;
+  int expansions_left_ = 0;
+};
+
+/// Ends a run only where the curve is on the way's side of everything, at the same share of its time: a curve that
+/// leaves an obstacle seen from the front is behind its front, not past it. @pre way.known().
+void EndBeside(const TimedWay& way, const UniformBspline& curve, const FreeSpace& space,
+               BlockedRun* run);
+
+}  // namespace touchdown::planning
