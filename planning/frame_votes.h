@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -42,8 +44,17 @@ class FrameVotes {
   const Eigen::Vector3i& low() const { return low_; }
   const Eigen::Vector3i& high() const { return high_; }
 
-  /// The votes of cells (0, y, z) to (size - 1, y, z). Whoever reads a vote sets it back to kNone.
-  std::uint8_t* Row(int y, int z) { return &votes_[Address({0, y, z})]; }
+  /// Takes the returns' votes out: calls visit(cell, vote) once for every cell in which one ended.
+  template <class Visit>
+  void TakeReturns(Visit&& visit) {
+    for (const Hit& hit : hits_) {
+      std::uint8_t& vote = votes_[Address(hit.cell)];
+      if (vote != kNone) visit(hit.cell, std::exchange(vote, kNone));
+    }
+  }
+
+  /// Takes the votes of at most 64 cells from `first` on along x out, when the returns' have been. Bit i: miss.
+  std::uint64_t TakeMisses(const Eigen::Vector3i& first, int count);
 
  private:
   /// A segment from the eye, clipped to the window.
@@ -55,7 +66,8 @@ class FrameVotes {
     Eigen::Vector3i step;         ///< -1 or 1
     Eigen::Vector3i crossings;    ///< number of faces passed on each axis
   };
-  /// A coordinate at successive faces of another axis, in fixed point.
+  /// A coordinate at successive faces of another axis, in fixed point: shifted down by point_ it is
+  /// the coordinate's share of the address, but for bits below that share.
   struct Track {
     std::int64_t at, by;
   };
@@ -69,17 +81,21 @@ class FrameVotes {
     return p.cast<int>().cwiseMax(0).cwiseMin(size_ - Eigen::Vector3i::Ones());
   }
   Track MakeTrack(const Ray& ray, int axis, int minor) const;
-  void MissBehindFaces(const Ray& ray, int axis);
+  template <int kAxis>
+  void MissBehindFaces(const Ray& ray);
 
   Eigen::Vector3i size_;
-  Eigen::Vector3i shift_;  // of a cell's coordinates in its address
+  Eigen::Vector3i shift_;              // of a cell's coordinates in its address
+  int point_;                          // of tracks
+  double one_;                         // cell, in a track's units before they are shifted
+  std::array<std::uint64_t, 3> bits_;  // of each coordinate in an address
   Eigen::Vector3d eye_ = Eigen::Vector3d::Zero();
   Eigen::Vector3i first_ = Eigen::Vector3i::Zero();  // the eye's cell
   Eigen::Vector3i low_ = Eigen::Vector3i::Zero();
   Eigen::Vector3i high_ = Eigen::Vector3i::Zero();
   std::vector<std::uint8_t> votes_;
   struct Hit {
-    std::size_t address;
+    Eigen::Vector3i cell;
     std::uint8_t vote;
   };
   std::vector<Hit> hits_;

@@ -34,11 +34,32 @@ const Eigen::Vector3i& CheckedSize(const Eigen::Vector3i& size_log2) {
   return size_log2;
 }
 
-/// Bit i: counts[i] > 0.
-std::uint64_t NotZero(const std::uint16_t* counts, int n) {
-  std::uint64_t bits = 0;
-  for (int i = 0; i < n; ++i) bits |= static_cast<std::uint64_t>(counts[i] > 0) << i;
-  return bits;
+/// Counts are added to eight at a time.
+constexpr int kLanes = 8;
+using Lanes = std::uint16_t __attribute__((vector_size(2 * kLanes)));
+
+Lanes Load(const std::uint16_t* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+/// All bits of the first n lanes.
+Lanes First(int n) {
+  constexpr std::uint16_t k = 0xffff;
+  constexpr std::array<std::uint16_t, 2 * kLanes> kSome = {k, k, k, k, k, k, k, k};
+  return Load(&kSome[static_cast<std::size_t>(kLanes - n)]);
+}
+
+/// Bit i: lane i is not zero.
+std::uint64_t NotZero(const Lanes& counts) {
+  const Lanes bits = (counts != 0) & Lanes{1, 2, 4, 8, 16, 32, 64, 128};
+  std::array<std::uint64_t, 2> half;
+  std::memcpy(half.data(), &bits, sizeof(bits));
+  std::uint64_t all = half[0] | half[1];
+  all |= all >> 32;
+  all |= all >> 16;
+  return all & 0xff;
 }
 
 std::uint8_t VoteOf(ReturnKind kind) {
@@ -93,11 +114,13 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
   mask_ = size_ - CellIndex::Ones();
   const auto cells = static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()) *
                      static_cast<std::size_t>(size_.z());
-  cells_.assign(cells, Cell{});
-  inflation_.assign(cells, 0);
-  words_per_row_ = (static_cast<std::size_t>(size_.x()) + kWord - 1) / kWord;
-  blocked_.assign(cells / static_cast<std::size_t>(size_.x()) * words_per_row_, 0);
-  free_.assign(blocked_.size(), 0);
+  const std::size_t padded = cells + kLevelPadding * static_cast<std::size_t>(size_.z());
+  cells_.assign(padded, Cell{});
+  inflation_.assign(padded + kLanes, 0);  // a row's last lanes may be beyond
+  words_per_row_ = static_cast<std::size_t>((size_.x() + kWord - 1) / kWord);
+  for (Bits* bits : {&blocked_, &free_, &known_, &obstacles_, &settled_}) {
+    bits->assign(cells / static_cast<std::size_t>(size_.x()) * words_per_row_, 0);
+  }
   for (int old = -128; old < 128; ++old) {
     const auto after = [&](int change) {
       return static_cast<std::int8_t>(
@@ -125,20 +148,12 @@ OccupancyMap::OccupancyMap(const OccupancyMapOptions& options)
       ball_reach_ = std::max({ball_reach_, half, std::abs(y), std::abs(z)});
     }
   }
-  flips_.reserve(1 << 14);
+  std::stable_sort(ball_.begin(), ball_.end(),
+                   [](const BallRow& a, const BallRow& b) { return a.half < b.half; });
   doubts_.reserve(1 << 14);
-  left_.reserve(1 << 14);
   entered_.reserve(3);
   slabs_.reserve(3);
   origin_ = -size_ / 2;
-}
-
-bool OccupancyMap::IsOccupied(const CellIndex& cell) const {
-  return InWindow(cell) && Blocks(cells_[Address(cell)]);
-}
-
-bool OccupancyMap::IsKnown(const CellIndex& cell) const {
-  return InWindow(cell) && cells_[Address(cell)].log_odds != kUnknown;
 }
 
 std::int64_t OccupancyMap::CountObservedFree() const {
@@ -148,7 +163,6 @@ std::int64_t OccupancyMap::CountObservedFree() const {
 }
 
 void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutline& pad) {
-  flips_.clear();
   const estimation::CameraIntrinsics& k = frame.intrinsics;
   CheckDepths(frame);
   const bool pose_known = frame.p_WC.allFinite() && frame.R_WC.allFinite();
@@ -186,36 +200,35 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutli
     }
   }
   votes_.Finish();
-  ApplyVotes(frame.p_WC, frame.t);
+  votes_.TakeReturns([&](const Eigen::Vector3i& cell, std::uint8_t vote) {
+    ApplyReturn(vote, origin_ + cell, frame.p_WC, frame.t);
+  });
+  ApplyMisses(frame.p_WC);
 }
 
-void OccupancyMap::ApplyVotes(const Eigen::Vector3d& eye, double t) {
-  constexpr int kVotes = 8;  // looked at in one go: most have none
-  static_assert(std::endian::native == std::endian::little, "a word's first vote is its lowest");
-  CellIndex cell;
-  for (int z = votes_.low().z(); z < votes_.high().z(); ++z) {
-    cell.z() = origin_.z() + z;
-    for (int y = votes_.low().y(); y < votes_.high().y(); ++y) {
-      cell.y() = origin_.y() + y;
-      const std::size_t row = RowAddress(cell.y(), cell.z());
-      std::uint8_t* votes = votes_.Row(y, z);
-      for (int x = votes_.low().x() / kVotes * kVotes; x < votes_.high().x(); x += kVotes) {
-        std::uint64_t word;
-        std::memcpy(&word, votes + x, sizeof(word));
-        if (word == 0) continue;
-        std::memset(votes + x, FrameVotes::kNone, sizeof(word));
-        cell.x() = origin_.x() + x;
-        for (; word != 0; word >>= 8, ++cell.x()) {
-          const auto vote = static_cast<std::uint8_t>(word & 0xff);
-          if (vote == FrameVotes::kNone) continue;
-          Cell& stored = cells_[row | static_cast<std::size_t>(cell.x() & mask_.x())];
-          // Nearly all votes say again that free space is free.
-          const bool settled = vote == FrameVotes::kMiss && stored.log_odds == min_;
-          if (!settled || !IsObservedFree(cell)) Apply(vote, cell, eye, t);
-        }
+void OccupancyMap::ApplyMisses(const Eigen::Vector3d& eye) {
+  ForEachStretch({origin_ + votes_.low(), origin_ + votes_.high()}, [&](const Stretch& s) {
+    // Nearly all votes say again that free space is free.
+    std::uint64_t misses =
+        votes_.TakeMisses(s.first - origin_, s.count) & ~(settled_[s.word] >> s.shift);
+    std::uint64_t freed = 0, settled = 0;
+    for (; misses != 0; misses &= misses - 1) {
+      const int i = std::countr_zero(misses);
+      Cell& cell = cells_[s.address + static_cast<std::size_t>(i)];
+      if (cell.log_odds >= 0) {
+        ApplyMissToHit(s.first + i * CellIndex::UnitX(), eye);
+        continue;
       }
+      const std::uint64_t bit = std::uint64_t{1} << i;
+      freed |= bit;
+      settled |= cell.log_odds == min_ ? bit : 0;
+      cell.changed |= cell.log_odds != min_ || (free_[s.word] >> s.shift & bit) == 0;
+      cell.log_odds = after_miss_[static_cast<std::uint8_t>(cell.log_odds)];
     }
-  }
+    free_[s.word] |= freed << s.shift;
+    known_[s.word] |= freed << s.shift;
+    settled_[s.word] |= settled << s.shift;
+  });
 }
 
 int OccupancyMap::RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const {
@@ -223,23 +236,22 @@ int OccupancyMap::RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) con
   return std::min(static_cast<int>(steps), kFarthest);
 }
 
-void OccupancyMap::Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye,
-                         double t) {
+void OccupancyMap::ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& eye) {
   Cell value = cells_[Address(cell)];
-  const auto old = static_cast<std::uint8_t>(value.log_odds);
-  const bool was_hit = value.log_odds >= 0;
-  if (vote == FrameVotes::kMiss) {
-    // What may have been the pad has moved on with it; any other hit is outweighed by a better look only.
-    const bool better = value.doubtful || RangeOf(cell, eye) < value.hit_range ||
-                        (CentreOf(cell) - eye).norm() <= sharp_;
-    if (was_hit && !better) return;
-    value.log_odds = after_miss_[old];
-    if (value.log_odds < 0) value.doubtful = false;
-    Set(cell, value);
-    SetObservedFree(cell, value.log_odds < 0);
-    return;
-  }
-  SetObservedFree(cell, false);
+  // What may have been the pad has moved on with it; any other hit is outweighed by a better look only.
+  const bool better = value.doubtful || RangeOf(cell, eye) < value.hit_range ||
+                      (CentreOf(cell) - eye).norm() <= sharp_;
+  if (!better) return;
+  value.log_odds = after_miss_[static_cast<std::uint8_t>(value.log_odds)];
+  if (value.log_odds < 0) value.doubtful = false;
+  Set(cell, value);
+  SetBit(cell, value.log_odds < 0, &free_);
+}
+
+void OccupancyMap::ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye,
+                               double t) {
+  Cell value = cells_[Address(cell)];
+  SetBit(cell, false, &free_);
   if (vote == FrameVotes::kPad) {
     value.log_odds = kUnknown;
     value.doubtful = false;
@@ -249,9 +261,9 @@ void OccupancyMap::Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::
   if (vote == FrameVotes::kDoubt && firm) return;
   const int range = RangeOf(cell, eye);
   value.hit_range = static_cast<std::uint8_t>(
-      (was_hit ? std::min<int>(value.hit_range, range) : range) & kFarthest);
+      (value.log_odds >= 0 ? std::min<int>(value.hit_range, range) : range) & kFarthest);
   value.doubtful = vote == FrameVotes::kDoubt;
-  value.log_odds = after_hit_[old];
+  value.log_odds = after_hit_[static_cast<std::uint8_t>(value.log_odds)];
   Set(cell, value);
   if (!value.doubtful) return;
   if (doubts_.size() == doubts_.capacity()) return MakeCertain(cell, false);  // no room: it blocks
@@ -272,12 +284,11 @@ void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
 }
 
 void OccupancyMap::SetState(const CellIndex& cell, CellState state) {
-  flips_.clear();
   if (!InWindow(cell)) return;
   Cell value;
   if (state != CellState::kUnknown) value.log_odds = state == CellState::kFree ? min_ : max_;
   Set(cell, value);
-  SetObservedFree(cell, state == CellState::kFree);
+  SetBit(cell, state == CellState::kFree, &free_);
 }
 
 void OccupancyMap::MarkFree(const Eigen::Vector3d& p_W, double radius) {
@@ -290,27 +301,27 @@ void OccupancyMap::MarkFree(const Eigen::Vector3d& p_W, double radius) {
     if (value.log_odds >= 0 || value.log_odds == kUnknown) value.log_odds = miss_;
     value.doubtful = false;
     Set(cell, value);
-    SetObservedFree(cell, true);
+    SetBit(cell, true, &free_);
   });
 }
 
 void OccupancyMap::MarkRestFree() {
-  flips_.clear();
   ForEachCell({origin_, origin_ + size_}, [&](const CellIndex& cell) {
     Cell value = cells_[Address(cell)];
     if (Blocks(value)) return;
     value.log_odds = min_;
     value.doubtful = false;
     Set(cell, value);
-    SetObservedFree(cell, true);
+    SetBit(cell, true, &free_);
   });
 }
 
-void OccupancyMap::SetObservedFree(const CellIndex& cell, bool free) {
-  const auto x = static_cast<std::size_t>(cell.x() & mask_.x());
-  std::uint64_t& word = free_[RowIndex(cell.y(), cell.z()) * words_per_row_ + x / kWord];
+void OccupancyMap::SetBit(const CellIndex& cell, bool on, Bits* bits) const {
+  const int x = cell.x() & mask_.x();
+  std::uint64_t& word =
+      (*bits)[RowIndex(cell.y(), cell.z()) * words_per_row_ + static_cast<std::size_t>(x / kWord)];
   const std::uint64_t bit = std::uint64_t{1} << (x % kWord);
-  word = free ? word | bit : word & ~bit;
+  word = on ? word | bit : word & ~bit;
 }
 
 void OccupancyMap::Set(const CellIndex& cell, Cell value) {
@@ -319,60 +330,55 @@ void OccupancyMap::Set(const CellIndex& cell, Cell value) {
   const bool is = Blocks(value);
   stored = value;
   stored.changed = true;
+  SetBit(cell, value.log_odds != kUnknown, &known_);
+  SetBit(cell, false, &settled_);
   if (was == is) return;
-  Inflate(cell, is ? 1 : -1);
-  flips_.push_back({cell, is});
+  SetBit(cell, is, &obstacles_);
+  Inflate(cell, is ? 1 : -1, window());
 }
 
-void OccupancyMap::Inflate(const CellIndex& cell, int increment) {
-  for (const BallRow& row : ball_) {
-    AddToRow(cell.y() + row.y, cell.z() + row.z, cell.x() - row.half, cell.x() + row.half + 1,
-             increment);
+/// Adds to the cells of the obstacle's ball that are in a box within the window.
+void OccupancyMap::Inflate(const CellIndex& cell, int increment, const CellBox& within) {
+  if (((cell.array() + ball_reach_ < within.low.array()) ||
+       (cell.array() - ball_reach_ >= within.high.array()))
+          .any()) {
+    return;
+  }
+  for (std::size_t begin = 0, end = 0; begin < ball_.size(); begin = end) {
+    const int half = ball_[begin].half;
+    while (end < ball_.size() && ball_[end].half == half) ++end;
+    ForEachStretch(std::max(cell.x() - half, within.low.x()),
+                   std::min(cell.x() + half + 1, within.high.x()), 0, 0,
+                   [&](const Stretch& s) { AddToRows(cell, begin, end, s, increment, within); });
   }
 }
 
-/// Calls visit(from, count) for the at most kWord cells long stretches of addresses in a row of the
-/// window that hold the cells [x_begin, x_end), none of which crosses a word's edge.
-template <class Visit>
-void OccupancyMap::ForEachStretch(int x_begin, int x_end, Visit&& visit) const {
-  constexpr int kCells = static_cast<int>(kWord);
-  for (int x = x_begin; x < x_end;) {
-    const int from = x & mask_.x();
-    const int room = std::min(kCells - from % kCells, size_.x() - from);
-    const int count = std::min(room, x_end - x);
-    visit(from, count);
-    x += count;
+/// Adds to one stretch, given as one of the row (0, 0), in the rows [begin, end) of an obstacle's ball.
+void OccupancyMap::AddToRows(const CellIndex& cell, std::size_t begin, std::size_t end,
+                             const Stretch& s, int increment, const CellBox& within) {
+  std::array<Lanes, kWord / kLanes> adds;
+  std::size_t chunks = 0;
+  for (int from = 0; from < s.count; from += kLanes) {
+    adds[chunks++] =
+        static_cast<std::uint16_t>(increment) & First(std::min(kLanes, s.count - from));
   }
-}
-
-/// Bits of the addresses [from, from + count), which are in one word of a row.
-void OccupancyMap::StoreBits(std::size_t row, int from, int count, std::uint64_t bits) {
-  const auto x = static_cast<std::size_t>(from);
-  const std::uint64_t these = ~std::uint64_t{0} >> (static_cast<int>(kWord) - count) << (x % kWord);
-  std::uint64_t& word = blocked_[row * words_per_row_ + x / kWord];
-  word = (word & ~these) | (bits << (x % kWord) & these);
-}
-
-// Cells [x_begin, x_end) of a row, as far as they are in the window.
-void OccupancyMap::AddToRow(int y, int z, int x_begin, int x_end, int increment) {
-  const CellIndex end = origin_ + size_;
-  if (y < origin_.y() || y >= end.y() || z < origin_.z() || z >= end.z()) return;
-  x_begin = std::max(x_begin, origin_.x());
-  x_end = std::min(x_end, end.x());
-  const std::size_t row = RowIndex(y, z);
-  ForEachStretch(x_begin, x_end, [&](int from, int count) {
-    std::uint16_t* covers = &inflation_[RowAddress(y, z) + static_cast<std::size_t>(from)];
-    for (int i = 0; i < count; ++i) covers[i] = static_cast<std::uint16_t>(covers[i] + increment);
-    StoreBits(row, from, count, increment > 0 ? ~std::uint64_t{0} : NotZero(covers, count));
-  });
-}
-
-/// As if there were no obstacle: of cells that enter the window.
-void OccupancyMap::ClearRow(int y, int z, int x_begin, int x_end) {
-  ForEachStretch(x_begin, x_end, [&](int from, int count) {
-    std::fill_n(&inflation_[RowAddress(y, z) + static_cast<std::size_t>(from)], count, 0);
-    StoreBits(RowIndex(y, z), from, count, 0);
-  });
+  const std::uint64_t mask = s.mask();
+  for (std::size_t i = begin; i < end; ++i) {
+    const int y = cell.y() + ball_[i].y, z = cell.z() + ball_[i].z;
+    if (y < within.low.y() || y >= within.high.y() || z < within.low.z() || z >= within.high.z()) {
+      continue;
+    }
+    std::uint16_t* covers = &inflation_[RowAddress(y, z) + s.address];
+    std::uint64_t covered = 0;
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk, covers += kLanes) {
+      const Lanes counts = Load(covers) + adds[chunk];
+      std::memcpy(covers, &counts, sizeof(counts));
+      if (increment < 0) covered |= NotZero(counts) << (chunk * kLanes);
+    }
+    std::uint64_t& word = blocked_[RowIndex(y, z) * words_per_row_ + s.word];
+    word |= mask;
+    if (increment < 0) word &= ~mask | covered << s.shift;
+  }
 }
 
 }  // namespace touchdown::planning

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/estimation/measurements.h"
+#include "touchdown/planning/cell_blocks.h"
 #include "touchdown/planning/cell_box.h"
 #include "touchdown/planning/frame_votes.h"
 #include "touchdown/planning/pad_outline.h"
@@ -42,18 +44,6 @@ struct OccupancyMapOptions {
 /// What a planner can tell of a cell: kFree is observed free. All else that does not block is unknown to it.
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
-/// A cell that became blocked or free, before inflation.
-struct CellFlip {
-  CellIndex cell;
-  bool occupied;
-};
-
-/// What was observed of a cell.
-struct CellValue {
-  CellIndex cell;
-  std::int8_t log_odds;  ///< in steps of OccupancyMap::kLogOddsStep
-};
-
 /// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle; what
 /// leaves it is forgotten here, and handed to whoever keeps it (planning/persistent_map.h).
 ///
@@ -67,8 +57,7 @@ struct CellValue {
 /// Returns that may be the pad's are kept apart (planning/pad_outline.h): their cells are neither free
 /// nor occupied until ExplainDoubts.
 ///
-/// Allocates in the constructor only (the lists of flips, hits, doubts and cells that left grow to their
-/// high-water mark).
+/// Allocates in the constructor only (the list of hits grows to its high-water mark).
 class OccupancyMap {
  public:
   static constexpr double kLogOddsStep = 1.0 / 16.0;
@@ -81,23 +70,22 @@ class OccupancyMap {
   double resolution() const { return options_.resolution; }
 
   /// Moves the window so that it is centred at p_W, once p_W is a sixteenth of the window's size
-  /// off its centre; cells that enter are unknown, cells that leave are forgotten.
-  void Recentre(const Eigen::Vector3d& p_W);
+  /// off its centre. Cells that enter are unknown. Cells that leave are forgotten; those that have
+  /// changed since they entered or were last taken are put in `memory` before.
+  void Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory = nullptr);
 
   /// Moves the window so that `origin` is its lowest cell.
-  void MoveWindow(const CellIndex& origin);
+  void MoveWindow(const CellIndex& origin, CellBlocks* memory = nullptr);
 
   /// Sets one cell as a planner sees it. Out of the window: ignored.
   void SetState(const CellIndex& cell, CellState state);
 
-  /// Cells that left in the last Recentre or MoveWindow and had changed since they entered or were last taken.
-  const std::vector<CellValue>& left() const { return left_; }
-  /// What entered in it: disjoint boxes, at most three.
+  /// What entered in the last Recentre or MoveWindow: disjoint boxes, at most three.
   const std::vector<CellBox>& entered() const { return entered_; }
 
   /// Gives a cell what is remembered of it; that is no change. The log-odds are clamped to this map's
   /// limits. Ignored out of the window, and for an obstacle that lies below ground_height as a whole:
-  /// that is ground. Adds to flips().
+  /// that is ground.
   void Restore(const CellValue& value);
 
   /// Appends every cell of the window that changed since it entered or was last taken.
@@ -137,12 +125,7 @@ class OccupancyMap {
   }
 
   /// Blocked after inflation. Out of the window: free (unknown).
-  bool IsBlocked(const CellIndex& cell) const {
-    if (!InWindow(cell)) return false;
-    const auto x = static_cast<std::size_t>(cell.x() & mask_.x());
-    const std::size_t row = RowIndex(cell.y(), cell.z()) * words_per_row_;
-    return (blocked_[row + x / kWord] >> (x % kWord) & 1u) != 0;
-  }
+  bool IsBlocked(const CellIndex& cell) const { return InWindow(cell) && BlockedRow(cell, 1) != 0; }
   bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
   /// Bit i: the cell i beyond `first` along x is blocked. `count` (at most 64) cells, all in the window.
   std::uint64_t BlockedRow(const CellIndex& first, int count) const {
@@ -152,10 +135,15 @@ class OccupancyMap {
   std::uint64_t ObservedFreeRow(const CellIndex& first, int count) const {
     return Row(free_, first, count);
   }
-  /// Occupied itself, without inflation.
-  bool IsOccupied(const CellIndex& cell) const;
+  /// The same of the cells that are occupied themselves, without inflation.
+  std::uint64_t OccupiedRow(const CellIndex& first, int count) const {
+    return Row(obstacles_, first, count);
+  }
+  bool IsOccupied(const CellIndex& cell) const {
+    return InWindow(cell) && OccupiedRow(cell, 1) != 0;
+  }
   /// Observed at least once, free or occupied or doubtful.
-  bool IsKnown(const CellIndex& cell) const;
+  bool IsKnown(const CellIndex& cell) const { return InWindow(cell) && Row(known_, cell, 1) != 0; }
   /// See above. Out of the window: no.
   bool IsObservedFree(const CellIndex& cell) const {
     return InWindow(cell) && ObservedFreeRow(cell, 1) != 0;
@@ -174,14 +162,12 @@ class OccupancyMap {
   const CellIndex& origin() const { return origin_; }
   const CellIndex& size() const { return size_; }
 
-  /// Cells that became blocked or free in the last Integrate, SetOccupied, Clear or Recentre, and the
-  /// Restores since.
-  const std::vector<CellFlip>& flips() const { return flips_; }
-
  private:
-  static constexpr std::size_t kWord = 64;  // cells
-  // Never observed. Outside the clamps, so that no update can reach it.
-  static constexpr std::int8_t kUnknown = -128;
+  using Bits = std::vector<std::uint64_t>;
+  static constexpr int kWord = 64;  // cells
+  // Between levels of cells. Without it the cells above each other compete for the same lines of the cache.
+  static constexpr std::size_t kLevelPadding = 96;
+  static constexpr std::int8_t kUnknown = kUnknownLogOdds;
 
   struct Cell {
     std::int8_t log_odds = kUnknown;    // in steps of kLogOddsStep
@@ -207,43 +193,58 @@ class OccupancyMap {
     return (static_cast<std::size_t>(z & mask_.z()) << options_.size_log2.y()) |
            static_cast<std::size_t>(y & mask_.y());
   }
-  std::size_t RowAddress(int y, int z) const { return RowIndex(y, z) << options_.size_log2.x(); }
+  std::size_t RowAddress(int y, int z) const {
+    return (RowIndex(y, z) << options_.size_log2.x()) +
+           kLevelPadding * static_cast<std::size_t>(z & mask_.z());
+  }
   std::size_t Address(const CellIndex& cell) const {
-    return RowAddress(cell.y(), cell.z()) | static_cast<std::size_t>(cell.x() & mask_.x());
+    return RowAddress(cell.y(), cell.z()) + static_cast<std::size_t>(cell.x() & mask_.x());
   }
-  std::uint64_t Row(const std::vector<std::uint64_t>& grid, const CellIndex& first,
-                    int count) const {
-    const std::uint64_t* row = &grid[RowIndex(first.y(), first.z()) * words_per_row_];
-    const auto x = static_cast<std::size_t>(first.x() & mask_.x());
-    const std::size_t bit = x % kWord;
-    const std::size_t per_word = std::min(kWord, static_cast<std::size_t>(size_.x()));
-    std::uint64_t bits = row[x / kWord] >> bit;
-    if (bit + static_cast<std::size_t>(count) > per_word) {  // the row goes on, or wraps around
-      bits |= row[(x / kWord + 1) & (words_per_row_ - 1)] << (per_word - bit);
+  std::uint64_t Row(const Bits& bits_of, const CellIndex& first, int count) const {
+    const std::uint64_t* row = &bits_of[RowIndex(first.y(), first.z()) * words_per_row_];
+    const int x = first.x() & mask_.x();
+    const int bit = x % kWord;
+    const int per_word = std::min(kWord, size_.x());
+    const auto word = static_cast<std::size_t>(x / kWord);
+    std::uint64_t bits = row[word] >> bit;
+    if (bit + count > per_word) {  // the row goes on, or wraps around
+      bits |= row[(word + 1) & (words_per_row_ - 1)] << (per_word - bit);
     }
-    return bits & ~std::uint64_t{0} >> (static_cast<int>(kWord) - count);
+    return bits & ~std::uint64_t{0} >> (kWord - count);
   }
+  /// Cells along x that are neighbours in memory and have their bits in one word.
+  struct Stretch {
+    CellIndex first;
+    int count;
+    std::size_t address;  ///< of the first
+    std::size_t word;
+    int shift;  ///< of the first one's bit in it
+    std::uint64_t mask() const { return ~std::uint64_t{0} >> (int{kWord} - count) << shift; }
+  };
+  template <class Visit>
+  void ForEachStretch(int x_begin, int x_end, int y, int z, Visit&& visit) const;
+  template <class Visit>
+  void ForEachStretch(const CellBox& box, Visit&& visit) const;
+  template <class Visit>
+  void ForEachSet(const Bits& bits, const CellBox& box, Visit&& visit) const;
+  void SetBit(const CellIndex& cell, bool on, Bits* bits) const;
+
+  CellBox window() const { return {origin_, origin_ + size_}; }
   bool Blocks(const Cell& cell) const { return cell.log_odds >= occupied_ && !cell.doubtful; }
-  void SetObservedFree(const CellIndex& cell, bool free);
   int RangeOf(const CellIndex& cell, const Eigen::Vector3d& eye) const;
   /// Error of a return from `range`: the map's, and the camera's [m].
   double ToleranceAt(double range) const {
     return options_.resolution + kNoiseSigmas * options_.range_noise * range;
   }
-  void ApplyVotes(const Eigen::Vector3d& eye, double t);
-  void Apply(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye, double t);
+  void ApplyReturn(std::uint8_t vote, const CellIndex& cell, const Eigen::Vector3d& eye, double t);
+  void ApplyMisses(const Eigen::Vector3d& eye);
+  void ApplyMissToHit(const CellIndex& cell, const Eigen::Vector3d& eye);
   void MakeCertain(const CellIndex& cell, bool explained);
-  template <class Visit>
-  void ForEachAddress(const CellBox& box, Visit&& visit) const;
-  void Forget(const CellIndex& cell, Cell* stored);
-  void CountInflation(const CellIndex& cell, const CellBox& but_for);
+  void Forget(const CellIndex& cell, const CellBox& stays, CellBlocks* memory);
   void Set(const CellIndex& cell, Cell value);
-  void Inflate(const CellIndex& cell, int increment);
-  void AddToRow(int y, int z, int x_begin, int x_end, int increment);
-  void ClearRow(int y, int z, int x_begin, int x_end);
-  template <class Visit>
-  void ForEachStretch(int x_begin, int x_end, Visit&& visit) const;
-  void StoreBits(std::size_t row, int from, int count, std::uint64_t bits);
+  void Inflate(const CellIndex& cell, int increment, const CellBox& within);
+  void AddToRows(const CellIndex& cell, std::size_t begin, std::size_t end, const Stretch& s,
+                 int increment, const CellBox& within);
 
   OccupancyMapOptions options_;
   CellIndex origin_ = CellIndex::Zero();
@@ -252,22 +253,60 @@ class OccupancyMap {
   std::int8_t miss_, min_, max_, occupied_;  // log-odds in steps of kLogOddsStep
   // What log-odds become by a miss and by a hit: unknown and the clamps are settled here once.
   std::array<std::int8_t, 256> after_miss_, after_hit_;
-  std::vector<BallRow> ball_;  // cells that one obstacle cell blocks
+  std::vector<BallRow> ball_;  // cells that one obstacle cell blocks, by half
   int ball_reach_ = 0;         // its largest extent along an axis
   std::vector<Cell> cells_;
   std::vector<std::uint16_t> inflation_;  // number of obstacle cells whose ball holds it
-  std::vector<std::uint64_t> blocked_;    // bit by bit along x: that number is not zero
-  std::vector<std::uint64_t> free_;       // bit by bit along x: observed free
+  // Bit by bit along x, so that what has nothing to tell is passed a word at a time:
+  Bits blocked_;    // that number is not zero
+  Bits free_;       // observed free
+  Bits known_;      // log-odds that are not kUnknown
+  Bits obstacles_;  // Blocks
+  Bits settled_;    // observed free so often that a miss changes nothing
   std::size_t words_per_row_ = 0;
   double sharp_ =
       0.0;  // of the frame at hand: up to here two pixels fall on the thinnest obstacle [m]
   FrameVotes votes_;
   std::vector<Doubt> doubts_;
-  std::vector<CellFlip> flips_;
-  std::vector<CellValue> left_;
   std::vector<CellBox> entered_;
   std::vector<CellBox> slabs_;  // of the Recentre at hand
 };
+
+/// The stretches that the cells [x_begin, x_end) of a row make.
+template <class Visit>
+void OccupancyMap::ForEachStretch(int x_begin, int x_end, int y, int z, Visit&& visit) const {
+  const std::size_t row = RowIndex(y, z);
+  for (int x = x_begin; x < x_end;) {
+    const int from = x & mask_.x();
+    const int room = std::min(kWord - from % kWord, size_.x() - from);
+    const int count = std::min(room, x_end - x);
+    visit(Stretch{{x, y, z},
+                  count,
+                  RowAddress(y, z) + static_cast<std::size_t>(from),
+                  row * words_per_row_ + static_cast<std::size_t>(from / kWord),
+                  from % kWord});
+    x += count;
+  }
+}
+
+template <class Visit>
+void OccupancyMap::ForEachStretch(const CellBox& box, Visit&& visit) const {
+  for (int z = box.low.z(); z < box.high.z(); ++z) {
+    for (int y = box.low.y(); y < box.high.y(); ++y) {
+      ForEachStretch(box.low.x(), box.high.x(), y, z, visit);
+    }
+  }
+}
+
+/// Calls visit(cell) for the box's cells whose bit is set.
+template <class Visit>
+void OccupancyMap::ForEachSet(const Bits& bits, const CellBox& box, Visit&& visit) const {
+  ForEachStretch(box, [&](const Stretch& s) {
+    for (std::uint64_t left = (bits[s.word] & s.mask()) >> s.shift; left != 0; left &= left - 1) {
+      visit(CellIndex(s.first.x() + std::countr_zero(left), s.first.y(), s.first.z()));
+    }
+  });
+}
 
 template <class OutlineAt>
 void OccupancyMap::ExplainDoubts(OutlineAt&& outline_at) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moving the window of the rolling map: what leaves is handed out and forgotten while its ball can
+// Moving the window of the rolling map: what leaves is put in memory and forgotten while its ball can
 // still be taken back; what enters takes over addresses of what left, and its inflation is counted
 // anew from the obstacles that stay.
 
@@ -9,79 +9,53 @@
 
 namespace touchdown::planning {
 
-// Calls visit(cell, address) for the cells of a box in the window. Slabs are large and mostly empty,
-// so that finding a row's address once counts.
-template <class Visit>
-void OccupancyMap::ForEachAddress(const CellBox& box, Visit&& visit) const {
-  for (int z = box.low.z(); z < box.high.z(); ++z) {
-    for (int y = box.low.y(); y < box.high.y(); ++y) {
-      const std::size_t row = RowAddress(y, z);
-      for (int x = box.low.x(); x < box.high.x(); ++x) {
-        visit(CellIndex(x, y, z), row | static_cast<std::size_t>(x & mask_.x()));
-      }
-    }
-  }
-}
-
-void OccupancyMap::Recentre(const Eigen::Vector3d& p_W) {
-  flips_.clear();
-  left_.clear();
+void OccupancyMap::Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory) {
   entered_.clear();
   const CellIndex target = CellOf(p_W) - size_ / 2;
   const CellIndex offset = (target - origin_).cwiseAbs();
   // A shift costs whole slabs of cells, so the window waits until there is one to move.
-  if (((offset - size_ / 16).array() >= 0).any()) MoveWindow(target);
+  if (((offset - size_ / 16).array() >= 0).any()) MoveWindow(target, memory);
 }
 
-void OccupancyMap::MoveWindow(const CellIndex& origin) {
-  flips_.clear();
-  left_.clear();
+void OccupancyMap::MoveWindow(const CellIndex& origin, CellBlocks* memory) {
   const CellIndex shift = origin - origin_;
-  const CellBox old = {origin_, origin_ + size_};
+  const CellBox old = window();
+  const CellBox stays = {old.low.cwiseMax(origin), old.high.cwiseMin(origin + size_)};
   EdgeSlabs(old, -shift, &slabs_);
   for (const CellBox& slab : slabs_) {
-    ForEachAddress(slab, [&](const CellIndex& cell, std::size_t address) {
-      if (cells_[address].log_odds != kUnknown) Forget(cell, &cells_[address]);
+    ForEachSet(known_, slab, [&](const CellIndex& cell) { Forget(cell, stays, memory); });
+    ForEachStretch(slab, [&](const Stretch& s) {
+      for (Bits* bits : {&known_, &free_, &obstacles_, &settled_}) (*bits)[s.word] &= ~s.mask();
     });
   }
 
   origin_ = origin;
-  const CellBox window = {origin_, origin_ + size_};
-  EdgeSlabs(window, shift, &entered_);
+  EdgeSlabs(window(), shift, &entered_);
   for (const CellBox& slab : entered_) {
-    for (int z = slab.low.z(); z < slab.high.z(); ++z) {
-      for (int y = slab.low.y(); y < slab.high.y(); ++y) {
-        ClearRow(y, z, slab.low.x(), slab.high.x());
-      }
-    }
+    ForEachStretch(slab, [&](const Stretch& s) {
+      if ((blocked_[s.word] & s.mask()) == 0) return;
+      std::fill_n(&inflation_[s.address], s.count, 0);
+      blocked_[s.word] &= ~s.mask();
+    });
   }
   CellIndex reach;
   for (int c = 0; c < 3; ++c) reach[c] = (shift[c] > 0) - (shift[c] < 0);
-  EdgeSlabs(window, shift + ball_reach_ * reach, &slabs_);
+  EdgeSlabs(window(), shift + ball_reach_ * reach, &slabs_);
   for (const CellBox& slab : slabs_) {
-    ForEachAddress(slab, [&](const CellIndex& cell, std::size_t address) {
-      if (Blocks(cells_[address])) CountInflation(cell, old);
+    ForEachSet(obstacles_, slab, [&](const CellIndex& cell) {
+      for (const CellBox& box : entered_) Inflate(cell, 1, box);
     });
   }
 }
 
-void OccupancyMap::Forget(const CellIndex& cell, Cell* stored) {
-  if (stored->changed && !stored->doubtful) left_.push_back({cell, stored->log_odds});
-  Set(cell, Cell{});
-  SetObservedFree(cell, false);
-  stored->changed = false;
-}
-
-// Adds the ball of an obstacle to the cells that were not in the old window.
-void OccupancyMap::CountInflation(const CellIndex& cell, const CellBox& but_for) {
-  for (const BallRow& row : ball_) {
-    const int y = cell.y() + row.y, z = cell.z() + row.z;
-    const int begin = cell.x() - row.half, end = cell.x() + row.half + 1;
-    const bool new_row = y < but_for.low.y() || y >= but_for.high.y() || z < but_for.low.z() ||
-                         z >= but_for.high.z();
-    AddToRow(y, z, begin, new_row ? end : std::min(end, but_for.low.x()), 1);
-    if (!new_row) AddToRow(y, z, std::max(begin, but_for.high.x()), end, 1);
+/// A cell that leaves. Of its ball only what stays has to be taken back.
+void OccupancyMap::Forget(const CellIndex& cell, const CellBox& stays, CellBlocks* memory) {
+  Cell& stored = cells_[Address(cell)];
+  if (memory != nullptr && stored.changed && !stored.doubtful) {
+    memory->Put({cell, stored.log_odds});
   }
+  if (Blocks(stored)) Inflate(cell, -1, stays);
+  stored = Cell{};
 }
 
 void OccupancyMap::Restore(const CellValue& value) {
@@ -97,21 +71,26 @@ void OccupancyMap::Restore(const CellValue& value) {
 }
 
 void OccupancyMap::TakeChanges(std::vector<CellValue>* changes) {
-  ForEachAddress({origin_, origin_ + size_}, [&](const CellIndex& cell, std::size_t address) {
-    Cell& stored = cells_[address];
-    if (!stored.changed || stored.doubtful || stored.log_odds == kUnknown) return;
+  ForEachSet(known_, window(), [&](const CellIndex& cell) {
+    Cell& stored = cells_[Address(cell)];
+    if (!stored.changed || stored.doubtful) return;
     changes->push_back({cell, stored.log_odds});
     stored.changed = false;
   });
 }
 
 void OccupancyMap::CopyStates(std::vector<CellState>* states) const {
-  states->resize(cells_.size());
-  CellState* out = states->data();
-  ForEachAddress({origin_, origin_ + size_}, [&](const CellIndex& cell, std::size_t address) {
-    const CellState free = IsObservedFree(cell) ? CellState::kFree : CellState::kUnknown;
-    *out++ = Blocks(cells_[address]) ? CellState::kOccupied : free;
-  });
+  states->assign(blocked_.size() * static_cast<std::size_t>(std::min(kWord, size_.x())),
+                 CellState::kUnknown);
+  const auto put = [&](const CellIndex& cell, CellState state) {
+    const CellIndex at = cell - origin_;
+    (*states)[(static_cast<std::size_t>(at.z()) << options_.size_log2.y() |
+               static_cast<std::size_t>(at.y()))
+                  << options_.size_log2.x() |
+              static_cast<std::size_t>(at.x())] = state;
+  };
+  ForEachSet(free_, window(), [&](const CellIndex& cell) { put(cell, CellState::kFree); });
+  ForEachSet(obstacles_, window(), [&](const CellIndex& cell) { put(cell, CellState::kOccupied); });
 }
 
 }  // namespace touchdown::planning

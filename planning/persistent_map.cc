@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cell (x, y, z) of the rolling map's lattice is OctoMap's key (x + 32768, ...). Log-odds are stored
-// as floats that are whole steps of the rolling map, so that they come back exactly. Nodes are set
-// lazily: inner nodes are only needed in a file, so they are brought up to date by Write; equal
-// neighbours are merged whenever the tree has doubled.
+// as floats that are whole steps of the rolling map, so that they come back exactly. A block is
+// filled from the octree when it is first touched and knows better from then on; Write brings the blocks back.
 
 #include "touchdown/planning/persistent_map.h"
 
@@ -20,8 +19,8 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr int kKeyOffset = 32768;
-constexpr std::size_t kFirstPrune = 1 << 18;  // nodes
+constexpr int kKeyOffset = CellBlocks::kReach;
+constexpr unsigned kBlockDepth = 16 - CellBlock::kSideLog2;  // in the octree
 
 std::int8_t Steps(float log_odds) {
   return static_cast<std::int8_t>(
@@ -35,6 +34,24 @@ bool InTree(const CellIndex& cell) {
 octomap::OcTreeKey KeyOf(const CellIndex& cell) {
   const auto key = [](int c) { return static_cast<octomap::key_type>(c + kKeyOffset); };
   return {key(cell.x()), key(cell.y()), key(cell.z())};
+}
+
+/// Gives the cells of a node, which are [low, low + side), what the octree knows of them.
+void CopyCells(const octomap::OcTree& tree, const octomap::OcTreeNode* node, const CellIndex& low,
+               int side, CellBlock* block) {
+  if (!tree.nodeHasChildren(node)) {
+    const std::int8_t log_odds = Steps(node->getLogOdds());
+    ForEachCell({low, low.array() + side},
+                [&](const CellIndex& cell) { (*block)[cell] = log_odds; });
+    return;
+  }
+  const int half = side / 2;
+  for (int i = 0; i < 8; ++i) {
+    const auto child = static_cast<unsigned>(i);
+    if (!tree.nodeChildExists(node, child)) continue;
+    const CellIndex at = low + half * CellIndex(i & 1, i >> 1 & 1, i >> 2 & 1);
+    CopyCells(tree, tree.getNodeChild(node, child), at, half, block);
+  }
 }
 
 // As OctoMap's own write and writeBinary, which talk on stderr while they write.
@@ -100,10 +117,21 @@ struct PersistentMap::Impl {
     of->setOccupancyThres(options.probability_occupied);
   }
 
+  /// The octree's node of a block, or the leaf above that stands for it; nullptr: nothing is known.
+  const octomap::OcTreeNode* NodeOf(const CellIndex& low) const {
+    return tree->search(KeyOf(low), kBlockDepth);
+  }
+  std::unique_ptr<CellBlocks> NewBlocks() {
+    return std::make_unique<CellBlocks>([this](const CellIndex& low, CellBlock* block) {
+      const octomap::OcTreeNode* node = NodeOf(low);
+      if (node != nullptr) CopyCells(*tree, node, low, CellBlock::kSide, block);
+    });
+  }
+
   OccupancyMapOptions options;
   std::unique_ptr<octomap::OcTree> tree;
-  std::size_t prune_at = kFirstPrune;  // nodes
-  std::vector<CellValue> changes;      // of the window that is flushed
+  std::unique_ptr<CellBlocks> blocks = NewBlocks();
+  std::vector<CellValue> changes;  // of the window that is flushed
 };
 
 PersistentMap::PersistentMap(const OccupancyMapOptions& options)
@@ -113,8 +141,7 @@ PersistentMap::PersistentMap(PersistentMap&&) noexcept = default;
 PersistentMap& PersistentMap::operator=(PersistentMap&&) noexcept = default;
 
 void PersistentMap::Recentre(const Eigen::Vector3d& p_W, OccupancyMap* map) {
-  map->Recentre(p_W);
-  Store(map->left());
+  map->Recentre(p_W, impl_->blocks.get());
   for (const CellBox& box : map->entered()) Refill(box, map);
 }
 
@@ -125,41 +152,38 @@ void PersistentMap::Refill(OccupancyMap* map) const {
 void PersistentMap::Flush(OccupancyMap* map) {
   impl_->changes.clear();
   map->TakeChanges(&impl_->changes);
-  Store(impl_->changes);
-}
-
-void PersistentMap::Store(const std::vector<CellValue>& values) {
-  octomap::OcTree& tree = *impl_->tree;
-  for (const CellValue& value : values) {
-    if (!InTree(value.cell)) continue;
-    const auto log_odds = static_cast<float>(value.log_odds * OccupancyMap::kLogOddsStep);
-    tree.setNodeValue(KeyOf(value.cell), log_odds, true);
-  }
-  if (tree.size() < impl_->prune_at) return;
-  tree.prune();
-  impl_->prune_at = std::max(kFirstPrune, 2 * tree.size());
+  for (const CellValue& value : impl_->changes) impl_->blocks->Put(value);
 }
 
 void PersistentMap::Refill(const CellBox& box, OccupancyMap* map) const {
   const CellIndex low = box.low.cwiseMax(-kKeyOffset);
   const CellIndex high = box.high.cwiseMin(kKeyOffset);
   if ((low.array() >= high.array()).any()) return;
-  const octomap::OcTree& tree = *impl_->tree;
-  const auto end = tree.end_leafs_bbx();
-  for (auto leaf = tree.begin_leafs_bbx(KeyOf(low), KeyOf(high - CellIndex::Ones())); leaf != end;
-       ++leaf) {
-    // A leaf above the lowest level stands for all the cells in it.
-    const int side = 1 << (tree.getTreeDepth() - leaf.getDepth());
-    const octomap::OcTreeKey key = leaf.getIndexKey();
-    const CellIndex corner(key[0] - kKeyOffset, key[1] - kKeyOffset, key[2] - kKeyOffset);
-    const CellBox cells = {corner.cwiseMax(low), (corner.array() + side).matrix().cwiseMin(high)};
-    const std::int8_t log_odds = Steps(leaf->getLogOdds());
-    ForEachCell(cells, [&](const CellIndex& cell) { map->Restore({cell, log_odds}); });
-  }
+  const auto block_of = [](int c) { return c >> CellBlock::kSideLog2; };
+  const CellBox blocks = {low.unaryExpr(block_of),
+                          (high.array() - 1).matrix().unaryExpr(block_of).array() + 1};
+  const bool in_tree = impl_->tree->size() > 0;
+  ForEachCell(blocks, [&](const CellIndex& at) {
+    const CellIndex corner = at * CellBlock::kSide;
+    const CellBlock* block = impl_->blocks->Find(corner);
+    if (block == nullptr && in_tree && impl_->NodeOf(corner) != nullptr) {
+      block = impl_->blocks->Make(corner);
+    }
+    if (block == nullptr) return;
+    const CellBox cells = {corner.cwiseMax(low),
+                           (corner.array() + CellBlock::kSide).matrix().cwiseMin(high)};
+    ForEachCell(cells, [&](const CellIndex& cell) {
+      if ((*block)[cell] != kUnknownLogOdds) map->Restore({cell, (*block)[cell]});
+    });
+  });
 }
 
 std::optional<std::int8_t> PersistentMap::LogOdds(const CellIndex& cell) const {
   if (!InTree(cell)) return std::nullopt;
+  if (const CellBlock* block = impl_->blocks->Find(cell)) {
+    if ((*block)[cell] == kUnknownLogOdds) return std::nullopt;
+    return (*block)[cell];
+  }
   const octomap::OcTreeNode* node = impl_->tree->search(KeyOf(cell));
   if (node == nullptr) return std::nullopt;
   return Steps(node->getLogOdds());
@@ -171,7 +195,11 @@ bool PersistentMap::IsOccupied(const CellIndex& cell) const {
                          impl_->tree->getOccupancyThresLog() - 0.5 * OccupancyMap::kLogOddsStep;
 }
 
-std::size_t PersistentMap::size() const { return impl_->tree->size(); }
+std::size_t PersistentMap::size() const {
+  std::size_t size = impl_->tree->size();
+  impl_->blocks->ForEach([&](const CellValue&) { ++size; });
+  return size;
+}
 
 void PersistentMap::Read(std::istream& in) {
   std::ostringstream text;
@@ -192,11 +220,16 @@ void PersistentMap::Read(std::istream& in) {
   // OctoMap reads a root without children, a file in which nothing is known, as one occupied leaf.
   if (tree->size() == 1) tree = impl_->NewTree();
   impl_->tree = std::move(tree);
-  impl_->prune_at = std::max(kFirstPrune, 2 * impl_->tree->size());
+  impl_->blocks = impl_->NewBlocks();
 }
 
 void PersistentMap::Write(std::ostream& out, MapFormat format) {
   octomap::OcTree& tree = *impl_->tree;
+  impl_->blocks->ForEach([&](const CellValue& value) {
+    const auto log_odds = static_cast<float>(value.log_odds * OccupancyMap::kLogOddsStep);
+    tree.setNodeValue(KeyOf(value.cell), log_odds, true);
+  });
+  impl_->blocks = impl_->NewBlocks();
   tree.updateInnerOccupancy();
   tree.prune();
   if (format == MapFormat::kLogOdds) {

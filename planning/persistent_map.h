@@ -18,11 +18,12 @@ enum class MapFormat {
   kBinary,   ///< .bt: free or occupied; a cell that is neither is left out
 };
 
-/// Everything that was ever observed, as an octree (OctoMap): what a rolling map forgets when its
-/// window moves on, it gets back from here when the window comes back. In the window the rolling map
-/// knows better; a cell comes here when it leaves, or in Flush, and only if it has changed. So a cell
-/// that an obstacle has left is free here as soon as it is stored again: nothing that moves leaves a
-/// trail. Cells more than 32768 cells from the world's origin are not kept. Allocates as it grows.
+/// Everything that was ever observed: what a rolling map forgets when its window moves on, it gets
+/// back from here when the window comes back. In the window the rolling map knows better; a cell
+/// comes here when it leaves, or in Flush, and only if it has changed. So a cell that an obstacle has
+/// left is free here as soon as it is stored again: nothing that moves leaves a trail. What a file said
+/// is an octree (OctoMap); what was touched since is in blocks of cells (planning/cell_blocks.h). Cells
+/// more than 32768 cells from the world's origin are not kept.
 class PersistentMap {
  public:
   /// An empty map with the resolution and the probabilities of the rolling map that it serves.
@@ -44,7 +45,7 @@ class PersistentMap {
   std::optional<std::int8_t> LogOdds(const CellIndex& cell) const;
   bool IsOccupied(const CellIndex& cell) const;
 
-  /// Number of nodes of the octree.
+  /// What it holds: nodes of the octree, and cells in blocks.
   std::size_t size() const;
 
   /// Replaces the map by an OctoMap file of either format, as octomap's own tools write them: an
@@ -52,13 +53,12 @@ class PersistentMap {
   /// the map is then as before.
   void Read(std::istream& in);
 
-  /// Writes the map for octomap's tools and for Read.
+  /// Writes the map for octomap's tools and for Read. Then all of it is in the octree.
   void Write(std::ostream& out, MapFormat format);
 
  private:
   struct Impl;
 
-  void Store(const std::vector<CellValue>& values);
   void Refill(const CellBox& box, OccupancyMap* map) const;
 
   std::unique_ptr<Impl> impl_;

@@ -15,6 +15,7 @@
 #include <octomap/octomap.h>
 
 #include "touchdown/planning/test/planning_fixtures.h"
+#include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
 namespace {
@@ -93,6 +94,23 @@ TEST(PersistentMap, GivesBackWhatTheWindowForgot) {
     EXPECT_EQ(kept.LogOdds(cell).has_value(), map.IsKnown(cell));
     EXPECT_EQ(kept.IsOccupied(cell), map.IsOccupied(cell));
   });
+}
+
+// Before, every cell that left was a node of an octree: tens of thousands of allocations in one frame.
+TEST(PersistentMap, DoesNotAllocateWhenTheWindowMoves) {
+  OccupancyMap map = SeenMap();
+  PersistentMap kept(SmallMap());
+  const estimation::DepthFrame frame = Scene({1.55, 0.0});
+  map.Integrate(frame, {});
+  const CellIndex origin = map.origin();
+  const long before = solvers::AllocationCount();
+  for (const double away : {-4.0, 0.0, 0.0}) {
+    kept.Recentre(kEye + Eigen::Vector3d(away, 0.0, 0.0), &map);
+    map.Integrate(frame, {});
+  }
+  EXPECT_EQ(solvers::AllocationCount(), before);
+  EXPECT_EQ(map.origin(), origin);  // it was away and came back
+  EXPECT_GT(kept.size(), 1000u);
 }
 
 TEST(PersistentMap, AnObstacleThatHasGoneIsFreedInMemoryToo) {
@@ -328,6 +346,35 @@ TEST(PersistentMap, RefusesAFileThatIsCutShortOrMangled) {
   std::string deep = "# Octomap OcTree file\nid OcTree\nsize 40\nres 0.1\ndata\n";
   for (int i = 0; i < 40; ++i) deep += std::string(4, '\0') + '\1';
   EXPECT_THAT(Refusal(deep), HasSubstr("deeper than 16 levels"));
+}
+
+// What is seen takes the place of what was read cell by cell, also where the file has eight of them in one.
+TEST(PersistentMap, WhatWasReadAndWhatWasSeenAreOneMap) {
+  octomap::OcTree tree(0.1);
+  ForEachCell({{0, 0, 0}, {16, 16, 16}}, [&](const CellIndex& cell) {
+    tree.setNodeValue(0.1 * cell.x() + 0.05, 0.1 * cell.y() + 0.05, 0.1 * cell.z() + 0.05, 2.0f);
+  });
+  tree.prune();
+  std::stringstream read, written;
+  tree.write(read);
+  PersistentMap kept(SmallMap());
+  kept.Read(read);
+  EXPECT_EQ(kept.LogOdds({3, 3, 3}), 32);
+  OccupancyMap map(SmallMap());
+  map.SetState({3, 3, 3}, CellState::kFree);
+  map.SetState({20, 3, 3}, CellState::kOccupied);
+  kept.Flush(&map);
+  kept.Write(written, MapFormat::kLogOdds);
+  PersistentMap again(SmallMap());
+  again.Read(written);
+  for (const PersistentMap* either : {&kept, &again}) {
+    EXPECT_EQ(either->LogOdds({3, 3, 3}), -32);
+    EXPECT_TRUE(either->IsOccupied({20, 3, 3}));
+    EXPECT_EQ(either->LogOdds({21, 3, 3}), std::nullopt);
+    for (const CellIndex& cell : {CellIndex(2, 3, 3), CellIndex(0, 0, 0), CellIndex(15, 15, 15)}) {
+      EXPECT_EQ(either->LogOdds(cell), 32);
+    }
+  }
 }
 
 TEST(PersistentMap, AFailedReadChangesNothing) {
