@@ -2,6 +2,7 @@
 // A rolling map written down as what changed in it from one replanning step to the next.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "touchdown/planning/occupancy_map.h"
@@ -31,8 +32,13 @@ class MapRecorder {
   MapChange Take(const planning::OccupancyMap& map);
 
  private:
+  /// A window's cells as bits: rows along x from its lowest cell on, each in whole words.
+  struct States {
+    std::vector<std::uint64_t> free, occupied;
+  };
+
   planning::CellIndex origin_ = planning::CellIndex::Zero();
-  std::vector<planning::CellState> states_, now_;
+  States states_, now_;
 };
 
 /// Brings `map` to the next step. It then answers a planner as the recorded one did.
