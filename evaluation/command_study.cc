@@ -24,6 +24,7 @@
 #include "touchdown/evaluation/replan_study.h"
 #include "touchdown/evaluation/report_program.h"
 #include "touchdown/evaluation/scene_sets.h"
+#include "touchdown/evaluation/step_sensitivity.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -44,6 +45,10 @@ struct StudyArguments {
   bool json = false;
   bool allow_debug = false;
 };
+
+planning::ArrivalMode ArrivalOf(const StudyArguments& arguments) {
+  return arguments.arrival == "free" ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+}
 
 void RunSafety(const StudyArguments& arguments, const Registries& registries,
                std::vector<ReplanStudyPart>* parts) {
@@ -135,6 +140,30 @@ int RunFlights(const StudyArguments& arguments, const Registries& registries) {
   return all_reached ? kDone : kFellShort;
 }
 
+/// What each constant of the step is worth, in all the sets and kinds together.
+int RunSensitivity(const StudyArguments& arguments, const Registries& registries) {
+  CheckTimings(arguments.allow_debug);
+  if (arguments.pin) PinToCpu(*arguments.pin);
+  std::vector<ReplanStudyOptions> parts;
+  for (const std::string& set : arguments.sets) {
+    for (const std::string& kind : arguments.kinds) {
+      ReplanStudyOptions& part = parts.emplace_back(arguments.options);
+      part.replanner.problem.terms = registries.terms;
+      part.replanner.arrival = ArrivalOf(arguments);
+      part.scenes.set = set;
+      part.scenes.kind = SceneKindNamed(kind);
+    }
+  }
+  const std::vector<SensitivityRow> rows =
+      MeasureSensitivity(parts, registries.backends, Progress({.things = "parts"}));
+  if (arguments.json) {
+    std::cout << SensitivityJson(rows).dump(2) << std::endl;
+  } else {
+    std::cout << SensitivityText(rows) << std::flush;
+  }
+  return kDone;
+}
+
 /// A part that stands alone, and the options that go with it.
 struct LonePart {
   const char* name;
@@ -146,7 +175,10 @@ const std::vector<LonePart>& LoneParts() {
       {"fidelity", {"--parts", "--scenes", "--kinds", "--seed", "--json"}},
       {"flights",
        {"--parts", "--flights", "--planners", "--kinds", "--seed", "--backend", "--guides", "--db",
-        "--json", "--allow-debug"}}};
+        "--json", "--allow-debug"}},
+      {"sensitivity",
+       {"--parts", "--sets", "--scenes", "--kinds", "--seed", "--backend", "--guides", "--arrival",
+        "--pin", "--json", "--allow-debug"}}};
   return parts;
 }
 
@@ -178,6 +210,7 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   }
   for (const char* option : {"--sets", "--later", "--oracle"}) {
     if (!command.Given(option) || Named(arguments.parts, "safety")) continue;
+    if (Named(arguments.parts, "sensitivity")) continue;
     throw BadInput(fmt::format("{} goes with --parts safety.", option));
   }
   if (command.Given("--verdicts") && !command.Given("--oracle")) {
@@ -210,8 +243,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
   }
   planning::ReplannerOptions& replanner = arguments.options.replanner;
   replanner.problem.terms = registries.terms;
-  replanner.arrival =
-      arguments.arrival == "free" ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+  replanner.arrival = ArrivalOf(arguments);
   replanner.problem.limits_mode =
       arguments.limits == "hard" ? planning::LimitsMode::kHard : planning::LimitsMode::kSoft;
   MachineState machine;
@@ -256,14 +288,14 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   command.AddList(
       "--parts", &arguments->parts,
       "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
-      "flights: 36 m, and fidelity: of the EGO-Planner baseline to the released program, "
-      "stand alone",
-      "safety,growth,...", OneOf({"safety", "growth", "flights", "fidelity"}));
+      "flights: 36 m, fidelity: of the EGO-Planner baseline to the released program, and "
+      "sensitivity: to each constant of the step, stand alone",
+      "safety,growth,...", OneOf({"safety", "growth", "flights", "fidelity", "sensitivity"}));
   command.Add("--scenes", options.count, "Scenes of each kind")
       .Check(Range(1, 100000))
       .ShowDefault();
-  command.AddList("--sets", &arguments->sets, "Sets of scenes, of the part safety", "crossing,...",
-                  OneOf(SceneSetNames()));
+  command.AddList("--sets", &arguments->sets, "Sets of scenes, of the parts safety and sensitivity",
+                  "crossing,...", OneOf(SceneSetNames()));
   command.AddFlag("--later", options.later,
                   "Ask for the steps 0.1 and 0.2 s after the first one, too");
   command.AddFlag(
@@ -313,6 +345,7 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
       CheckEffects(*arguments, command);
       if (Named(arguments->parts, "fidelity")) return RunFidelity(*arguments);
       if (Named(arguments->parts, "flights")) return RunFlights(*arguments, registries);
+      if (Named(arguments->parts, "sensitivity")) return RunSensitivity(*arguments, registries);
       return Study(*arguments, registries);
     };
   });

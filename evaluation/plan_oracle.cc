@@ -33,8 +33,7 @@ constexpr double kLimitPressure = 4.0;
 constexpr int kLimitRounds = 5;
 constexpr int kPathExpansions = 300000;
 constexpr int kLocalExpansions = 20000;
-constexpr double kSegmentShares[] = {planning::kFineSegments, 0.45,
-                                     1.0};  // of the longest segment of a plan
+constexpr double kSegmentShares[] = {0.67, 0.45, 1.0};  // of the longest segment of a plan
 
 planning::ReplannerOptions OwnFormulation(planning::ReplannerOptions options) {
   options.backend = "banded";

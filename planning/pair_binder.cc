@@ -19,8 +19,6 @@ namespace {
 constexpr char kPairTerm[] = "obstacle_pair";
 constexpr int kFirstFree = 3;          // control points that both boundaries fix
 constexpr int kLevels = 2;             // pairs of a control point for floor and ceiling
-constexpr int kBoundBeside = 2;        // control points beside a blocked stretch that are bound
-constexpr double kStandOff = 0.3;      // of reference points from what is in the way [m]
 constexpr double kFloorMargin = 0.05;  // kept from floor and ceiling [m]
 
 /// s_f of the term obstacle_pair.
@@ -39,9 +37,9 @@ double PairClearance(const LandingProblemOptions& options) {
 /// From a free point on a guide towards the curve, until an obstacle is near. The guide's point if
 /// nothing is between.
 Eigen::Vector3d BesideObstacle(const FreeSpace& space, const Eigen::Vector3d& guide,
-                               const Eigen::Vector3d& curve) {
+                               const Eigen::Vector3d& curve, double stand_off) {
   const double length = (curve - guide).norm();
-  if (!(length > kStandOff)) return guide;
+  if (!(length > stand_off)) return guide;
   const Eigen::Vector3d ahead = (curve - guide) / length;
   double hit = 0.0;
   const bool free =
@@ -49,7 +47,7 @@ Eigen::Vector3d BesideObstacle(const FreeSpace& space, const Eigen::Vector3d& gu
         hit = std::clamp((space.map->CentreOf(cell) - guide).dot(ahead), 0.0, length);
         return !space.Blocked(cell);
       });
-  return free ? guide : Eigen::Vector3d(guide + std::max(0.0, hit - kStandOff) * ahead);
+  return free ? guide : Eigen::Vector3d(guide + std::max(0.0, hit - stand_off) * ahead);
 }
 
 /// Walks along a polyline at constant speed.
@@ -83,8 +81,9 @@ double TimeOf(const UniformBspline& curve, int control_point) {
 
 }  // namespace
 
-PairBinder::PairBinder(const LandingProblemOptions& options)
-    : corridor_(PairClearance(options), kFloorMargin),
+PairBinder::PairBinder(const LandingProblemOptions& options, const StepConstants& constants)
+    : constants_(constants),
+      corridor_(PairClearance(options), kFloorMargin),
       planes_(options.max_pairs_per_point - kLevels),
       per_point_(options.max_pairs_per_point) {
   if (per_point_ < kLevels) {
@@ -136,7 +135,7 @@ void PairBinder::Lead(const TimedWay& way, const BoundParts& more) {
   };
   for (int i = 0; i < n; ++i) reference_[i] = way.At(time_of(i));
   corners_.clear();
-  const double beside = kBoundBeside * interval;
+  const double beside = constants_.bound_beside * interval;
   for (const BoundPart& part : way.bound()) bind(part.from - beside, part.to + beside);
   for (const BoundPart& part : more) {
     if (part.from < part.to) {
@@ -155,7 +154,7 @@ void PairBinder::BindCorner(double place, double t, const Eigen::Vector3d& p) {
 void PairBinder::Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
                         const FreeSpace& space) {
   PathWalk walk(guide);
-  const double margin = kBoundBeside * curve.interval();
+  const double margin = constants_.bound_beside * curve.interval();
   const int n = static_cast<int>(bound_.size());
   for (int i = kFirstFree; i < n - kFirstFree; ++i) {
     const double t = TimeOf(curve, i);
@@ -163,14 +162,15 @@ void PairBinder::Follow(const UniformBspline& curve, const BlockedRun& run, cons
     bound_[i] = true;
     if (t < run.t_in || t > run.t_out) continue;
     const Eigen::Vector3d guided = walk.At((t - run.t_in) / (run.t_out - run.t_in));
-    reference_[i] = BesideObstacle(space, guided, reference_[i]);
+    reference_[i] = BesideObstacle(space, guided, reference_[i], constants_.stand_off);
   }
 }
 
 void PairBinder::AddCorner(const UniformBspline& curve, const BlockedRun& run,
                            const GuidePath& guide, const FreeSpace& space) {
   const double t = 0.5 * (run.t_in + run.t_out);
-  const Eigen::Vector3d p = BesideObstacle(space, PathWalk(guide).At(0.5), curve.Position(t));
+  const Eigen::Vector3d p =
+      BesideObstacle(space, PathWalk(guide).At(0.5), curve.Position(t), constants_.stand_off);
   BindCorner((t - curve.t0()) / curve.interval(), t, p);
 }
 

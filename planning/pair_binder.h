@@ -8,6 +8,7 @@
 #include "touchdown/planning/corridor.h"
 #include "touchdown/planning/curve_check.h"
 #include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/step_constants.h"
 #include "touchdown/planning/timed_way.h"
 #include "touchdown/planning/uniform_bspline.h"
 
@@ -22,7 +23,7 @@ class PairBinder {
   static constexpr int kMostControlPoints = 131;  ///< of a curve
 
   /// Throws std::invalid_argument unless options.max_pairs_per_point >= 2: floor and ceiling need them.
-  explicit PairBinder(const LandingProblemOptions& options);
+  explicit PairBinder(const LandingProblemOptions& options, const StepConstants& constants = {});
 
   /// Nothing is bound any more. Throws std::invalid_argument for more than kMostControlPoints.
   void Begin(int control_points);
@@ -60,6 +61,7 @@ class PairBinder {
 
   void BindCorner(double place, double t, const Eigen::Vector3d& p);
 
+  StepConstants constants_;
   Corridor corridor_;
   int planes_;     // of a control point, besides those for floor and ceiling
   int per_point_;  // with those

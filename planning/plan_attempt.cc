@@ -23,16 +23,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kNear = 1.5;           // segments until an obstacle
-constexpr double kPressure = 2.5;       // weight of the pairs grows by this every round
-constexpr double kProgress = 0.5;       // of the blocked time that a round leaves at most
-constexpr double kLimitPressure = 6.0;  // weight of limits that are exceeded grows by this, ...
-constexpr double kFarBeyond = 1.06;     // by its square beyond this share of a limit
-constexpr int kLimitRounds = 2;
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
-constexpr double kDearerWay = 1.05;     // than the first way around: another is not looked for then
-constexpr double kLatestKept = 1.06;    // of the time left: what arrives later is not kept
-constexpr double kMuchCheaper = 0.8;    // share of the cost that makes a change of side worth while
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
@@ -54,8 +45,8 @@ double BlockedTime(const std::vector<BlockedRun>& blocked) {
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options),
       problems_(options, backends),
-      finder_(options.vertical_cost),
-      binder_(options.problem) {
+      finder_(options.vertical_cost, options.constants),
+      binder_(options.problem, options.constants) {
   for (const TermEntry& entry : options.problem.terms) {
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
   }
@@ -122,7 +113,8 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   if (reason != ReplanReason::kNone) return reason;
   // So near that the first control point that is free comes too late to pass it.
   const bool near = !best_.blocked.empty() && !best_.blocked.front().at_start &&
-                    best_.blocked.front().t_in - request.t0 < kNear * best_.pair.curve.interval();
+                    best_.blocked.front().t_in - request.t0 <
+                        options_.constants.near_obstacle * best_.pair.curve.interval();
   if (near && request.segments < request.near_segments) {
     reason = Refine(request, &posed, &best_, result);
     if (reason != ReplanReason::kNone) return reason;
@@ -220,8 +212,9 @@ ReplanReason PlanAttempt::KeepCommitted(const AttemptRequest& request, ReplanRes
   posed.prepared->problem->WarmGuess(*request.previous, &posed.prepared->start.y);
   Begin(&best_);
   const double left = request.previous->t_end() - request.t0;
-  return Follow(request, kept_, *request.bound, kLatestKept * std::max(request.duration, left),
-                posed, &best_, result);
+  return Follow(request, kept_, *request.bound,
+                options_.constants.kept_latest * std::max(request.duration, left), posed, &best_,
+                result);
 }
 
 /// One way leads past everything that is in the way, so that one detour does not lead into the next. The way
@@ -236,7 +229,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   if (!first.at_start) KeepWay(request, result);
   const bool keeps_side = kept_.known();
   if (keeps_side) {
-    EndBeside(kept_, first_curve_, *request.space, &span);
+    EndBeside(kept_, first_curve_, *request.space, options_.constants.beside_time, &span);
     const double share = (kept_.t_end() - kept_.t0()) / first_curve_.duration();
     kept_.Bind({kept_.t0() + share * (span.t_in - request.t0),
                 kept_.t0() + share * (span.t_out - request.t0)});
@@ -248,8 +241,8 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     if (i >= options_.max_guides && planned) break;
     const bool kept = i == 0 && keeps_side;
     if (!kept) {
-      const ReplanReason found =
-          LayWay(request, span, planned ? kDearerWay * first_cost : kNoBound, result);
+      const ReplanReason found = LayWay(
+          request, span, planned ? options_.constants.way_dearer * first_cost : kNoBound, result);
       if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
       if (found != ReplanReason::kNone) return found;
     }
@@ -306,7 +299,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
       } else {
         const ReplanReason reason = BindBlocked(request, way, *candidate);
         if (reason != ReplanReason::kNone) return reason;
-        candidate->pressure.pairs *= kPressure;
+        candidate->pressure.pairs *= options_.constants.pair_growth;
       }
       binder_.Bind(*request.space, &candidate->pairs);
     }
@@ -322,7 +315,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
       if (runs.empty() || (runs.size() == 1 && runs.front().at_start)) return end;
     }
     const double before = std::exchange(blocked, BlockedTime(runs));
-    if (blocked > kProgress * before) break;
+    if (blocked > options_.constants.blocked_left * before) break;
   }
   return Finish(request, candidate, result);
 }
@@ -395,10 +388,14 @@ ReplanReason PlanAttempt::KeepLimits(const AttemptRequest& request, const Posed&
   for (int round = 0;; ++round) {
     const ReplanReason reason = Finish(request, candidate, result);
     const bool soft = options_.problem.limits_mode == LimitsMode::kSoft;
-    if (reason != ReplanReason::kLimitsExceeded || !soft || round == kLimitRounds) return reason;
+    if (reason != ReplanReason::kLimitsExceeded || !soft ||
+        round == options_.constants.limit_rounds)
+      return reason;
     const double share = ShareOfLimits(*candidate->certificate, request.limits);
     candidate->pressure.limits *=
-        share > kFarBeyond ? kLimitPressure * kLimitPressure : kLimitPressure;
+        share > options_.constants.limit_far
+            ? options_.constants.limit_growth * options_.constants.limit_growth
+            : options_.constants.limit_growth;
     // The last curve stands where the solver fails under the pressure.
     if (Solve(request, posed, candidate, result) != ReplanReason::kNone) return reason;
   }
@@ -445,7 +442,7 @@ double PlanAttempt::CostOfShape(const solvers::SolverSummary& solver) const {
 bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) const {
   if (a.reason != ReplanReason::kNone) return false;
   if (b.reason != ReplanReason::kNone) return true;
-  const double share = keeps_side ? kMuchCheaper : 1.0;
+  const double share = keeps_side ? options_.constants.side_cheaper : 1.0;
   return CostOfShape(a.solver) < share * CostOfShape(b.solver);
 }
 

@@ -18,9 +18,6 @@ LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMod
 /// longest segment that a plan may have.
 int SegmentsFor(double duration, const Limits& limits, double share);
 
-/// The share where an obstacle is near.
-inline constexpr double kFineSegments = 0.5;
-
 /// A landing problem and its backend, to be solved again and again.
 struct PreparedProblem {
   std::unique_ptr<LandingProblem> problem;

@@ -19,6 +19,7 @@
 #include "touchdown/planning/flight_pair.h"
 #include "touchdown/planning/landing_problem.h"
 #include "touchdown/planning/margins.h"
+#include "touchdown/planning/step_constants.h"
 #include "touchdown/solvers/solver_result.h"
 
 namespace touchdown::planning {
@@ -41,13 +42,14 @@ struct ReplannerOptions {
   double reaction = 0.15;  ///< a plan is flown this long before its stop, if no newer one comes [s]
   double hull_radius = 0.324;   ///< of the body at every tilt, about its origin [m]
   double deck_half_size = 0.0;  ///< of the pad's deck [m]; 0: there is none to land on
-  double vertical_cost = 2.0;   ///< of A*: a metre up or down costs as much as this many ahead
+  double vertical_cost = 2.0;   ///< of ways: a metre up or down costs as much as this many ahead
   int max_guides = 2;           ///< ways around the first obstacle that are tried
   bool warm_start = true;       ///< a solve begins at the rest of the committed plan
   int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
   int max_solves = 14;          ///< after so many no further arrival time is tried, but from rest
   int max_iterations = 50;      ///< solver iterations per solve
-  int max_expansions = 30000;   ///< of A* in a step; from rest in each attempt
+  int max_expansions = 30000;   ///< of the search for ways in a step; from rest in each attempt
+  StepConstants constants;      ///< what else a step decides by
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.

@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "touchdown/planning/attempt_ladder.h"
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/fallback.h"
 #include "touchdown/planning/pad_strip.h"
@@ -23,25 +24,15 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr int kMaxAttempts = 7;
-constexpr double kStretch = 1.4;        // of the duration after an attempt that failed
-constexpr double kLaterArrival = 1.05;  // ... and while the pad's end is blocked
-constexpr double kLongestGrid = 1.2;    // segments are for so many times the first arrival at most
-constexpr int kRescueGuides = 2;        // ways around an obstacle that later attempts try
-constexpr int kGuidesAtRest = 4;        // ... and from rest
-constexpr double kLookEvery = 0.5;      // for other ways than the committed one [s]
-constexpr double kReTimeBelow = 0.75;   // a fresh guess this much shorter replaces the arrival
-constexpr double kStripMemory = 2.0;    // the strip over a pad that was lost holds this long [s]
-constexpr int kUsualPaths = 32;         // room for those of one step
+constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
+constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;            // [s]
 const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
-constexpr double kLookAhead = 2.0;    // of the cells that the next stops need [s]
-constexpr double kUnseenReach = 1.0;  // around a start a plan keeps to what was seen [m] ...
-constexpr double kLeastReach = 0.5;   // ... and where nothing leads out of that
-constexpr double kLookTime = 2.0;     // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAsideFrom = 1.5;    // ... at a cell no farther than this [m]
+constexpr double kLookAhead = 2.0;  // of the cells that the next stops need [s]
+constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
+constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
@@ -110,6 +101,10 @@ class Replanner::Impl {
   SplineState Start(const ReplanInput& input);
   bool InTime(const ReplanInput& input) const;
   double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
+  Rung FirstRung(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
+                 LadderFacts* facts);
+  AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start, const Rung& rung,
+                            const LadderFacts& facts, double first, const HullSpace& hull);
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   HullSpace HullIn(const FreeSpace& space, const estimation::PadPrediction* pad) const;
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
@@ -428,36 +423,89 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
 double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
                                          const OccupancyMap& map) const {
   const FreeSpace space = Space(map);
-  const double latest = std::min(kStretch * T, options_.max_duration);
-  for (double later = T; later <= latest; later *= kLaterArrival) {
+  const double latest = std::min(options_.constants.stretch * T, options_.max_duration);
+  for (double later = T; later <= latest; later *= options_.constants.end_step) {
     const SplineState end = EndStateAt(*input.pad, input.endpoint, input.t_start + later).state;
     if (!space.Blocked(end.p)) return later;
   }
   return T;
 }
 
-ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& start,
-                                   const OccupancyMap& map) {
-  double fresh;
-  {
-    StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
-    fresh = GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, 1.0);
-  }
-  if (!(fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
+/// What is tried first, and what the ladder of attempts depends on. Out of reach: the fresh guess is longer than
+/// a plan may be.
+Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& start,
+                                const FreeSpace& plain, LadderFacts* facts) {
+  StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
+  facts->fresh = GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, 1.0);
+  facts->lands_soon = !result_.from_odometry && LandsSoon(input, HullIn(plain, input.pad));
+  facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
+  facts->arrival = options_.arrival;
+  facts->min_duration = options_.min_duration;
+  facts->max_duration = options_.max_duration;
   // An arrival once promised is kept: guessing anew at every step would put it off for ever.
   const double left = next_.curve.t_end() - input.t_start;
-  const bool promised = planned_before_ && !result_.from_odometry && fresh > kReTimeBelow * left;
+  const bool on_plan = planned_before_ && !result_.from_odometry;
+  const bool promised = on_plan && facts->fresh > options_.constants.retime_below * left;
   // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
   const double shortest =
       input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
-  double T = std::clamp(promised ? left : fresh, shortest, options_.max_duration);
-
-  const double first = T;
-  const FreeSpace plain = Space(map);
-  const bool lands_soon = !result_.from_odometry && LandsSoon(input, HullIn(plain, input.pad));
+  Rung rung;
+  rung.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
+  // The prepared problems' free arrival has the usual bound below.
+  const bool fixed = rung.duration < options_.min_duration || facts->lands_soon;
+  rung.arrival = fixed ? ArrivalMode::kFixed : options_.arrival;
   // A plan that led around what was not seen is followed by others that do: not by turns.
+  const bool closes = around_unseen_ && on_plan && !facts->lands_soon;
+  rung.unseen_reach = closes ? options_.constants.unseen_reach : 0.0;
+  return rung;
+}
+
+/// The ladder of attempts (attempt_ladder.h), until one gives a plan.
+ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& start,
+                                   const OccupancyMap& map) {
+  LadderFacts facts;
+  Rung rung = FirstRung(input, start, Space(map), &facts);
+  if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   const bool on_plan = planned_before_ && !result_.from_odometry;
-  double unseen_reach = around_unseen_ && on_plan && !lands_soon ? kUnseenReach : 0.0;
+  const double first = std::max(rung.duration, facts.fresh);
+  for (;;) {
+    if (rung.arrival == ArrivalMode::kFixed && !facts.lands_soon) {
+      rung.duration = FirstFreeArrival(input, rung.duration, map);
+    }
+    FreeSpace space = SpaceOverPad(input, start, input.t_start + rung.duration, map);
+    const HullSpace hull = HullIn(space, input.pad);
+    if (rung.unseen_reach > 0.0) {
+      unseen_.Build(hull, start.p, rung.unseen_reach);
+      space.unseen = &unseen_;
+    }
+    // From rest there is time for long searches.
+    if (rung.attempt == 0 || facts.at_rest) attempt_.RefillExpansions();
+    const ReplanReason reason =
+        attempt_.Run(RequestFor(input, start, rung, facts, first, hull), &result_);
+    if (reason == ReplanReason::kNone) {
+      around_unseen_ = rung.unseen_reach > 0.0 && result_.rebinds > 0;
+      return reason;
+    }
+    if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
+      return reason;
+    // What is not seen yet may soon be: as long as it can, the committed curve goes on.
+    if (reason == ReplanReason::kUnobserved && rung.attempt == 0 && on_plan && !facts.at_rest &&
+        !facts.lands_soon && GoesOn(input, hull)) {
+      return reason;
+    }
+    const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
+    if (!climb.next) return climb.reason;
+    if (!facts.at_rest && result_.solves >= options_.max_solves) return reason;
+    rung = *climb.next;
+  }
+}
+
+/// @param first the first duration that was thought of [s].
+AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const SplineState& start,
+                                           const Rung& rung, const LadderFacts& facts, double first,
+                                           const HullSpace& hull) {
+  const StepConstants& constants = options_.constants;
+  const bool is_first = rung.attempt == 0;
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
@@ -465,95 +513,30 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   request.target = input.endpoint;
   request.limits = limits_;
   request.pull_W = input.pull_W;
-  // The prepared problems' free arrival has the usual bound below.
-  request.arrival =
-      T < options_.min_duration || lands_soon ? ArrivalMode::kFixed : options_.arrival;
-  request.pair_end = lands_soon                ? PairEnd::kContact
+  request.arrival = rung.arrival;
+  request.duration = rung.duration;
+  request.space = hull.space;
+  request.hull = &hull;
+  // A stretched plan is slower, not longer: it needs hardly more control points.
+  const double longest = std::min(rung.duration, constants.grid_longest * first);
+  request.near_segments = SegmentsFor(longest, limits_, constants.fine_segments);
+  request.segments = is_first ? SegmentsFor(longest, limits_, 1.0) : request.near_segments;
+  request.rescue_guides = is_first        ? 1
+                          : facts.at_rest ? constants.rescue_ways_at_rest
+                                          : constants.rescue_ways;
+  request.pair_end = facts.lands_soon          ? PairEnd::kContact
                      : result_.ends_in_contact ? PairEnd::kRestOrContact
                                                : PairEnd::kRest;
-  const bool at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
-  ReplanReason reason = ReplanReason::kPadUnreachable;
-  for (int i = 0; i < kMaxAttempts; ++i) {
-    if (i > 0 && !at_rest && result_.solves >= options_.max_solves) return reason;
-    if (request.arrival == ArrivalMode::kFixed && !lands_soon) T = FirstFreeArrival(input, T, map);
-    FreeSpace space = SpaceOverPad(input, start, input.t_start + T, map);
-    // From rest there is time for long searches.
-    if (i == 0 || at_rest) attempt_.RefillExpansions();
-    request.duration = T;
-    // A stretched plan is slower, not longer: it needs hardly more control points.
-    const double longest = std::min(T, kLongestGrid * std::max(first, fresh));
-    request.near_segments = SegmentsFor(longest, limits_, kFineSegments);
-    request.segments = i == 0 ? SegmentsFor(longest, limits_, 1.0) : request.near_segments;
-    request.space = &space;
-    const HullSpace hull = HullIn(space, input.pad);
-    request.hull = &hull;
-    if (unseen_reach > 0.0) {
-      unseen_.Build(hull, start.p, unseen_reach);
-      space.unseen = &unseen_;
-    }
-    request.rescue_guides = i == 0 ? 1 : at_rest ? kGuidesAtRest : kRescueGuides;
-    // The committed side of an obstacle is tried once; if it fails, the map decides anew.
-    request.previous = i == 0 && planned_before_ ? &next_.curve : nullptr;
-    request.bound = &bound_;
-    // On the way to contact as well: what was bound before would push the vehicle there.
-    request.looks = request.previous == nullptr || result_.from_odometry ||
-                    input.endpoint.leads_to_contact() || input.t_start - looked_t_ >= kLookEvery;
-    if (request.looks) looked_t_ = input.t_start;
-    request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
-    reason = attempt_.Run(request, &result_);
-    if (reason == ReplanReason::kNone) {
-      around_unseen_ = unseen_reach > 0.0 && result_.rebinds > 0;
-      return reason;
-    }
-    if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
-      return reason;
-    const bool was_free = request.arrival == ArrivalMode::kFree;
-    if (lands_soon) {
-      // Once more a little later: a pad that brakes is not met with what was promised before.
-      if (i > 0) return reason;
-      const bool free = options_.arrival == ArrivalMode::kFree && T >= options_.min_duration;
-      if (free) request.arrival = ArrivalMode::kFree;
-      if (!free) T = std::min(kStretch * T, options_.max_duration);
-      continue;
-    }
-    // What is not seen yet may soon be: as long as it can, the committed curve goes on.
-    if (reason == ReplanReason::kUnobserved && i == 0 && on_plan && !at_rest &&
-        GoesOn(input, hull)) {
-      return reason;
-    }
-    if (i == 0 && unseen_reach > 0.0 && reason != ReplanReason::kUnobserved) {
-      unseen_reach = 0.0;
-      continue;
-    }
-    // What the stop would have touched unseen is closed, and the same arrival tried again.
-    if (reason == ReplanReason::kUnobserved && unseen_reach == 0.0) {
-      unseen_reach = kUnseenReach;
-      continue;
-    }
-    if (at_rest && unseen_reach > 0.0) {
-      if (unseen_reach == kLeastReach) return ReplanReason::kUnobserved;
-      unseen_reach = kLeastReach;
-      continue;
-    }
-    // Where the end itself is not seen yet, there is nothing to lead around.
-    if (unseen_reach > 0.0 && reason == ReplanReason::kGoalBlocked) {
-      return ReplanReason::kUnobserved;
-    }
-    const bool slower_helps =
-        reason == ReplanReason::kLimitsExceeded || reason == ReplanReason::kUnobserved ||
-        reason == ReplanReason::kCollisionRemains || reason == ReplanReason::kGoalBlocked;
-    if (!slower_helps && !was_free) return reason;
-    request.arrival = ArrivalMode::kFixed;
-    if (!slower_helps) continue;
-    // Free arrival traded a limit for time, or a way round took longer: fix a longer one. A free arrival
-    // that still collides only fled from the pressure of what it hit.
-    const bool fled = was_free && reason != ReplanReason::kLimitsExceeded;
-    if (!fled) T = std::max(T, attempt_.duration());
-    if (T >= options_.max_duration) return reason;
-    // A promise that cannot be kept binds no longer: the pad may have jumped.
-    T = std::min(std::max(kStretch * T, fresh), options_.max_duration);
-  }
-  return reason;
+  // The committed side of an obstacle is tried once; if it fails, the map decides anew.
+  request.previous = is_first && planned_before_ ? &next_.curve : nullptr;
+  request.bound = &bound_;
+  // On the way to contact as well: what was bound before would push the vehicle there.
+  request.looks = request.previous == nullptr || result_.from_odometry ||
+                  input.endpoint.leads_to_contact() ||
+                  input.t_start - looked_t_ >= constants.look_every;
+  if (request.looks) looked_t_ = input.t_start;
+  request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
+  return request;
 }
 
 Replanner::Replanner(const ReplannerOptions& options, const solvers::BackendRegistry& backends) {

@@ -15,13 +15,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kStep = 0.05;        // sampling of a curve [s]
-constexpr double kGreed = 2.0;        // of the search
-constexpr double kTightCost = 8.0;    // of a metre beside obstacles [m]
-constexpr double kBeside = 0.5;       // a curve that is on a way's side stays there for so long [s]
 constexpr double kLevelMargin = 0.3;  // of a way from floor and ceiling, out of the window [m]
-constexpr double kLongestDetour = 2.0;  // of the committed curve, over the straight line ...
-constexpr double kDetourSlack = 1.0;    // ... and beyond that [m]
-constexpr int kDetourExpansions = 1000;
 
 void CutToWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
   const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Position(t))); };
@@ -44,7 +38,9 @@ void SampleBetweenLevels(const UniformBspline& curve, const BlockedRun& run, con
 
 }  // namespace
 
-WayFinder::WayFinder(double vertical_cost) : search_({vertical_cost, kTightCost}, kGreed) {
+WayFinder::WayFinder(double vertical_cost, const StepConstants& constants)
+    : constants_(constants),
+      search_({vertical_cost, constants.way_tight_cost}, constants.way_greed) {
   barriers_.reserve(8);
   runs_.reserve(64);
   detour_.reserve(1024);
@@ -69,14 +65,14 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
   FindBlockedRuns(committed, t_from, space, &runs_);
   if (!runs_.empty() && (runs_.front().at_start || runs_.back().at_end)) return;
   double t = t_from;
-  int budget = kDetourExpansions;
+  int budget = constants_.detour_expansions;
   for (const BlockedRun& run : runs_) {
     way->AddCurve(committed, t, run.t_in);
     const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
     const SearchStatus status =
         Search(space, from, to, budget, std::numeric_limits<double>::infinity());
     budget -= search_.expansions();
-    const double longest = kLongestDetour * (to - from).norm() + kDetourSlack;
+    const double longest = constants_.detour_longest * (to - from).norm() + constants_.detour_slack;
     if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
     way->AddDetour(committed, run, detour_, speed_);
     t = run.t_out;
@@ -100,14 +96,14 @@ SearchStatus WayFinder::LeadPast(const UniformBspline& curve, BlockedRun run,
 }
 
 void EndBeside(const TimedWay& way, const UniformBspline& curve, const FreeSpace& space,
-               BlockedRun* run) {
+               double more, BlockedRun* run) {
   const auto is_free = [&](const CellIndex& cell) { return !space.Blocked(cell); };
   const auto sees_way = [&](double t) {
     const Eigen::Vector3d there = way.AtShare((t - curve.t0()) / curve.duration());
     return TraverseCells(curve.Position(t), there, space.map->resolution(), is_free);
   };
   for (double t = run->t_out; t < curve.t_end(); t += kStep) {
-    if (!sees_way(t)) run->t_out = std::min(t + kBeside, curve.t_end());
+    if (!sees_way(t)) run->t_out = std::min(t + more, curve.t_end());
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "touchdown/planning/barrier.h"
 #include "touchdown/planning/span_search.h"
+#include "touchdown/planning/step_constants.h"
 #include "touchdown/planning/timed_way.h"
 
 namespace touchdown::planning {
@@ -14,7 +15,7 @@ namespace touchdown::planning {
 /// that its side of an obstacle is kept. All searches share a budget until it is refilled.
 class WayFinder {
  public:
-  explicit WayFinder(double vertical_cost);
+  explicit WayFinder(double vertical_cost, const StepConstants& constants = {});
 
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
@@ -47,6 +48,7 @@ class WayFinder {
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
                       const Eigen::Vector3d& to, int budget, double max_cost);
 
+  StepConstants constants_;
   SpanSearch search_;
   std::vector<Barrier> barriers_;
   std::vector<BlockedRun> runs_;
@@ -55,9 +57,10 @@ class WayFinder {
   int expansions_left_ = 0;
 };
 
-/// Ends a run only where the curve is on the way's side of everything, at the same share of its time: a curve that
-/// leaves an obstacle seen from the front is behind its front, not past it. @pre way.known().
+/// Ends a run only where the curve is on the way's side of everything, at the same share of its time, and `more` of
+/// it [s]: a curve that leaves an obstacle seen from the front is behind its front, not past it.
+/// @pre way.known().
 void EndBeside(const TimedWay& way, const UniformBspline& curve, const FreeSpace& space,
-               BlockedRun* run);
+               double more, BlockedRun* run);
 
 }  // namespace touchdown::planning

@@ -187,8 +187,8 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
       EXPECT_TRUE(attempt.rounds.front().pairs.empty()) << "everything is decided anew, " << trial;
       const UniformBspline& curve = attempt.rounds.front().curve;
       const double counted = std::min(curve.duration(), 1.2 * before.duration());
-      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, kFineSegments)) << trial;
-      held_back += curve.segments() < SegmentsFor(curve.duration(), limits, kFineSegments);
+      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments)) << trial;
+      held_back += curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments);
     }
     planned += status == ReplanStatus::kPlanned;
   }

@@ -146,7 +146,7 @@ TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   EXPECT_LT(curve.Evaluate(run.t_out).p_WB.x(), 0.5);
   TimedWay way;
   way.AddCurve(committed, 0.0, committed.t_end());
-  EndBeside(way, curve, space, &run);
+  EndBeside(way, curve, space, 0.5, &run);
   EXPECT_GT(curve.Evaluate(run.t_out).p_WB.x(), 1.5);
   EXPECT_LE(run.t_out, curve.t_end());
   // Nothing is between: it ends where it ended.
@@ -156,7 +156,7 @@ TEST(WayFinder, ARunEndsWhereTheCurveIsOnTheWaysSide) {
   const UniformBspline beside = Straight({-2.0, -0.9, 0.05}, {2.5, 0.0, 0.05});
   way.Clear();
   way.AddCurve(beside, 0.0, beside.t_end());
-  EndBeside(way, curve, SpaceOf(plain), &short_run);
+  EndBeside(way, curve, SpaceOf(plain), 0.5, &short_run);
   EXPECT_DOUBLE_EQ(short_run.t_out, t_out);
 }
 

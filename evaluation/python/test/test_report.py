@@ -4,7 +4,7 @@ import sqlite3
 import numpy as np
 import pytest
 
-from touchdown_report import bspline, landing
+from touchdown_report import bspline, landing, plan
 from touchdown_report.record import Record, RecordError
 
 
@@ -64,3 +64,21 @@ def test_what_is_no_record_is_refused(tmp_path, capsys):
         assert landing.main([str(path), str(tmp_path / "x.png")]) == 2
     assert landing.main([]) == 2
     assert "missing.db" in capsys.readouterr().err
+
+
+def test_attempts_without_the_same_terms_share_one_figure_of_costs():
+    """A free arrival has a price; a fixed one, tried after it, has none."""
+    free = {
+        "cost_by_term": {"smoothness": 1.0, "arrival_time": 5.0, "approach_corridor": 2.0},
+        "trace": [{"cost_by_term": [3.0, 6.0, 4.0]}, {"cost_by_term": [1.0, 5.0, 2.0]}],
+    }
+    fixed = {
+        "cost_by_term": {"smoothness": 7.0, "approach_corridor": 8.0},
+        "trace": [{"cost_by_term": [7.0, 8.0]}],
+    }
+    costs, names, starts = plan.costs_by_iteration(
+        {"attempts": [{"rounds": [free]}, {"rounds": [fixed]}]}
+    )
+    assert names == ["smoothness", "arrival_time", "approach_corridor"]
+    assert starts == [0, 2]
+    assert costs.tolist() == [[3.0, 6.0, 4.0], [1.0, 5.0, 2.0], [7.0, 0.0, 8.0]]

@@ -52,14 +52,18 @@ def best_round(plan):
 
 
 def costs_by_iteration(plan):
-    """(cost of each term after each iteration of all rounds, shape (n, terms); index of the first
-    iteration of each round)."""
+    """(cost of each term after each iteration of all rounds, shape (n, terms); the terms' names;
+    index of the first iteration of each round). Attempts need not have the same terms."""
+    solves = [solve for attempt in plan["attempts"] for solve in attempt["rounds"]]
+    names = list(dict.fromkeys(name for solve in solves for name in solve["cost_by_term"]))
     rows, starts = [], []
-    for attempt in plan["attempts"]:
-        for solve in attempt["rounds"]:
-            starts.append(len(rows))
-            rows += [it["cost_by_term"] for it in solve["trace"]]
-    return np.array(rows, dtype=float).reshape(len(rows), len(plan["terms"])), starts
+    for solve in solves:
+        starts.append(len(rows))
+        columns = [names.index(name) for name in solve["cost_by_term"]]
+        for iteration in solve["trace"]:
+            rows.append(np.zeros(len(names)))
+            rows[-1][columns] = iteration["cost_by_term"]
+    return np.array(rows).reshape(len(rows), len(names)), names, starts
 
 
 def draw_cells(axes, plan, down):
@@ -117,7 +121,7 @@ def draw_profiles(axes, plan):
 def draw_costs(axes, plan):
     axes.set_title("cost by iteration, rounds divided")
     axes.set_xlabel("iteration of all rounds")
-    costs, starts = costs_by_iteration(plan)
+    costs, names, starts = costs_by_iteration(plan)
     if len(costs) == 0:
         axes.text(0.5, 0.5, "nothing was solved", ha="center", transform=axes.transAxes)
         return
@@ -125,7 +129,7 @@ def draw_costs(axes, plan):
     shown = [i for i in range(costs.shape[1]) if costs[:, i].max() > 0.0]
     for i in shown:
         values = np.where(costs[:, i] > 0.0, costs[:, i], np.nan)
-        axes.plot(x, values, marker=".", color=TERMS[i % len(TERMS)], label=plan["terms"][i])
+        axes.plot(x, values, marker=".", color=TERMS[i % len(TERMS)], label=names[i])
     axes.plot(x, costs.sum(axis=1), color="#333333", lw=1.0, ls="--", label="all")
     for start in starts[1:]:
         axes.axvline(start + 0.5, color="#BBBBBB", lw=0.8)

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/step_sensitivity.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "touchdown/evaluation/build_info.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kFactors[] = {0.75, 1.25};
+constexpr double kSamePlan = 1e-9;  // relative difference of two costs
+
+/// Sums over the steps of all parts.
+struct Tally {
+  SensitivityRow row;
+  std::vector<double> ms, ms_before;
+  double cost = 0.0, cost_before = 0.0;
+
+  void Add(const ReplanRow& before, const ReplanRow& after) {
+    ++row.steps;
+    row.gained += after.planned() && !before.planned();
+    row.lost += before.planned() && !after.planned();
+    ms.push_back(after.times.total.cpu);
+    ms_before.push_back(before.times.total.cpu);
+    if (!after.planned() || !before.planned()) {
+      row.changed += after.planned() != before.planned();
+      return;
+    }
+    row.changed += std::abs(*after.cost - *before.cost) > kSamePlan * *before.cost;
+    cost += *after.cost;
+    cost_before += *before.cost;
+  }
+
+  SensitivityRow Finish() {
+    double sum = 0.0, sum_before = 0.0;
+    for (const double t : ms) sum += t;
+    for (const double t : ms_before) sum_before += t;
+    if (sum_before > 0.0) {
+      row.mean_time = sum / sum_before;
+      row.p99_time = *QuantilesOf(ms).p99 / *QuantilesOf(ms_before).p99;
+    }
+    if (cost_before > 0.0) row.mean_cost = cost / cost_before;
+    return row;
+  }
+};
+
+std::vector<ReplanRow> Run(ReplanStudyOptions options, const planning::StepConstants& constants,
+                           const solvers::BackendRegistry& backends) {
+  options.later = true;
+  options.check = false;
+  options.repeats = 1;
+  options.replanner.constants = constants;
+  return RunReplanStudy(options, backends, [](int, int) {});
+}
+
+/// Later steps follow a first one that planned: only those that both runs have are compared.
+void Compare(const std::vector<ReplanRow>& before, const std::vector<ReplanRow>& after,
+             Tally* tally) {
+  const auto key = [](const ReplanRow& row) { return std::pair(row.index, row.step); };
+  auto other = after.begin();
+  for (const ReplanRow& row : before) {
+    while (other != after.end() && key(*other) < key(row)) ++other;
+    if (other != after.end() && key(*other) == key(row)) tally->Add(row, *other);
+  }
+}
+
+}  // namespace
+
+std::vector<SensitivityRow> MeasureSensitivity(
+    const std::vector<ReplanStudyOptions>& parts, const solvers::BackendRegistry& backends,
+    const std::function<void(int done, int all)>& report) {
+  std::vector<SensitivityRow> rows;
+  const auto table = planning::StepConstantTable();
+  const int all = static_cast<int>(table.size() * parts.size());
+  int done = 0;
+  for (const planning::StepConstant& constant : table) {
+    Tally tallies[std::size(kFactors)];
+    for (const ReplanStudyOptions& part : parts) {
+      const planning::StepConstants& usual = part.replanner.constants;
+      const std::vector<ReplanRow> before = Run(part, usual, backends);
+      for (std::size_t i = 0; i < std::size(kFactors); ++i) {
+        const planning::StepConstants changed = Scaled(usual, constant, kFactors[i]);
+        tallies[i].row.constant = &constant;
+        tallies[i].row.value = ValueOf(changed, constant);
+        Compare(before, Run(part, changed, backends), &tallies[i]);
+      }
+      report(++done, all);
+    }
+    for (Tally& tally : tallies) rows.push_back(tally.Finish());
+  }
+  return rows;
+}
+
+std::string SensitivityText(const std::vector<SensitivityRow>& rows) {
+  std::string text = BuildLine() + "\n";
+  if (!rows.empty()) text += fmt::format("{} steps\n", rows.front().steps);
+  text += fmt::format("{:<20}{:>9}{:>9} {:<15}{:>8}{:>7}{:>7}{:>10}{:>9}{:>10}\n", "constant", "is",
+                      "changed", "unit", "gained", "lost", "other", "mean time", "p99 time",
+                      "mean cost");
+  const planning::StepConstants usual;
+  for (const SensitivityRow& row : rows) {
+    text += fmt::format("{:<20}{:>9.4g}{:>9.4g} {:<15}{:>8}{:>7}{:>7}{:>10.3f}{:>9.3f}{:>10.4f}\n",
+                        row.constant->name, ValueOf(usual, *row.constant), row.value,
+                        row.constant->unit, row.gained, row.lost, row.changed, row.mean_time,
+                        row.p99_time, row.mean_cost);
+  }
+  return text;
+}
+
+nlohmann::ordered_json SensitivityJson(const std::vector<SensitivityRow>& rows) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  const planning::StepConstants usual;
+  for (const SensitivityRow& row : rows) {
+    json.push_back({{"constant", row.constant->name},
+                    {"meaning", row.constant->meaning},
+                    {"unit", row.constant->unit},
+                    {"is", ValueOf(usual, *row.constant)},
+                    {"changed", row.value},
+                    {"steps", row.steps},
+                    {"gained", row.gained},
+                    {"lost", row.lost},
+                    {"other_plans", row.changed},
+                    {"mean_time_ratio", row.mean_time},
+                    {"p99_time_ratio", row.p99_time},
+                    {"mean_cost_ratio", row.mean_cost}});
+  }
+  return json;
+}
+
+}  // namespace touchdown::evaluation

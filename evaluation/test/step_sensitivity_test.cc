@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/step_sensitivity.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/scene_sets.h"
+#include "touchdown/planning/term_registry.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+TEST(StepSensitivity, TellsTheConstantsThatDecideFromThoseThatDoNot) {
+  ReplanStudyOptions options;
+  options.count = 6;
+  options.scenes.set = "clutter";
+  options.scenes.kind = SceneKindNamed("A");
+  options.replanner.problem.terms = planning::StandardTerms();
+  int told = 0;
+  const std::vector<SensitivityRow> rows = MeasureSensitivity(
+      {options}, solvers::StandardBackends(), [&](int done, int all) { told = all - done; });
+  EXPECT_EQ(told, 0);
+  const auto table = planning::StepConstantTable();
+  ASSERT_EQ(rows.size(), 2 * table.size());
+  int decides = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].constant, &table[i / 2]);
+    EXPECT_GE(rows[i].steps, options.count);
+    EXPECT_GT(rows[i].mean_time, 0.0);
+    decides += rows[i].changed > 0;
+    // No step of these is near a landing, nor in sight of what was not seen.
+    if (std::string(rows[i].constant->name) == "unseen_least") {
+      EXPECT_EQ(rows[i].changed, 0);
+      EXPECT_EQ(rows[i].mean_cost, 1.0);
+    }
+  }
+  EXPECT_GT(decides, 4);
+  EXPECT_EQ(SensitivityJson(rows).size(), rows.size());
+  EXPECT_NE(SensitivityText(rows).find("pair_growth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/planning/step_constants.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace touchdown::planning {
+
+std::span<const StepConstant> StepConstantTable() {
+  using C = StepConstants;
+  static constexpr std::array kTable = {
+      StepConstant{"way_greed", &C::way_greed, "",
+                   "weight of the estimate in the search for a way"},
+      StepConstant{"way_tight_cost", &C::way_tight_cost, "m/m",
+                   "cost of a metre beside an obstacle"},
+      StepConstant{"detour_longest", &C::detour_longest, "m/m",
+                   "detour of the committed curve, over the straight line ..."},
+      StepConstant{"detour_slack", &C::detour_slack, "m", "... and beyond that"},
+      StepConstant{"detour_expansions", &C::detour_expansions, "spans",
+                   "of the searches for these detours in an attempt"},
+      StepConstant{"beside_time", &C::beside_time, "s",
+                   "a curve that has come to a way's side stays there for so long"},
+      StepConstant{"way_dearer", &C::way_dearer, "m/m",
+                   "cost over the first way's, up to which another is looked for"},
+      StepConstant{"side_cheaper", &C::side_cheaper, "",
+                   "share of the cost that makes a change of side worth while"},
+      StepConstant{"near_obstacle", &C::near_obstacle, "segments",
+                   "until an obstacle that needs fine segments at once"},
+      StepConstant{"fine_segments", &C::fine_segments, "", "share of the longest segment"},
+      StepConstant{"bound_beside", &C::bound_beside, "control points",
+                   "that are bound beside a blocked stretch"},
+      StepConstant{"stand_off", &C::stand_off, "m", "of a reference point from what is in the way"},
+      StepConstant{"pair_growth", &C::pair_growth, "", "of the pairs' weight from round to round"},
+      StepConstant{"blocked_left", &C::blocked_left, "",
+                   "share of the blocked time that a round leaves at most"},
+      StepConstant{"limit_growth", &C::limit_growth, "",
+                   "of the weight of soft limits that are exceeded"},
+      StepConstant{"limit_far", &C::limit_far, "",
+                   "of a limit, beyond which that weight grows by the square"},
+      StepConstant{"limit_rounds", &C::limit_rounds, "solves", "that press limits harder"},
+      StepConstant{"look_every", &C::look_every, "s", "between looks for other ways"},
+      StepConstant{"kept_latest", &C::kept_latest, "",
+                   "of the time left, after which a kept plan may not arrive"},
+      StepConstant{"retime_below", &C::retime_below, "",
+                   "a fresh guess this much shorter replaces a promised arrival"},
+      StepConstant{"attempts", &C::attempts, "", "in a step"},
+      StepConstant{"stretch", &C::stretch, "", "of the duration after an attempt that failed"},
+      StepConstant{"end_step", &C::end_step, "", "of the duration while the plan's end is blocked"},
+      StepConstant{"grid_longest", &C::grid_longest, "",
+                   "segments are for so many times the first arrival at most"},
+      StepConstant{"rescue_ways", &C::rescue_ways, "ways", "that later attempts try"},
+      StepConstant{"rescue_ways_at_rest", &C::rescue_ways_at_rest, "ways", "... from rest"},
+      StepConstant{"unseen_reach", &C::unseen_reach, "m",
+                   "around a start, where a plan keeps to what was seen"},
+      StepConstant{"unseen_least", &C::unseen_least, "m", "... where nothing leads out of that"},
+  };
+  return kTable;
+}
+
+double ValueOf(const StepConstants& constants, const StepConstant& which) {
+  return std::visit([&](auto member) { return static_cast<double>(constants.*member); },
+                    which.value);
+}
+
+StepConstants Scaled(const StepConstants& constants, const StepConstant& which, double factor) {
+  if (!(factor > 0.0) || !std::isfinite(factor)) {
+    throw std::invalid_argument("Scaled: factor is " + std::to_string(factor) +
+                                ", it must be positive and finite");
+  }
+  StepConstants changed = constants;
+  if (const auto* real = std::get_if<double StepConstants::*>(&which.value)) {
+    changed.** real *= factor;
+    return changed;
+  }
+  int& count = changed.*std::get<int StepConstants::*>(which.value);
+  const int rounded = static_cast<int>(std::lround(count * factor));
+  const int step = factor < 1.0 ? -1 : factor > 1.0 ? 1 : 0;
+  count = std::max(1, rounded == count ? count + step : rounded);
+  return changed;
+}
+
+}  // namespace touchdown::planning

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <variant>
+
+namespace touchdown::planning {
+
+/// The numbers that a replanning step decides by, all of them. `StepConstantTable` tells what each is; what
+/// each is worth is measured by `touchdown study replan --sensitivity` (docs/replan_study.md).
+struct StepConstants {
+  // Ways past what blocks a curve (way_finder.h).
+  double way_greed = 2.0;
+  double way_tight_cost = 8.0;
+  double detour_longest = 2.0;
+  double detour_slack = 1.0;
+  int detour_expansions = 1000;
+  double beside_time = 0.5;
+  double way_dearer = 1.05;
+  double side_cheaper = 0.8;
+
+  // From a way to a clear curve (plan_attempt.h, pair_binder.h).
+  double near_obstacle = 1.5;
+  double fine_segments = 0.5;
+  double bound_beside = 2.0;
+  double stand_off = 0.3;
+  double pair_growth = 2.5;
+  double blocked_left = 0.5;
+  double limit_growth = 6.0;
+  double limit_far = 1.06;
+  int limit_rounds = 2;
+
+  // What is kept from step to step.
+  double look_every = 0.5;
+  double kept_latest = 1.06;
+  double retime_below = 0.75;
+
+  // The ladder of attempts (attempt_ladder.h).
+  int attempts = 7;
+  double stretch = 1.4;
+  double end_step = 1.05;
+  double grid_longest = 1.2;
+  int rescue_ways = 2;
+  int rescue_ways_at_rest = 4;
+  double unseen_reach = 1.0;
+  double unseen_least = 0.5;
+};
+
+/// What a constant is.
+struct StepConstant {
+  const char* name;
+  std::variant<double StepConstants::*, int StepConstants::*> value;
+  const char* unit;     ///< "" for a pure number
+  const char* meaning;  ///< a phrase
+};
+
+/// All of them, in the order above.
+std::span<const StepConstant> StepConstantTable();
+
+double ValueOf(const StepConstants& constants, const StepConstant& which);
+
+/// The constants with one of them changed by this factor; a count is rounded, and changed by one at least.
+/// Throws std::invalid_argument unless factor is positive and finite.
+StepConstants Scaled(const StepConstants& constants, const StepConstant& which, double factor);
+
+}  // namespace touchdown::planning

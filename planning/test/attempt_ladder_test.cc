@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/planning/attempt_ladder.h"
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/test/planning_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+constexpr ReplanReason kReasons[] = {ReplanReason::kStartBlocked,   ReplanReason::kGoalBlocked,
+                                     ReplanReason::kSearchFailed,   ReplanReason::kCollisionRemains,
+                                     ReplanReason::kLimitsExceeded, ReplanReason::kSolverFailed,
+                                     ReplanReason::kEndTooFast,     ReplanReason::kUnobserved};
+
+LadderFacts UsualFacts() {
+  LadderFacts facts;
+  facts.arrival = ArrivalMode::kFree;
+  facts.fresh = 4.0;
+  facts.min_duration = 0.8;
+  facts.max_duration = 30.0;
+  return facts;
+}
+
+Rung UsualRung(ArrivalMode arrival = ArrivalMode::kFree) {
+  Rung rung;
+  rung.duration = 5.0;
+  rung.arrival = arrival;
+  return rung;
+}
+
+// Whatever happens: it ends, nothing is tried twice, arrivals are never earlier nor later than allowed.
+TEST(AttemptLadder, EndsAndNeverTriesTheSameTwice) {
+  Draw draw(7);
+  const StepConstants constants;
+  for (int trial = 0; trial < 2000; ++trial) {
+    LadderFacts facts = UsualFacts();
+    facts.lands_soon = draw.Uniform(0, 1) < 0.2;
+    facts.at_rest = !facts.lands_soon && draw.Uniform(0, 1) < 0.5;
+    facts.fresh = draw.Uniform(1, 29);
+    Rung rung = UsualRung(draw.Uniform(0, 1) < 0.5 ? ArrivalMode::kFree : ArrivalMode::kFixed);
+    rung.duration = draw.Uniform(0.5, 30.0);
+    rung.unseen_reach =
+        !facts.lands_soon && draw.Uniform(0, 1) < 0.3 ? constants.unseen_reach : 0.0;
+    int attempts = 1;
+    for (;; ++attempts) {
+      ASSERT_LE(attempts, constants.attempts);
+      const Outcome outcome = {kReasons[static_cast<int>(draw.Uniform(0, std::size(kReasons)))],
+                               draw.Uniform(0.5, 30.0)};
+      const Climb climb = NextRung(rung, outcome, facts, constants);
+      if (!climb.next) {
+        EXPECT_NE(climb.reason, ReplanReason::kNone);
+        break;
+      }
+      EXPECT_EQ(climb.next->attempt, rung.attempt + 1);
+      EXPECT_GE(climb.next->duration, rung.duration);
+      EXPECT_LE(climb.next->duration, facts.max_duration);
+      // From the second attempt on the committed plan is no longer asked.
+      const bool same = climb.next->duration == rung.duration &&
+                        climb.next->arrival == rung.arrival &&
+                        climb.next->unseen_reach == rung.unseen_reach && rung.attempt > 0;
+      EXPECT_FALSE(same);
+      if (rung.arrival == ArrivalMode::kFixed && !facts.lands_soon) {
+        EXPECT_EQ(climb.next->arrival, ArrivalMode::kFixed);
+      }
+      rung = *climb.next;
+    }
+    if (facts.lands_soon) {
+      EXPECT_LE(attempts, 2);
+    }
+  }
+}
+
+TEST(AttemptLadder, ArrivesLaterAndFixedAfterACollision) {
+  const StepConstants constants;
+  const LadderFacts facts = UsualFacts();
+  const Outcome outcome = {ReplanReason::kCollisionRemains, 9.0};
+  const Climb free = NextRung(UsualRung(), outcome, facts, constants);
+  ASSERT_TRUE(free.next);
+  EXPECT_EQ(free.next->arrival, ArrivalMode::kFixed);
+  EXPECT_DOUBLE_EQ(free.next->duration, 1.4 * 5.0);  // it only fled to 9 s
+  const Climb fixed = NextRung(UsualRung(ArrivalMode::kFixed), outcome, facts, constants);
+  ASSERT_TRUE(fixed.next);
+  EXPECT_DOUBLE_EQ(fixed.next->duration, 1.4 * 9.0);  // the way round took so long
+  const Climb limits =
+      NextRung(UsualRung(), {ReplanReason::kLimitsExceeded, 9.0}, facts, constants);
+  ASSERT_TRUE(limits.next);
+  EXPECT_DOUBLE_EQ(limits.next->duration, 1.4 * 9.0);
+  LadderFacts late = facts;
+  late.fresh = 20.0;
+  EXPECT_DOUBLE_EQ(NextRung(UsualRung(), outcome, late, constants).next->duration, 20.0);
+  Rung last = UsualRung(ArrivalMode::kFixed);
+  last.duration = facts.max_duration;
+  EXPECT_FALSE(NextRung(last, outcome, facts, constants).next);
+}
+
+TEST(AttemptLadder, ClosesWhatWasNotSeenAndOpensItAgain) {
+  const StepConstants constants;
+  LadderFacts facts = UsualFacts();
+  const Outcome unseen = {ReplanReason::kUnobserved, 5.0};
+  const Climb closed = NextRung(UsualRung(), unseen, facts, constants);
+  ASSERT_TRUE(closed.next);
+  EXPECT_EQ(closed.next->unseen_reach, constants.unseen_reach);
+  EXPECT_EQ(closed.next->duration, 5.0);
+  EXPECT_EQ(closed.next->arrival, ArrivalMode::kFree);
+  // In flight a later arrival is tried then; from rest a smaller zone, and that is all.
+  EXPECT_GT(NextRung(*closed.next, unseen, facts, constants).next->duration, 5.0);
+  facts.at_rest = true;
+  const Climb less = NextRung(*closed.next, unseen, facts, constants);
+  ASSERT_TRUE(less.next);
+  EXPECT_EQ(less.next->unseen_reach, constants.unseen_least);
+  const Climb end = NextRung(*less.next, {ReplanReason::kCollisionRemains, 5.0}, facts, constants);
+  EXPECT_FALSE(end.next);
+  EXPECT_EQ(end.reason, ReplanReason::kUnobserved);
+  // What the last plan led around may be seen by now.
+  Rung before = UsualRung();
+  before.unseen_reach = constants.unseen_reach;
+  const Climb open = NextRung(before, {ReplanReason::kSearchFailed, 5.0}, facts, constants);
+  ASSERT_TRUE(open.next);
+  EXPECT_EQ(open.next->unseen_reach, 0.0);
+}
+
+TEST(AttemptLadder, BeforeAContactNothingIsPutOffButOnce) {
+  const StepConstants constants;
+  LadderFacts facts = UsualFacts();
+  facts.lands_soon = true;
+  const Outcome outcome = {ReplanReason::kLimitsExceeded, 1.0};
+  Rung rung = UsualRung(ArrivalMode::kFixed);
+  rung.duration = 1.0;
+  const Climb free = NextRung(rung, outcome, facts, constants);
+  ASSERT_TRUE(free.next);
+  EXPECT_EQ(free.next->arrival, ArrivalMode::kFree);
+  EXPECT_EQ(free.next->duration, 1.0);
+  EXPECT_FALSE(NextRung(*free.next, outcome, facts, constants).next);
+  rung.duration = 0.5;  // too short for a free one
+  const Climb later = NextRung(rung, outcome, facts, constants);
+  ASSERT_TRUE(later.next);
+  EXPECT_EQ(later.next->arrival, ArrivalMode::kFixed);
+  EXPECT_DOUBLE_EQ(later.next->duration, 0.7);
+}
+
+}  // namespace
+}  // namespace touchdown::planning
