@@ -105,8 +105,7 @@ class SceneAsker {
     }
   }
 
-  void AskAll(int index, std::vector<ReplanRow>* rows) {
-    const ReplanScene scene = DrawReplanScene(options_.scenes, index);
+  void AskAll(const ReplanScene& scene, int index, std::vector<ReplanRow>* rows) {
     index_ = index;
     earliest_ = EarliestArrival(scene, options_.scenes.kind.limits);
     const planning::ReplanInput first = AskAt(scene, &replanner_);
@@ -241,8 +240,19 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
   SceneAsker asker(options, backends);
   std::vector<ReplanRow> rows;
   for (int index = 0; index < options.count; ++index) {
-    asker.AskAll(index, &rows);
+    asker.AskAll(DrawReplanScene(options.scenes, index), index, &rows);
     report(index + 1, options.count);
+  }
+  return rows;
+}
+
+std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
+                                      const std::vector<ReplanScene>& scenes,
+                                      const solvers::BackendRegistry& backends) {
+  SceneAsker asker(options, backends);
+  std::vector<ReplanRow> rows;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    asker.AskAll(scenes[i], static_cast<int>(i), &rows);
   }
   return rows;
 }

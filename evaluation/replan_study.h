@@ -113,6 +113,11 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
                                       const std::function<void(int done, int all)>& report);
 
+/// The same in scenes that were drawn with options.scenes before: the first ones, in their order.
+std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
+                                      const std::vector<ReplanScene>& scenes,
+                                      const solvers::BackendRegistry& backends);
+
 /// A ball that a map knows. Infinite: all of its window.
 struct KnownBall {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< in W [m]

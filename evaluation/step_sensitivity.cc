@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/step_sensitivity.h"
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -48,12 +49,13 @@ struct Tally {
 };
 
 std::vector<ReplanRow> Run(ReplanStudyOptions options, const planning::StepConstants& constants,
+                           const std::vector<ReplanScene>& scenes,
                            const solvers::BackendRegistry& backends) {
   options.later = true;
   options.check = false;
   options.repeats = 1;
   options.replanner.constants = constants;
-  return RunReplanStudy(options, backends, [](int, int) {});
+  return RunReplanStudy(options, scenes, backends);
 }
 
 /// Later steps follow a first one that planned: only those that both runs have are compared.
@@ -72,24 +74,28 @@ void Compare(const std::vector<ReplanRow>& before, const std::vector<ReplanRow>&
 std::vector<SensitivityRow> MeasureSensitivity(
     const std::vector<ReplanStudyOptions>& parts, const solvers::BackendRegistry& backends,
     const std::function<void(int done, int all)>& report) {
-  std::vector<SensitivityRow> rows;
   const auto table = planning::StepConstantTable();
+  std::vector<std::array<Tally, std::size(kFactors)>> tallies(table.size());
   const int all = static_cast<int>(table.size() * parts.size());
   int done = 0;
-  for (const planning::StepConstant& constant : table) {
-    Tally tallies[std::size(kFactors)];
-    for (const ReplanStudyOptions& part : parts) {
-      const planning::StepConstants& usual = part.replanner.constants;
-      const std::vector<ReplanRow> before = Run(part, usual, backends);
+  for (const ReplanStudyOptions& part : parts) {
+    std::vector<ReplanScene> scenes;
+    for (int i = 0; i < part.count; ++i) scenes.push_back(DrawReplanScene(part.scenes, i));
+    const planning::StepConstants& usual = part.replanner.constants;
+    for (std::size_t k = 0; k < table.size(); ++k) {
+      const std::vector<ReplanRow> before = Run(part, usual, scenes, backends);
       for (std::size_t i = 0; i < std::size(kFactors); ++i) {
-        const planning::StepConstants changed = Scaled(usual, constant, kFactors[i]);
-        tallies[i].row.constant = &constant;
-        tallies[i].row.value = ValueOf(changed, constant);
-        Compare(before, Run(part, changed, backends), &tallies[i]);
+        const planning::StepConstants changed = Scaled(usual, table[k], kFactors[i]);
+        tallies[k][i].row.constant = &table[k];
+        tallies[k][i].row.value = ValueOf(changed, table[k]);
+        Compare(before, Run(part, changed, scenes, backends), &tallies[k][i]);
       }
       report(++done, all);
     }
-    for (Tally& tally : tallies) rows.push_back(tally.Finish());
+  }
+  std::vector<SensitivityRow> rows;
+  for (auto& of_constant : tallies) {
+    for (Tally& tally : of_constant) rows.push_back(tally.Finish());
   }
   return rows;
 }

@@ -8,12 +8,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include "touchdown/planning/search_queue.h"
+#include <boost/heap/d_ary_heap.hpp>
 
 namespace touchdown::planning {
 
@@ -53,6 +54,38 @@ void ForEachOnShell(const CellIndex& centre, int n, Visit&& visit) {
 
 }  // namespace
 
+// Addresses, the least f first, and of these the one that came first.
+class GridSearch::Queue {
+ public:
+  void Reserve(std::size_t size) { nodes_.reserve(size); }
+  void Clear() {
+    nodes_.clear();
+    order_ = 0;
+  }
+  bool empty() const { return nodes_.empty(); }
+  void Push(float f, std::uint32_t address) {
+    // The bits of positive floats are ordered as they are.
+    const auto upper = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(f)) << 32;
+    nodes_.push({upper | order_++, address});
+  }
+  std::uint32_t Pop() {
+    const std::uint32_t address = nodes_.top().address;
+    nodes_.pop();
+    return address;
+  }
+
+ private:
+  struct Node {
+    std::uint64_t key;  // f, then the order of insertion
+    std::uint32_t address;
+    bool operator>(const Node& other) const { return key > other.key; }
+  };
+  // With four children a node: half the levels of a binary heap, and these are next to each other.
+  boost::heap::d_ary_heap<Node, boost::heap::arity<4>, boost::heap::compare<std::greater<Node>>>
+      nodes_;
+  std::uint32_t order_ = 0;
+};
+
 double PathLength(const GuidePath& path) {
   double length = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
@@ -65,7 +98,7 @@ GridSearch::GridSearch(double vertical_cost, double greed, double tight_cost)
       cubic_(std::sqrt(2.0f + vertical_cost_ * vertical_cost_)),
       greed_(static_cast<float>(greed)),
       tight_cost_(static_cast<float>(tight_cost)),
-      queue_(std::make_unique<SearchQueue>()) {
+      queue_(std::make_unique<Queue>()) {
   if (!(vertical_cost >= 1.0)) {
     throw std::invalid_argument("GridSearch: vertical_cost is " + std::to_string(vertical_cost) +
                                 ", it must be >= 1");

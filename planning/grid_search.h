@@ -29,8 +29,6 @@ enum class SearchStatus {
   kExpansionLimit,  ///< the budget of expansions was used up
 };
 
-class SearchQueue;
-
 /// A* on the 26-neighbour lattice of the map's free cells (eq. 16: f = g + greed h, h the exact
 /// distance on the empty lattice). A step costs sqrt(dx^2 + dy^2 + (vertical_cost dz)^2): going around is
 /// preferred to going over, where a forward camera sees little. A blocked end is first moved to the
@@ -65,6 +63,8 @@ class GridSearch {
   int expansions() const { return expansions_; }
 
  private:
+  class Queue;  // of the cells to be expanded
+
   static constexpr std::uint32_t kMostSearches = (1u << 26) - 1;
   static constexpr std::uint32_t kSelf = 13;  // the middle of 27 steps: no step at all
 
@@ -97,7 +97,7 @@ class GridSearch {
   std::array<Step, 27> steps_;  // in the order of BlockedBits::Around
   BlockedBits blocked_;
   std::vector<Cell> cells_;
-  std::unique_ptr<SearchQueue> queue_;
+  std::unique_ptr<Queue> queue_;
   std::vector<CellIndex> way_;  // what a search found
   std::uint32_t search_ = 0;
   int expansions_ = 0;

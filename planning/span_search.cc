@@ -11,14 +11,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "touchdown/planning/search_queue.h"
-
 namespace touchdown::planning {
 
 namespace {
 
 // Room at first; a search that needs more makes more.
-constexpr std::size_t kUsualQueue = 1 << 14;
+constexpr std::size_t kUsualQueue = 1 << 16;
 constexpr std::size_t kUsualWay = 1024;
 
 struct Step {
@@ -35,6 +33,7 @@ constexpr std::array<Step, 8> kSteps = {{{1, 0, 1.0f},
                                          {-1, 1, kDiagonal},
                                          {-1, -1, kDiagonal}}};
 constexpr int kSelf = kSteps.size();  // no step at all
+constexpr float kStepsOfCell = 4.0f;  // of f, that the queue tells apart
 constexpr double kGateMargin = 1.0;   // of a way from the edges of a gate that has room [cells]
 
 /// A span that can be reached from another.
@@ -50,23 +49,46 @@ void RequireFactor(const char* name, double value) {
 
 }  // namespace
 
+SpanSearch::Queue::Queue() {
+  first_.reserve(kUsualQueue);
+  entries_.reserve(kUsualQueue);
+}
+
+void SpanSearch::Queue::Clear() {
+  std::fill(first_.begin(), first_.end(), -1);
+  entries_.clear();
+  least_ = 0;
+  waiting_ = 0;
+}
+
+void SpanSearch::Queue::Push(float f, std::uint32_t address) {
+  const auto at = static_cast<std::size_t>(kStepsOfCell * f);
+  if (at >= first_.size()) first_.resize(at + 1, -1);
+  entries_.push_back({address, first_[at]});
+  first_[at] = static_cast<std::int32_t>(entries_.size()) - 1;
+  least_ = std::min(least_, at);
+  ++waiting_;
+}
+
+std::uint32_t SpanSearch::Queue::Pop() {
+  while (first_[least_] < 0) ++least_;
+  const Entry& entry = entries_[static_cast<std::size_t>(first_[least_])];
+  first_[least_] = entry.next;
+  --waiting_;
+  return entry.address;
+}
+
 SpanSearch::SpanSearch(const WayCost& cost, double greed)
     : vertical_cost_(static_cast<float>(cost.vertical)),
       tight_cost_(static_cast<float>(cost.tight)),
-      greed_(static_cast<float>(greed)),
-      queue_(std::make_unique<SearchQueue>()) {
+      greed_(static_cast<float>(greed)) {
   RequireFactor("vertical cost", cost.vertical);
   RequireFactor("tight cost", cost.tight);
   RequireFactor("greed", greed);
 }
 
-SpanSearch::~SpanSearch() = default;
-SpanSearch::SpanSearch(SpanSearch&&) noexcept = default;
-SpanSearch& SpanSearch::operator=(SpanSearch&&) noexcept = default;
-
 void SpanSearch::Reserve(const OccupancyMap& map) {
   columns_.Reserve(map);
-  queue_->Reserve(kUsualQueue);
   way_.reserve(kUsualWay);
   gates_.reserve(kUsualWay);
   const auto columns = static_cast<std::size_t>(map.size().head<2>().prod());
@@ -115,7 +137,7 @@ SearchStatus SpanSearch::Search(const FreeSpace& space, const Eigen::Vector3d& f
 
 SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal, int max_expansions,
                                   float max_cost) {
-  queue_->Clear();
+  queue_.Clear();
   const int nx = columns_.size().x(), ny = columns_.size().y();
   const auto address = [&](int x, int y, int id) {
     return static_cast<std::uint32_t>((id * ny + y) * nx + x);
@@ -141,13 +163,13 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
     node.z = static_cast<std::int16_t>(at.z);
     node.step = static_cast<std::uint8_t>(at.step);
     node.from_id = static_cast<std::uint8_t>(from_id);
-    queue_->Push(g + greed_ * left, a);
+    queue_.Push(g + greed_ * left, a);
   };
   see({start.x(), start.y(), start_id, start.z(), kSelf}, 0.0f, 0);
 
   std::array<Reached, kSteps.size() * ColumnSpans::kMost> reached;
-  while (!queue_->empty()) {
-    const std::uint32_t here = queue_->Pop();
+  while (!queue_.empty()) {
+    const std::uint32_t here = queue_.Pop();
     Node& node = nodes_[here];
     if (node.closed) continue;  // an older, longer entry of the same span
     node.closed = 1;
@@ -175,6 +197,8 @@ SearchStatus SpanSearch::SearchOn(const CellIndex& start, const CellIndex& goal,
         if (low > high) continue;
         const int to_z = std::clamp(z, low, high);
         level |= to_z == z;
+        const Node& there = nodes_[address(to_x, to_y, to_id)];
+        if (there.search == search_ && there.closed) continue;
         reached[count++] = {to_x, to_y, to_id, to_z, s};
       }
       tight |= !level;

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -11,8 +10,6 @@
 #include "touchdown/planning/grid_search.h"
 
 namespace touchdown::planning {
-
-class SearchQueue;
 
 /// What a way costs, in [m] of level flight with room on both sides.
 struct WayCost {
@@ -24,17 +21,13 @@ struct WayCost {
 /// looks along is filled in two dimensions, not in three. A node is a span, with the height at which it was
 /// reached; who goes on to the next column keeps its height as long as that column is free there. The
 /// heights of the way that was found are straightened in the end. Not exact: a span remembers only the
-/// cheapest height. Deterministic: ties are broken by the order of insertion. Its arrays have the size of
-/// the map's window and are kept between searches.
+/// cheapest height. Deterministic. Its arrays have the size of the map's window and are kept between
+/// searches.
 class SpanSearch {
  public:
   /// With `greed` > 1 spans near the goal come first: a way costs at most so many times the least on this
   /// graph, and is found after fewer expansions. Throws std::invalid_argument unless all are >= 1.
   explicit SpanSearch(const WayCost& cost = {}, double greed = 1.0);
-  ~SpanSearch();
-  /// What was moved from may only be assigned to or destroyed.
-  SpanSearch(SpanSearch&&) noexcept;
-  SpanSearch& operator=(SpanSearch&&) noexcept;
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.
   void Reserve(const OccupancyMap& map);
@@ -52,6 +45,27 @@ class SpanSearch {
   double cost() const { return cost_; }
 
  private:
+  // Of the nodes to be expanded, those with the least f first, to a quarter of a cell, and of these the last
+  // that came. What an exact order costs is more than it gains where the estimate is weighed.
+  class Queue {
+   public:
+    Queue();
+    void Clear();
+    bool empty() const { return waiting_ == 0; }
+    void Push(float f, std::uint32_t address);
+    std::uint32_t Pop();
+
+   private:
+    struct Entry {
+      std::uint32_t address;
+      std::int32_t next;  // of the same f; -1: none
+    };
+    std::vector<std::int32_t> first_;  // by f; -1: none
+    std::vector<Entry> entries_;
+    std::size_t least_ = 0;
+    int waiting_ = 0;
+  };
+
   // What a search knows of a span, if it has seen it.
   struct Node {
     float g = 0.0f;  // [cells]
@@ -83,7 +97,7 @@ class SpanSearch {
   float vertical_cost_, tight_cost_, greed_;
   ColumnSpans columns_;
   std::vector<Node> nodes_;
-  std::unique_ptr<SearchQueue> queue_;
+  Queue queue_;
   std::vector<Place> way_;
   std::vector<Gate> gates_;
   std::uint32_t search_ = 0;
