@@ -234,11 +234,12 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     kept_.Bind({kept_.t0() + share * (span.t_in - request.t0),
                 kept_.t0() + share * (span.t_out - request.t0)});
   }
-  const int ways = first.at_start ? 1 : std::max(options_.max_guides, request.rescue_guides);
+  // Whose own way fails is led another one at once.
+  const int rescues = keeps_side ? std::max(2, request.rescue_guides) : request.rescue_guides;
   double first_cost = kNoBound;
-  for (int i = 0; i < ways; ++i) {
+  for (int i = 0;; ++i) {
     const bool planned = i > 0 && best_.reason == ReplanReason::kNone;
-    if (i >= options_.max_guides && planned) break;
+    if (i > 0 && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
     const bool kept = i == 0 && keeps_side;
     if (!kept) {
       const ReplanReason found = LayWay(

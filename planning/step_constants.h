@@ -52,6 +52,7 @@ struct StepConstant {
   std::variant<double StepConstants::*, int StepConstants::*> value;
   const char* unit;     ///< "" for a pure number
   const char* meaning;  ///< a phrase
+  double least = 0.0;   ///< from which it counts: 1 for what is so many times something at least
 };
 
 /// All of them, in the order above.
@@ -59,7 +60,8 @@ std::span<const StepConstant> StepConstantTable();
 
 double ValueOf(const StepConstants& constants, const StepConstant& which);
 
-/// The constants with one of them changed by this factor; a count is rounded, and changed by one at least.
+/// The constants with one of them so many times as far from its least value; a count is rounded, and changed by
+/// one at least.
 /// Throws std::invalid_argument unless factor is positive and finite.
 StepConstants Scaled(const StepConstants& constants, const StepConstant& which, double factor);
 

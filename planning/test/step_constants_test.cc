@@ -39,8 +39,10 @@ TEST(StepConstants, AreScaledOneAtATime) {
           EXPECT_EQ(after, before) << constant.name;
         } else if (factor > 1.0) {
           EXPECT_GT(after, before) << constant.name;
+          EXPECT_GE(before, constant.least) << constant.name;
         } else {
           EXPECT_LE(after, before) << constant.name;
+          EXPECT_GE(after, constant.least) << constant.name;
         }
       }
     }
