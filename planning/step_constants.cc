@@ -74,7 +74,8 @@ StepConstants Scaled(const StepConstants& constants, const StepConstant& which, 
   }
   StepConstants changed = constants;
   if (const auto* real = std::get_if<double StepConstants::*>(&which.value)) {
-    changed.** real *= factor;
+    double& value = changed.*(*real);
+    value = which.least + factor * (value - which.least);
     return changed;
   }
   int& count = changed.*std::get<int StepConstants::*>(which.value);

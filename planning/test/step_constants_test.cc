@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "touchdown/planning/replanner.h"
+
 namespace touchdown::planning {
 namespace {
 
@@ -39,10 +41,10 @@ TEST(StepConstants, AreScaledOneAtATime) {
           EXPECT_EQ(after, before) << constant.name;
         } else if (factor > 1.0) {
           EXPECT_GT(after, before) << constant.name;
-          EXPECT_GE(before, constant.least) << constant.name;
+          EXPECT_GT(before, constant.least) << constant.name;
         } else {
           EXPECT_LE(after, before) << constant.name;
-          EXPECT_GE(after, constant.least) << constant.name;
+          EXPECT_GT(after, constant.least) << constant.name;
         }
       }
     }
@@ -56,6 +58,25 @@ TEST(StepConstants, AreScaledOneAtATime) {
     EXPECT_THROW(Scaled(two, constant, 0.0), std::invalid_argument);
     EXPECT_THROW(Scaled(two, constant, std::numeric_limits<double>::quiet_NaN()),
                  std::invalid_argument);
+  }
+}
+
+// A step of no length would look for a free end for ever.
+TEST(StepConstants, OutOfTheirRangeAreRefusedByName) {
+  for (const StepConstant& constant : StepConstantTable()) {
+    const auto* real = std::get_if<double StepConstants::*>(&constant.value);
+    ReplannerOptions options;
+    if (real != nullptr) {
+      options.constants.*(*real) = constant.least;
+    } else {
+      options.constants.*std::get<int StepConstants::*>(constant.value) = 0;
+    }
+    try {
+      const Replanner replanner(options, solvers::StandardBackends());
+      FAIL() << constant.name;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(constant.name), std::string::npos) << error.what();
+    }
   }
 }
 
