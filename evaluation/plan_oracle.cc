@@ -33,7 +33,8 @@ constexpr double kLimitPressure = 4.0;
 constexpr int kLimitRounds = 5;
 constexpr int kPathExpansions = 300000;
 constexpr int kLocalExpansions = 20000;
-constexpr double kSegmentShares[] = {0.67, 0.45, 1.0};  // of the longest segment of a plan
+/// Of the longest segment of a plan. Its verdicts are on file: they do not follow the planner's own numbers.
+constexpr double kSegmentShares[] = {0.67, 0.45, 1.0};
 
 planning::ReplannerOptions OwnFormulation(planning::ReplannerOptions options) {
   options.backend = "banded";

@@ -101,12 +101,13 @@ constexpr std::array kRules = {
 
 Climb NextRung(const Rung& rung, const Outcome& outcome, const LadderFacts& facts,
                const StepConstants& constants) {
-  if (rung.attempt + 1 >= constants.attempts) return Stop(outcome.reason);
   const Case c = {rung, outcome, facts, constants};
-  for (const Rule& rule : kRules) {
-    if (rule.holds(c)) return rule.climb(c);
-  }
-  return Stop(outcome.reason);
+  const auto rule =
+      std::find_if(kRules.begin(), kRules.end(), [&](const Rule& r) { return r.holds(c); });
+  if (rule == kRules.end()) return Stop(outcome.reason);
+  const Climb climb = rule->climb(c);
+  const bool last = rung.attempt + 1 >= constants.attempts;
+  return climb.next && last ? Stop(outcome.reason) : climb;
 }
 
 }  // namespace touchdown::planning

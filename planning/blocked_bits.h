@@ -17,7 +17,7 @@ class BlockedBits {
   /// Makes room for this map's window, which Begin does otherwise.
   void Reserve(const OccupancyMap& map);
 
-  /// From now on of this space and these barriers, which must outlive the calls of Around. Allocates only
+  /// From now on of this space and these barriers, which must outlive the calls of Word and Around. Allocates only
   /// to grow to a high-water mark.
   void Begin(const FreeSpace& space, std::span<const Barrier> barriers);
 

@@ -28,7 +28,7 @@ struct Certificate {
   /// What is flown until a newer pair takes over, and the stop that is stored for the case that none
   /// does, stay in observed-free cells with the hull and its margins (planning/stored_stop.h).
   bool stops_in_observed_space = false;
-  StartCells start_cells;  ///< that the pair starts among, and only moves away from
+  StartCells start_cells;    ///< that the pair starts among, and only moves away from
   double clearance = 0.0;    ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 

@@ -60,8 +60,7 @@ Sweep Fallback::SweepAgain(const FlightPair& committed, double t0, const HullSpa
   const double t_from = std::max(t0, last.t0());
   const double t_contact = committed.Lands() ? ContactTime(last, t_from, hull) : last.t_end();
   const double t_to = std::max(t_from, std::isfinite(t_contact) ? t_contact : last.t_end());
-  return SweepHull(last, t_from, t_to, {last.EvaluateOnward(t_from).p_WB, t_from}, bare,
-                   kAnyTime);
+  return SweepHull(last, t_from, t_to, {last.EvaluateOnward(t_from).p_WB, t_from}, bare, kAnyTime);
 }
 
 bool Fallback::GoesOn(const FlightPair& committed, double t0, double t_stop, const HullSpace& hull,
@@ -85,8 +84,8 @@ bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d&
   const PairProof proof = ProveStop(t0, hull, &pair_);
   Certificate certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
   Enter(proof, &certificate);
-  const bool enough = room == Room::kOfPlans ? certificate.passed()
-                                             : proof.proven && certificate.limits_kept;
+  const bool enough =
+      room == Room::kOfPlans ? certificate.passed() : proof.proven && certificate.limits_kept;
   if (!enough) return false;
   result->pair() = pair_;
   result->certificate = certificate;
@@ -105,8 +104,8 @@ bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hul
                        ReplanResult* result) {
   CellIndex way_out = hull.space->map->CellOf(start.p);
   return hull.space->Blocked(start.p) && GridSearch::NearestFree(*hull.space, &way_out) &&
-         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull,
-               Room::kOfPlans, result);
+         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull, Room::kOfPlans,
+               result);
 }
 
 void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& hull,

@@ -48,8 +48,8 @@ class Fallback {
 
   /// What has become of a pair that was to end in contact.
   enum class Landing {
-    kHolds,   ///< or it was none
-    kHard,    ///< the deck will be there, but not move along: the landing rule forbids it
+    kHolds,  ///< or it was none
+    kHard,   ///< the deck will be there, but not move along: the landing rule forbids it
     kMisses,  ///< contact is long due, the deck will not be there, or something is seen to be in the way
   };
   static Landing LookAtLanding(const FlightPair& committed, double t0, const HullSpace& hull);

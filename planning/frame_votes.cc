@@ -57,13 +57,15 @@ void FrameVotes::Begin(const Eigen::Vector3d& eye) {
 inline FrameVotes::Track FrameVotes::MakeTrack(const Ray& ray, int axis, int minor) const {
   const double at = eye_[minor] + ray.along[minor] * ray.first_cross[axis];
   const double by = ray.along[minor] * ray.per_cell[axis];
-  Track track = {static_cast<std::int64_t>(at * one_), static_cast<std::int64_t>(by * one_)};
+  const std::int64_t steps = ray.crossings[axis] - 1;
+  // Without a step the ray may be so steep that none could be held.
+  Track track = {static_cast<std::int64_t>(at * one_),
+                 steps > 0 ? static_cast<std::int64_t>(by * one_) : 0};
   // A coordinate stays between those of both ends, whatever rounding does.
   const auto [near, far] = std::minmax(first_[minor], ray.last[minor]);
   const std::int64_t lowest = static_cast<std::int64_t>(near) << point_;
   const std::int64_t highest = (static_cast<std::int64_t>(far + 1) << point_) - 1;
   track.at = std::clamp(track.at, lowest, highest);
-  const std::int64_t steps = ray.crossings[axis] - 1;
   const std::int64_t last = track.at + steps * track.by;
   if (last < lowest) track.by = (lowest - track.at) / steps;
   if (last > highest) track.by = (highest - track.at) / steps;
@@ -93,8 +95,8 @@ inline void FrameVotes::MissBehindFaces(const Ray& ray) {
   const Pair by_a = Both(2 * on_a.by), by_b = Both(2 * on_b.by), by = Both(2 * stride);
   for (int pairs = faces / 2; pairs > 0; --pairs) {
     const Pair address = (at_a >> point & bits_a) + (at_b >> point & bits_b) + at;
-    plane[address[0]] = kMiss;
-    plane[address[1]] = kMiss;
+    plane[static_cast<std::ptrdiff_t>(address[0])] = kMiss;
+    plane[static_cast<std::ptrdiff_t>(address[1])] = kMiss;
     at_a += by_a;
     at_b += by_b;
     at += by;

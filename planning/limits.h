@@ -34,10 +34,10 @@ inline constexpr double kFastestEndShare = 0.9;
 
 /// What thrust, tilt and visibility terms know of the vehicle.
 struct VehicleFacts {
-  double thrust_min = 2.0;   ///< least thrust over mass [m/s^2]
-  double thrust_max = 23.0;  ///< greatest thrust over mass [m/s^2]
-  double tilt_max = 0.611;   ///< of the thrust axis from the vertical [rad]
-  double stop_tilt_max = 0.785;  ///< that stops in wind may count on [rad]
+  double thrust_min = 2.0;           ///< least thrust over mass [m/s^2]
+  double thrust_max = 23.0;          ///< greatest thrust over mass [m/s^2]
+  double tilt_max = 0.611;           ///< of the thrust axis from the vertical [rad]
+  double stop_tilt_max = 0.785;      ///< that stops in wind may count on [rad]
   double camera_half_angle = 0.785;  ///< of the downward camera's cone [rad]
 };
 

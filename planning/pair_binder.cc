@@ -120,7 +120,8 @@ void PairBinder::Remember(const UniformBspline& curve, BoundParts* parts) const 
     inside = bound_[i];
   }
   for (const Corner& corner : corners_) {
-    if (parts->size() < kMostControlPoints) parts->push_back({corner.t, corner.t});
+    const double t = curve.t0() + corner.place * curve.interval();
+    if (parts->size() < kMostControlPoints) parts->push_back({t, t});
   }
 }
 
@@ -138,17 +139,18 @@ void PairBinder::Lead(const TimedWay& way, const BoundParts& more) {
   const double beside = constants_.bound_beside * interval;
   for (const BoundPart& part : way.bound()) bind(part.from - beside, part.to + beside);
   for (const BoundPart& part : more) {
+    const double from = way.TimeOf(part.from), to = way.TimeOf(part.to);
     if (part.from < part.to) {
-      bind(part.from, part.to);
-    } else if (part.from >= way.t0() && part.from <= way.t_end()) {
-      BindCorner((part.from - way.t0()) / interval, part.from, way.At(part.from));
+      bind(from, to);
+    } else if (from >= way.t0() && from <= way.t_end()) {
+      BindCorner((from - way.t0()) / interval, way.At(from));
     }
   }
 }
 
 /// @param place on the curve [intervals].
-void PairBinder::BindCorner(double place, double t, const Eigen::Vector3d& p) {
-  corners_.push_back({t, static_cast<int>(place) + 1, p});
+void PairBinder::BindCorner(double place, const Eigen::Vector3d& p) {
+  corners_.push_back({place, static_cast<int>(place) + 1, p});
 }
 
 void PairBinder::Follow(const UniformBspline& curve, const BlockedRun& run, const GuidePath& guide,
@@ -171,7 +173,7 @@ void PairBinder::AddCorner(const UniformBspline& curve, const BlockedRun& run,
   const double t = 0.5 * (run.t_in + run.t_out);
   const Eigen::Vector3d p =
       BesideObstacle(space, PathWalk(guide).At(0.5), curve.Position(t), constants_.stand_off);
-  BindCorner((t - curve.t0()) / curve.interval(), t, p);
+  BindCorner((t - curve.t0()) / curve.interval(), p);
 }
 
 void PairBinder::Bind(const FreeSpace& space, std::vector<ObstaclePair>* pairs) {

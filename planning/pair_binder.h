@@ -28,8 +28,8 @@ class PairBinder {
   /// Nothing is bound any more. Throws std::invalid_argument for more than kMostControlPoints.
   void Begin(int control_points);
 
-  /// The first round of a way: its parts that have to be bound are, with what is beside them, and `more` of its
-  /// time. The control points are wanted on the way, in even steps of its time.
+  /// The first round of a way: its parts that have to be bound are, with what is beside them, and `more`, in
+  /// the time of the curve that the way follows. The control points are wanted on the way, in even steps of its time.
   void Lead(const TimedWay& way, const BoundParts& more);
 
   /// A later round: the control points are wanted on this curve.
@@ -54,12 +54,12 @@ class PairBinder {
 
  private:
   struct Corner {
-    double t;    // on the curve of the round [s]
-    int before;  // the control point that comes before it
+    double place;  // on the curve of the round [intervals]
+    int before;    // the control point that comes before it
     Eigen::Vector3d p;
   };
 
-  void BindCorner(double place, double t, const Eigen::Vector3d& p);
+  void BindCorner(double place, const Eigen::Vector3d& p);
 
   StepConstants constants_;
   Corridor corridor_;

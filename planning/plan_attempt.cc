@@ -112,7 +112,7 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   ReplanReason reason = SolveWithoutPairs(request, request.segments, warm, &posed, &best_, result);
   if (reason != ReplanReason::kNone) return reason;
   // So near that the first control point that is free comes too late to pass it.
-  const bool near = !best_.blocked.empty() && !best_.blocked.front().at_start &&
+  const bool near = leads_around && !best_.blocked.empty() && !best_.blocked.front().at_start &&
                     best_.blocked.front().t_in - request.t0 <
                         options_.constants.near_obstacle * best_.pair.curve.interval();
   if (near && request.segments < request.near_segments) {
@@ -185,7 +185,7 @@ ReplanReason PlanAttempt::Refine(const AttemptRequest& request, Posed* posed, Ca
 /// The committed way on the map of now, once an attempt.
 void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
   if (std::exchange(kept_asked_, true)) return;
-  if (!request.previous || request.previous->t_end() <= request.t0) return;
+  if (!request.starts_on_previous || request.previous->t_end() <= request.t0) return;
   StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
   finder_.Keep(*request.previous, request.t0, *request.space, &kept_);
 }
@@ -227,7 +227,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   const BlockedRun first = best_.blocked.front();
   BlockedRun span = {first.t_in, best_.blocked.back().t_out, first.at_start, false};
   if (!first.at_start) KeepWay(request, result);
-  const bool keeps_side = kept_.known();
+  const bool keeps_side = kept_.known() && !first.at_start;
   if (keeps_side) {
     EndBeside(kept_, first_curve_, *request.space, options_.constants.beside_time, &span);
     const double share = (kept_.t_end() - kept_.t0()) / first_curve_.duration();
@@ -248,7 +248,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
       if (found != ReplanReason::kNone) return found;
     }
     const TimedWay& way = kept ? kept_ : way_;
-    if (i == 0 && !kept) first_cost = finder_.cost();
+    if (i == 0) first_cost = kept ? kept_.LengthOf(kept_.bound().back()) : finder_.cost();
     if (i == 0 && !request.previous) Postpone(way, posed, &request);
     Candidate* candidate = i == 0 ? &best_ : &other_;
     posed->prepared->start.y = posed->prepared->first_guess;
@@ -328,9 +328,7 @@ ReplanReason PlanAttempt::BindBlocked(const AttemptRequest& request, const Timed
   binder_.Start(curve);
   for (const BlockedRun& run : candidate.blocked) {
     if (run.at_end) return ReplanReason::kGoalBlocked;
-    if (!way.SampleBetween(curve.Position(run.t_in), curve.Position(run.t_out), &path_)) {
-      return ReplanReason::kCollisionRemains;
-    }
+    way.SampleBeside(curve, run, &path_);
     binder_.AddCorner(curve, run, path_, *request.space);
     binder_.Follow(curve, run, path_, *request.space);
   }

@@ -34,7 +34,8 @@ struct AttemptRequest {
   const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
   int rescue_guides = 1;  ///< ways that are tried while none leads to a plan; then max_guides
   PairEnd pair_end = PairEnd::kRest;
-  const UniformBspline* previous = nullptr;  ///< committed curve: the way of choice ...
+  const UniformBspline* previous = nullptr;  ///< committed curve ...
+  bool starts_on_previous = false;           ///< ... which is the way of choice then ...
   const BoundParts* bound = nullptr;         ///< ... and what it was bound to
   bool looks = true;  ///< for the best way anew; else what is committed is kept while it holds
   AttemptLog* log = nullptr;  ///< filled if not null (allocates)

@@ -529,10 +529,10 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
                                                : PairEnd::kRest;
   // The committed side of an obstacle is tried once; if it fails, the map decides anew.
   request.previous = is_first && planned_before_ ? &next_.curve : nullptr;
+  request.starts_on_previous = request.previous != nullptr && !result_.from_odometry;
   request.bound = &bound_;
   // On the way to contact as well: what was bound before would push the vehicle there.
-  request.looks = request.previous == nullptr || result_.from_odometry ||
-                  input.endpoint.leads_to_contact() ||
+  request.looks = !request.starts_on_previous || input.endpoint.leads_to_contact() ||
                   input.t_start - looked_t_ >= constants.look_every;
   if (request.looks) looked_t_ = input.t_start;
   request.log = log_ ? &log_->attempts.emplace_back() : nullptr;

@@ -16,7 +16,7 @@ namespace touchdown::planning {
 namespace {
 
 // Room at first; a search that needs more makes more.
-constexpr std::size_t kUsualQueue = 1 << 16;
+constexpr std::size_t kUsualQueue = 1 << 18;
 constexpr std::size_t kUsualWay = 1024;
 
 struct Step {
@@ -41,10 +41,11 @@ struct Reached {
   int x, y, id, z, step;
 };
 
+/// The queue's room grows with what ways cost.
 void RequireFactor(const char* name, double value) {
-  if (value >= 1.0) return;
+  if (value >= 1.0 && value <= 100.0) return;
   throw std::invalid_argument(std::string("SpanSearch: ") + name + " is " + std::to_string(value) +
-                              ", it must be >= 1");
+                              ", it must be in [1, 100]");
 }
 
 }  // namespace

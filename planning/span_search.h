@@ -25,8 +25,8 @@ struct WayCost {
 /// searches.
 class SpanSearch {
  public:
-  /// With `greed` > 1 spans near the goal come first: a way costs at most so many times the least on this
-  /// graph, and is found after fewer expansions. Throws std::invalid_argument unless all are >= 1.
+  /// With `greed` > 1 spans near the goal come first: a way costs more than the least, hardly more than so many
+  /// times as much, and is found after fewer expansions. Throws std::invalid_argument unless all are in [1, 100].
   explicit SpanSearch(const WayCost& cost = {}, double greed = 1.0);
 
   /// Makes room for searches on maps with this one's window, which the first search does otherwise.

@@ -6,8 +6,9 @@
 
 namespace touchdown::planning {
 
-/// The numbers that a replanning step decides by, all of them. `StepConstantTable` tells what each is; what
-/// each is worth is measured by `touchdown study replan --sensitivity` (docs/replan_study.md).
+/// The numbers that a step decides by on its way to a plan, beside the budgets and counts of ReplannerOptions; those
+/// of the ladder below a plan are in replanner.cc and fallback.cc. `StepConstantTable` tells what each is; what
+/// each is worth is measured by `touchdown study replan --parts sensitivity`.
 struct StepConstants {
   // Ways past what blocks a curve (way_finder.h).
   double way_greed = 2.0;

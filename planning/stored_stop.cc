@@ -70,8 +70,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
     MakeRestTrajectory(state, t_handover, {0.0, 0.0, climb}, stops, &pair->stop);
     const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
     if (TooLow(p_rest, pair->stop.t_end(), hull) > 1e-6) return false;
-    const Sweep sweep =
-        SweepHull(pair->stop, t_handover, pair->stop.t_end(), start, hull, kNever);
+    const Sweep sweep = SweepHull(pair->stop, t_handover, pair->stop.t_end(), start, hull, kNever);
     return note(sweep);
   };
   const auto touches_down = [&] {
@@ -106,8 +105,7 @@ bool TouchesSoftly(const UniformBspline& curve, double t, double share, const Hu
 double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& hull) {
   if (hull.pad == nullptr) return kNever;
   const auto over_deck = [&](double t) {
-    return OutlineOf(hull.pad->At(t), hull.deck_half_size)
-        .SurelyOver(curve.EvaluateOnward(t).p_WB);
+    return OutlineOf(hull.pad->At(t), hull.deck_half_size).SurelyOver(curve.EvaluateOnward(t).p_WB);
   };
   double above = std::max(t_from, curve.t_end());
   const double left = FeetAbove(curve, above, hull);

@@ -26,8 +26,9 @@ constexpr double kNearer = 1e-6;    // rounding of a hull that leaves a cell: it
 constexpr double kRounding = 1e-9;  // of heights of cells and deck [m]
 constexpr double kFaceRange = 1.5;  // the deck was looked at from so far, about, at last [m]
 constexpr double kFaceSlack = 0.02;  // of feet that are about to meet the deck [m]
-constexpr double kLow = 0.05;        // a foot of a vehicle that leans by 20 degrees hangs so much lower [m]
-constexpr double kLevel = 2e-3;      // rounding of floor and ceiling: kChordSagitta [m]
+constexpr double kLow =
+    0.05;  // a foot of a vehicle that leans by 20 degrees hangs so much lower [m]
+constexpr double kLevel = 2e-3;  // rounding of floor and ceiling: kChordSagitta [m]
 
 /// Positions along a curve, which cost less from one piece of it than one by one; past its end at its end's
 /// velocity.

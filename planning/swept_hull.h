@@ -78,8 +78,7 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 /// their noise, unless occupied; and, at the start, cells around `start` that the hull reached there already and
 /// does not come nearer to. Before `t_contact` [s] the feet are above the deck while the hull may be over it,
 /// and sink softly close to it, but for a start that is lower and rises. Does not allocate.
-Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to,
-                const HullStart& start, const HullSpace& hull,
-                double t_contact);
+Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const HullStart& start,
+                const HullSpace& hull, double t_contact);
 
 }  // namespace touchdown::planning

@@ -12,7 +12,7 @@ constexpr double kStep = 0.05;  // sampling of a curve [s]
 constexpr std::size_t kUsualPlaces = 2048;
 constexpr std::size_t kUsualParts = 64;
 
-double LengthOf(const UniformBspline& curve, double from, double to) {
+double CurveLength(const UniformBspline& curve, double from, double to) {
   constexpr int kChords = 24;
   double length = 0.0;
   Eigen::Vector3d last = curve.Position(from);
@@ -29,11 +29,13 @@ double LengthOf(const UniformBspline& curve, double from, double to) {
 TimedWay::TimedWay() {
   places_.reserve(kUsualPlaces);
   bound_.reserve(kUsualParts);
+  detours_.reserve(kUsualParts);
 }
 
 void TimedWay::Clear() {
   places_.clear();
   bound_.clear();
+  detours_.clear();
   delay_ = 0.0;
 }
 
@@ -45,8 +47,8 @@ void TimedWay::AddCurve(const UniformBspline& curve, double from, double to) {
 void TimedWay::AddDetour(const UniformBspline& curve, const BlockedRun& run, const GuidePath& path,
                          double speed) {
   const double length = PathLength(path);
-  const double from = run.t_in + delay_;
-  delay_ += std::max(0.0, length - LengthOf(curve, run.t_in, run.t_out)) / speed;
+  const double late_before = delay_, from = run.t_in + delay_;
+  delay_ += std::max(0.0, length - CurveLength(curve, run.t_in, run.t_out)) / speed;
   const double to = run.t_out + delay_;
   double gone = 0.0;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -55,6 +57,7 @@ void TimedWay::AddDetour(const UniformBspline& curve, const BlockedRun& run, con
     places_.push_back({from + share * (to - from), path[i]});
   }
   bound_.push_back({from, to});
+  detours_.push_back({run.t_in, run.t_out, late_before, delay_});
 }
 
 Eigen::Vector3d TimedWay::At(double t) const {
@@ -76,12 +79,36 @@ void TimedWay::Sample(double from, double to, GuidePath* path) const {
   path->push_back(At(to));
 }
 
-bool TimedWay::SampleBetween(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
-                             GuidePath* path) const {
-  const double from = NearestTo(from_W), to = NearestTo(to_W);
-  if (!(from < to)) return false;
+void TimedWay::SampleBeside(const UniformBspline& curve, const BlockedRun& run,
+                            GuidePath* path) const {
+  double from = NearestTo(curve.Position(run.t_in)), to = NearestTo(curve.Position(run.t_out));
+  if (!(from < to)) {
+    const double share = (t_end() - t0()) / curve.duration();
+    from = t0() + share * (run.t_in - curve.t0());
+    to = t0() + share * (run.t_out - curve.t0());
+  }
   Sample(from, to, path);
-  return true;
+}
+
+double TimedWay::TimeOf(double curve_t) const {
+  double late = 0.0;
+  for (const Detour& detour : detours_) {
+    if (curve_t <= detour.from) break;
+    const double gone = std::min(1.0, (curve_t - detour.from) / (detour.to - detour.from));
+    late = detour.late_before + gone * (detour.late_behind - detour.late_before);
+  }
+  return curve_t + late;
+}
+
+double TimedWay::LengthOf(const BoundPart& part) const {
+  Eigen::Vector3d last = At(part.from);
+  double length = 0.0;
+  for (const Place& place : places_) {
+    if (!(place.t > part.from && place.t < part.to)) continue;
+    length += (place.p_W - last).norm();
+    last = place.p_W;
+  }
+  return length + (At(part.to) - last).norm();
 }
 
 /// When the way is nearest to a place.

@@ -46,10 +46,15 @@ class TimedWay {
   /// From one time to a later one, at least two places. @pre known().
   void Sample(double from, double to, GuidePath* path) const;
 
-  /// From where it is nearest to one place to where it is nearest to another; false if that is before.
-  /// @pre known().
-  bool SampleBetween(const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W,
-                     GuidePath* path) const;
+  /// Beside a stretch of a curve that follows it: from where it is nearest to the stretch's start to where it is
+  /// nearest to its end, or at the same shares of time where these are not in order. @pre known().
+  void SampleBeside(const UniformBspline& curve, const BlockedRun& run, GuidePath* path) const;
+
+  /// The way's time at a time of the curve that it follows, later by the detours until then.
+  double TimeOf(double curve_t) const;
+
+  /// Of the way in this part of its time [m]. @pre known().
+  double LengthOf(const BoundPart& part) const;
 
  private:
   struct Place {
@@ -57,10 +62,17 @@ class TimedWay {
     Eigen::Vector3d p_W;
   };
 
+  // In the time of the curve, and how late the way is before and behind.
+  struct Detour {
+    double from, to;
+    double late_before, late_behind;
+  };
+
   double NearestTo(const Eigen::Vector3d& p_W) const;
 
   std::vector<Place> places_;  // in order of time
   BoundParts bound_;
+  std::vector<Detour> detours_;
   double delay_ = 0.0;
 };
 

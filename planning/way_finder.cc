@@ -84,9 +84,12 @@ SearchStatus WayFinder::LeadPast(const UniformBspline& curve, BlockedRun run,
                                  const FreeSpace& space, TimedWay* way, double max_cost) {
   way->Clear();
   CutToWindow(curve, *space.map, &run);
-  const SearchStatus status = Search(space, curve.Position(run.t_in), curve.Position(run.t_out),
-                                     expansions_left_, max_cost);
-  // Out of the window only floor and ceiling block.
+  // Another way may not take what a later attempt needs to find the first one again.
+  const int budget = ways_closed() > 0 ? expansions_left_ / 2 : expansions_left_;
+  const SearchStatus status =
+      Search(space, curve.Position(run.t_in), curve.Position(run.t_out), budget, max_cost);
+  // Out of the window only floor and ceiling block, and there is one way between them.
+  if (status == SearchStatus::kEndsOutside && ways_closed() > 0) return SearchStatus::kNoPath;
   if (status == SearchStatus::kEndsOutside) SampleBetweenLevels(curve, run, space, &detour_);
   if (status != SearchStatus::kFound && status != SearchStatus::kEndsOutside) return status;
   way->AddCurve(curve, curve.t0(), run.t_in);

@@ -226,10 +226,12 @@ TEST(SpanSearch, FindsTheSameWayAgainAfterAMoveAndOnASmallerWindow) {
   EXPECT_EQ(again, first);
 }
 
-TEST(SpanSearch, RefusesFactorsBelowOne) {
+TEST(SpanSearch, RefusesFactorsOutOfRange) {
   EXPECT_THROW(SpanSearch({0.9, 1.0}), std::invalid_argument);
   EXPECT_THROW(SpanSearch({2.0, 0.9}), std::invalid_argument);
   EXPECT_THROW(SpanSearch({2.0, 1.0}, 0.9), std::invalid_argument);
+  const double none = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(SpanSearch({none, 1.0}), std::invalid_argument);
 }
 
 }  // namespace

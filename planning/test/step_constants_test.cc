@@ -61,23 +61,28 @@ TEST(StepConstants, AreScaledOneAtATime) {
   }
 }
 
-// A step of no length would look for a free end for ever.
 TEST(StepConstants, OutOfTheirRangeAreRefusedByName) {
-  for (const StepConstant& constant : StepConstantTable()) {
-    const auto* real = std::get_if<double StepConstants::*>(&constant.value);
-    ReplannerOptions options;
-    if (real != nullptr) {
-      options.constants.*(*real) = constant.least;
-    } else {
-      options.constants.*std::get<int StepConstants::*>(constant.value) = 0;
-    }
+  const auto refused = [](const ReplannerOptions& options, const char* name) {
     try {
       const Replanner replanner(options, solvers::StandardBackends());
-      FAIL() << constant.name;
+      return false;
     } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(constant.name), std::string::npos) << error.what();
+      return std::string(error.what()).find(name) != std::string::npos;
     }
+  };
+  for (const StepConstant& constant : StepConstantTable()) {
+    ReplannerOptions options;
+    if (const auto* real = std::get_if<double StepConstants::*>(&constant.value)) {
+      options.constants.*(*real) = constant.least - 0.01;
+    } else {
+      options.constants.*std::get<int StepConstants::*>(constant.value) = -1;
+    }
+    EXPECT_TRUE(refused(options, constant.name)) << constant.name;
   }
+  // A step of no length would look for a free end for ever.
+  ReplannerOptions options;
+  options.constants.end_step = 1.0;
+  EXPECT_TRUE(refused(options, "end_step"));
 }
 
 }  // namespace

@@ -60,6 +60,10 @@ TEST(TimedWay, ADetourTakesTheTimeOfWhatItIsLonger) {
   EXPECT_NEAR(way.bound().front().from, run.t_in, 1e-12);
   EXPECT_NEAR(way.bound().front().to, run.t_out + way.delay(), 1e-12);
   EXPECT_NEAR(way.At(2.0 + 0.5 * way.delay()).y(), 1.0, 1e-6);
+  EXPECT_NEAR(way.LengthOf(way.bound().front()), 2.0 * std::hypot(0.5, 1.0), 1e-6);
+  EXPECT_EQ(way.TimeOf(1.0), 1.0);
+  EXPECT_NEAR(way.TimeOf(2.0), 2.0 + 0.5 * way.delay(), 1e-12);
+  EXPECT_NEAR(way.TimeOf(3.0), 3.0 + way.delay(), 1e-12);
   // Behind it the curve goes on, later.
   EXPECT_NEAR((way.At(3.5 + way.delay()) - curve.Position(3.5)).norm(), 0.0, 1e-6);
   // A shorter path is no earlier.
@@ -73,12 +77,16 @@ TEST(TimedWay, IsSampledBetweenWhereItIsNearestToTwoPlaces) {
   const UniformBspline curve = Along(0.0);
   const TimedWay way = Around(curve, {1.5, 2.5, false, false}, 1.0, 1.0);
   GuidePath path;
-  ASSERT_TRUE(way.SampleBetween({-0.25, 0.2, 0.05}, {0.25, 0.2, 0.05}, &path));
+  way.SampleBeside(Along(0.2, -0.25, 0.25), {0.0, 0.5, false, false}, &path);
   double highest = 0.0;
   for (const Eigen::Vector3d& p : path) highest = std::max(highest, p.y());
   EXPECT_NEAR(highest, 1.0, 1e-6);
   EXPECT_LT((path.front() - Eigen::Vector3d(-0.3, 0.4, 0.05)).norm(), 0.2);
-  EXPECT_FALSE(way.SampleBetween({1.0, 0.0, 0.05}, {-1.0, 0.0, 0.05}, &path));
+  // A curve that goes the other way is led at the same shares of time.
+  const UniformBspline reversed(curve.control_points().rowwise().reverse(), curve.interval(), 0.0);
+  way.SampleBeside(reversed, {1.0, 2.0, false, false}, &path);
+  EXPECT_NEAR((path.front() - way.AtShare(0.25)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((path.back() - way.AtShare(0.5)).norm(), 0.0, 1e-9);
 }
 
 }  // namespace
