@@ -103,10 +103,23 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   // Shortly before contact there is no time for a way around.
   const bool leads_around = options_.max_rebinds > 0 && request.pair_end != PairEnd::kContact;
   const UniformBspline* warm = options_.warm_start ? request.previous : nullptr;
-  if (warm && leads_around && !request.looks) {
+  const bool keeps = warm && leads_around && request.keeps;
+  const auto holds = [](ReplanReason reason) {
+    return reason == ReplanReason::kNone || reason == ReplanReason::kUnobserved;
+  };
+  if (keeps && !request.looks) {
     const ReplanReason reason = KeepCommitted(request, result);
-    if (reason == ReplanReason::kNone || reason == ReplanReason::kUnobserved) return reason;
+    if (holds(reason)) return reason;
   }
+  const ReplanReason found = FindAnew(request, warm, leads_around, result);
+  if (holds(found) || !keeps || !request.looks) return found;
+  // Who looks for a better plan and finds none keeps what holds, before a later arrival is tried.
+  const ReplanReason kept = KeepCommitted(request, result);
+  return holds(kept) ? kept : found;
+}
+
+ReplanReason PlanAttempt::FindAnew(const AttemptRequest& request, const UniformBspline* warm,
+                                   bool leads_around, ReplanResult* result) {
   Begin(&best_);
   Posed posed;
   ReplanReason reason = SolveWithoutPairs(request, request.segments, warm, &posed, &best_, result);

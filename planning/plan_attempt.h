@@ -37,6 +37,7 @@ struct AttemptRequest {
   const UniformBspline* previous = nullptr;  ///< committed curve ...
   bool starts_on_previous = false;           ///< ... which is the way of choice then ...
   const BoundParts* bound = nullptr;         ///< ... and what it was bound to
+  bool keeps = false;                        ///< it may be kept while it holds
   bool looks = true;  ///< for the best way anew; else what is committed is kept while it holds
   AttemptLog* log = nullptr;  ///< filled if not null (allocates)
 };
@@ -96,6 +97,8 @@ class PlanAttempt {
   static void Begin(Candidate* candidate);
 
   ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason FindAnew(const AttemptRequest& request, const UniformBspline* warm,
+                        bool leads_around, ReplanResult* result);
 
   ReplanReason Pose(const AttemptRequest& request, int segments, Posed* posed);
   ReplanReason SolveWithoutPairs(const AttemptRequest& request, int segments,

@@ -18,6 +18,7 @@
 #include "touchdown/planning/plan_attempt.h"
 #include "touchdown/planning/replan_checks.h"
 #include "touchdown/planning/stage_timer.h"
+#include "touchdown/planning/timed_way.h"
 #include "touchdown/planning/vantage.h"
 
 namespace touchdown::planning {
@@ -33,6 +34,12 @@ const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
 constexpr double kLookAhead = 2.0;  // of the cells that the next stops need [s]
 constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
 constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
+
+/// Length of what is left of a curve over the straight line between its ends, at least 1.
+double DetourOf(const UniformBspline& curve, double from) {
+  const double straight = (curve.Position(curve.t_end()) - curve.Position(from)).norm();
+  return straight > 0.0 ? std::max(1.0, LengthOf(curve, from, curve.t_end()) / straight) : 1.0;
+}
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
@@ -436,16 +443,21 @@ double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
 Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& start,
                                 const FreeSpace& plain, LadderFacts* facts) {
   StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
-  facts->fresh = GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, 1.0);
+  const auto guess = [&](double detour) {
+    return GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, detour);
+  };
+  facts->fresh = guess(1.0);
   facts->lands_soon = !result_.from_odometry && LandsSoon(input, HullIn(plain, input.pad));
   facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
   facts->max_duration = options_.max_duration;
-  // An arrival once promised is kept: guessing anew at every step would put it off for ever.
+  // An arrival once promised is kept: guessing anew at every step would put it off for ever. What would be soon
+  // in the straight way need not be on a long way round.
   const double left = next_.curve.t_end() - input.t_start;
   const bool on_plan = planned_before_ && !result_.from_odometry;
-  const bool promised = on_plan && facts->fresh > options_.constants.retime_below * left;
+  const bool promised = on_plan && guess(DetourOf(next_.curve, input.t_start)) >
+                                       options_.constants.retime_below * left;
   // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
   const double shortest =
       input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
@@ -531,9 +543,11 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.previous = is_first && planned_before_ ? &next_.curve : nullptr;
   request.starts_on_previous = request.previous != nullptr && !result_.from_odometry;
   request.bound = &bound_;
-  // On the way to contact as well: what was bound before would push the vehicle there.
-  request.looks = !request.starts_on_previous || input.endpoint.leads_to_contact() ||
-                  input.t_start - looked_t_ >= constants.look_every;
+  // Shortly before contact nothing is kept: what was bound before would push the vehicle there.
+  const double left = next_.curve.t_end() - input.t_start;
+  request.keeps = request.starts_on_previous &&
+                  !(input.endpoint.leads_to_contact() && left < constants.near_contact);
+  request.looks = !request.keeps || input.t_start - looked_t_ >= constants.look_every;
   if (request.looks) looked_t_ = input.t_start;
   request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
   return request;

@@ -47,6 +47,8 @@ std::span<const StepConstant> StepConstantTable() {
                    "of the time left, after which a kept plan may not arrive", 1.0},
       StepConstant{"retime_below", &C::retime_below, "",
                    "a fresh guess this much shorter replaces a promised arrival"},
+      StepConstant{"near_contact", &C::near_contact, "s",
+                   "of a plan to contact, that are made anew at every step"},
       StepConstant{"attempts", &C::attempts, "", "in a step"},
       StepConstant{"stretch", &C::stretch, "", "of the duration after an attempt that failed", 1.0},
       StepConstant{"end_step", &C::end_step, "", "of the duration while the plan's end is blocked",

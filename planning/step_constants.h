@@ -35,6 +35,7 @@ struct StepConstants {
   double look_every = 0.5;
   double kept_latest = 1.06;
   double retime_below = 0.75;
+  double near_contact = 3.0;
 
   // The ladder of attempts (attempt_ladder.h).
   int attempts = 7;

@@ -12,7 +12,9 @@ constexpr double kStep = 0.05;  // sampling of a curve [s]
 constexpr std::size_t kUsualPlaces = 2048;
 constexpr std::size_t kUsualParts = 64;
 
-double CurveLength(const UniformBspline& curve, double from, double to) {
+}  // namespace
+
+double LengthOf(const UniformBspline& curve, double from, double to) {
   constexpr int kChords = 24;
   double length = 0.0;
   Eigen::Vector3d last = curve.Position(from);
@@ -23,8 +25,6 @@ double CurveLength(const UniformBspline& curve, double from, double to) {
   }
   return length;
 }
-
-}  // namespace
 
 TimedWay::TimedWay() {
   places_.reserve(kUsualPlaces);
@@ -48,7 +48,8 @@ void TimedWay::AddDetour(const UniformBspline& curve, const BlockedRun& run, con
                          double speed) {
   const double length = PathLength(path);
   const double late_before = delay_, from = run.t_in + delay_;
-  delay_ += std::max(0.0, length - CurveLength(curve, run.t_in, run.t_out)) / speed;
+  delay_ +=
+      std::max(0.0, length - touchdown::planning::LengthOf(curve, run.t_in, run.t_out)) / speed;
   const double to = run.t_out + delay_;
   double gone = 0.0;
   for (std::size_t i = 0; i < path.size(); ++i) {

@@ -10,6 +10,9 @@
 
 namespace touchdown::planning {
 
+/// Of a curve between two of its times, by 24 chords [m].
+double LengthOf(const UniformBspline& curve, double from, double to);
+
 /// A way for a curve to follow: places in time, along another curve but for detours past what blocks that.
 /// Times are the other curve's, and later by what the detours take longer. The parts that the detours replace
 /// are those that a curve has to be bound to. Nothing of it allocates, but to grow to a high-water mark.

@@ -50,6 +50,28 @@ TEST(ReplannerArrival, TheWiderAWallTheLaterThePlanArrives) {
   }
 }
 
+// Before, the fresh guess knew the straight way only, broke the promise, and every step put the arrival off.
+TEST(ReplannerArrival, ALongWayRoundIsFlownToItsEnd) {
+  for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+    OccupancyMap map = ObservedMap();
+    AddWall(0.05, 3.5, &map);
+    const ArcPad pad({1.5, 0.0, 0.3}, 0.0, 0.0, 0.0);
+    Replanner replanner(Options(arrival), solvers::StandardBackends());
+    const Eigen::Vector3d start(-1.5, 0.0, 1.6);
+    FlyAlong(start, {0.0, 0.0, 0.0}, &replanner);
+    double promised = 0.0;
+    for (double t = 0.0; t < promised - 1.0 || t == 0.0; t += 0.1) {
+      ReplanInput input = Input(replanner.Reference(t).p_WB, pad, t);
+      input.vehicle.v_WB = replanner.Reference(t).v_WB;
+      const ReplanResult& result = replanner.Replan(input, map);
+      ASSERT_EQ(result.status, ReplanStatus::kPlanned) << t;
+      if (t == 0.0) promised = result.curve.t_end();
+      EXPECT_LT(result.curve.t_end(), 1.1 * promised) << t;
+      promised = result.curve.t_end();
+    }
+  }
+}
+
 TEST(ReplannerArrival, APadThatPassesAnObstacleIsMetBehindIt) {
   // At the first guess the endpoint is in the pillar.
   const ReplannerOptions options = Options(ArrivalMode::kFixed);

@@ -50,6 +50,34 @@ class LastStretch : public ::testing::Test {
   double t_ = 0.0;
 };
 
+// What was bound before would push the vehicle at the deck.
+TEST(ReplannerLanding, NothingIsKeptShortlyBeforeContact) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({4.5, 0.0, kDeck}, 0.3, 0.0, 0.0);
+  ReplannerOptions options = Options(ArrivalMode::kFixed);
+  options.deck_half_size = 0.5;
+  Replanner replanner(options, solvers::StandardBackends());
+  FlyAlong({-4.0, 0.0, kDeck + 1.2}, {0.5, 0.0, 0.0}, &replanner);
+  int kept = 0, anew = 0;
+  for (double t = 0.0; t == 0.0 || replanner.state().next.curve.t_end() - t > 1.0; t += 0.1) {
+    const FlatState at = replanner.Reference(t);
+    ReplanInput input = Input(at.p_WB, pad, t);
+    input.vehicle.v_WB = at.v_WB;
+    input.endpoint = {.t_reference = t, .height = 0.165, .height_floor = 0.165};
+    input.endpoint.arrival_sink = 0.3;
+    const double left = replanner.state().next.curve.t_end() - input.t_start;
+    const double looked = replanner.state().looked_t;
+    ASSERT_EQ(replanner.Replan(input, map).status, ReplanStatus::kPlanned) << t;
+    const bool looks = replanner.state().looked_t != looked;
+    if (t == 0.0) continue;
+    EXPECT_TRUE(looks || left >= options.constants.near_contact) << left;
+    kept += !looks;
+    anew += looks && left < options.constants.near_contact;
+  }
+  EXPECT_GT(kept, 8);
+  EXPECT_GT(anew, 15);
+}
+
 TEST_F(LastStretch, ItsPairLands) {
   EXPECT_TRUE(landing_.Lands());
   EXPECT_GT(left(), 0.4);
