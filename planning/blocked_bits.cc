@@ -29,18 +29,15 @@ void BlockedBits::Begin(const FreeSpace& space, std::span<const Barrier> barrier
   Reserve(*space.map);
   space_ = space;
   barriers_ = barriers;
+  const bool has_pad = space.pad_radius > 0.0;
+  const double lowest = has_pad ? std::min(space.floor, space.pad_floor) : space.floor;
+  z_begin_ = 0;
+  z_end_ = size_.z();
+  while (z_begin_ < z_end_ && TooLow(lowest, z_begin_)) ++z_begin_;
+  while (z_begin_ < z_end_ && TooHigh(z_end_ - 1)) --z_end_;
   if (++number_ != 0) return;
   std::fill(made_.begin(), made_.end(), 0);  // wrapped around
   number_ = 1;
-}
-
-std::uint64_t BlockedBits::Word(int y, int z, int word) {
-  const auto i = static_cast<std::size_t>((z * size_.y() + y) * words_per_row_ + word);
-  if (made_[i] != number_) {
-    words_[i] = Make(y, z, word);
-    made_[i] = number_;
-  }
-  return words_[i];
 }
 
 std::uint32_t BlockedBits::Around(const CellIndex& cell) {
@@ -114,19 +111,27 @@ std::uint64_t BlockedBits::Of(const Barrier& barrier, const CellIndex& first, in
   return bits;
 }
 
+bool BlockedBits::TooLow(double floor, int z) const {
+  const OccupancyMap& map = *space_.map;
+  const double centre = map.CentreOf(map.origin() + CellIndex(0, 0, z)).z();
+  return centre - 0.5 * map.resolution() < floor - FreeSpace::kLevelRounding;
+}
+
+bool BlockedBits::TooHigh(int z) const {
+  const OccupancyMap& map = *space_.map;
+  const double centre = map.CentreOf(map.origin() + CellIndex(0, 0, z)).z();
+  return centre + 0.5 * map.resolution() > space_.ceiling + FreeSpace::kLevelRounding;
+}
+
 /// What FreeSpace::Blocked and the barriers say, with as much as possible said of whole rows.
 std::uint64_t BlockedBits::Make(int y, int z, int word) const {
   const OccupancyMap& map = *space_.map;
   const CellIndex first = map.origin() + CellIndex(word * kWord, y, z);
   const int count = std::min(kWord, size_.x() - word * kWord);
   const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
-  const Eigen::Vector3d centre = map.CentreOf(first);
-  const double half = 0.5 * map.resolution();
-  const double low = centre.z() - half + FreeSpace::kLevelRounding;
-  const bool too_low = low < space_.floor;
-  const bool too_low_over_pad = space_.pad_radius > 0.0 ? low < space_.pad_floor : too_low;
-  const bool too_high = centre.z() + half > space_.ceiling + FreeSpace::kLevelRounding;
-  if (too_high || (too_low && too_low_over_pad)) return all;
+  if (z < z_begin_ || z >= z_end_) return all;
+  const bool too_low = TooLow(space_.floor, z);
+  const bool too_low_over_pad = space_.pad_radius > 0.0 ? TooLow(space_.pad_floor, z) : too_low;
   std::uint64_t bits = space_.ClosedRow(first, count);
   if (too_low != too_low_over_pad) {
     const std::uint64_t over = OverPad(first, count);

@@ -10,9 +10,8 @@ namespace touchdown::planning {
 
 void ColumnSpans::Reserve(const OccupancyMap& map) {
   blocked_.Reserve(map);
-  if (size_ == map.size().head<2>() && height_ == map.size().z()) return;
+  if (size_ == map.size().head<2>()) return;
   size_ = map.size().head<2>();
-  height_ = map.size().z();
   tiles_per_row_ = (size_.x() + kTile - 1) / kTile;
   const auto columns = static_cast<std::size_t>(size_.prod());
   spans_.assign(columns * kMost, {});
@@ -48,8 +47,9 @@ void ColumnSpans::Make(int word, int y) {
   };
   const std::uint64_t all = ~std::uint64_t{0} >> (kTile - count);
   std::uint64_t below = all, full = 0;  // full: has kMost spans, and they have ended
-  for (int z = 0; z <= height_; ++z) {
-    const std::uint64_t here = z < height_ ? blocked_.Word(y, z, word) : all;
+  const int end = blocked_.z_end();
+  for (int z = blocked_.z_begin(); z <= end; ++z) {
+    const std::uint64_t here = z < end ? blocked_.Word(y, z, word) : all;
     for (std::uint64_t changed = (here ^ below) & all & ~full; changed != 0;
          changed &= changed - 1) {
       const int i = std::countr_zero(changed);

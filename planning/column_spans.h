@@ -56,7 +56,6 @@ class ColumnSpans {
 
   BlockedBits blocked_;
   Eigen::Vector2i size_ = Eigen::Vector2i::Zero();
-  int height_ = 0;
   int tiles_per_row_ = 0;
   // The first spans of all columns, then the second ones: neighbours are next to each other.
   std::vector<FreeSpan> spans_;
