@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that are not observed free, grown by the hull: rows of 63 cells in a word, each grown along x by
-// shifts and laid over the rows that the ball reaches.
+// Cells that are not observed free, grown by the hull: rows of 63 cells in a word, grown along x step by
+// step, once for each width of the ball, and laid over the rows that the ball reaches.
 
 #include "touchdown/planning/unseen_zone.h"
 
@@ -11,20 +11,6 @@
 #include "touchdown/planning/swept_hull.h"
 
 namespace touchdown::planning {
-
-namespace {
-
-/// Each bit spread to those at most `by` beside it.
-std::uint64_t Spread(std::uint64_t bits, int by) {
-  for (int done = 0; done < by;) {
-    const int step = std::min(by - done, done + 1);
-    bits |= bits << step | bits >> step;
-    done += step;
-  }
-  return bits;
-}
-
-}  // namespace
 
 void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, double reach) {
   const OccupancyMap& map = *hull.space->map;
@@ -40,6 +26,10 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
   const int asked = std::min(kReach, static_cast<int>(farthest / side) + around + 1);
   const double ground = map.options().ground_height;
   const double deck = hull.pad != nullptr ? hull.pad->At(0.0).p_WP.z() + side : ground;
+  // Only cells of this box may be touched at the start.
+  const int beside = around + 1;
+  const std::uint64_t beside_x = (~std::uint64_t{0} >> (64 - std::min(64, 2 * beside + 1)))
+                                 << std::max(0, asked - beside);
   for (int z = kReach - asked; z <= kReach + asked; ++z) {
     for (int y = kReach - asked; y <= kReach + asked; ++y) {
       const CellIndex first = low_ + CellIndex(kReach - asked, y, z);
@@ -50,7 +40,9 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
       std::uint64_t bits = ~std::uint64_t{0} >> (64 - count);
       if (in_window) bits &= ~map.ObservedFreeRow(first, count);
       const bool may_be_deck = (first.z() + 1) * side <= deck + 1e-9;
-      for (std::uint64_t left = bits; left != 0; left &= left - 1) {
+      std::uint64_t asks = may_be_deck ? bits : 0;
+      if (std::max(std::abs(y - kReach), std::abs(z - kReach)) <= beside) asks |= bits & beside_x;
+      for (std::uint64_t left = asks; left != 0; left &= left - 1) {
         const int x = std::countr_zero(left);
         const Eigen::Vector3d p = map.CentreOf(first + CellIndex(x, 0, 0));
         const Eigen::Array3d off = ((p - start_W).array().abs() - 0.5 * side).max(0.0);
@@ -62,22 +54,28 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
     }
   }
   const int kept = std::min(kReach, static_cast<int>(farthest / side));
-  const std::uint64_t columns = (~std::uint64_t{0} >> (64 - (2 * kept + 1))) << (kReach - kept);
-  for (int z = kReach - kept; z <= kReach + kept; ++z) {
-    for (int y = kReach - kept; y <= kReach + kept; ++y) {
-      std::uint64_t closed = 0;
-      for (int dz = -around; dz <= around; ++dz) {
-        for (int dy = -around; dy <= around; ++dy) {
-          const double left = radius * radius - dz * dz - dy * dy;
-          const int row_y = y + dy, row_z = z + dz;
-          if (left < 0.0 || row_y < 0 || row_y >= kSide || row_z < 0 || row_z >= kSide) continue;
-          const std::uint64_t bits = missing_[RowOf(row_y, row_z)];
-          if (bits != 0) closed |= Spread(bits, static_cast<int>(std::sqrt(left)));
+  const int first = kReach - kept, rows = 2 * kept + 1;
+  spread_ = missing_;
+  for (int width = 0; width <= around; ++width) {
+    if (width > 0) {
+      for (std::uint64_t& bits : spread_) bits |= bits << 1 | bits >> 1;
+    }
+    // Over the rows of the ball that are so wide.
+    for (int dz = -around; dz <= around; ++dz) {
+      for (int dy = -around; dy <= around; ++dy) {
+        const double left = radius * radius - dz * dz - dy * dy;
+        if (left < 0.0 || static_cast<int>(std::sqrt(left)) != width) continue;
+        const int from = std::max(0, first + dy), to = std::min(kSide, first + rows + dy);
+        for (int z = std::max(0, first + dz); z < std::min(kSide, first + rows + dz); ++z) {
+          std::uint64_t* const closed = &closed_[RowOf(from - dy, z - dz)];
+          const std::uint64_t* const touching = &spread_[RowOf(from, z)];
+          for (int i = 0; i < to - from; ++i) closed[i] |= touching[i];
         }
       }
-      closed_[RowOf(y, z)] = closed & columns;
     }
   }
+  const std::uint64_t columns = (~std::uint64_t{0} >> (64 - rows)) << first;
+  for (std::uint64_t& bits : closed_) bits &= columns;
   // Where the hull is already it may be, however the lattice rounds that.
   closed_[RowOf(kReach, kReach)] &= ~(std::uint64_t{1} << kReach);
 }

@@ -38,6 +38,7 @@ class UnseenZone {
 
   CellIndex low_ = CellIndex::Zero();  // of bit 0 of row (0, 0)
   Rows missing_{}, closed_{};
+  Rows spread_{};  // of missing_, while they are laid over each other
 };
 
 }  // namespace touchdown::planning
