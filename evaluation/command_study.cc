@@ -323,6 +323,16 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   command.Add("--guides", options.replanner.max_guides, "Most guide paths to try")
       .Check(Range(1, 8))
       .ShowDefault();
+  command
+      .Add("--max-segments", options.replanner.max_segments,
+           "Segments that a step's solves evaluate at most")
+      .Check(Range(100, 1000000))
+      .ShowDefault();
+  command
+      .Add("--max-expansions", options.replanner.max_expansions,
+           "Spans that a step's searches expand at most")
+      .Check(Range(100, 1000000))
+      .ShowDefault();
   command.Add("--horizon", options.scenes.horizon, "Start to end [m]")
       .Check(Range(3.0, 40.0))
       .ShowDefault();

@@ -111,6 +111,8 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.limits = LimitsOf(scenario);
   options.ceiling_height = scenario.planning.ceiling;
   options.max_guides = scenario.planning.guides;
+  options.max_segments = scenario.planning.max_segments;
+  options.max_expansions = scenario.planning.max_expansions;
   options.warm_start = scenario.planning.warm_start;
   // A plan is flown until the next one takes over, a period later; with a measured latency that may
   // come with the longest after one with the shortest.

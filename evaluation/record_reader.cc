@@ -20,6 +20,7 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr int kMostPoints = 10000;           // of a spline
+constexpr int kMostAttempts = 1000;          // of a step
 constexpr int kMostCells = 1024;             // of a run: a window's longest side
 constexpr std::int64_t kFarthest = 1 << 24;  // cell index
 
@@ -218,6 +219,27 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
              const double from = row.Number();
              plan->before.bound.push_back({from, row.Number()});
            });
+  ReadMany(
+      TableRows(db, "unfinished", "plan, attempt, duration, arrival_free, unseen_reach", "plan"),
+      plans, [](TableRows& row, RecordPlan* plan) {
+        planning::Unfinished& unfinished = plan->before.unfinished;
+        unfinished.any = true;
+        unfinished.rung.attempt = row.Integer(0, kMostAttempts);
+        unfinished.rung.duration = row.Number();
+        unfinished.rung.arrival =
+            row.Flag() ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+        unfinished.rung.unseen_reach = row.Number();
+      });
+  ReadMany(
+      TableRows(db, "tried_way",
+                "plan, x, y, z, normal_x, normal_y, normal_z, side_x, side_y, side_z", "plan, i"),
+      plans, [](TableRows& row, RecordPlan* plan) {
+        planning::Barrier barrier;
+        barrier.p = row.Vector3();
+        barrier.normal = row.Vector3();
+        barrier.side = row.Vector3();
+        plan->before.unfinished.closed.push_back(barrier);
+      });
   ReadMany(TableRows(db, "state_point", "plan, curve, i, x, y, z", "plan, curve, i"), plans,
            [&](TableRows& row, RecordPlan* plan) {
              auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];

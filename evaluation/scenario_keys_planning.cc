@@ -57,6 +57,15 @@ void AddPlanningKeys(KeyList& keys) {
             "most ways around the first obstacle that a step of the landing planner tries; "
             "the cheapest plan wins",
             TOUCHDOWN_AT(planning.guides)));
+  keys.push_back(
+      Whole("planning.max_segments", 100, 1000000,
+            "planner landing: segments of curves that a step's solves evaluate at most; what does "
+            "not fit goes on in the next step",
+            TOUCHDOWN_AT(planning.max_segments)));
+  keys.push_back(
+      Whole("planning.max_expansions", 100, 1000000,
+            "planner landing: spans of free cells that a step's searches for ways expand at most",
+            TOUCHDOWN_AT(planning.max_expansions)));
   keys.push_back(Choice("planning.endpoint_velocity", {"pad", "rest"},
                         "planner landing: a plan ends with the pad's predicted velocity, or stands "
                         "still (but for sinking) where the pad will be",

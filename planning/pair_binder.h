@@ -20,7 +20,7 @@ namespace touchdown::planning {
 /// around where the curve is then.
 class PairBinder {
  public:
-  static constexpr int kMostControlPoints = 131;  ///< of a curve
+  static constexpr int kMostControlPoints = 67;  ///< of a curve
 
   /// Throws std::invalid_argument unless options.max_pairs_per_point >= 2: floor and ceiling need them.
   explicit PairBinder(const LandingProblemOptions& options, const StepConstants& constants = {});

@@ -97,7 +97,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 }
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
-  finder_.Begin(request.limits.speed);
+  finder_.Begin(request.limits.speed, request.closed);
   kept_.Clear();
   kept_asked_ = false;
   // Shortly before contact there is no time for a way around.
@@ -111,8 +111,12 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
     const ReplanReason reason = KeepCommitted(request, result);
     if (holds(reason)) return reason;
   }
+  const bool may_keep = keeps && request.looks;
+  const int reserve = may_keep ? segments_left_ / 4 : 0;
+  segments_left_ -= reserve;
   const ReplanReason found = FindAnew(request, warm, leads_around, result);
-  if (holds(found) || !keeps || !request.looks) return found;
+  segments_left_ += reserve;
+  if (holds(found) || !may_keep) return found;
   // Who looks for a better plan and finds none keeps what holds, before a later arrival is tried.
   const ReplanReason kept = KeepCommitted(request, result);
   return holds(kept) ? kept : found;
@@ -210,6 +214,8 @@ ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun
   const SearchStatus status = finder_.LeadPast(first_curve_, span, *request.space, &way_, max_cost);
   // The search moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (span.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
+  // What is left for other ways is less than the budget.
+  if (status == SearchStatus::kExpansionLimit && finder_.ways_closed() == 0) spent_ = true;
   if (status == SearchStatus::kFound) result->guide_paths.Add(finder_.detour());
   return way_.known() ? ReplanReason::kNone : ReplanReason::kSearchFailed;
 }
@@ -250,29 +256,34 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   // Whose own way fails is led another one at once.
   const int rescues = keeps_side ? std::max(2, request.rescue_guides) : request.rescue_guides;
   double first_cost = kNoBound;
-  for (int i = 0;; ++i) {
-    const bool planned = i > 0 && best_.reason == ReplanReason::kNone;
-    if (i > 0 && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
+  const int begin = finder_.ways_closed();
+  for (int i = begin;; ++i) {
+    const bool is_first = i == begin;
+    const bool planned = !is_first && best_.reason == ReplanReason::kNone;
+    if (!is_first && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
     const bool kept = i == 0 && keeps_side;
+    const bool whole = is_first && request.has_whole_budget;
     if (!kept) {
       const ReplanReason found = LayWay(
           request, span, planned ? options_.constants.way_dearer * first_cost : kNoBound, result);
-      if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
+      if (!is_first && found != ReplanReason::kNone) break;  // there is no other way
       if (found != ReplanReason::kNone) return found;
     }
     const TimedWay& way = kept ? kept_ : way_;
-    if (i == 0) first_cost = kept ? kept_.LengthOf(kept_.bound().back()) : finder_.cost();
-    if (i == 0 && !request.previous) Postpone(way, posed, &request);
-    Candidate* candidate = i == 0 ? &best_ : &other_;
+    if (is_first) first_cost = kept ? kept_.LengthOf(kept_.bound().back()) : finder_.cost();
+    if (is_first && !request.previous) Postpone(way, posed, &request);
+    Candidate* candidate = is_first ? &best_ : &other_;
     posed->prepared->start.y = posed->prepared->first_guess;
     Begin(candidate);
     candidate->reason = Follow(request, way, {}, kNoBound, *posed, candidate, result);
-    if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
+    if (!is_first && Better(other_, best_, keeps_side)) std::swap(best_, other_);
+    if (spent_ && !whole) break;
     way.Sample(way.bound().back().from, way.bound().back().to, &path_);
     const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
     const std::optional<Barrier> barrier = CloseWay(path_, through);
     if (!barrier) break;
     finder_.Close(*barrier);
+    if (spent_) break;
   }
   return best_.reason;
 }
@@ -360,11 +371,18 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   stop.max_iterations = options_.max_iterations;
   stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
+  stop.max_evaluations = segments_left_ / posed.segments;
+  if (stop.max_evaluations == 0) {
+    spent_ = true;
+    return ReplanReason::kBudgetSpent;
+  }
   {
     StageTimer timer(&result->times.solve, StageTimer::kWhileLogged);
     prepared.backend->Solve(problem.view(), prepared.start, stop, &prepared.solver);
   }
   ++result->solves;
+  segments_left_ -= prepared.solver.evaluations * posed.segments;
+  spent_ = spent_ || prepared.solver.evaluations >= stop.max_evaluations;
   candidate->solver = prepared.solver;
   candidate->bound.clear();
   if (request.log) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct AttemptRequest {
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
+  std::span<const Barrier> closed;  ///< ways that were tried in the step before
+  bool has_whole_budget = true;     ///< no attempt was made in this step
   int rescue_guides = 1;  ///< ways that are tried while none leads to a plan; then max_guides
   PairEnd pair_end = PairEnd::kRest;
   const UniformBspline* previous = nullptr;  ///< committed curve ...
@@ -55,8 +58,19 @@ class PlanAttempt {
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
 
-  /// All attempts until the next call share max_expansions.
-  void RefillExpansions() { finder_.Refill(options_.max_expansions); }
+  /// All attempts until the next call share the step's budget: max_segments and max_expansions.
+  void BeginStep() {
+    finder_.Refill(options_.max_expansions);
+    segments_left_ = options_.max_segments;
+    spent_ = false;
+  }
+  /// An attempt of this step ended for want of budget, with these ways tried. One that had
+  /// the whole budget counts as tried.
+  bool spent() const { return spent_; }
+  const std::vector<Barrier>& tried() const { return finder_.closed(); }
+  /// Of this step's budget.
+  int segments_spent() const { return options_.max_segments - segments_left_; }
+  int expansions_spent() const { return options_.max_expansions - finder_.expansions_left(); }
 
   /// Tries once; fills curve with its stop, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
@@ -134,6 +148,8 @@ class PlanAttempt {
   // Room of the attempt under way.
   double duration_ = 0.0;
   int segments_ = 0;
+  int segments_left_ = 0;  // of the step's budget
+  bool spent_ = false;
   Candidate best_, other_;
   UniformBspline first_curve_;  // before any pair
   TimedWay kept_, way_;

@@ -47,6 +47,8 @@ const char* ToString(ReplanReason reason) {
       return "unobserved";
     case ReplanReason::kEndTooFast:
       return "end_too_fast";
+    case ReplanReason::kBudgetSpent:
+      return "budget_spent";
     case ReplanReason::kLimitsExceeded:
       return "limits_exceeded";
     case ReplanReason::kAtGoal:
@@ -99,6 +101,8 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kEndTooFast:
       return "The pad moves at more than nine tenths of the speed limit: hard limits leave no "
              "interior.";
+    case ReplanReason::kBudgetSpent:
+      return "The work that a step may do was done before there was a plan; the next step goes on.";
     case ReplanReason::kLimitsExceeded:
       return "The curve still exceeds a limit after every re-timing.";
     case ReplanReason::kAtGoal:

@@ -46,10 +46,11 @@ struct ReplannerOptions {
   int max_guides = 2;           ///< ways around the first obstacle that are tried
   bool warm_start = true;       ///< a solve begins at the rest of the committed plan
   int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
-  int max_solves = 14;          ///< after so many no further arrival time is tried, but from rest
   int max_iterations = 50;      ///< solver iterations per solve
-  int max_expansions = 30000;   ///< of the search for ways in a step; from rest in each attempt
-  StepConstants constants;      ///< what else a step decides by
+  // What a step may do; what does not fit goes on in the next one.
+  int max_segments = 6000;     ///< that solvers evaluate, one time each
+  int max_expansions = 12000;  ///< of spans of columns, in searches for ways
+  StepConstants constants;     ///< what else a step decides by
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.
@@ -88,6 +89,7 @@ enum class ReplanReason {
   kCollisionRemains,  ///< still blocked after every re-binding round
   kUnobserved,        ///< too fast to stop before space that was never observed
   kEndTooFast,        ///< hard limits leave no interior: the pad moves near the speed limit
+  kBudgetSpent,       ///< the step's work was done before there was a plan; the next step goes on
   kLimitsExceeded,    ///< still beyond a limit after every re-timing round
   kAtGoal,            ///< the baseline only: nearer to the goal than it makes plans for
 };
@@ -166,6 +168,8 @@ struct ReplanResult : FlightPair {
   BoundParts bound;               ///< what of that plan they bind
   int solves = 0;                 ///< solver calls
   int rebinds = 0;                ///< of these, after a re-binding
+  int segments = 0;               ///< that they have evaluated, of max_segments
+  int expansions = 0;             ///< of the searches, of max_expansions
   solvers::SolverSummary solver;  ///< of the last solve of that plan
   StageTimes times;
 };

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "touchdown/planning/attempt_ladder.h"
 #include "touchdown/planning/duration_guess.h"
@@ -28,6 +29,7 @@ namespace {
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
+constexpr std::size_t kUsualWays = 8;              // that an attempt tries
 constexpr double kClockRounding = 1e-6;            // [s]
 const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
@@ -57,6 +59,7 @@ class Replanner::Impl {
     for (BoundParts* parts : {&bound_, &result_.bound}) {
       parts->reserve(PlanAttempt::kMostControlPoints);
     }
+    unfinished_.closed.reserve(kUsualWays);
   }
 
   void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }
@@ -133,6 +136,7 @@ class Replanner::Impl {
   bool around_unseen_ = false;   // ... and it led around cells that were not seen
   BoundParts bound_;             // what of it is bound to free space
   double looked_t_ = 0.0;        // when other ways were last looked for [s]
+  Unfinished unfinished_;        // attempt of the step before
   FreeSpace strip_;              // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
   std::optional<Eigen::Vector3d> looks_at_W_;  // the committed curve leads to where it is in sight
@@ -176,6 +180,7 @@ ReplannerState Replanner::Impl::State() const {
   state.around_unseen = around_unseen_;
   state.bound = bound_;
   state.looked_t = looked_t_;
+  state.unfinished = unfinished_;
   state.looks_at_W = looks_at_W_;
   if (climbing_ >= 0.0) state.climb = climbing_;
   if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
@@ -193,6 +198,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   around_unseen_ = state.around_unseen;
   bound_ = state.bound;
   looked_t_ = state.looked_t;
+  unfinished_ = state.unfinished;
   looks_at_W_ = state.looks_at_W;
   climbing_ = state.climb.value_or(-1.0);
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
@@ -212,6 +218,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.times = {};
   result_.guide_paths.Clear();
   result_.pairs = result_.solves = result_.rebinds = 0;
+  result_.segments = result_.expansions = 0;
   result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
   // A level stretch at the end of a landing, or a vertical descent, may go below the height of contact.
@@ -407,6 +414,7 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
                                      : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
   planned_before_ = false;
+  unfinished_.any = false;
   looks_at_W_.reset();
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (!under_way) {
@@ -480,7 +488,11 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const double first = std::max(rung.duration, facts.fresh);
-  for (;;) {
+  const bool resumes =
+      std::exchange(unfinished_.any, false) && !facts.lands_soon && !result_.from_odometry;
+  if (resumes) rung = unfinished_.rung;
+  attempt_.BeginStep();
+  for (int tried = 1;; ++tried) {
     if (rung.arrival == ArrivalMode::kFixed && !facts.lands_soon) {
       rung.duration = FirstFreeArrival(input, rung.duration, map);
     }
@@ -490,10 +502,13 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       unseen_.Build(hull, start.p, rung.unseen_reach);
       space.unseen = &unseen_;
     }
-    // From rest there is time for long searches.
-    if (rung.attempt == 0 || facts.at_rest) attempt_.RefillExpansions();
-    const ReplanReason reason =
-        attempt_.Run(RequestFor(input, start, rung, facts, first, hull), &result_);
+    AttemptRequest request = RequestFor(input, start, rung, facts, first, hull);
+    const bool resumed = resumes && tried == 1;
+    if (resumed) request.closed = unfinished_.closed;
+    request.has_whole_budget = tried == 1;
+    const ReplanReason reason = attempt_.Run(request, &result_);
+    result_.segments = attempt_.segments_spent();
+    result_.expansions = attempt_.expansions_spent();
     if (reason == ReplanReason::kNone) {
       around_unseen_ = rung.unseen_reach > 0.0 && result_.rebinds > 0;
       return reason;
@@ -506,8 +521,20 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       return reason;
     }
     const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
+    if (attempt_.spent()) {
+      // What has had no whole budget gets one in the next step; what has, and got nowhere, is left behind.
+      const bool again = tried > 1 || attempt_.tried().size() > request.closed.size();
+      unfinished_.any = again || climb.next;
+      if (again) {
+        unfinished_.rung = rung;
+        unfinished_.closed = attempt_.tried();
+      } else if (climb.next) {
+        unfinished_.rung = *climb.next;
+        unfinished_.closed.clear();
+      }
+      return reason;
+    }
     if (!climb.next) return climb.reason;
-    if (!facts.at_rest && result_.solves >= options_.max_solves) return reason;
     rung = *climb.next;
   }
 }

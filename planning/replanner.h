@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "touchdown/planning/attempt_ladder.h"
 #include "touchdown/planning/planner.h"
 #include "touchdown/planning/replan_log.h"
 #include "touchdown/planning/stored_stop.h"
@@ -22,6 +23,7 @@ struct ReplannerState {
   bool around_unseen = false;  ///< ... and it led around cells that were not seen
   BoundParts bound;            ///< what of it is bound to free space
   double looked_t = 0.0;       ///< when other ways were last looked for [s]
+  Unfinished unfinished;       ///< attempt of a step without a plan
   std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
   std::optional<double> climb;                ///< `next` is the caller's rest with this climb [m]
   std::optional<double>

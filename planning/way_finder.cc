@@ -46,8 +46,8 @@ WayFinder::WayFinder(double vertical_cost, const StepConstants& constants)
   detour_.reserve(1024);
 }
 
-void WayFinder::Begin(double speed) {
-  barriers_.clear();
+void WayFinder::Begin(double speed, std::span<const Barrier> closed) {
+  barriers_.assign(closed.begin(), closed.end());
   speed_ = speed;
 }
 
@@ -55,7 +55,7 @@ SearchStatus WayFinder::Search(const FreeSpace& space, const Eigen::Vector3d& fr
                                const Eigen::Vector3d& to, int budget, double max_cost) {
   const SearchStatus status = search_.Search(space, from, to, std::min(budget, expansions_left_),
                                              &detour_, barriers_, max_cost);
-  expansions_left_ = std::max(1, expansions_left_ - search_.expansions());
+  expansions_left_ -= search_.expansions();
   return status;
 }
 

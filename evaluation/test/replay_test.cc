@@ -76,7 +76,7 @@ TEST_F(Replayed, WhatItLooksAtToo) {
                "pad.start=[-3.5, -12.8]", "start.position=[1.7, -9.2, 2.48]", "start.yaw_deg=-165",
                "depth.rate=14.6", "depth.noise=0.016", "own_state=estimated", "wind.mean=8.6",
                "wind.max=10", "plant.mass=0.87", "plant.drag=1.14", "plant.thrust=0.9",
-               "limits.acceleration=0.7", "descent=vertical", "timeout=15", "seed=2"});
+               "limits.acceleration=0.7", "descent=vertical", "timeout=15", "seed=4"});
   const RecordedFlight flight = ReadRecord(path_, {}, registries_);
   int looks = 0;
   for (std::size_t i = 0; i < flight.plans.size(); ++i) {
@@ -84,6 +84,26 @@ TEST_F(Replayed, WhatItLooksAtToo) {
     looks += flight.plans[i].before.looks_at_W.has_value() ? 1 : 0;
   }
   EXPECT_GT(looks, 10);
+  ExpectTheSameBits(flight, registries_);
+}
+
+// Steps that ran out of their budget, and where the next ones went on.
+TEST_F(Replayed, WhatWasNotFinishedToo) {
+  Fly("forest", {"planning.max_segments=400", "planning.max_expansions=400", "timeout=12"});
+  const RecordedFlight flight = ReadRecord(path_, {}, registries_);
+  int unfinished = 0, tried = 0;
+  for (std::size_t i = 0; i < flight.plans.size(); ++i) {
+    const planning::Unfinished& read = flight.plans[i].before.unfinished;
+    const planning::Unfinished& flown = flown_.plans[i].before.unfinished;
+    ASSERT_EQ(read.any, flown.any) << i;
+    if (!read.any) continue;
+    EXPECT_EQ(read.rung.attempt, flown.rung.attempt) << i;
+    EXPECT_EQ(read.closed.size(), flown.closed.size()) << i;
+    ++unfinished;
+    tried += !read.closed.empty();
+  }
+  EXPECT_GT(unfinished, 3);
+  EXPECT_GT(tried, 0);
   ExpectTheSameBits(flight, registries_);
 }
 
@@ -117,7 +137,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 11");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 12");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");

@@ -311,31 +311,5 @@ TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
   EXPECT_EQ(log.attempts.size(), 1u);
 }
 
-TEST(ReplannerFallback, ABudgetOfSolvesEndsTheSearchForAnArrival) {
-  OccupancyMap map = ObservedMap();
-  for (double y = -10.0; y <= 10.0; y += 0.5) {
-    if (std::abs(y - 3.0) > 0.8) AddPillar(1.5, y, &map);
-  }
-  const ArcPad pad({5.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
-  int solves[2];
-  for (const int most : {1, 1000}) {
-    ReplannerOptions options = Options(ArrivalMode::kFixed);
-    options.max_solves = most;
-    Replanner replanner(options, solvers::StandardBackends());
-    const Eigen::Vector3d start(-4.0, 0.0, 1.6), v_WB(0.5, 0.0, 0.0);
-    FlyAlong(start, v_WB, &replanner);
-    ReplanLog log;
-    replanner.set_log(&log);
-    ReplanInput input = Input(start, pad, 0.0);
-    input.vehicle.v_WB = v_WB;
-    const ReplanResult& result = replanner.Replan(input, map);
-    solves[most > 1] = result.solves;
-    if (most == 1) {
-      EXPECT_EQ(log.attempts.size(), 1u);
-    }
-  }
-  EXPECT_LE(solves[0], solves[1]);
-}
-
 }  // namespace
 }  // namespace touchdown::planning

@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "11"
+SUPPORTED_VERSION = "12"
 
 
 class RecordError(Exception):

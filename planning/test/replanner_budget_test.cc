@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A step does no more work than its budget, and the next one goes on where it ended.
+
+#include <gtest/gtest.h>
+
+#include "touchdown/planning/test/replanner_fixtures.h"
+
+namespace touchdown::planning {
+namespace {
+
+/// Walls with a door each, which take several rounds and arrivals to get through.
+OccupancyMap WallsWithDoors(Draw* draw) {
+  OccupancyMap map = ObservedMap();
+  for (const double x : {-2.45, 0.05, 2.55}) {
+    const double door = draw->Uniform(-3.0, 3.0);
+    for (double y = -6.0; y < 6.0; y += 0.1) {
+      if (std::abs(y - door) < 0.7) continue;
+      for (double z = 0.05; z < 4.0; z += 0.1) map.SetOccupied({x, y, z});
+    }
+  }
+  return map;
+}
+
+ReplannerOptions Within(int segments, int expansions) {
+  ReplannerOptions options = Options(ArrivalMode::kFree);
+  options.max_segments = segments;
+  options.max_expansions = expansions;
+  options.ceiling_height = 3.0;
+  return options;
+}
+
+TEST(ReplannerBudget, IsNeverExceeded) {
+  Draw draw(61);
+  int spent = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const OccupancyMap map = WallsWithDoors(&draw);
+    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    const ReplannerOptions options =
+        Within(static_cast<int>(draw.Uniform(50, 1500)), static_cast<int>(draw.Uniform(10, 1000)));
+    Replanner replanner(options, solvers::StandardBackends());
+    const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.5, 0.0, 0.0);
+    FlyAlong(start, v_WB, &replanner);
+    ReplanInput input = Input(start, pad, 0.0);
+    input.vehicle.v_WB = v_WB;
+    const ReplanResult& result = replanner.Replan(input, map);
+    EXPECT_LE(result.segments, options.max_segments) << trial;
+    EXPECT_LE(result.expansions, options.max_expansions) << trial;
+    spent += replanner.state().unfinished.any;
+    EXPECT_FALSE(result.reason == ReplanReason::kNone && replanner.state().unfinished.any);
+  }
+  EXPECT_GT(spent, 5);
+}
+
+// From rest, where nothing changes, small steps come to what a large one finds.
+TEST(ReplannerBudget, SmallStepsFindWhatALargeOneFinds) {
+  Draw draw(62);
+  int large_found = 0, small_found = 0, at_once = 0, steps = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const OccupancyMap map = WallsWithDoors(&draw);
+    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.0, 0.0, 0.0);
+    const Eigen::Vector3d start(-5.0, 0.0, 1.6);
+    Replanner large(Within(1000000, 1000000), solvers::StandardBackends());
+    large.CommitHover(start, 0.0);
+    const bool found = large.Replan(Input(start, pad, 0.0), map).status == ReplanStatus::kPlanned;
+    large_found += found;
+    Replanner small(Within(550, 3000), solvers::StandardBackends());
+    small.CommitHover(start, 0.0);
+    for (int step = 0; step < 30; ++step) {
+      const ReplanResult& result = small.Replan(Input(start, pad, 0.1 * step), map);
+      if (result.status != ReplanStatus::kPlanned) continue;
+      ++small_found;
+      at_once += step == 0;
+      steps = std::max(steps, step + 1);
+      break;
+    }
+  }
+  EXPECT_GT(large_found, 20);
+  EXPECT_LT(at_once, small_found - 2);
+  EXPECT_GE(small_found, large_found - 1);
+  EXPECT_GT(steps, 1);
+}
+
+TEST(ReplannerBudget, TheNextStepFollowsFromTheState) {
+  Draw draw(63);
+  int unfinished = 0, tried = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const OccupancyMap map = WallsWithDoors(&draw);
+    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.0, 0.0, 0.0);
+    const Eigen::Vector3d start(-5.0, 0.0, 1.6);
+    Replanner flown(Within(550, 3000), solvers::StandardBackends());
+    Replanner other(Within(550, 3000), solvers::StandardBackends());
+    flown.CommitHover(start, 0.0);
+    for (int step = 0; step < 6; ++step) {
+      const ReplanInput input = Input(start, pad, 0.1 * step);
+      const ReplannerState before = flown.state();
+      unfinished += before.unfinished.any;
+      tried += before.unfinished.any && !before.unfinished.closed.empty();
+      const ReplanResult& wanted = flown.Replan(input, map);
+      other.Restore(before);
+      const ReplanResult& got = other.Replan(input, map);
+      ASSERT_EQ(got.reason, wanted.reason) << step;
+      ASSERT_EQ(got.solves, wanted.solves) << step;
+      ASSERT_EQ(got.curve.control_points(), wanted.curve.control_points()) << step;
+      if (wanted.status == ReplanStatus::kPlanned) break;
+    }
+  }
+  EXPECT_GT(unfinished, 10);
+  EXPECT_GT(tried, 1);
+}
+
+}  // namespace
+}  // namespace touchdown::planning
