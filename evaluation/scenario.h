@@ -182,7 +182,7 @@ struct Scenario {
     double clearance = 0.40;     ///< obstacles are grown by this in the map [m]
     double ceiling = 10.0;       ///< the body's origin stays below this [m]
     int guides = 2;              ///< most ways around the first obstacle that a step tries
-    int max_segments = 6000;     ///< that a step's solves evaluate
+    int max_segments = 4000;     ///< that a step's solves evaluate
     int max_expansions = 12000;  ///< of spans, in a step's searches
     EndpointVelocityKind endpoint_velocity = EndpointVelocityKind::kPad;
     bool warm_start = true;  ///< solves begin at the committed plan

@@ -105,9 +105,7 @@ Climb NextRung(const Rung& rung, const Outcome& outcome, const LadderFacts& fact
   const auto rule =
       std::find_if(kRules.begin(), kRules.end(), [&](const Rule& r) { return r.holds(c); });
   if (rule == kRules.end()) return Stop(outcome.reason);
-  const Climb climb = rule->climb(c);
-  const bool last = rung.attempt + 1 >= constants.attempts;
-  return climb.next && last ? Stop(outcome.reason) : climb;
+  return rule->climb(c);
 }
 
 }  // namespace touchdown::planning

@@ -48,7 +48,7 @@ struct ReplannerOptions {
   int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;      ///< solver iterations per solve
   // What a step may do; what does not fit goes on in the next one.
-  int max_segments = 6000;     ///< that solvers evaluate, one time each
+  int max_segments = 4000;     ///< that solvers evaluate, one time each
   int max_expansions = 12000;  ///< of spans of columns, in searches for ways
   StepConstants constants;     ///< what else a step decides by
 };

@@ -38,12 +38,10 @@ struct StepConstants {
   double near_contact = 3.0;
 
   // The ladder of attempts (attempt_ladder.h).
-  int attempts = 7;
   double stretch = 1.4;
   double end_step = 1.05;
   double grid_longest = 1.2;
   int rescue_ways = 2;
-  int rescue_ways_at_rest = 4;
   double unseen_reach = 1.0;
   double unseen_least = 0.5;
 };

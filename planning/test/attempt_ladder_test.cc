@@ -48,7 +48,7 @@ TEST(AttemptLadder, EndsAndNeverTriesTheSameTwice) {
     int attempts = 1;
     std::set<std::tuple<double, ArrivalMode, double>> tried;
     for (;; ++attempts) {
-      ASSERT_LE(attempts, constants.attempts);
+      ASSERT_LE(attempts, 16);  // 1.4 to the power of 13 is the longest duration over the shortest
       const Outcome outcome = {kReasons[static_cast<int>(draw.Uniform(0, std::size(kReasons)))],
                                draw.Uniform(0.5, 30.0)};
       const Climb climb = NextRung(rung, outcome, facts, constants);
@@ -114,11 +114,6 @@ TEST(AttemptLadder, ClosesWhatWasNotSeenAndOpensItAgain) {
   const Climb end = NextRung(*less.next, {ReplanReason::kCollisionRemains, 5.0}, facts, constants);
   EXPECT_FALSE(end.next);
   EXPECT_EQ(end.reason, ReplanReason::kUnobserved);
-  // The last attempt says why as well.
-  Rung last = *less.next;
-  last.attempt = constants.attempts - 1;
-  EXPECT_EQ(NextRung(last, {ReplanReason::kCollisionRemains, 5.0}, facts, constants).reason,
-            ReplanReason::kUnobserved);
   // What the last plan led around may be seen by now.
   Rung before = UsualRung();
   before.unseen_reach = constants.unseen_reach;

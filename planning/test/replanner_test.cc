@@ -346,7 +346,8 @@ TEST(Replanner, APlanThatEndsInACreepIsNotFlownPastItsEnd) {
   replanner.CommitHover({-2.0, 0.0, 1.6}, 0.0);
   for (int step = 0; step < 400; ++step) {
     const double t = 0.1 * step;
-    if (step == 60) AddPillar(0.9, 0.0, &map);  // the pad drives on into a pillar
+    // The pad drives on into pillars, and is not behind them at any arrival.
+    for (double x = 0.9; step == 60 && x < 3.0; x += 0.7) AddPillar(x, 0.0, &map);
     const FlatState at = replanner.Reference(t);
     ReplanInput input = Input(at.p_WB, creeping, t);
     input.vehicle.v_WB = at.v_WB;
