@@ -326,7 +326,7 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   command
       .Add("--max-segments", options.replanner.max_segments,
            "Segments that a step's solves evaluate at most")
-      .Check(Range(100, 1000000))
+      .Check(Range(400, 1000000))
       .ShowDefault();
   command
       .Add("--max-expansions", options.replanner.max_expansions,

@@ -56,8 +56,6 @@ CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, co
 CREATE TABLE bound_part(plan INTEGER, i INTEGER, t_from REAL, t_to REAL);
 CREATE TABLE unfinished(plan INTEGER PRIMARY KEY, attempt INTEGER, duration REAL, arrival_free INTEGER,
   unseen_reach REAL);
-CREATE TABLE tried_way(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL, normal_x REAL,
-  normal_y REAL, normal_z REAL, side_x REAL, side_y REAL, side_z REAL);
 CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, looked_t REAL, look_x REAL,
   look_y REAL, look_z REAL, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
@@ -180,8 +178,6 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       "?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement bound = db.Prepare("INSERT INTO bound_part VALUES(?, ?, ?, ?)");
   SqliteStatement unfinished = db.Prepare("INSERT INTO unfinished VALUES(?, ?, ?, ?, ?)");
-  SqliteStatement tried =
-      db.Prepare("INSERT INTO tried_way VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const RecordPlan& row : plans) {
@@ -201,15 +197,10 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
     for (std::size_t i = 0; i < s.bound.size(); ++i) {
       bound.Run(id, static_cast<int>(i), s.bound[i].from, s.bound[i].to);
     }
-    if (s.unfinished.any) {
-      const planning::Rung& rung = s.unfinished.rung;
-      unfinished.Run(id, rung.attempt, rung.duration, rung.arrival == planning::ArrivalMode::kFree,
-                     rung.unseen_reach);
-      for (std::size_t i = 0; i < s.unfinished.closed.size(); ++i) {
-        const planning::Barrier& b = s.unfinished.closed[i];
-        tried.Run(id, static_cast<int>(i), b.p.x(), b.p.y(), b.p.z(), b.normal.x(), b.normal.y(),
-                  b.normal.z(), b.side.x(), b.side.y(), b.side.z());
-      }
+    if (s.unfinished) {
+      unfinished.Run(id, s.unfinished->attempt, s.unfinished->duration,
+                     s.unfinished->arrival == planning::ArrivalMode::kFree,
+                     s.unfinished->unseen_reach);
     }
     state.Run(id, s.planned, s.around_unseen, s.looked_t, look(0), look(1), look(2), s.climb,
               s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(),

@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kMostPoints = 10000;           // of a spline
 constexpr int kMostAttempts = 1000;          // of a step
+constexpr double kLongest = 1000.0;          // plan [s]
 constexpr int kMostCells = 1024;             // of a run: a window's longest side
 constexpr std::int64_t kFarthest = 1 << 24;  // cell index
 
@@ -222,23 +223,15 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   ReadMany(
       TableRows(db, "unfinished", "plan, attempt, duration, arrival_free, unseen_reach", "plan"),
       plans, [](TableRows& row, RecordPlan* plan) {
-        planning::Unfinished& unfinished = plan->before.unfinished;
-        unfinished.any = true;
-        unfinished.rung.attempt = row.Integer(0, kMostAttempts);
-        unfinished.rung.duration = row.Number();
-        unfinished.rung.arrival =
-            row.Flag() ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
-        unfinished.rung.unseen_reach = row.Number();
-      });
-  ReadMany(
-      TableRows(db, "tried_way",
-                "plan, x, y, z, normal_x, normal_y, normal_z, side_x, side_y, side_z", "plan, i"),
-      plans, [](TableRows& row, RecordPlan* plan) {
-        planning::Barrier barrier;
-        barrier.p = row.Vector3();
-        barrier.normal = row.Vector3();
-        barrier.side = row.Vector3();
-        plan->before.unfinished.closed.push_back(barrier);
+        planning::Rung& rung = plan->before.unfinished.emplace();
+        rung.attempt = row.Integer(0, kMostAttempts);
+        rung.duration = row.Number();
+        rung.arrival = row.Flag() ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+        rung.unseen_reach = row.Number();
+        if (!(rung.duration > 0.0 && rung.duration <= kLongest)) row.Refuse("has no duration");
+        if (!(rung.unseen_reach >= 0.0 && rung.unseen_reach <= planning::UnseenZone::kFarthest)) {
+          row.Refuse("reaches too far");
+        }
       });
   ReadMany(TableRows(db, "state_point", "plan, curve, i, x, y, z", "plan, curve, i"), plans,
            [&](TableRows& row, RecordPlan* plan) {

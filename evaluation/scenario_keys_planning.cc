@@ -58,7 +58,7 @@ void AddPlanningKeys(KeyList& keys) {
             "the cheapest plan wins",
             TOUCHDOWN_AT(planning.guides)));
   keys.push_back(
-      Whole("planning.max_segments", 100, 1000000,
+      Whole("planning.max_segments", 400, 1000000,
             "planner landing: segments of curves that a step's solves evaluate at most; what does "
             "not fit goes on in the next step",
             TOUCHDOWN_AT(planning.max_segments)));

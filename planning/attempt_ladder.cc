@@ -20,7 +20,8 @@ struct Case {
   bool free() const { return rung.arrival == ArrivalMode::kFree; }
   bool slower_helps() const {
     return is(ReplanReason::kLimitsExceeded) || is(ReplanReason::kUnobserved) ||
-           is(ReplanReason::kCollisionRemains) || is(ReplanReason::kGoalBlocked);
+           is(ReplanReason::kCollisionRemains) || is(ReplanReason::kGoalBlocked) ||
+           is(ReplanReason::kBudgetSpent);
   }
 };
 

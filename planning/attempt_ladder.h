@@ -2,9 +2,7 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
-#include "touchdown/planning/barrier.h"
 #include "touchdown/planning/replan_result.h"
 
 namespace touchdown::planning {
@@ -32,13 +30,6 @@ struct LadderFacts {
   double fresh = 0.0;                         ///< guess of the duration from this start [s]
   double min_duration = 0.0;                  ///< [s]
   double max_duration = 0.0;                  ///< [s]
-};
-
-/// The attempt at which a step ran out of its budget, if it did: the next step goes on there.
-struct Unfinished {
-  bool any = false;
-  Rung rung;
-  std::vector<Barrier> closed;  ///< ways that it has tried
 };
 
 /// The next attempt, or why there is none.

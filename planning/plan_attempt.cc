@@ -97,7 +97,7 @@ ReplanReason PlanAttempt::Run(const AttemptRequest& request, ReplanResult* resul
 }
 
 ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* result) {
-  finder_.Begin(request.limits.speed, request.closed);
+  finder_.Begin(request.limits.speed);
   kept_.Clear();
   kept_asked_ = false;
   // Shortly before contact there is no time for a way around.
@@ -256,34 +256,30 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   // Whose own way fails is led another one at once.
   const int rescues = keeps_side ? std::max(2, request.rescue_guides) : request.rescue_guides;
   double first_cost = kNoBound;
-  const int begin = finder_.ways_closed();
-  for (int i = begin;; ++i) {
-    const bool is_first = i == begin;
-    const bool planned = !is_first && best_.reason == ReplanReason::kNone;
-    if (!is_first && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
+  for (int i = 0;; ++i) {
+    const bool planned = i > 0 && best_.reason == ReplanReason::kNone;
+    if (i > 0 && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
     const bool kept = i == 0 && keeps_side;
-    const bool whole = is_first && request.has_whole_budget;
     if (!kept) {
       const ReplanReason found = LayWay(
           request, span, planned ? options_.constants.way_dearer * first_cost : kNoBound, result);
-      if (!is_first && found != ReplanReason::kNone) break;  // there is no other way
+      if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
       if (found != ReplanReason::kNone) return found;
     }
     const TimedWay& way = kept ? kept_ : way_;
-    if (is_first) first_cost = kept ? kept_.LengthOf(kept_.bound().back()) : finder_.cost();
-    if (is_first && !request.previous) Postpone(way, posed, &request);
-    Candidate* candidate = is_first ? &best_ : &other_;
+    if (i == 0) first_cost = kept ? kept_.LengthOf(kept_.bound().back()) : finder_.cost();
+    if (i == 0 && !request.previous) Postpone(way, posed, &request);
+    Candidate* candidate = i == 0 ? &best_ : &other_;
     posed->prepared->start.y = posed->prepared->first_guess;
     Begin(candidate);
     candidate->reason = Follow(request, way, {}, kNoBound, *posed, candidate, result);
-    if (!is_first && Better(other_, best_, keeps_side)) std::swap(best_, other_);
-    if (spent_ && !whole) break;
+    if (i > 0 && Better(other_, best_, keeps_side)) std::swap(best_, other_);
+    if (spent_) break;
     way.Sample(way.bound().back().from, way.bound().back().to, &path_);
     const FlatState through = first_curve_.Evaluate(0.5 * (first.t_in + first.t_out));
     const std::optional<Barrier> barrier = CloseWay(path_, through);
     if (!barrier) break;
     finder_.Close(*barrier);
-    if (spent_) break;
   }
   return best_.reason;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -33,8 +32,6 @@ struct AttemptRequest {
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
-  std::span<const Barrier> closed;  ///< ways that were tried in the step before
-  bool has_whole_budget = true;     ///< no attempt was made in this step
   int rescue_guides = 1;  ///< ways that are tried while none leads to a plan; then max_guides
   PairEnd pair_end = PairEnd::kRest;
   const UniformBspline* previous = nullptr;  ///< committed curve ...
@@ -64,10 +61,8 @@ class PlanAttempt {
     segments_left_ = options_.max_segments;
     spent_ = false;
   }
-  /// An attempt of this step ended for want of budget, with these ways tried. One that had
-  /// the whole budget counts as tried.
+  /// An attempt of this step ended for want of budget.
   bool spent() const { return spent_; }
-  const std::vector<Barrier>& tried() const { return finder_.closed(); }
   /// Of this step's budget.
   int segments_spent() const { return options_.max_segments - segments_left_; }
   int expansions_spent() const { return options_.max_expansions - finder_.expansions_left(); }

@@ -58,7 +58,9 @@ void Validate(const ReplannerOptions& o) {
     const std::string range = "finite and >= " + std::to_string(static_cast<int>(constant.least));
     Require(std::isfinite(value) && value >= constant.least, constant.name, value, range.c_str());
   }
-  Require(o.constants.end_step > 1.0, "end_step", o.constants.end_step, "> 1");
+  // Each is a factor from one arrival to the next, up to the longest.
+  Require(o.constants.end_step >= 1.01, "end_step", o.constants.end_step, ">= 1.01");
+  Require(o.constants.stretch >= 1.01, "stretch", o.constants.stretch, ">= 1.01");
   Require(o.limits.speed > 0.0, "limits.speed", o.limits.speed, "> 0 m/s");
   Require(o.limits.acceleration > 0.0, "limits.acceleration", o.limits.acceleration, "> 0 m/s^2");
   Require(o.limits.body_rate > 0.0, "limits.body_rate", o.limits.body_rate, "> 0 rad/s");

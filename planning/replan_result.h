@@ -47,7 +47,7 @@ struct ReplannerOptions {
   bool warm_start = true;       ///< a solve begins at the rest of the committed plan
   int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;      ///< solver iterations per solve
-  // What a step may do; what does not fit goes on in the next one.
+  // What a step may do; the next one goes on at the attempt that did not fit.
   int max_segments = 4000;     ///< that solvers evaluate, one time each
   int max_expansions = 12000;  ///< of spans of columns, in searches for ways
   StepConstants constants;     ///< what else a step decides by

@@ -29,7 +29,6 @@ namespace {
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
-constexpr std::size_t kUsualWays = 8;              // that an attempt tries
 constexpr double kClockRounding = 1e-6;            // [s]
 const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
@@ -59,7 +58,6 @@ class Replanner::Impl {
     for (BoundParts* parts : {&bound_, &result_.bound}) {
       parts->reserve(PlanAttempt::kMostControlPoints);
     }
-    unfinished_.closed.reserve(kUsualWays);
   }
 
   void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }
@@ -132,12 +130,13 @@ class Replanner::Impl {
   double margin_ = 0.0;  // around the hull in this step [m]
   ReplanResult result_;
   UnseenZone unseen_;
-  bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
-  bool around_unseen_ = false;   // ... and it led around cells that were not seen
-  BoundParts bound_;             // what of it is bound to free space
-  double looked_t_ = 0.0;        // when other ways were last looked for [s]
-  Unfinished unfinished_;        // attempt of the step before
-  FreeSpace strip_;              // over the last known pad ...
+  bool planned_before_ = false;     // the committed curve is a plan to the pad: its arrival is kept
+  bool around_unseen_ = false;      // ... and it led around cells that were not seen
+  BoundParts bound_;                // what of it is bound to free space
+  double looked_t_ = 0.0;           // when other ways were last looked for [s]
+  std::optional<Rung> unfinished_;  // at which this step will have run out of its budget, ...
+  std::optional<Rung> resumes_;     // ... and the last one did
+  FreeSpace strip_;                 // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
   std::optional<Eigen::Vector3d> looks_at_W_;  // the committed curve leads to where it is in sight
   double climbing_ = -1.0;  // the committed curve is the caller's rest with this climb
@@ -211,6 +210,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
 }
 
 void Replanner::Impl::Begin(const ReplanInput& input) {
+  resumes_ = std::exchange(unfinished_, std::nullopt);
   margin_ = input.margins.Sum();
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   fallback_.SetLimits(limits_);
@@ -414,7 +414,6 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
                                      : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
   planned_before_ = false;
-  unfinished_.any = false;
   looks_at_W_.reset();
   const bool under_way = climbing_ == climb && !result_.from_odometry;
   if (!under_way) {
@@ -488,9 +487,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const double first = std::max(rung.duration, facts.fresh);
-  const bool resumes =
-      std::exchange(unfinished_.any, false) && !facts.lands_soon && !result_.from_odometry;
-  if (resumes) rung = unfinished_.rung;
+  // On a plan the next step first looks whether that holds.
+  if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) rung = *resumes_;
   attempt_.BeginStep();
   for (int tried = 1;; ++tried) {
     if (rung.arrival == ArrivalMode::kFixed && !facts.lands_soon) {
@@ -502,11 +500,8 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       unseen_.Build(hull, start.p, rung.unseen_reach);
       space.unseen = &unseen_;
     }
-    AttemptRequest request = RequestFor(input, start, rung, facts, first, hull);
-    const bool resumed = resumes && tried == 1;
-    if (resumed) request.closed = unfinished_.closed;
-    request.has_whole_budget = tried == 1;
-    const ReplanReason reason = attempt_.Run(request, &result_);
+    const ReplanReason reason =
+        attempt_.Run(RequestFor(input, start, rung, facts, first, hull), &result_);
     result_.segments = attempt_.segments_spent();
     result_.expansions = attempt_.expansions_spent();
     if (reason == ReplanReason::kNone) {
@@ -522,17 +517,10 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     }
     const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {
-      // What has had no whole budget gets one in the next step; what has, and got nowhere, is left behind.
-      const bool again = tried > 1 || attempt_.tried().size() > request.closed.size();
-      unfinished_.any = again || climb.next;
-      if (again) {
-        unfinished_.rung = rung;
-        unfinished_.closed = attempt_.tried();
-      } else if (climb.next) {
-        unfinished_.rung = *climb.next;
-        unfinished_.closed.clear();
-      }
-      return reason;
+      // What has had no whole budget gets one in the next step; what has is left behind.
+      unfinished_ = tried > 1 ? rung : climb.next;
+      // Who rests and does not see what the way on needs may look from elsewhere (StepsAside).
+      return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
     }
     if (!climb.next) return climb.reason;
     rung = *climb.next;

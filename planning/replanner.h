@@ -23,7 +23,7 @@ struct ReplannerState {
   bool around_unseen = false;  ///< ... and it led around cells that were not seen
   BoundParts bound;            ///< what of it is bound to free space
   double looked_t = 0.0;       ///< when other ways were last looked for [s]
-  Unfinished unfinished;       ///< attempt of a step without a plan
+  std::optional<Rung> unfinished;  ///< at which the last step, without a plan, ran out of its budget
   std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
   std::optional<double> climb;                ///< `next` is the caller's rest with this climb [m]
   std::optional<double>

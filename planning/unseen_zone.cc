@@ -21,7 +21,7 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
   closed_.fill(0);
   // Between a cell's centre and the nearest point of one that it may not touch.
   const double radius = hull.radius() / side + 0.5;
-  const int around = static_cast<int>(std::ceil(radius));
+  const int around = std::min(kSide, static_cast<int>(std::ceil(radius)));
   const double farthest = std::min(reach, kFarthest);
   const int asked = std::min(kReach, static_cast<int>(farthest / side) + around + 1);
   const double ground = map.options().ground_height;
@@ -66,6 +66,7 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
         const double left = radius * radius - dz * dz - dy * dy;
         if (left < 0.0 || static_cast<int>(std::sqrt(left)) != width) continue;
         const int from = std::max(0, first + dy), to = std::min(kSide, first + rows + dy);
+        if (from >= to) continue;
         for (int z = std::max(0, first + dz); z < std::min(kSide, first + rows + dz); ++z) {
           std::uint64_t* const closed = &closed_[RowOf(from - dy, z - dz)];
           const std::uint64_t* const touching = &spread_[RowOf(from, z)];

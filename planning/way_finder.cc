@@ -46,8 +46,8 @@ WayFinder::WayFinder(double vertical_cost, const StepConstants& constants)
   detour_.reserve(1024);
 }
 
-void WayFinder::Begin(double speed, std::span<const Barrier> closed) {
-  barriers_.assign(closed.begin(), closed.end());
+void WayFinder::Begin(double speed) {
+  barriers_.clear();
   speed_ = speed;
 }
 

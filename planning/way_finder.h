@@ -24,8 +24,8 @@ class WayFinder {
   void Refill(int expansions) { expansions_left_ = expansions; }
   int expansions_left() const { return expansions_left_; }
 
-  /// An attempt begins: these ways are closed. @param speed of detours [m/s].
-  void Begin(double speed, std::span<const Barrier> closed = {});
+  /// An attempt begins: no way is closed. @param speed of detours [m/s].
+  void Begin(double speed);
 
   /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
   /// not found soon or is much longer than what it replaces.
@@ -43,7 +43,6 @@ class WayFinder {
 
   /// From here on ways do not cross this.
   void Close(const Barrier& barrier) { barriers_.push_back(barrier); }
-  const std::vector<Barrier>& closed() const { return barriers_; }
   int ways_closed() const { return static_cast<int>(barriers_.size()); }
 
  private:

@@ -14,7 +14,8 @@ namespace {
 constexpr ReplanReason kReasons[] = {ReplanReason::kStartBlocked,   ReplanReason::kGoalBlocked,
                                      ReplanReason::kSearchFailed,   ReplanReason::kCollisionRemains,
                                      ReplanReason::kLimitsExceeded, ReplanReason::kSolverFailed,
-                                     ReplanReason::kEndTooFast,     ReplanReason::kUnobserved};
+                                     ReplanReason::kEndTooFast,     ReplanReason::kUnobserved,
+                                     ReplanReason::kBudgetSpent};
 
 LadderFacts UsualFacts() {
   LadderFacts facts;

@@ -45,8 +45,8 @@ TEST(ReplannerBudget, IsNeverExceeded) {
     const ReplanResult& result = replanner.Replan(input, map);
     EXPECT_LE(result.segments, options.max_segments) << trial;
     EXPECT_LE(result.expansions, options.max_expansions) << trial;
-    spent += replanner.state().unfinished.any;
-    EXPECT_FALSE(result.reason == ReplanReason::kNone && replanner.state().unfinished.any);
+    spent += replanner.state().unfinished.has_value();
+    EXPECT_FALSE(result.reason == ReplanReason::kNone && replanner.state().unfinished.has_value());
   }
   EXPECT_GT(spent, 5);
 }
@@ -82,7 +82,7 @@ TEST(ReplannerBudget, SmallStepsFindWhatALargeOneFinds) {
 
 TEST(ReplannerBudget, TheNextStepFollowsFromTheState) {
   Draw draw(63);
-  int unfinished = 0, tried = 0;
+  int unfinished = 0;
   for (int trial = 0; trial < 60; ++trial) {
     const OccupancyMap map = WallsWithDoors(&draw);
     const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.0, 0.0, 0.0);
@@ -93,8 +93,7 @@ TEST(ReplannerBudget, TheNextStepFollowsFromTheState) {
     for (int step = 0; step < 6; ++step) {
       const ReplanInput input = Input(start, pad, 0.1 * step);
       const ReplannerState before = flown.state();
-      unfinished += before.unfinished.any;
-      tried += before.unfinished.any && !before.unfinished.closed.empty();
+      unfinished += before.unfinished.has_value();
       const ReplanResult& wanted = flown.Replan(input, map);
       other.Restore(before);
       const ReplanResult& got = other.Replan(input, map);
@@ -105,7 +104,6 @@ TEST(ReplannerBudget, TheNextStepFollowsFromTheState) {
     }
   }
   EXPECT_GT(unfinished, 10);
-  EXPECT_GT(tried, 1);
 }
 
 }  // namespace
