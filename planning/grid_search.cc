@@ -6,6 +6,7 @@
 #include "touchdown/planning/grid_search.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -37,20 +38,6 @@ constexpr std::size_t kUsualWay = 1024;
 constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
 constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
 constexpr std::uint32_t kAbove[] = {StepsTo(0, 1), StepsTo(1, 1), StepsTo(2, 1)};
-
-/// The cells at most n away from the centre along every axis, and n along at least one.
-template <class Visit>
-void ForEachOnShell(const CellIndex& centre, int n, Visit&& visit) {
-  CellIndex offset;
-  for (offset.z() = -n; offset.z() <= n; ++offset.z()) {
-    for (offset.y() = -n; offset.y() <= n; ++offset.y()) {
-      const bool face = std::abs(offset.z()) == n || std::abs(offset.y()) == n;
-      for (offset.x() = -n; offset.x() <= n; offset.x() += face ? 1 : 2 * n) {
-        visit(CellIndex(centre + offset));
-      }
-    }
-  }
-}
 
 }  // namespace
 
@@ -140,21 +127,44 @@ float GridSearch::LatticeDistance(const CellIndex& a, const CellIndex& b) const 
          (hi - lo - slanted) + (up - cubic - slanted) * vertical_cost_;
 }
 
+/// Of cells equally far the one in the smallest cube around the centre, then the lowest along z, y and x.
 bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
   if (!space.Blocked(*cell)) return true;
+  const OccupancyMap& map = *space.map;
   const CellIndex centre = *cell;
-  const double reach = kEndSearchRadius / space.map->resolution();
-  double best = reach * reach;  // squared distance [cells]
+  const int reach = static_cast<int>(kEndSearchRadius / map.resolution());
+  const int last_x = map.origin().x() + map.size().x() - 1;
+  // Squared distance [cells], half side of the cube, and the place in it.
+  using Rank = std::array<int, 5>;
+  const double farthest = kEndSearchRadius / map.resolution();
+  Rank best = {static_cast<int>(std::ceil(farthest * farthest)), 0, 0, 0, 0};
   bool found = false;
-  // Cube by cube outwards; a cell of the next one is at least its half side away.
-  for (int n = 1; n <= reach && n * n < best; ++n) {
-    ForEachOnShell(centre, n, [&](const CellIndex& candidate) {
-      const double distance2 = (candidate - centre).squaredNorm();
-      if (distance2 >= best || !space.map->InWindow(candidate) || space.Blocked(candidate)) return;
-      best = distance2;
-      *cell = candidate;
-      found = true;
-    });
+  const auto look = [&](int y, int z) {
+    const int to_row2 = y * y + z * z;
+    const CellIndex middle = centre + CellIndex(0, y, z);
+    for (int from = -reach; from <= reach; from += 64) {
+      CellIndex first = middle + CellIndex(from, 0, 0);
+      first.x() = std::max(first.x(), map.origin().x());
+      const int count = std::min({64, centre.x() + reach - first.x() + 1, last_x - first.x() + 1});
+      if (count <= 0 || !map.InWindow(first)) continue;
+      std::uint64_t open = ~space.ClosedRow(first, count) & (~std::uint64_t{0} >> (64 - count));
+      for (; open != 0; open &= open - 1) {
+        const int x = first.x() + std::countr_zero(open) - centre.x();
+        const int side = std::max({std::abs(x), std::abs(y), std::abs(z)});
+        const Rank rank = {to_row2 + x * x, side, z, y, x};
+        const CellIndex candidate = middle + CellIndex(x, 0, 0);
+        if (rank >= best || space.Blocked(candidate)) continue;
+        best = rank;
+        *cell = candidate;
+        found = true;
+      }
+    }
+  };
+  // Ring by ring of rows outwards.
+  for (int n = 0; n <= reach && n * n <= best[0]; ++n) {
+    for (int z = -n; z <= n; ++z) {
+      for (int y = -n; y <= n; y += std::abs(z) == n ? 1 : 2 * n) look(y, z);
+    }
   }
   return found;
 }

@@ -44,6 +44,49 @@ double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellI
   return std::numeric_limits<double>::infinity();
 }
 
+// Rows of bits must give what a look at every cell gives, at the window's edges and under levels, too.
+TEST(GridSearch, TheNearestFreeCellIsThatOfALookAtEveryCell) {
+  Draw draw(5);
+  OccupancyMapOptions options = SmallMap(0.3);
+  options.size_log2 = {5, 5, 4};
+  int moved = 0, lost = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    OccupancyMap map(options);
+    const int obstacles = trial % 3 == 0 ? 400 : 40;
+    for (int i = 0; i < obstacles; ++i) {
+      map.SetOccupied({draw.Uniform(-1.6, 1.6), draw.Uniform(-1.6, 1.6), draw.Uniform(-0.8, 0.8)});
+    }
+    FreeSpace space = SpaceOf(map);
+    space.ceiling = draw.Uniform(0.2, 0.9);
+    space.floor = draw.Uniform(-0.9, -0.1);
+    space.pad_radius = 0.5;
+    space.pad_floor = -0.9;
+    const CellIndex at = map.CellOf(
+        {draw.Uniform(-1.55, 1.55), draw.Uniform(-1.55, 1.55), draw.Uniform(-0.75, 0.75)});
+    const double reach = GridSearch::kEndSearchRadius / map.resolution();
+    double nearest2 = std::numeric_limits<double>::infinity();
+    for (CellIndex cell(0, 0, at.z() - 15); cell.z() <= at.z() + 15; ++cell.z()) {
+      for (cell.y() = at.y() - 15; cell.y() <= at.y() + 15; ++cell.y()) {
+        for (cell.x() = at.x() - 15; cell.x() <= at.x() + 15; ++cell.x()) {
+          if (!map.InWindow(cell) || space.Blocked(cell)) continue;
+          nearest2 = std::min(nearest2, static_cast<double>((cell - at).squaredNorm()));
+        }
+      }
+    }
+    CellIndex found = at;
+    const bool any = GridSearch::NearestFree(space, &found);
+    ASSERT_EQ(any, nearest2 < reach * reach) << "trial " << trial;
+    if (any) {
+      EXPECT_EQ((found - at).squaredNorm(), nearest2) << "trial " << trial;
+      EXPECT_FALSE(space.Blocked(found)) << "trial " << trial;
+    }
+    moved += any && found != at;
+    lost += !any;
+  }
+  EXPECT_GT(moved, 20);
+  EXPECT_LT(lost, 20);
+}
+
 TEST(GridSearch, FindsShortestPathsThroughFreeCells) {
   Draw draw(23);
   OccupancyMapOptions options = SmallMap(0.2);
