@@ -26,6 +26,10 @@ class PadPrediction {
   /// State of the pad at the absolute time t [s]. Smooth in t; any finite t is allowed.
   /// Does not allocate.
   virtual PadState At(double t) const noexcept = 0;
+
+  /// The same but for cov_p, which is not looked at. Whoever plans asks this a thousand times a step; of a
+  /// belief the covariance is what costs.
+  virtual PadState MeanAt(double t) const noexcept { return At(t); }
 };
 
 }  // namespace touchdown::estimation

@@ -23,6 +23,13 @@ PadState BeliefPrediction::At(double t) const noexcept {
   return ToPadState(PropagateBelief(belief_, t, noise_), height_);
 }
 
+PadState BeliefPrediction::MeanAt(double t) const noexcept {
+  PadBelief belief = belief_;
+  belief.mean = Propagate(belief_.motion, belief_.mean, t - belief_.t);
+  belief.cov.setZero();
+  return ToPadState(belief, height_);
+}
+
 BeliefPrediction Predict(const PadFilter& filter) {
   if (!filter.initialized()) {
     throw std::invalid_argument("Predict: the pad filter has had no measurement yet");

@@ -17,6 +17,8 @@ class BeliefPrediction final : public PadPrediction {
 
   /// Any finite t [s], before or after the belief's. Does not allocate.
   PadState At(double t) const noexcept override;
+  /// cov_p is zero.
+  PadState MeanAt(double t) const noexcept override;
 
   const PadBelief& belief() const { return belief_; }
 

@@ -11,7 +11,7 @@ namespace touchdown::planning {
 
 EndState EndStateAt(const estimation::PadPrediction& pad, const EndpointTarget& target,
                     double t_arrival) noexcept {
-  const estimation::PadState at = pad.At(t_arrival);
+  const estimation::PadState at = pad.MeanAt(t_arrival);
   const double sunk = target.height - target.sink_rate * (t_arrival - target.t_reference);
   const bool sinking = sunk > target.height_floor;
   const Eigen::Vector3d offset(0.0, 0.0, sinking ? sunk : target.height_floor);

@@ -18,12 +18,12 @@ constexpr double kAboveDeck = 0.1;  // of one that is not to touch: a cell's rou
 void LayPadStrip(const estimation::PadPrediction& pad, const EndpointTarget& target,
                  const Eigen::Vector3d& p_start, double t_start, double t_end, double radius,
                  double contact_height, FreeSpace* space) noexcept {
-  space->pad_from = pad.At(t_start).p_WP.head<2>();
-  space->pad_to = pad.At(t_end).p_WP.head<2>();
+  space->pad_from = pad.MeanAt(t_start).p_WP.head<2>();
+  space->pad_to = pad.MeanAt(t_end).p_WP.head<2>();
   space->pad_radius = radius;
   const double end = EndStateAt(pad, target, t_end).state.p.z();
   const double lower = space->OverPad(p_start) ? std::min(p_start.z(), end) : end;
-  const double deck = pad.At(t_end).p_WP.z() + contact_height;
+  const double deck = pad.MeanAt(t_end).p_WP.z() + contact_height;
   space->pad_floor = std::min(lower - kSlack, deck + kAboveDeck);
 }
 

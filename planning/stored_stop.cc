@@ -36,13 +36,13 @@ double TooLow(const Eigen::Vector3d& p, double t, const HullSpace& hull) {
 
 /// Of the feet above the deck, wherever that is [m].
 double FeetAbove(const UniformBspline& curve, double t, const HullSpace& hull) {
-  return curve.EvaluateOnward(t).p_WB.z() - hull.foot_depth - hull.pad->At(t).p_WP.z();
+  return curve.EvaluateOnward(t).p_WB.z() - hull.foot_depth - hull.pad->MeanAt(t).p_WP.z();
 }
 
 }  // namespace
 
 double LowestRest(double t, const HullSpace& hull) {
-  return hull.pad->At(t).p_WP.z() + hull.foot_depth + kAboveDeck;
+  return hull.pad->MeanAt(t).p_WP.z() + hull.foot_depth + kAboveDeck;
 }
 
 void Enter(const PairProof& proof, Certificate* certificate) {
@@ -98,7 +98,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
 }
 
 bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull) {
-  const Eigen::Vector3d v = curve.EvaluateOnward(t).v_WB - hull.pad->At(t).v_WP;
+  const Eigen::Vector3d v = curve.EvaluateOnward(t).v_WB - hull.pad->MeanAt(t).v_WP;
   return -v.z() <= share * kSoftSink && v.head<2>().norm() <= share * kSoftDrift;
 }
 
@@ -110,7 +110,7 @@ double ContactTime(const UniformBspline& curve, double t_from, const HullSpace& 
   double above = std::max(t_from, curve.t_end());
   const double left = FeetAbove(curve, above, hull);
   if (left > 0.0) {
-    const double sinks = hull.pad->At(above).v_WP.z() - curve.EvaluateOnward(above).v_WB.z();
+    const double sinks = hull.pad->MeanAt(above).v_WP.z() - curve.EvaluateOnward(above).v_WB.z();
     const double t = sinks > 0.0 ? above + left / sinks : kNever;
     return t <= curve.t_end() + kOnward && over_deck(t) ? t : kNever;
   }

@@ -225,10 +225,10 @@ class Tube {
     Deck deck;
     deck.exempt_below = map_.options().ground_height;
     if (hull_.pad == nullptr) return deck;
-    deck.outline = OutlineOf(hull_.pad->At(t), hull_.deck_half_size);
-    const double top = deck.outline.p_WP.z();
+    const double top = hull_.pad->MeanAt(t).p_WP.z();
     const double highest = top + face_noise_ + map_.resolution();  // of cells that hold its face
     if (p.z() - radius_ >= highest) return deck;
+    deck.outline = OutlineOf(hull_.pad->At(t), hull_.deck_half_size);
     deck.over = deck.outline.SurelyOver(p);
     if (deck.over) deck.exempt_below = std::max(deck.exempt_below, top);
     return deck;
@@ -314,11 +314,11 @@ class Tube {
 bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double sinks,
                double below, const Eigen::Vector3d& start) {
   if (hull.pad == nullptr || p.z() >= start.z() - kRounding) return true;
-  const estimation::PadState pad = hull.pad->At(t);
+  const estimation::PadState pad = hull.pad->MeanAt(t);
   const double deck_feet = pad.p_WP.z() + hull.foot_depth, above = p.z() - deck_feet;
   const bool softly = sinks + pad.v_WP.z() <= kLandingRoom * kSoftSink;
   if (above >= kLow || (above >= -below && (softly || start.z() < deck_feet + kLow))) return true;
-  const PadOutline deck = OutlineOf(pad, hull.deck_half_size);
+  const PadOutline deck = OutlineOf(hull.pad->At(t), hull.deck_half_size);
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 

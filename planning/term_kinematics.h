@@ -65,7 +65,7 @@ Triple<T> AtTime(const T& t, const Eigen::Vector3d& x, const Eigen::Vector3d& dx
 /// The pad's position at time t.
 template <class T>
 Triple<T> PadPosition(const estimation::PadPrediction& pad, const T& t) {
-  const estimation::PadState at = pad.At(ValueOf(t));
+  const estimation::PadState at = pad.MeanAt(ValueOf(t));
   return AtTime(t, at.p_WP, at.v_WP, at.a_WP);
 }
 

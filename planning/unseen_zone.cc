@@ -25,7 +25,7 @@ void UnseenZone::Build(const HullSpace& hull, const Eigen::Vector3d& start_W, do
   const double farthest = std::min(reach, kFarthest);
   const int asked = std::min(kReach, static_cast<int>(farthest / side) + around + 1);
   const double ground = map.options().ground_height;
-  const double deck = hull.pad != nullptr ? hull.pad->At(0.0).p_WP.z() + side : ground;
+  const double deck = hull.pad != nullptr ? hull.pad->MeanAt(0.0).p_WP.z() + side : ground;
   // Only cells of this box may be touched at the start.
   const int beside = around + 1;
   const std::uint64_t beside_x = (~std::uint64_t{0} >> (64 - std::min(64, 2 * beside + 1)))

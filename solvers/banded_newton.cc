@@ -55,7 +55,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     const double value = at.full.value;
     if (Largest(gradient_) == 0.0) return SolveStatus::kConverged;
     // Where nothing curves at all a first step goes far beyond the point.
-    if (curvature == 0.0 && LargestElement(at.hessian) == 0.0) curvature = Largest(gradient_);
+    if (curvature == 0.0 && at.hessian.IsZero()) curvature = Largest(gradient_);
     double shift = 0.0;
     if (!FactorDefinite(at.hessian, &factor_, curvature, &shift)) {
       return SolveStatus::kNumericalFailure;

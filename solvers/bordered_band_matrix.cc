@@ -26,6 +26,12 @@ void BorderedBandMatrix::SetZero() {
   corner_ = 0.0;
 }
 
+bool BorderedBandMatrix::IsZero() const {
+  const auto zero = [](double element) { return element == 0.0; };
+  return corner_ == 0.0 && std::all_of(band_.begin(), band_.end(), zero) &&
+         std::all_of(border_.begin(), border_.end(), zero);
+}
+
 namespace {
 
 /// out += the symmetric band times in; kSize 0 stands for any block size.

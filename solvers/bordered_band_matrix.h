@@ -15,6 +15,7 @@ class BorderedBandMatrix {
   /// Sizes and zeroes. Allocates.
   void Resize(int blocks, int block_size, int half_bandwidth, bool bordered);
   void SetZero();
+  bool IsZero() const;
 
   int blocks() const { return blocks_; }
   int block_size() const { return d_; }

@@ -133,6 +133,28 @@ TEST(BeliefPrediction, DerivativesAreExact) {
   }
 }
 
+TEST(BeliefPrediction, TheMeanIsTheStateWithoutItsCovariance) {
+  for (const PadMotion motion : {PadMotion::kVelocity, PadMotion::kHeading, PadMotion::kTurn}) {
+    PadBelief belief;
+    belief.motion = motion;
+    belief.t = 2.0;
+    belief.mean = PadStart(1, 2, 0.8, 0.1, motion == PadMotion::kTurn ? 0.15 : 0.0);
+    belief.cov.setIdentity();
+    const BeliefPrediction prediction(belief, 0.3, PadNoise{});
+    for (const double t : {-3.0, 2.0, 2.5, 40.0}) {
+      const PadState at = prediction.At(t), mean = prediction.MeanAt(t);
+      EXPECT_EQ(mean.p_WP, at.p_WP);
+      EXPECT_EQ(mean.v_WP, at.v_WP);
+      EXPECT_EQ(mean.a_WP, at.a_WP);
+      EXPECT_EQ(mean.j_WP, at.j_WP);
+      EXPECT_EQ(mean.yaw, at.yaw);
+      EXPECT_EQ(mean.yaw_rate, at.yaw_rate);
+      EXPECT_TRUE(mean.cov_p.isZero(0.0));
+      EXPECT_GT(at.cov_p.trace(), 1.0);
+    }
+  }
+}
+
 TEST(BeliefPrediction, AnyFiniteTimeIsFinite) {
   PadBelief belief;
   belief.motion = PadMotion::kTurn;
