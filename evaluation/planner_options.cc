@@ -114,6 +114,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.max_segments = scenario.planning.max_segments;
   options.max_expansions = scenario.planning.max_expansions;
   options.warm_start = scenario.planning.warm_start;
+  options.gap = scenario.solver.gap;
   // A plan is flown until the next one takes over, a period later; with a measured latency that may
   // come with the longest after one with the shortest.
   const double period = 1.0 / scenario.planning.rate;

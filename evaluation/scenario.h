@@ -206,6 +206,7 @@ struct Scenario {
     ArrivalKind arrival = ArrivalKind::kFree;
     EndpointKind endpoint = EndpointKind::kEliminated;
     LimitsKind limits = LimitsKind::kSoft;
+    double gap = 0.005;  ///< to the optimum, at which a solve ends, share of the cost
     std::map<std::string, double> options;  ///< of the backend, by its own names
   } solver;
   /// terms.<term>.<key>: weight, hard (0 or 1) or a parameter of the term.

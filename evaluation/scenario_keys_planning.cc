@@ -59,8 +59,8 @@ void AddPlanningKeys(KeyList& keys) {
             TOUCHDOWN_AT(planning.guides)));
   keys.push_back(
       Whole("planning.max_segments", 400, 1000000,
-            "planner landing: segments of curves that a step's solves evaluate at most; what does "
-            "not fit goes on in the next step",
+            "planner landing: segments of curves that a step's solves evaluate at most; a step that "
+            "finds no plan within that is gone on with in the next",
             TOUCHDOWN_AT(planning.max_segments)));
   keys.push_back(
       Whole("planning.max_expansions", 100, 1000000,
@@ -87,6 +87,10 @@ void AddPlanningKeys(KeyList& keys) {
   keys.push_back(Choice("solver.limits", {"soft", "hard"},
                         "limits as penalties, or as constraints at the full limit",
                         TOUCHDOWN_AT(solver.limits)));
+  keys.push_back(Number<Scenario>("solver.gap", In(0, 0.5, ""),
+                                  "a solve ends so near to the optimum, as a share of the cost, with "
+                                  "every backend; 0: where the backend's own options say",
+                                  TOUCHDOWN_AT(solver.gap)));
   keys.push_back(Number<Scenario>("limits.speed", In(0.5, 20, "m/s"), "norm of the velocity",
                                   TOUCHDOWN_AT(limits.speed)));
   keys.push_back(Number<Scenario>("limits.acceleration", In(0.5, 20, "m/s^2"),

@@ -365,6 +365,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   problem.SetLimitWeightScale(candidate->pressure.limits);
   solvers::Stop stop;
   stop.max_iterations = options_.max_iterations;
+  stop.gap = options_.gap;
   stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
   stop.max_evaluations = segments_left_ / posed.segments;

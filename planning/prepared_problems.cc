@@ -13,10 +13,6 @@ namespace touchdown::planning {
 
 namespace {
 
-// Not the last digits of an optimum make a plan, but its certificate: where the caller does not say
-// otherwise, solves end this near to it, as shares of the cost.
-constexpr std::pair<const char*, double> kCloseEnough[] = {{"gap_tolerance", 5e-3},
-                                                           {"function_tolerance", 1e-5}};
 constexpr double kLongestSegment = 0.75;  // at full speed [m]
 constexpr double kSlowestSegment = 0.30;  // [s]
 constexpr int kFewestSegments = 12;
@@ -28,11 +24,6 @@ PreparedProblem Prepare(const ReplannerOptions& options, const solvers::BackendR
   PreparedProblem prepared;
   prepared.problem = std::make_unique<LandingProblem>(segments, ProblemOptions(options, arrival));
   prepared.backend = solvers::MakeBackend(backends, options.backend);
-  for (const solvers::OptionSpec& option : prepared.backend->options().specs()) {
-    for (const auto& [name, value] : kCloseEnough) {
-      if (option.name == name) prepared.backend->options().Set(name, value);
-    }
-  }
   for (const auto& [name, value] : options.solver_options) {
     prepared.backend->options().Set(name, value);
   }

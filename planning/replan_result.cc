@@ -102,7 +102,7 @@ const char* Explain(ReplanReason reason) {
       return "The pad moves at more than nine tenths of the speed limit: hard limits leave no "
              "interior.";
     case ReplanReason::kBudgetSpent:
-      return "The work that a step may do was done before there was a plan; the next step goes on.";
+      return "The work that a step may do was done before there was a plan.";
     case ReplanReason::kLimitsExceeded:
       return "The curve still exceeds a limit after every re-timing.";
     case ReplanReason::kAtGoal:

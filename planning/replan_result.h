@@ -47,6 +47,9 @@ struct ReplannerOptions {
   bool warm_start = true;       ///< a solve begins at the rest of the committed plan
   int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
   int max_iterations = 50;      ///< solver iterations per solve
+  /// A solve ends so near to the optimum, as a share of the cost (solvers::Stop::gap): not the last digits of
+  /// an optimum make a plan, but its certificate.
+  double gap = 5e-3;
   // What a step may do; the next one goes on at the attempt that did not fit.
   int max_segments = 4000;     ///< that solvers evaluate, one time each
   int max_expansions = 12000;  ///< of spans of columns, in searches for ways
@@ -89,7 +92,7 @@ enum class ReplanReason {
   kCollisionRemains,  ///< still blocked after every re-binding round
   kUnobserved,        ///< too fast to stop before space that was never observed
   kEndTooFast,        ///< hard limits leave no interior: the pad moves near the speed limit
-  kBudgetSpent,       ///< the step's work was done before there was a plan; the next step goes on
+  kBudgetSpent,       ///< the step's work was done before there was a plan
   kLimitsExceeded,    ///< still beyond a limit after every re-timing round
   kAtGoal,            ///< the baseline only: nearer to the goal than it makes plans for
 };

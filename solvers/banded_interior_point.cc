@@ -257,9 +257,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     const Errors errors = MeasureErrors(view, evaluator);
     steepest = std::max(steepest, Largest(evaluator->last().gradient));
     // A metric with a shift is blind.
-    const bool stationary = errors.dual <= tolerances.gap &&
-                            (shift == 0.0 || Largest(right_) <= kRounding * steepest);
-    if (errors.gap <= tolerances.gap && errors.worth <= tolerances.gap && stationary &&
+    const bool stationary = shift == 0.0 || Largest(right_) <= kRounding * steepest;
+    if (errors.gap + errors.worth + errors.dual <= tolerances.gap && stationary &&
         (errors.row <= tolerances.violation ||
          (mode.elastic && LargestMultiplier(0.0) > 0.5 * price_))) {
       // An earlier point may cost less by what it violates within the tolerance. One that costs

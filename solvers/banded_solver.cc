@@ -3,6 +3,8 @@
 
 #include "touchdown/solvers/banded_solver.h"
 
+#include <algorithm>
+
 #include "touchdown/solvers/banded_interior_point.h"
 #include "touchdown/solvers/banded_newton.h"
 
@@ -51,6 +53,8 @@ class BandedSolver : public SolverBackend {
   }
 
  private:
+  bool measures_gap() const override { return true; }
+
   void DoPrepare(const View& view) override {
     has_rows_ = view.bounded() || HasRows(view);
     if (has_rows_) {
@@ -63,14 +67,16 @@ class BandedSolver : public SolverBackend {
   void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
                SolverResult* result) override {
     const ShareScope scope(evaluator, Share::kNative);
-    const double gap = (stop.confirm ? kConfirmedShare : 1.0) * options().Get("gap_tolerance");
+    const bool confirmed = stop.confirm && stop.gap == 0.0;
+    const double own = (confirmed ? kConfirmedShare : 1.0) * options().Get("gap_tolerance");
+    const double gap = std::max(own, stop.gap);
     if (!has_rows_) {
-      result->status = newton_.Run(view, warm.y.data(), {gap, stop.confirm}, evaluator);
+      result->status = newton_.Run(view, warm.y.data(), {gap, confirmed}, evaluator);
       result->message = Words(result->status, has_rows_);
       return;
     }
     result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
-                                         {gap, options().Get("violation_tolerance"), stop.confirm},
+                                         {gap, options().Get("violation_tolerance"), confirmed},
                                          evaluator);
     result->message = Words(result->status, has_rows_);
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));

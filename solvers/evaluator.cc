@@ -17,9 +17,11 @@ void Evaluator::Prepare(const View& view) {
   best_cost_by_term_.assign(static_cast<std::size_t>(view.problem().num_terms()), 0.0);
 }
 
-void Evaluator::Begin(const View& view, const Stop& stop) {
+void Evaluator::Begin(const View& view, const Stop& stop, GapRule* rule) {
   view_ = &view;
   stop_ = &stop;
+  rule_ = rule;
+  near_enough_ = false;
   cache_valid_ = false;
   evaluations_ = iterations_ = 0;
   failed_ = false;
@@ -81,9 +83,16 @@ bool Evaluator::Run(const double* y, bool new_point, Want want, const Lagrangian
 
 void Evaluator::FinishIteration(double step_norm, double gradient_max_norm) {
   ++iterations_;
+  CheckGap();
   if (!stop_->trace) return;
   trace_.push_back({iterations_, best_cost_, best_cost_by_term_, best_violation_, step_norm,
                     gradient_max_norm, elapsed_s()});
+}
+
+void Evaluator::CheckGap() {
+  if (!rule_ || must_stop() || !has_best_) return;
+  const ShareScope scope(this, Share::kEvaluation);
+  near_enough_ = rule_->Met(best_, best_cost_, best_violation_);
 }
 
 Share Evaluator::SwitchShare(Share share) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "touchdown/solvers/gap_rule.h"
 #include "touchdown/solvers/solver_result.h"
 #include "touchdown/solvers/stop.h"
 #include "touchdown/solvers/view.h"
@@ -25,8 +26,8 @@ class Evaluator {
 
   /// Sizes all storage for views of this structure. The only call that allocates.
   void Prepare(const View& view);
-  /// Starts a solve. Both arguments outlive it.
-  void Begin(const View& view, const Stop& stop);
+  /// Starts a solve. All arguments outlive it. `rule`: asked after each iteration, if there is one.
+  void Begin(const View& view, const Stop& stop, GapRule* rule = nullptr);
 
   /// Evaluates the objective and all rows at y; false if a term could not. A backend may ask for
   /// value, gradient and Hessian one by one: what is known of the last point is not forgotten, and
@@ -51,9 +52,13 @@ class Evaluator {
   /// Charges the time from now on to `share`; returns what it was charged to before.
   Share SwitchShare(Share share);
 
-  /// The status that ends the solve now, or kConverged while it may go on.
+  /// The status that ends the solve now, or kConverged while it may go on, or where the best point is near
+  /// enough to the optimum.
   SolveStatus stop_status() const { return stop_status_; }
-  bool must_stop() const { return stop_status_ != SolveStatus::kConverged; }
+  bool must_stop() const { return near_enough_ || stop_status_ != SolveStatus::kConverged; }
+  bool near_enough() const { return near_enough_; }
+  /// Asks the rule again.
+  void CheckGap();
   /// Asks the budgets and the clock again; the callback is asked once at each evaluation.
   bool CheckStop();
   /// Asks the clock alone, whatever else is used up: for what comes after a solve. True also where
@@ -86,6 +91,8 @@ class Evaluator {
 
   const View* view_ = nullptr;
   const Stop* stop_ = nullptr;
+  GapRule* rule_ = nullptr;
+  bool near_enough_ = false;
   ViewEvaluation storage_;
   Eigen::VectorXd cached_;
   bool cache_valid_ = false;

@@ -100,10 +100,9 @@ class NloptSolver : public SolverBackend {
     nlopt_set_param(opt_, "dual_maxeval", kMostDualEvaluations);
   }
 
-  void DoSolve(const View& view, const WarmStart& warm, const Stop& stop, Evaluator* evaluator,
+  void DoSolve(const View& view, const WarmStart& warm, const Stop& /*stop*/, Evaluator* evaluator,
                SolverResult* result) override {
     evaluator_ = evaluator;
-    max_iterations_ = stop.max_iterations;
     failures_ = repeats_ = 0;
     lost_ = false;
     improvement_ = HUGE_VAL;
@@ -255,9 +254,7 @@ class NloptSolver : public SolverBackend {
     if (ok && point_.Improved(&step)) {
       improvement_ = std::abs(evaluator_->best_cost() - best_before);
       evaluator_->FinishIteration(step, norm);
-      if (evaluator_->iterations() >= max_iterations_ && evaluator_->CheckStop()) {
-        nlopt_force_stop(opt_);
-      }
+      if (evaluator_->CheckStop()) nlopt_force_stop(opt_);
     }
     return ok ? point_.value() : HUGE_VAL;
   }
@@ -313,7 +310,6 @@ class NloptSolver : public SolverBackend {
   std::vector<double> z_, u_, jacobian_;
   std::vector<double> lower_, upper_;  // infinite where NLopt keeps to none
   std::vector<Side> equalities_, inequalities_;
-  int max_iterations_ = 0;
   int failures_ = 0;
   bool lost_ = false;  // a point that was asked for is not finite
   int repeats_ = 0;

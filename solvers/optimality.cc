@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAtBound = 1e-5;   // way of a row to its bound, along its slope
+constexpr double kPushingFrom[] = {1e-5, 1e-3, 1e-1};  // the same, far from the optimum
 constexpr double kRowWeight = 1e7;  // beside the curvature, of rows that are to be kept
 constexpr int kRefinements = 4;
 constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
@@ -83,6 +84,26 @@ Optimality OptimalityCheck::Look(const View& view, const Eigen::VectorXd& y,
   return found;
 }
 
+double OptimalityCheck::Above(const View& view, const Eigen::VectorXd& y,
+                              ViewEvaluation* storage) {
+  static const MustStop kNever;
+  first_cost_ = 0.0;
+  if (!Begin(view, y, kNever, storage)) return kInfinity;
+  TakeMultipliers(SolverResult());
+  double least = kInfinity;
+  const auto weigh = [&] {
+    if (Weigh().evaluated && shift_ <= kFirstShift) least = std::min(least, left_);
+  };
+  weigh();
+  // Of rows that push a point may stay off as far as it is from the optimum: which ones push is tried.
+  for (const double reach : kPushingFrom) {
+    if (rows_.size() == 0) break;
+    at_bound_ = reach;
+    if (Estimate()) weigh();
+  }
+  return least;
+}
+
 bool OptimalityCheck::Begin(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
                             ViewEvaluation* storage) {
   view_ = &view;
@@ -90,6 +111,7 @@ bool OptimalityCheck::Begin(const View& view, const Eigen::VectorXd& y, const Mu
   must_stop_ = &must_stop;
   at_ = storage;
   evaluations_ = 0;
+  at_bound_ = kAtBound;
   if (!Evaluate(y.data(), {.gradient = true}, {})) return false;
   for (std::size_t i = 0; i < size_.size(); ++i) {
     size_[i] = 1.0 + std::abs(y[static_cast<Eigen::Index>(i)]);
@@ -180,7 +202,7 @@ double OptimalityCheck::Violation(int row, double u) const {
 OptimalityCheck::Side OptimalityCheck::SideOf(int row) const {
   if (rows_.lo(row) == rows_.hi(row)) return Side::kBoth;
   const double to_upper = rows_.hi(row) - u_[row], to_lower = u_[row] - rows_.lo(row);
-  if (std::min(to_upper, to_lower) > kAtBound * norm_[row]) return Side::kNone;
+  if (std::min(to_upper, to_lower) > at_bound_ * norm_[row]) return Side::kNone;
   return to_upper <= to_lower ? Side::kUpper : Side::kLower;
 }
 

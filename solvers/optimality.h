@@ -28,6 +28,11 @@ class OptimalityCheck {
   Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
                   double first_cost, const MustStop& must_stop, ViewEvaluation* storage);
 
+  /// By how much the cost of y, which keeps the rows, is above the optimum at most, by the conditions: what a Newton
+  /// step promises and what rows that push are off their bounds, with multipliers that are estimated.
+  /// Infinite where the Lagrangian does not curve upwards. Does not allocate.
+  double Above(const View& view, const Eigen::VectorXd& y, ViewEvaluation* storage);
+
   /// A step along the slopes of the rows, or a part of it, meets them better by half of what they
   /// promise: where a backend says that they cannot be met, it only gave up.
   bool CanGetCloser(const View& view, const Eigen::VectorXd& y, const MustStop& must_stop,
@@ -92,6 +97,7 @@ class OptimalityCheck {
   double cost_size_ = 0.0;  // what was gained, or its slope
   double curvature_ = 0.0;  // the most of the Lagrangian
   double left_ = 0.0;       // of the cost, by the conditions
+  double at_bound_ = 0.0;   // way of a row to its bound, along its slope
   double shift_ = 0.0;      // that made the Hessian definite, share of the diagonal
   ConstraintRows rows_;     // bounds among them
   BorderedCholesky factor_;

@@ -105,6 +105,7 @@ void SolverBackend::Prepare(const View& view) {
   prepared_.clear();  // what follows may throw with half of it sized
   evaluator_.Prepare(view);
   check_.Prepare(view);
+  rule_.Prepare(view, &check_);
   inside_.y.resize(view.num_variables());
   if (view.num_variables() > 0) DoPrepare(view);
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
@@ -152,6 +153,10 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
                                   ": the warm start has multipliers that are " + "not finite");
     }
   }
+  if (!(stop.gap >= 0.0 && stop.gap < 1.0)) {
+    throw std::invalid_argument("backend " + name_ + ": stop.gap is " + std::to_string(stop.gap) +
+                                ", it must be in [0, 1)");
+  }
   inside_.y = warm.y;
   view.MoveIntoBounds(inside_.y.data());
   if (inside_.y != warm.y) {
@@ -159,7 +164,9 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     return Solve(view, inside_, stop, result);
   }
   const double cpu_start = ThreadCpuSeconds();
-  evaluator_.Begin(view, stop);
+  const bool asks_rule = stop.gap > 0.0 && n > 0 && !measures_gap();
+  if (asks_rule) rule_.Begin(view, stop.gap);
+  evaluator_.Begin(view, stop, asks_rule ? &rule_ : nullptr);
   result->trace.clear();
   result->message.clear();
   for (auto& rows : result->multipliers) rows.clear();  // keeps its storage
@@ -170,7 +177,10 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     const bool feasible = evaluator_.best_violation() <= Evaluator::kFeasible;
     result->status = feasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
   } else {
-    DoSolve(view, warm, stop, &evaluator_, result);
+    // A start may be near enough.
+    if (asks_rule && evaluator_.Evaluate(warm.y.data(), {})) evaluator_.CheckGap();
+    if (!evaluator_.must_stop()) DoSolve(view, warm, stop, &evaluator_, result);
+    if (evaluator_.near_enough()) result->status = SolveStatus::kConverged;
   }
   // A claim that the last iteration allowed has led to is looked at like others.
   const bool claimed = result->status == SolveStatus::kConverged &&
@@ -184,7 +194,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   }
 
   result->optimality = {};
-  if (n > 0 && stop.confirm) Judge(view, warm.y, result);
+  if (n > 0 && stop.confirm && stop.gap == 0.0) Judge(view, warm.y, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();

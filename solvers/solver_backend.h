@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/solvers/evaluator.h"
+#include "touchdown/solvers/gap_rule.h"
 #include "touchdown/solvers/optimality.h"
 #include "touchdown/solvers/solver_options.h"
 #include "touchdown/solvers/solver_result.h"
@@ -18,11 +19,11 @@ namespace touchdown::solvers {
 /// What a backend can take. `compiled` false: it was left out at configure time.
 struct Capabilities {
   bool compiled = true;
-  bool hard_rows = false;                          ///< inequality constraint rows
-  bool equality_rows = false;                      ///< equality constraint rows
-  bool variable_bounds = false;                    ///< bounds on blocks (Problem::SetBounds)
-  bool free_interval = true;                       ///< a free knot interval
-  bool needs_residuals = false;                    ///< takes only costs that are sums of squares
+  bool hard_rows = false;        ///< inequality constraint rows
+  bool equality_rows = false;    ///< equality constraint rows
+  bool variable_bounds = false;  ///< bounds on blocks (Problem::SetBounds)
+  bool free_interval = true;     ///< a free knot interval
+  bool needs_residuals = false;  ///< takes only costs that are sums of squares
 };
 
 /// A solver behind one interface. Everything that does not differ between backends happens once,
@@ -59,6 +60,9 @@ class SolverBackend {
 
  private:
   virtual void DoPrepare(const View& view) = 0;
+  /// The bound of GapRule is what the backend's own stop test looks at, with a factor that it has anyway: it
+  /// keeps Stop::gap itself.
+  virtual bool measures_gap() const { return false; }
   /// Runs the solver from `warm`, evaluating only through `evaluator`, and tells it of every
   /// finished iteration. Sets status (converged is a claim that the base checks), native_status and
   /// message, multipliers if it has them; charges the time inside its library to Share::kNative.
@@ -73,6 +77,7 @@ class SolverBackend {
   SolverOptions options_;
   Evaluator evaluator_;
   OptimalityCheck check_;
+  GapRule rule_;
   WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the bounds
   std::vector<double> prepared_;         // signature of the prepared structure
 };

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/solvers/bordered_cholesky.h"
+#include "touchdown/solvers/optimality.h"
+#include "touchdown/solvers/view.h"
+
+namespace touchdown::solvers {
+
+/// Ends a solve near enough to the optimum (Stop::gap), by a bound that no backend makes: so different
+/// backends end at points that are equally good. The bound is what a Newton step of the Lagrangian
+/// promises, plus what rows are off their bounds times their multipliers, which are estimated; for a
+/// convex quadratic problem it is exact.
+///
+/// A look costs a Hessian and its factor. So there is none before the cost has fallen by half of what the
+/// last one found too much.
+class GapRule {
+ public:
+  /// Allocates for views of this structure. `check` was prepared for it, too, and outlives this.
+  void Prepare(const View& view, OptimalityCheck* check);
+  /// Starts a solve; `gap` is a share of the cost.
+  void Begin(const View& view, double gap);
+  /// A point of this cost and violation is near enough. Does not allocate.
+  bool Met(const Eigen::VectorXd& y, double cost, double violation);
+
+ private:
+  double Promised(const Eigen::VectorXd& y);
+
+  OptimalityCheck* check_ = nullptr;
+  const View* view_ = nullptr;
+  ViewEvaluation storage_;
+  BorderedCholesky factor_;
+  std::vector<double> step_;
+  bool has_rows_ = false;  // or bounds
+  double gap_ = 0.0;
+  double look_below_ = 0.0;  // costs
+};
+
+}  // namespace touchdown::solvers
