@@ -69,9 +69,9 @@ class OccupancyMap {
   const OccupancyMapOptions& options() const { return options_; }
   double resolution() const { return options_.resolution; }
 
-  /// Moves the window so that it is centred at p_W, once p_W is a sixteenth of the window's size
-  /// off its centre. Cells that enter are unknown. Cells that leave are forgotten; those that have
-  /// changed since they entered or were last taken are put in `memory` before.
+  /// Keeps the window's centre near p_W: moves it by a slice of a few cells along the axis on which p_W is farthest off,
+  /// or at once if that is 16 cells or an eighth of the window. Cells that enter are unknown. Cells that leave are
+  /// forgotten; those that have changed since they entered or were last taken are put in `memory` before.
   void Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory = nullptr);
 
   /// Moves the window so that `origin` is its lowest cell.

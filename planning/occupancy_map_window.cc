@@ -4,17 +4,31 @@
 // anew from the obstacles that stay.
 
 #include <algorithm>
+#include <bit>
 
 #include "touchdown/planning/occupancy_map.h"
 
 namespace touchdown::planning {
 
+namespace {
+
+constexpr int kSlice = 4;  // a move of the window, along one axis [cells] ...
+constexpr int kJump = 16;  // ... but when it is so far off: at once
+
+}  // namespace
+
 void OccupancyMap::Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory) {
   entered_.clear();
   const CellIndex target = CellOf(p_W) - size_ / 2;
   const CellIndex offset = (target - origin_).cwiseAbs();
-  // A shift costs whole slabs of cells, so the window waits until there is one to move.
-  if (((offset - size_ / 16).array() >= 0).any()) MoveWindow(target, memory);
+  const CellIndex far = (size_ / 8).cwiseMin(kJump);
+  if (((offset - far).array() >= 0).any()) return MoveWindow(target, memory);
+  // In slices: thin slabs of one axis at a time, so that no frame pays for many.
+  int axis = 0;
+  if (offset.maxCoeff(&axis) < kSlice) return;
+  CellIndex next = origin_;
+  next[axis] = target[axis];
+  MoveWindow(next, memory);
 }
 
 void OccupancyMap::MoveWindow(const CellIndex& origin, CellBlocks* memory) {
@@ -23,8 +37,12 @@ void OccupancyMap::MoveWindow(const CellIndex& origin, CellBlocks* memory) {
   const CellBox stays = {old.low.cwiseMax(origin), old.high.cwiseMin(origin + size_)};
   EdgeSlabs(old, -shift, &slabs_);
   for (const CellBox& slab : slabs_) {
-    ForEachSet(known_, slab, [&](const CellIndex& cell) { Forget(cell, stays, memory); });
     ForEachStretch(slab, [&](const Stretch& s) {
+      std::uint64_t known = (known_[s.word] & s.mask()) >> s.shift;
+      if (known == 0) return;
+      for (; known != 0; known &= known - 1) {
+        Forget(s.first + std::countr_zero(known) * CellIndex::UnitX(), stays, memory);
+      }
       for (Bits* bits : {&known_, &free_, &obstacles_, &settled_}) (*bits)[s.word] &= ~s.mask();
     });
   }

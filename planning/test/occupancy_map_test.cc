@@ -251,6 +251,26 @@ TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
   }
 }
 
+TEST(OccupancyMap, MovesInThinSlicesOfOneAxis) {
+  OccupancyMap map(OccupancyMapOptions{});
+  const auto off_centre = [&](const Eigen::Vector3d& p) -> CellIndex {
+    return (map.CellOf(p) - map.size() / 2 - map.origin()).cwiseAbs();
+  };
+  int moves = 0;
+  Eigen::Vector3d p(0.05, 0.05, 0.05);
+  for (int step = 0; step < 200; ++step, p += Eigen::Vector3d(0.3, -0.2, 0.02)) {
+    map.Recentre(p);
+    EXPECT_LT(off_centre(p).maxCoeff(), 8);
+    if (map.entered().empty()) continue;
+    ++moves;
+    ASSERT_EQ(map.entered().size(), 1u);
+    EXPECT_LE((map.entered()[0].high - map.entered()[0].low).minCoeff(), 8);
+  }
+  EXPECT_GT(moves, 100);
+  map.Recentre(p + Eigen::Vector3d(5.0, 5.0, 0.0));
+  EXPECT_EQ(off_centre(p + Eigen::Vector3d(5.0, 5.0, 0.0)), CellIndex::Zero()) << "it jumped";
+}
+
 // Rows are stored around the window's end, in words of 64 cells or in a part of one.
 TEST(OccupancyMap, ARowOfBitsSaysWhatItsCellsSay) {
   Draw draw(17);
