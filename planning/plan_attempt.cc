@@ -253,8 +253,8 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     kept_.Bind({kept_.t0() + share * (span.t_in - request.t0),
                 kept_.t0() + share * (span.t_out - request.t0)});
   }
-  // Whose own way fails is led another one at once.
-  const int rescues = keeps_side ? std::max(2, request.rescue_guides) : request.rescue_guides;
+  // Whose own way fails is led another one at once; a way that was searched for has to do, until a later arrival.
+  const int rescues = keeps_side ? 2 : 1;
   double first_cost = kNoBound;
   for (int i = 0;; ++i) {
     const bool planned = i > 0 && best_.reason == ReplanReason::kNone;

@@ -32,7 +32,6 @@ struct AttemptRequest {
   ArrivalMode arrival = ArrivalMode::kFixed;
   const FreeSpace* space = nullptr;
   const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
-  int rescue_guides = 1;  ///< ways that are tried while none leads to a plan; then max_guides
   PairEnd pair_end = PairEnd::kRest;
   const UniformBspline* previous = nullptr;  ///< committed curve ...
   bool starts_on_previous = false;           ///< ... which is the way of choice then ...

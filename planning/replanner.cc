@@ -548,7 +548,6 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   const double longest = std::min(rung.duration, constants.grid_longest * first);
   request.near_segments = SegmentsFor(longest, limits_, constants.fine_segments);
   request.segments = is_first ? SegmentsFor(longest, limits_, 1.0) : request.near_segments;
-  request.rescue_guides = is_first ? 1 : constants.rescue_ways;
   request.pair_end = facts.lands_soon          ? PairEnd::kContact
                      : result_.ends_in_contact ? PairEnd::kRestOrContact
                                                : PairEnd::kRest;

@@ -13,9 +13,7 @@ struct StepConstants {
   // Ways past what blocks a curve (way_finder.h).
   double way_greed = 2.0;
   double way_tight_cost = 8.0;
-  double detour_longest = 2.0;
-  double detour_slack = 1.0;
-  int detour_expansions = 1000;
+  double detour_longer = 2.0;
   double beside_time = 0.5;
   double way_dearer = 1.05;
   double side_cheaper = 0.8;
@@ -41,7 +39,6 @@ struct StepConstants {
   double stretch = 1.4;
   double end_step = 1.05;
   double grid_longest = 1.2;
-  int rescue_ways = 2;
   double unseen_reach = 1.0;
   double unseen_least = 0.5;
 };

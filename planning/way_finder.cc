@@ -65,14 +65,12 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
   FindBlockedRuns(committed, t_from, space, &runs_);
   if (!runs_.empty() && (runs_.front().at_start || runs_.back().at_end)) return;
   double t = t_from;
-  int budget = constants_.detour_expansions;
   for (const BlockedRun& run : runs_) {
     way->AddCurve(committed, t, run.t_in);
     const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
     const SearchStatus status =
-        Search(space, from, to, budget, std::numeric_limits<double>::infinity());
-    budget -= search_.expansions();
-    const double longest = constants_.detour_longest * (to - from).norm() + constants_.detour_slack;
+        Search(space, from, to, expansions_left_, std::numeric_limits<double>::infinity());
+    const double longest = (to - from).norm() + constants_.detour_longer;
     if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
     way->AddDetour(committed, run, detour_, speed_);
     t = run.t_out;
