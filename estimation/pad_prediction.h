@@ -27,8 +27,8 @@ class PadPrediction {
   /// Does not allocate.
   virtual PadState At(double t) const noexcept = 0;
 
-  /// The same but for cov_p, which is not looked at. Whoever plans asks this a thousand times a step; of a
-  /// belief the covariance is what costs.
+  /// The same but for cov_p, which is not to be looked at. A step asks this a thousand times, and of a belief the covariance
+  /// is what costs.
   virtual PadState MeanAt(double t) const noexcept { return At(t); }
 };
 

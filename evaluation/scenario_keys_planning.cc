@@ -59,8 +59,8 @@ void AddPlanningKeys(KeyList& keys) {
             TOUCHDOWN_AT(planning.guides)));
   keys.push_back(
       Whole("planning.max_segments", 400, 1000000,
-            "planner landing: segments of curves that a step's solves evaluate at most; a step that "
-            "finds no plan within that is gone on with in the next",
+            "planner landing: segments of curves that a step's solves evaluate at most; if a "
+            "step finds no plan within that, the next goes on from there",
             TOUCHDOWN_AT(planning.max_segments)));
   keys.push_back(
       Whole("planning.max_expansions", 100, 1000000,

@@ -69,8 +69,8 @@ class OccupancyMap {
   const OccupancyMapOptions& options() const { return options_; }
   double resolution() const { return options_.resolution; }
 
-  /// Keeps the window's centre near p_W: moves it by a slice of a few cells along the axis on which p_W is farthest off,
-  /// or at once if that is 16 cells or an eighth of the window. Cells that enter are unknown. Cells that leave are
+  /// Keeps the window's centre near p_W: centres it along the axis on which p_W is farthest off, once that is four cells;
+  /// along all axes once p_W is 16 cells off on any, or an eighth of the window. Cells that enter are unknown. Cells that leave are
   /// forgotten; those that have changed since they entered or were last taken are put in `memory` before.
   void Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory = nullptr);
 

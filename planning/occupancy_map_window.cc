@@ -12,8 +12,8 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr int kSlice = 4;  // a move of the window, along one axis [cells] ...
-constexpr int kJump = 16;  // ... but when it is so far off: at once
+constexpr int kSlice = 4;  // so far off its centre the window moves, along one axis [cells] ...
+constexpr int kJump = 16;  // ... and so far off along all
 
 }  // namespace
 

@@ -50,7 +50,7 @@ struct ReplannerOptions {
   /// A solve ends so near to the optimum, as a share of the cost (solvers::Stop::gap): not the last digits of
   /// an optimum make a plan, but its certificate.
   double gap = 5e-3;
-  // What a step may do; the next one goes on at the attempt that did not fit.
+  // What a step may do; without a plan to fly the next one goes on at the attempt that did not fit.
   int max_segments = 4000;     ///< that solvers evaluate, one time each
   int max_expansions = 12000;  ///< of spans of columns, in searches for ways
   StepConstants constants;     ///< what else a step decides by

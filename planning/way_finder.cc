@@ -69,7 +69,7 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
     way->AddCurve(committed, t, run.t_in);
     const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
     const SearchStatus status =
-        Search(space, from, to, expansions_left_, std::numeric_limits<double>::infinity());
+        Search(space, from, to, expansions_left_ / 2, std::numeric_limits<double>::infinity());
     const double longest = (to - from).norm() + constants_.detour_longer;
     if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
     way->AddDetour(committed, run, detour_, speed_);

@@ -11,8 +11,8 @@
 
 namespace touchdown::planning {
 
-/// Finds ways past what blocks a curve: along it, with detours. Of the committed curve these are short ones, so
-/// that its side of an obstacle is kept. All searches share a budget until it is refilled.
+/// Finds ways past what blocks a curve: along it, with detours. Those of the committed curve are hardly longer than it,
+/// so that its side of an obstacle is kept. All searches share a budget until it is refilled.
 class WayFinder {
  public:
   explicit WayFinder(double vertical_cost, const StepConstants& constants = {});
@@ -28,7 +28,7 @@ class WayFinder {
   void Begin(double speed);
 
   /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
-  /// not found soon or is much longer than what it replaces.
+  /// not found within half of the budget or is much longer than the straight line.
   void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space, TimedWay* way);
 
   /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends is cut

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
 constexpr double kShortestStep = 1e-10;
-constexpr double kLessShift = 1e5;  // 0.1 of the last one, which is 1e-6 of this
+constexpr double kLessShift = 1e5;    // 0.1 of the last one, which is 1e-6 of this
 constexpr double kLongestStep = 1e3;  // over the point's size
 /// Below this share of the cost a decrease is rounding.
 constexpr double kRounding = 1e-15;
@@ -46,6 +46,7 @@ void BandedNewton::Prepare(const View& view) {
 SolveStatus BandedNewton::Run(const View& view, const double* start, const Tolerances& tolerances,
                               Evaluator* evaluator) {
   std::copy(start, start + y_.size(), y_.begin());
+  ended_near_ = false;
   bool full_step = true;
   double curvature = 0.0;  // what the first shift is a share of; 0: the largest of the diagonal
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return SolveStatus::kEvaluationFailed;
@@ -55,7 +56,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     const double value = at.full.value;
     if (Largest(gradient_) == 0.0) return SolveStatus::kConverged;
     // Where nothing curves at all a first step goes far beyond the point.
-    if (curvature == 0.0 && at.hessian.IsZero()) curvature = Largest(gradient_);
+    if (curvature == 0.0 && at.hessian.BandIsZero()) curvature = Largest(gradient_);
     double shift = 0.0;
     if (!FactorDefinite(at.hessian, &factor_, curvature, &shift)) {
       return SolveStatus::kNumericalFailure;
@@ -67,7 +68,11 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     const double gained = std::abs(evaluator->first_cost() - value);
     const double whole =
         tolerances.of_gain ? std::clamp(gained, kLeastShare * scale, scale) : scale;
-    if (-0.5 * slope <= tolerances.gap * whole) return SolveStatus::kConverged;
+    const double promised = -0.5 * slope;
+    if (promised <= (shift > 0.0 ? tolerances.shifted : tolerances.gap) * whole) {
+      ended_near_ = promised > tolerances.shifted * whole;
+      return SolveStatus::kConverged;
+    }
     slope *= Shorten();
     const double length = LineSearch(value, slope, full_step, evaluator);
     full_step = length == 1.0;
@@ -75,8 +80,8 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     if (tolerances.of_gain) curvature = full_step && shift > 0.0 ? kLessShift * shift : 0.0;
     if (length == 0.0) {
       // Nothing along a descent direction is lower: what is left is rounding, or the step is wrong.
-      const double least = 1e-9 * (tolerances.of_gain ? std::max(scale, gained) : scale);
-      return -slope <= least ? SolveStatus::kConverged : SolveStatus::kNumericalFailure;
+      const double rounding = 1e-9 * (tolerances.of_gain ? std::max(scale, gained) : scale);
+      return -slope <= rounding ? SolveStatus::kConverged : SolveStatus::kNumericalFailure;
     }
     evaluator->FinishIteration(length * std::sqrt(Dot(step_, step_)), Largest(gradient_));
     evaluator->CheckStop();

@@ -14,11 +14,15 @@ class BandedNewton {
   /// `gap`: ends when half the Newton decrement, the expected distance to the optimum, falls below
   /// this share of the cost.
   struct Tolerances {
-    double gap = 1e-9;     ///< expected decrease, share of the cost
+    double gap = 1e-9;  ///< expected decrease, share of the cost
+    double shifted =
+        1e-9;  ///< the same where the Hessian had to be shifted: its promise is worth less
     bool of_gain = false;  ///< or of what was gained, where that is less
   };
 
   void Prepare(const View& view);
+  /// The last run ended by the gap, before its promise was as small as where the Hessian is shifted.
+  bool ended_near() const { return ended_near_; }
   /// Does not allocate.
   SolveStatus Run(const View& view, const double* start, const Tolerances& tolerances,
                   Evaluator* evaluator);
@@ -27,6 +31,7 @@ class BandedNewton {
   double Shorten();
   double LineSearch(double value, double slope, bool derivatives, Evaluator* evaluator);
 
+  bool ended_near_ = false;
   BorderedCholesky factor_;
   std::vector<double> y_, gradient_, step_, trial_;
 };

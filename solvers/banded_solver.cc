@@ -71,14 +71,16 @@ class BandedSolver : public SolverBackend {
     const double own = (confirmed ? kConfirmedShare : 1.0) * options().Get("gap_tolerance");
     const double gap = std::max(own, stop.gap);
     if (!has_rows_) {
-      result->status = newton_.Run(view, warm.y.data(), {gap, confirmed}, evaluator);
+      result->status = newton_.Run(view, warm.y.data(), {gap, own, confirmed}, evaluator);
+      if (newton_.ended_near()) evaluator->EndNear();
       result->message = Words(result->status, has_rows_);
       return;
     }
-    result->status = interior_point_.Run(view, warm.y.data(), warm.multipliers,
-                                         {gap, options().Get("violation_tolerance"), confirmed},
-                                         evaluator);
+    result->status =
+        interior_point_.Run(view, warm.y.data(), warm.multipliers,
+                            {gap, options().Get("violation_tolerance"), confirmed}, evaluator);
     result->message = Words(result->status, has_rows_);
+    if (gap > own && result->status == SolveStatus::kConverged) evaluator->EndNear();
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
     for (int i = 0; i < view.problem().num_terms(); ++i) {
       result->multipliers[i] = interior_point_.multipliers(i);

@@ -26,10 +26,9 @@ void BorderedBandMatrix::SetZero() {
   corner_ = 0.0;
 }
 
-bool BorderedBandMatrix::IsZero() const {
+bool BorderedBandMatrix::BandIsZero() const {
   const auto zero = [](double element) { return element == 0.0; };
-  return corner_ == 0.0 && std::all_of(band_.begin(), band_.end(), zero) &&
-         std::all_of(border_.begin(), border_.end(), zero);
+  return corner_ == 0.0 && std::all_of(band_.begin(), band_.end(), zero);
 }
 
 namespace {

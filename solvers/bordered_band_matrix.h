@@ -15,7 +15,8 @@ class BorderedBandMatrix {
   /// Sizes and zeroes. Allocates.
   void Resize(int blocks, int block_size, int half_bandwidth, bool bordered);
   void SetZero();
-  bool IsZero() const;
+  /// Whatever is in the border.
+  bool BandIsZero() const;
 
   int blocks() const { return blocks_; }
   int block_size() const { return d_; }

@@ -52,11 +52,14 @@ class Evaluator {
   /// Charges the time from now on to `share`; returns what it was charged to before.
   Share SwitchShare(Share share);
 
-  /// The status that ends the solve now, or kConverged while it may go on, or where the best point is near
-  /// enough to the optimum.
+  /// The status that ends the solve now. It is kConverged while the solve may go on, and where the best point is
+  /// near enough to the optimum.
   SolveStatus stop_status() const { return stop_status_; }
   bool must_stop() const { return near_enough_ || stop_status_ != SolveStatus::kConverged; }
+  /// The rule ended the solve.
   bool near_enough() const { return near_enough_; }
+  /// For a backend that keeps Stop::gap itself: its best point is near enough.
+  void EndNear() { near_enough_ = true; }
   /// Asks the rule again.
   void CheckGap();
   /// Asks the budgets and the clock again; the callback is asked once at each evaluation.

@@ -32,11 +32,16 @@ void GapRule::Begin(const View& view, double gap) {
   view_ = &view;
   gap_ = gap;
   look_below_ = kInfinity;
+  points_ = looked_ = 0;
   storage_.HoldParameters();
 }
 
 bool GapRule::Met(const Eigen::VectorXd& y, double cost, double violation) {
-  if (violation > Optimality::kFeasible || !(cost <= look_below_)) return false;
+  ++points_;
+  // Far from the optimum a model may promise more than there is to gain.
+  const bool late = points_ >= 2 * looked_;
+  if (violation > Optimality::kFeasible || !(cost <= look_below_ || late)) return false;
+  looked_ = points_;
   const double allowed = gap_ * std::max(std::abs(cost), kSmallestCost);
   const double above = has_rows_ ? check_->Above(*view_, y, &storage_) : Promised(y);
   if (above <= allowed) return true;

@@ -11,13 +11,15 @@
 
 namespace touchdown::solvers {
 
-/// Ends a solve near enough to the optimum (Stop::gap), by a bound that no backend makes: so different
-/// backends end at points that are equally good. The bound is what a Newton step of the Lagrangian
-/// promises, plus what rows are off their bounds times their multipliers, which are estimated; for a
-/// convex quadratic problem it is exact.
+/// Ends a solve near enough to the optimum (Stop::gap), by a measure that no backend makes: so different
+/// backends end at points that are equally good. It is what a Newton step of the Lagrangian
+/// promises, plus what rows are off their bounds times their multipliers, which are estimated. That is a bound
+/// where the problem is convex and quadratic. Elsewhere it is an estimate: a stiff term that is hardly touched
+/// hides what is left of the others.
 ///
-/// A look costs a Hessian and its factor. So there is none before the cost has fallen by half of what the
-/// last one found too much.
+/// A look costs a Hessian and its factor; with rows, up to four of each and those of the estimates. So the next waits
+/// until the cost has fallen by half of what the last found too much, or twice as many points have come. Looks are not
+/// among a solve's evaluations.
 class GapRule {
  public:
   /// Allocates for views of this structure. `check` was prepared for it, too, and outlives this.
@@ -37,7 +39,8 @@ class GapRule {
   std::vector<double> step_;
   bool has_rows_ = false;  // or bounds
   double gap_ = 0.0;
-  double look_below_ = 0.0;  // costs
+  double look_below_ = 0.0;      // costs
+  int points_ = 0, looked_ = 0;  // points that came, and had come at the last look
 };
 
 }  // namespace touchdown::solvers

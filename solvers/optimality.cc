@@ -99,7 +99,10 @@ double OptimalityCheck::Above(const View& view, const Eigen::VectorXd& y,
   for (const double reach : kPushingFrom) {
     if (rows_.size() == 0) break;
     at_bound_ = reach;
-    if (Estimate()) weigh();
+    if (!Estimate()) continue;
+    // A row that may be left is not held: with its multiplier it is in the Lagrangian.
+    for (Side& side : side_) side = side == Side::kBoth ? side : Side::kNone;
+    weigh();
   }
   return least;
 }

@@ -28,9 +28,10 @@ class OptimalityCheck {
   Optimality Look(const View& view, const Eigen::VectorXd& y, const SolverResult& told,
                   double first_cost, const MustStop& must_stop, ViewEvaluation* storage);
 
-  /// By how much the cost of y, which keeps the rows, is above the optimum at most, by the conditions: what a Newton
-  /// step promises and what rows that push are off their bounds, with multipliers that are estimated.
-  /// Infinite where the Lagrangian does not curve upwards. Does not allocate.
+  /// By how much the cost of y, which keeps the rows, may be above the optimum, by a quadratic model: what a Newton
+  /// step of the Lagrangian promises, and what rows that push are off their bounds, with multipliers that are
+  /// estimated. A bound where the problem is convex and quadratic. Infinite where the Lagrangian does not curve
+  /// upwards. Does not allocate.
   double Above(const View& view, const Eigen::VectorXd& y, ViewEvaluation* storage);
 
   /// A step along the slopes of the rows, or a part of it, meets them better by half of what they

@@ -105,7 +105,7 @@ void SolverBackend::Prepare(const View& view) {
   prepared_.clear();  // what follows may throw with half of it sized
   evaluator_.Prepare(view);
   check_.Prepare(view);
-  rule_.Prepare(view, &check_);
+  if (!measures_gap()) rule_.Prepare(view, &check_);
   inside_.y.resize(view.num_variables());
   if (view.num_variables() > 0) DoPrepare(view);
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
@@ -177,8 +177,9 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     const bool feasible = evaluator_.best_violation() <= Evaluator::kFeasible;
     result->status = feasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
   } else {
-    // A start may be near enough.
-    if (asks_rule && evaluator_.Evaluate(warm.y.data(), {})) evaluator_.CheckGap();
+    // A start may be near enough, or all that the budget allows.
+    if (asks_rule && evaluator_.Evaluate(warm.y.data(), {.gradient = true})) evaluator_.CheckGap();
+    result->status = evaluator_.stop_status();
     if (!evaluator_.must_stop()) DoSolve(view, warm, stop, &evaluator_, result);
     if (evaluator_.near_enough()) result->status = SolveStatus::kConverged;
   }
@@ -194,7 +195,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   }
 
   result->optimality = {};
-  if (n > 0 && stop.confirm && stop.gap == 0.0) Judge(view, warm.y, result);
+  if (n > 0 && stop.confirm && !evaluator_.near_enough()) Judge(view, warm.y, result);
 
   result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
   result->cost = evaluator_.best_cost();

@@ -44,43 +44,54 @@ double DijkstraLength(const FreeSpace& space, const CellIndex& from, const CellI
   return std::numeric_limits<double>::infinity();
 }
 
-// Rows of bits must give what a look at every cell gives, at the window's edges and under levels, too.
+// Rows of bits must give what a look at every cell gives, at the window's edges and under levels, too, and where
+// a row within reach is longer than a word.
 TEST(GridSearch, TheNearestFreeCellIsThatOfALookAtEveryCell) {
   Draw draw(5);
-  OccupancyMapOptions options = SmallMap(0.3);
-  options.size_log2 = {5, 5, 4};
   int moved = 0, lost = 0;
   for (int trial = 0; trial < 60; ++trial) {
+    const bool fine = trial % 6 == 5;
+    OccupancyMapOptions options = SmallMap(fine ? 0.12 : 0.3);
+    options.resolution = fine ? 0.04 : 0.1;
+    options.size_log2 = {fine ? 7 : 5, fine ? 6 : 5, 4};
     OccupancyMap map(options);
-    const int obstacles = trial % 3 == 0 ? 400 : 40;
-    for (int i = 0; i < obstacles; ++i) {
-      map.SetOccupied({draw.Uniform(-1.6, 1.6), draw.Uniform(-1.6, 1.6), draw.Uniform(-0.8, 0.8)});
-    }
+    const Eigen::Vector3d half = 0.5 * options.resolution * map.size().cast<double>();
+    const auto somewhere = [&](double share) {
+      return Eigen::Vector3d(draw.Uniform(-1.0, 1.0) * share * half.x(),
+                             draw.Uniform(-1.0, 1.0) * share * half.y(),
+                             draw.Uniform(-1.0, 1.0) * share * half.z());
+    };
+    const int obstacles = fine ? 3000 : trial % 3 == 0 ? 400 : 40;
+    for (int i = 0; i < obstacles; ++i) map.SetOccupied(somewhere(1.0));
     FreeSpace space = SpaceOf(map);
-    space.ceiling = draw.Uniform(0.2, 0.9);
-    space.floor = draw.Uniform(-0.9, -0.1);
+    space.ceiling = draw.Uniform(0.25, 1.1) * half.z();
+    space.floor = -draw.Uniform(0.1, 1.1) * half.z();
     space.pad_radius = 0.5;
-    space.pad_floor = -0.9;
-    const CellIndex at = map.CellOf(
-        {draw.Uniform(-1.55, 1.55), draw.Uniform(-1.55, 1.55), draw.Uniform(-0.75, 0.75)});
+    space.pad_floor = -1.1 * half.z();
+    const CellIndex at = map.CellOf(somewhere(0.95));
     const double reach = GridSearch::kEndSearchRadius / map.resolution();
-    double nearest2 = std::numeric_limits<double>::infinity();
-    for (CellIndex cell(0, 0, at.z() - 15); cell.z() <= at.z() + 15; ++cell.z()) {
-      for (cell.y() = at.y() - 15; cell.y() <= at.y() + 15; ++cell.y()) {
-        for (cell.x() = at.x() - 15; cell.x() <= at.x() + 15; ++cell.x()) {
-          if (!map.InWindow(cell) || space.Blocked(cell)) continue;
-          nearest2 = std::min(nearest2, static_cast<double>((cell - at).squaredNorm()));
+    const int cells = static_cast<int>(reach);
+    // Squared distance, half side of the cube, and the place in it: the least is wanted.
+    std::array<int, 5> least = {static_cast<int>(reach * reach), 0, 0, 0, 0};
+    bool any = !space.Blocked(at);
+    CellIndex wanted = at;
+    for (int z = -cells; !any && z <= cells; ++z) {
+      for (int y = -cells; y <= cells; ++y) {
+        for (int x = -cells; x <= cells; ++x) {
+          const CellIndex cell = at + CellIndex(x, y, z);
+          const std::array<int, 5> rank = {
+              x * x + y * y + z * z, std::max({std::abs(x), std::abs(y), std::abs(z)}), z, y, x};
+          if (rank >= least || !map.InWindow(cell) || space.Blocked(cell)) continue;
+          least = rank;
+          wanted = cell;
         }
       }
     }
+    any = any || wanted != at;
     CellIndex found = at;
-    const bool any = GridSearch::NearestFree(space, &found);
-    ASSERT_EQ(any, nearest2 < reach * reach) << "trial " << trial;
-    if (any) {
-      EXPECT_EQ((found - at).squaredNorm(), nearest2) << "trial " << trial;
-      EXPECT_FALSE(space.Blocked(found)) << "trial " << trial;
-    }
-    moved += any && found != at;
+    ASSERT_EQ(GridSearch::NearestFree(space, &found), any) << "trial " << trial;
+    EXPECT_EQ(found, wanted) << "trial " << trial;
+    moved += wanted != at;
     lost += !any;
   }
   EXPECT_GT(moved, 20);

@@ -20,12 +20,13 @@ TEST(BorderedBandMatrix, AnswersForTheWholeSymmetricMatrix) {
   EXPECT_EQ(m.At(8, 3), 7.0);
   EXPECT_EQ(m.At(8, 8), 9.0);
   EXPECT_EQ(m.At(0, 7), 0.0);  // outside the band
-  EXPECT_FALSE(m.IsZero());
+  EXPECT_FALSE(m.BandIsZero());
   m.SetZero();
   EXPECT_EQ(m.At(2, 5), 0.0);
-  EXPECT_TRUE(m.IsZero());
   m.border()[3] = 7.0;
-  EXPECT_FALSE(m.IsZero());
+  EXPECT_TRUE(m.BandIsZero());
+  m.corner() = 1.0;
+  EXPECT_FALSE(m.BandIsZero());
 }
 
 TEST(BorderedBandMatrix, KnowsTheLargestOfEachRow) {
