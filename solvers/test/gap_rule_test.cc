@@ -215,14 +215,21 @@ TEST(GapRule, ARowThatIsLeftIsNotHeld) {
   }
 }
 
+struct RuleOf {
+  explicit RuleOf(const View& view) {
+    check.Prepare(view);
+    rule.Prepare(view, &check);
+  }
+  OptimalityCheck check;
+  GapRule rule;
+};
+
 TEST(GapRule, ALookDoesNotAllocate) {
   for (const Role role : {Role::kCost, Role::kConstraint}) {
     const Problem problem = Chain(2, role);
     const View view(problem);
-    OptimalityCheck check;
-    check.Prepare(view);
-    GapRule rule;
-    rule.Prepare(view, &check);
+    RuleOf rule_of(view);
+    GapRule& rule = rule_of.rule;
     rule.Begin(view, 1e-3);
     const Eigen::VectorXd start = FarStart();
     rule.Met(start, 1e6, 0.0);
@@ -237,10 +244,8 @@ TEST(GapRule, ALookDoesNotAllocate) {
 TEST(GapRule, LooksOnlyWhereTheCostHasFallen) {
   const Problem problem = Chain(2, Role::kCost);
   const View view(problem);
-  OptimalityCheck check;
-  check.Prepare(view);
-  GapRule rule;
-  rule.Prepare(view, &check);
+  RuleOf rule_of(view);
+  GapRule& rule = rule_of.rule;
   rule.Begin(view, 1e-3);
   const Eigen::VectorXd optimum = [&] {
     auto backend = MakeBackend(StandardBackends(), "banded");
