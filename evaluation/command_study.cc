@@ -324,14 +324,9 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
       .Check(Range(1, 8))
       .ShowDefault();
   command
-      .Add("--max-segments", options.replanner.max_segments,
-           "Segments that a step's solves evaluate at most")
-      .Check(Range(400, 1000000))
-      .ShowDefault();
-  command
-      .Add("--max-expansions", options.replanner.max_expansions,
-           "Spans that a step's searches expand at most")
-      .Check(Range(100, 1000000))
+      .Add("--max-work", options.replanner.max_work,
+           "What a step may do at most, in evaluated segments and searched spans")
+      .Check(Range(1000, 1000000))
       .ShowDefault();
   command.Add("--horizon", options.scenes.horizon, "Start to end [m]")
       .Check(Range(3.0, 40.0))

@@ -111,8 +111,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.limits = LimitsOf(scenario);
   options.ceiling_height = scenario.planning.ceiling;
   options.max_guides = scenario.planning.guides;
-  options.max_segments = scenario.planning.max_segments;
-  options.max_expansions = scenario.planning.max_expansions;
+  options.max_work = scenario.planning.max_work;
   options.warm_start = scenario.planning.warm_start;
   options.gap = scenario.solver.gap;
   // A plan is flown until the next one takes over, a period later; with a measured latency that may

@@ -179,11 +179,10 @@ struct Scenario {
   struct Planning {
     double rate = 10.0;  ///< [Hz]
     PlanningLatency latency;
-    double clearance = 0.40;     ///< obstacles are grown by this in the map [m]
-    double ceiling = 10.0;       ///< the body's origin stays below this [m]
-    int guides = 2;              ///< most ways around the first obstacle that a step tries
-    int max_segments = 4000;     ///< that a step's solves evaluate
-    int max_expansions = 12000;  ///< of spans, in a step's searches
+    double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
+    double ceiling = 10.0;    ///< the body's origin stays below this [m]
+    int guides = 2;           ///< most ways around the first obstacle that a step tries
+    int max_work = 12000;     ///< of a step, in units of planning/work_budget.h
     EndpointVelocityKind endpoint_velocity = EndpointVelocityKind::kPad;
     bool warm_start = true;  ///< solves begin at the committed plan
   } planning;

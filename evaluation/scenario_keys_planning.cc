@@ -58,14 +58,11 @@ void AddPlanningKeys(KeyList& keys) {
             "the cheapest plan wins",
             TOUCHDOWN_AT(planning.guides)));
   keys.push_back(
-      Whole("planning.max_segments", 400, 1000000,
-            "planner landing: segments of curves that a step's solves evaluate at most; if a "
-            "step finds no plan within that, the next goes on from there",
-            TOUCHDOWN_AT(planning.max_segments)));
-  keys.push_back(
-      Whole("planning.max_expansions", 100, 1000000,
-            "planner landing: spans of free cells that a step's searches for ways expand at most",
-            TOUCHDOWN_AT(planning.max_expansions)));
+      Whole("planning.max_work", 1000, 1000000,
+            "planner landing: what a step may do at most, a unit for each segment of a curve that "
+            "is evaluated (two where the arrival is free) and for each span that is searched; if "
+            "it finds no plan within that, the next step goes on from there",
+            TOUCHDOWN_AT(planning.max_work)));
   keys.push_back(Choice("planning.endpoint_velocity", {"pad", "rest"},
                         "planner landing: a plan ends with the pad's predicted velocity, or stands "
                         "still (but for sinking) where the pad will be",
@@ -87,10 +84,11 @@ void AddPlanningKeys(KeyList& keys) {
   keys.push_back(Choice("solver.limits", {"soft", "hard"},
                         "limits as penalties, or as constraints at the full limit",
                         TOUCHDOWN_AT(solver.limits)));
-  keys.push_back(Number<Scenario>("solver.gap", In(0, 0.5, ""),
-                                  "a solve ends so near to the optimum, as a share of the cost, with "
-                                  "every backend; 0: where the backend's own options say",
-                                  TOUCHDOWN_AT(solver.gap)));
+  keys.push_back(
+      Number<Scenario>("solver.gap", In(0, 0.5, ""),
+                       "a solve ends so near to the optimum, as a share of the cost, with "
+                       "every backend; 0: where the backend's own options say",
+                       TOUCHDOWN_AT(solver.gap)));
   keys.push_back(Number<Scenario>("limits.speed", In(0.5, 20, "m/s"), "norm of the velocity",
                                   TOUCHDOWN_AT(limits.speed)));
   keys.push_back(Number<Scenario>("limits.acceleration", In(0.5, 20, "m/s^2"),

@@ -24,6 +24,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
+constexpr double kKeepShare = 0.25;     // of the budget, kept for the committed plan
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
@@ -45,7 +46,7 @@ double BlockedTime(const std::vector<BlockedRun>& blocked) {
 PlanAttempt::PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
     : options_(options),
       problems_(options, backends),
-      finder_(options.vertical_cost, options.constants),
+      finder_(options.vertical_cost, options.constants, &budget_),
       binder_(options.problem, options.constants) {
   for (const TermEntry& entry : options.problem.terms) {
     if (entry.is_clearance || entry.is_limit) pressed_.push_back(entry.info.name);
@@ -112,10 +113,9 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
     if (holds(reason)) return reason;
   }
   const bool may_keep = keeps && request.looks;
-  const int reserve = may_keep ? segments_left_ / 4 : 0;
-  segments_left_ -= reserve;
+  const int reserve = may_keep ? budget_.SetAside(kKeepShare) : 0;
   const ReplanReason found = FindAnew(request, warm, leads_around, result);
-  segments_left_ += reserve;
+  budget_.GiveBack(reserve);
   if (holds(found) || !may_keep) return found;
   // Who looks for a better plan and finds none keeps what holds, before a later arrival is tried.
   const ReplanReason kept = KeepCommitted(request, result);
@@ -368,8 +368,13 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   stop.gap = options_.gap;
   stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
-  stop.max_evaluations = segments_left_ / posed.segments;
-  if (stop.max_evaluations == 0) {
+  const bool free_arrival = request.arrival == ArrivalMode::kFree;
+  const int curve_work =
+      posed.segments * (free_arrival ? WorkBudget::kSegmentOfFreeArrival : WorkBudget::kSegment);
+  const int other_work =  // the pairs, and the check of the curve
+      WorkBudget::kPair * static_cast<int>(candidate->pairs.size()) + curve_work;
+  stop.max_evaluations = (budget_.left() - other_work) / curve_work;
+  if (stop.max_evaluations <= 0) {
     spent_ = true;
     return ReplanReason::kBudgetSpent;
   }
@@ -378,7 +383,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
     prepared.backend->Solve(problem.view(), prepared.start, stop, &prepared.solver);
   }
   ++result->solves;
-  segments_left_ -= prepared.solver.evaluations * posed.segments;
+  budget_.Take(other_work + prepared.solver.evaluations * curve_work);
   spent_ = spent_ || prepared.solver.evaluations >= stop.max_evaluations;
   candidate->solver = prepared.solver;
   candidate->bound.clear();

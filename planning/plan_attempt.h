@@ -14,6 +14,7 @@
 #include "touchdown/planning/stored_stop.h"
 #include "touchdown/planning/timed_way.h"
 #include "touchdown/planning/way_finder.h"
+#include "touchdown/planning/work_budget.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::planning {
@@ -54,17 +55,15 @@ class PlanAttempt {
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
 
-  /// All attempts until the next call share the step's budget: max_segments and max_expansions.
+  /// All attempts until the next call share the step's budget, max_work.
   void BeginStep() {
-    finder_.Refill(options_.max_expansions);
-    segments_left_ = options_.max_segments;
+    budget_.Refill(options_.max_work);
     spent_ = false;
   }
   /// An attempt of this step ended for want of budget.
   bool spent() const { return spent_; }
   /// Of this step's budget.
-  int segments_spent() const { return options_.max_segments - segments_left_; }
-  int expansions_spent() const { return options_.max_expansions - finder_.expansions_left(); }
+  int work() const { return budget_.done(); }
 
   /// Tries once; fills curve with its stop, certificate, pairs, guide paths, solver, counts and times of `result`
   /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
@@ -135,6 +134,7 @@ class PlanAttempt {
 
   ReplannerOptions options_;
   PreparedProblems problems_;
+  WorkBudget budget_;  // of the step
   WayFinder finder_;
   PairBinder binder_;
   std::vector<std::string> pressed_;  // terms whose weights are scaled
@@ -142,7 +142,6 @@ class PlanAttempt {
   // Room of the attempt under way.
   double duration_ = 0.0;
   int segments_ = 0;
-  int segments_left_ = 0;  // of the step's budget
   bool spent_ = false;
   Candidate best_, other_;
   UniformBspline first_curve_;  // before any pair

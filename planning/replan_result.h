@@ -50,10 +50,10 @@ struct ReplannerOptions {
   /// A solve ends so near to the optimum, as a share of the cost (solvers::Stop::gap): not the last digits of
   /// an optimum make a plan, but its certificate.
   double gap = 5e-3;
-  // What a step may do; without a plan to fly the next one goes on at the attempt that did not fit.
-  int max_segments = 4000;     ///< that solvers evaluate, one time each
-  int max_expansions = 12000;  ///< of spans of columns, in searches for ways
-  StepConstants constants;     ///< what else a step decides by
+  /// What a step may do (work_budget.h); without a plan to fly the next one goes on at the attempt that did not
+  /// fit.
+  int max_work = 12000;
+  StepConstants constants;  ///< what else a step decides by
 };
 
 /// What one replanning step is asked. Plain data: a record can hold it and play it again.
@@ -171,8 +171,7 @@ struct ReplanResult : FlightPair {
   BoundParts bound;               ///< what of that plan they bind
   int solves = 0;                 ///< solver calls
   int rebinds = 0;                ///< of these, after a re-binding
-  int segments = 0;               ///< that they have evaluated, of max_segments
-  int expansions = 0;             ///< of the searches, of max_expansions
+  int work = 0;                   ///< that was done, of max_work
   solvers::SolverSummary solver;  ///< of the last solve of that plan
   StageTimes times;
 };

@@ -217,8 +217,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   if (log_) log_->attempts.clear();
   result_.times = {};
   result_.guide_paths.Clear();
-  result_.pairs = result_.solves = result_.rebinds = 0;
-  result_.segments = result_.expansions = 0;
+  result_.pairs = result_.solves = result_.rebinds = result_.work = 0;
   result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
   // A level stretch at the end of a landing, or a vertical descent, may go below the height of contact.
@@ -502,8 +501,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     }
     const ReplanReason reason =
         attempt_.Run(RequestFor(input, start, rung, facts, first, hull), &result_);
-    result_.segments = attempt_.segments_spent();
-    result_.expansions = attempt_.expansions_spent();
+    result_.work = attempt_.work();
     if (reason == ReplanReason::kNone) {
       around_unseen_ = rung.unseen_reach > 0.0 && result_.rebinds > 0;
       return reason;

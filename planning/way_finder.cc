@@ -14,7 +14,11 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStep = 0.05;        // sampling of a curve [s]
+constexpr double kStep = 0.05;  // sampling of a curve [s]
+// Of the work that is left, what a search may take: the first way leaves what one curve along it takes, ...
+constexpr double kFirstShare = 0.9;
+// ... and others leave what a later attempt takes to find the first one again.
+constexpr double kOtherShare = 0.5;
 constexpr double kLevelMargin = 0.3;  // of a way from floor and ceiling, out of the window [m]
 
 void CutToWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
@@ -38,9 +42,10 @@ void SampleBetweenLevels(const UniformBspline& curve, const BlockedRun& run, con
 
 }  // namespace
 
-WayFinder::WayFinder(double vertical_cost, const StepConstants& constants)
+WayFinder::WayFinder(double vertical_cost, const StepConstants& constants, WorkBudget* budget)
     : constants_(constants),
-      search_({vertical_cost, constants.way_tight_cost}, constants.way_greed) {
+      search_({vertical_cost, constants.way_tight_cost}, constants.way_greed),
+      budget_(budget) {
   barriers_.reserve(8);
   runs_.reserve(64);
   detour_.reserve(1024);
@@ -52,10 +57,10 @@ void WayFinder::Begin(double speed) {
 }
 
 SearchStatus WayFinder::Search(const FreeSpace& space, const Eigen::Vector3d& from,
-                               const Eigen::Vector3d& to, int budget, double max_cost) {
-  const SearchStatus status = search_.Search(space, from, to, std::min(budget, expansions_left_),
-                                             &detour_, barriers_, max_cost);
-  expansions_left_ -= search_.expansions();
+                               const Eigen::Vector3d& to, double share, double max_cost) {
+  const int most = static_cast<int>(share * budget_->left()) / WorkBudget::kSpan;
+  const SearchStatus status = search_.Search(space, from, to, most, &detour_, barriers_, max_cost);
+  budget_->Take(WorkBudget::kSpan * search_.expansions());
   return status;
 }
 
@@ -69,7 +74,7 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
     way->AddCurve(committed, t, run.t_in);
     const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
     const SearchStatus status =
-        Search(space, from, to, expansions_left_ / 2, std::numeric_limits<double>::infinity());
+        Search(space, from, to, kOtherShare, std::numeric_limits<double>::infinity());
     const double longest = (to - from).norm() + constants_.detour_longer;
     if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
     way->AddDetour(committed, run, detour_, speed_);
@@ -82,10 +87,9 @@ SearchStatus WayFinder::LeadPast(const UniformBspline& curve, BlockedRun run,
                                  const FreeSpace& space, TimedWay* way, double max_cost) {
   way->Clear();
   CutToWindow(curve, *space.map, &run);
-  // Another way may not take what a later attempt needs to find the first one again.
-  const int budget = ways_closed() > 0 ? expansions_left_ / 2 : expansions_left_;
+  const double share = ways_closed() > 0 ? kOtherShare : kFirstShare;
   const SearchStatus status =
-      Search(space, curve.Position(run.t_in), curve.Position(run.t_out), budget, max_cost);
+      Search(space, curve.Position(run.t_in), curve.Position(run.t_out), share, max_cost);
   // Out of the window only floor and ceiling block, and there is one way between them.
   if (status == SearchStatus::kEndsOutside && ways_closed() > 0) return SearchStatus::kNoPath;
   if (status == SearchStatus::kEndsOutside) SampleBetweenLevels(curve, run, space, &detour_);

@@ -8,27 +8,25 @@
 #include "touchdown/planning/span_search.h"
 #include "touchdown/planning/step_constants.h"
 #include "touchdown/planning/timed_way.h"
+#include "touchdown/planning/work_budget.h"
 
 namespace touchdown::planning {
 
 /// Finds ways past what blocks a curve: along it, with detours. Those of the committed curve are hardly longer than it,
-/// so that its side of an obstacle is kept. All searches share a budget until it is refilled.
+/// so that its side of an obstacle is kept. All searches take from a step's budget.
 class WayFinder {
  public:
-  explicit WayFinder(double vertical_cost, const StepConstants& constants = {});
+  /// @param budget that must outlive this.
+  WayFinder(double vertical_cost, const StepConstants& constants, WorkBudget* budget);
 
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { search_.Reserve(map); }
-
-  /// @param expansions of all searches from now on.
-  void Refill(int expansions) { expansions_left_ = expansions; }
-  int expansions_left() const { return expansions_left_; }
 
   /// An attempt begins: no way is closed. @param speed of detours [m/s].
   void Begin(double speed);
 
   /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
-  /// not found within half of the budget or is much longer than the straight line.
+  /// not found within half of what is left of the budget or is much longer than the straight line.
   void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space, TimedWay* way);
 
   /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends is cut
@@ -47,7 +45,7 @@ class WayFinder {
 
  private:
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
-                      const Eigen::Vector3d& to, int budget, double max_cost);
+                      const Eigen::Vector3d& to, double share, double max_cost);
 
   StepConstants constants_;
   SpanSearch search_;
@@ -55,7 +53,7 @@ class WayFinder {
   std::vector<BlockedRun> runs_;
   GuidePath detour_;
   double speed_ = 1.0;
-  int expansions_left_ = 0;
+  WorkBudget* budget_;
 };
 
 /// Ends a run only where the curve is on the way's side of everything, at the same share of its time, and `more` of

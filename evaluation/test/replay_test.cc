@@ -89,7 +89,7 @@ TEST_F(Replayed, WhatItLooksAtToo) {
 
 // Steps that ran out of their budget, and where the next ones went on.
 TEST_F(Replayed, WhatWasNotFinishedToo) {
-  Fly("forest", {"planning.max_segments=400", "planning.max_expansions=400", "timeout=12"});
+  Fly("forest", {"planning.max_work=1000", "timeout=12"});
   const RecordedFlight flight = ReadRecord(path_, {}, registries_);
   int unfinished = 0;
   for (std::size_t i = 0; i < flight.plans.size(); ++i) {

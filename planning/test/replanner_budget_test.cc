@@ -8,24 +8,26 @@
 namespace touchdown::planning {
 namespace {
 
+constexpr int kFew = 3500;  // for such walls, in one step
+
 /// Walls with a door each, which take several rounds and arrivals to get through.
 OccupancyMap WallsWithDoors(Draw* draw) {
   OccupancyMap map = ObservedMap();
   for (const double x : {-2.45, 0.05, 2.55}) {
     const double door = draw->Uniform(-3.0, 3.0);
     for (double y = -6.0; y < 6.0; y += 0.1) {
-      if (std::abs(y - door) < 0.7) continue;
+      if (std::abs(y - door) < 0.5) continue;
       for (double z = 0.05; z < 4.0; z += 0.1) map.SetOccupied({x, y, z});
     }
   }
   return map;
 }
 
-ReplannerOptions Within(int segments, int expansions, ArrivalMode arrival = ArrivalMode::kFree) {
+ReplannerOptions Within(int work, ArrivalMode arrival = ArrivalMode::kFree) {
   ReplannerOptions options = Options(arrival);
-  options.max_segments = segments;
-  options.max_expansions = expansions;
+  options.max_work = work;
   options.ceiling_height = 3.0;
+  options.constants.way_greed = 6.0;
   return options;
 }
 
@@ -35,8 +37,7 @@ TEST(ReplannerBudget, IsNeverExceeded) {
   for (int trial = 0; trial < 40; ++trial) {
     const OccupancyMap map = WallsWithDoors(&draw);
     const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
-    const ReplannerOptions options =
-        Within(static_cast<int>(draw.Uniform(50, 1500)), static_cast<int>(draw.Uniform(10, 1000)));
+    const ReplannerOptions options = Within(static_cast<int>(draw.Uniform(100, 4000)));
     Replanner replanner(options, solvers::StandardBackends());
     const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.5, 0.0, 0.0);
     FlyAlong(start, v_WB, &replanner);
@@ -44,8 +45,7 @@ TEST(ReplannerBudget, IsNeverExceeded) {
       ReplanInput input = Input(replanner.Reference(t).p_WB, pad, t);
       input.vehicle.v_WB = replanner.Reference(t).v_WB;
       const ReplanResult& result = replanner.Replan(input, map);
-      EXPECT_LE(result.segments, options.max_segments) << trial;
-      EXPECT_LE(result.expansions, options.max_expansions) << trial;
+      EXPECT_LE(result.work, options.max_work) << trial;
       const bool unfinished = replanner.state().unfinished.has_value();
       spent += unfinished;
       EXPECT_FALSE(unfinished && result.status == ReplanStatus::kPlanned) << trial;
@@ -66,12 +66,11 @@ TEST_P(ReplannerBudgets, SmallStepsFindWhatALargeOneFinds) {
     const OccupancyMap map = WallsWithDoors(&draw);
     const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.0, 0.0, 0.0);
     const Eigen::Vector3d start(-5.0, 0.0, 1.6);
-    Replanner large(Within(1000000, 1000000, GetParam()), solvers::StandardBackends());
+    Replanner large(Within(10000000, GetParam()), solvers::StandardBackends());
     large.CommitHover(start, 0.0);
     const bool found = large.Replan(Input(start, pad, 0.0), map).status == ReplanStatus::kPlanned;
     large_found += found;
-    const int few = GetParam() == ArrivalMode::kFree ? 550 : 300;
-    Replanner small(Within(few, 3000, GetParam()), solvers::StandardBackends());
+    Replanner small(Within(kFew, GetParam()), solvers::StandardBackends());
     small.CommitHover(start, 0.0);
     for (int step = 0; step < 30; ++step) {
       const ReplanResult& result = small.Replan(Input(start, pad, 0.1 * step), map);
@@ -93,8 +92,8 @@ TEST(ReplannerBudget, TheNextStepFollowsFromTheState) {
     const OccupancyMap map = WallsWithDoors(&draw);
     const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.0, 0.0, 0.0);
     const Eigen::Vector3d start(-5.0, 0.0, 1.6);
-    Replanner flown(Within(550, 3000), solvers::StandardBackends());
-    Replanner other(Within(550, 3000), solvers::StandardBackends());
+    Replanner flown(Within(kFew), solvers::StandardBackends());
+    Replanner other(Within(kFew), solvers::StandardBackends());
     flown.CommitHover(start, 0.0);
     for (int step = 0; step < 6; ++step) {
       const ReplanInput input = Input(start, pad, 0.1 * step);

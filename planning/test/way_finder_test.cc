@@ -36,10 +36,10 @@ BlockedRun OnlyRun(const UniformBspline& curve, const FreeSpace& space) {
   return runs.front();
 }
 
-TimedWay Kept(WayFinder* finder, const UniformBspline& committed, const FreeSpace& space,
-              int expansions = kEnough) {
+TimedWay Kept(WayFinder* finder, WorkBudget* budget, const UniformBspline& committed,
+              const FreeSpace& space, int expansions = kEnough) {
   TimedWay way;
-  finder->Refill(expansions);
+  budget->Refill(expansions);
   finder->Begin(1.0);
   finder->Keep(committed, 0.0, space, &way);
   return way;
@@ -56,9 +56,10 @@ TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
   const FreeSpace space = SpaceOf(map);
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
   const BlockedRun run = OnlyRun(curve, space);
-  WayFinder finder(kUp);
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
   TimedWay way;
-  finder.Refill(kEnough);
+  budget.Refill(kEnough);
   finder.Begin(1.0);
   ASSERT_EQ(finder.LeadPast(curve, run, space, &way), SearchStatus::kFound);
   for (const Eigen::Vector3d& p : AllOf(way)) EXPECT_FALSE(space.Blocked(p));
@@ -87,8 +88,9 @@ TEST(WayFinder, KeepsTheCommittedCurveWhileItIsClear) {
   const OccupancyMap map = Wall();
   const FreeSpace space = SpaceOf(map);
   const UniformBspline committed = Straight({-2.0, -1.5, 0.05}, {2.0, -1.5, 0.05});
-  WayFinder finder(kUp);
-  const TimedWay way = Kept(&finder, committed, space, 0);
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
+  const TimedWay way = Kept(&finder, &budget, committed, space, 0);
   ASSERT_TRUE(way.known());
   EXPECT_TRUE(way.bound().empty());
   for (const Eigen::Vector3d& p : AllOf(way)) EXPECT_NEAR(p.y(), -1.5, 1e-9);
@@ -99,8 +101,9 @@ TEST(WayFinder, ADetourPassesWhatHasComeToBlockTheCommittedCurve) {
   const FreeSpace space = SpaceOf(map);
   // It was clear of a wall that seemed shorter.
   const UniformBspline committed = Straight({-2.0, 0.5, 0.05}, {2.0, 0.5, 0.05});
-  WayFinder finder(kUp);
-  const TimedWay way = Kept(&finder, committed, space);
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
+  const TimedWay way = Kept(&finder, &budget, committed, space);
   ASSERT_TRUE(way.known());
   EXPECT_EQ(way.bound().size(), 1u);
   double farthest = 0.0;
@@ -122,14 +125,16 @@ TEST(WayFinder, KeepsNothingWhereADetourIsNone) {
     for (double z = -1.55; z < 1.6; z += 0.1) across.SetOccupied({0.05, y, z});
   }
   const UniformBspline middle = Straight({-2.0, 0.3, 0.05}, {2.0, 0.3, 0.05});
-  WayFinder finder(kUp);
-  EXPECT_TRUE(Kept(&finder, middle, SpaceOf(map)).known());
-  EXPECT_FALSE(Kept(&finder, middle, SpaceOf(across)).known());  // too long
-  EXPECT_FALSE(Kept(&finder, middle, SpaceOf(map), 5).known());  // no time to look for it
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
+  EXPECT_TRUE(Kept(&finder, &budget, middle, SpaceOf(map)).known());
+  EXPECT_FALSE(Kept(&finder, &budget, middle, SpaceOf(across)).known());  // too long
+  EXPECT_FALSE(Kept(&finder, &budget, middle, SpaceOf(map), 5).known());  // no time to look for it
   // Where the curve starts or ends blocked.
   const FreeSpace space = SpaceOf(map);
-  EXPECT_FALSE(Kept(&finder, Straight({0.0, 0.0, 0.05}, {2.0, 0.0, 0.05}), space).known());
-  EXPECT_FALSE(Kept(&finder, Straight({-2.0, 0.0, 0.05}, {0.0, 0.0, 0.05}), space).known());
+  EXPECT_FALSE(Kept(&finder, &budget, Straight({0.0, 0.0, 0.05}, {2.0, 0.0, 0.05}), space).known());
+  EXPECT_FALSE(
+      Kept(&finder, &budget, Straight({-2.0, 0.0, 0.05}, {0.0, 0.0, 0.05}), space).known());
 }
 
 // The curve enters the front of an obstacle whose back was not seen: where it is free again it is behind the
@@ -166,9 +171,10 @@ TEST(WayFinder, ARunThatLeavesTheWindowIsCutThere) {
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {6.0, 0.0, 0.05});
   BlockedRun run = OnlyRun(curve, space);
   run.t_out = 7.5;  // at x = 5.5
-  WayFinder finder(kUp);
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
   TimedWay way;
-  finder.Refill(kEnough);
+  budget.Refill(kEnough);
   finder.Begin(1.0);
   ASSERT_EQ(finder.LeadPast(curve, run, space, &way), SearchStatus::kFound);
   const double last = finder.detour().back().x();
@@ -183,9 +189,10 @@ TEST(WayFinder, OutOfTheWindowTheWayStaysBetweenFloorAndCeiling) {
   space.floor = 0.5;
   space.ceiling = 2.0;
   const UniformBspline curve = Straight({5.0, 0.0, 0.1}, {9.0, 0.0, 2.6});
-  WayFinder finder(kUp);
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
   TimedWay way;
-  finder.Refill(kEnough);
+  budget.Refill(kEnough);
   finder.Begin(1.0);
   const BlockedRun all = {0.0, curve.duration(), false, false};
   ASSERT_EQ(finder.LeadPast(curve, all, space, &way), SearchStatus::kEndsOutside);
@@ -201,9 +208,10 @@ TEST(WayFinder, AllSearchesShareTheBudget) {
   const FreeSpace space = SpaceOf(map);
   const UniformBspline curve = Straight({-2.0, 0.0, 0.05}, {2.0, 0.0, 0.05});
   const BlockedRun run = OnlyRun(curve, space);
-  WayFinder finder(kUp);
+  WorkBudget budget;
+  WayFinder finder(kUp, {}, &budget);
   TimedWay way;
-  finder.Refill(600);
+  budget.Refill(600);
   finder.Begin(1.0);
   int found = 0;
   while (found < 100 && finder.LeadPast(curve, run, space, &way) == SearchStatus::kFound) ++found;
