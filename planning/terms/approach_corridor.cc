@@ -6,6 +6,8 @@
 // outside by is allowed to it, falling to zero on half of the way. Source: docs/formulation.md.
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "touchdown/planning/term_kinematics.h"
 
@@ -40,12 +42,64 @@ struct OutsideCorridor {
 
   template <class T>
   void operator()(int k, const T* q, const T& /*h*/, const T& t, T* u) const {
-    // By the knot and not by its time: a free interval must not move a knot across the relief's end.
-    const double relief = excess * std::max(0.0, 1.0 - first_block(k) / relieved_knots);
-    u[0] = Outside(KnotPosition(q), t) - relief;
+    u[0] = Outside(KnotPosition(q), t) - Relief(k);
+  }
+
+  void Jacobian(int k, const double* q, double /*h*/, double t, double* u, double* du,
+                double* du_dh) const {
+    const At at(KnotPosition(q), pad->MeanAt(t));
+    u[0] = at.distance - radius - slope * at.d.z() - Relief(k);
+    const Eigen::Vector3d g(at.n.x(), at.n.y(), -slope);  // du/dd
+    for (int i = 0; i < kWindow; ++i) Eigen::Vector3d::Map(du + 3 * i) = kRow[i] * g;
+    du_dh[0] = -g.dot(at.pad.v_WP) * first_block(k);
+  }
+
+  void Curvature(int k, const double* q, double /*h*/, double t, bool free_interval,
+                 const double* m, double* d2) const {
+    constexpr int n = 3 * kWindow + 1;
+    const At at(KnotPosition(q), pad->MeanAt(t));
+    const Eigen::Matrix2d bend =  // d2u/dd2
+        m[0] / at.distance * (Eigen::Matrix2d::Identity() - at.n * at.n.transpose());
+    for (int i = 0; i < kWindow; ++i) {
+      for (int j = i; j < kWindow; ++j) {
+        for (int row = 0; row < 2; ++row) {
+          for (int column = 0; column < 2; ++column) {
+            d2[(3 * i + row) * n + 3 * j + column] += kRow[i] * kRow[j] * bend(row, column);
+          }
+        }
+      }
+    }
+    if (!free_interval) return;
+    const double knot = first_block(k);
+    const Eigen::Vector2d v = at.pad.v_WP.head<2>(), cross = -knot * (bend * v);
+    for (int i = 0; i < kWindow; ++i) {
+      for (int row = 0; row < 2; ++row) d2[(3 * i + row) * n + n - 1] += kRow[i] * cross[row];
+    }
+    const double a = at.n.dot(at.pad.a_WP.head<2>()) - slope * at.pad.a_WP.z();
+    d2[n * n - 1] += knot * knot * (v.dot(bend * v) - m[0] * a);
   }
 
  private:
+  static constexpr std::array<double, kWindow> kRow = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
+
+  /// A knot seen from the pad.
+  struct At {
+    At(const Triple<double>& p, const estimation::PadState& state)
+        : pad(state),
+          d(Eigen::Vector3d(p[0], p[1], p[2]) - state.p_WP),
+          distance(std::sqrt(d.head<2>().squaredNorm() + kSmoothing * kSmoothing)),
+          n(d.head<2>() / distance) {}
+    estimation::PadState pad;
+    Eigen::Vector3d d;
+    double distance;  // level, smoothed; its slope is n
+    Eigen::Vector2d n;
+  };
+
+  // By the knot and not by its time: a free interval must not move a knot across the relief's end.
+  double Relief(int k) const {
+    return excess * std::max(0.0, 1.0 - first_block(k) / relieved_knots);
+  }
+
   template <class T>
   T Outside(const Triple<T>& p, const T& t) const {
     using std::sqrt;
