@@ -182,7 +182,7 @@ struct Scenario {
     double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
     double ceiling = 10.0;    ///< the body's origin stays below this [m]
     int guides = 2;           ///< most ways around the first obstacle that a step tries
-    int max_work = 12000;     ///< of a step, in units of planning/work_budget.h
+    int max_work = 10000;     ///< of a step, in units of planning/work_budget.h
     EndpointVelocityKind endpoint_velocity = EndpointVelocityKind::kPad;
     bool warm_start = true;  ///< solves begin at the committed plan
   } planning;

@@ -368,11 +368,9 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   stop.gap = options_.gap;
   stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
-  const bool free_arrival = request.arrival == ArrivalMode::kFree;
-  const int curve_work =
-      posed.segments * (free_arrival ? WorkBudget::kSegmentOfFreeArrival : WorkBudget::kSegment);
-  const int other_work =  // the pairs, and the check of the curve
-      WorkBudget::kPair * static_cast<int>(candidate->pairs.size()) + curve_work;
+  const int curve_work = WorkBudget::kSegment * posed.segments;
+  const int other_work = WorkBudget::kOfSolve * curve_work +
+                         WorkBudget::kPair * static_cast<int>(candidate->pairs.size());
   stop.max_evaluations = (budget_.left() - other_work) / curve_work;
   if (stop.max_evaluations <= 0) {
     spent_ = true;

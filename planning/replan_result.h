@@ -52,7 +52,7 @@ struct ReplannerOptions {
   double gap = 5e-3;
   /// What a step may do (work_budget.h); without a plan to fly the next one goes on at the attempt that did not
   /// fit.
-  int max_work = 12000;
+  int max_work = 10000;
   StepConstants constants;  ///< what else a step decides by
 };
 
