@@ -61,7 +61,8 @@ CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_u
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
   next_h REAL, next_stop_t0 REAL, next_stop_h REAL, current_t_stop REAL,
-  current_proven INTEGER, next_t_stop REAL, next_proven INTEGER);
+  current_proven INTEGER, current_from_unknown INTEGER, next_t_stop REAL, next_proven INTEGER,
+  next_from_unknown INTEGER);
 CREATE TABLE state_point(plan INTEGER, curve TEXT, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL, radius REAL);
@@ -175,7 +176,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement bound = db.Prepare("INSERT INTO bound_part VALUES(?, ?, ?, ?)");
   SqliteStatement unfinished = db.Prepare("INSERT INTO unfinished VALUES(?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
@@ -207,7 +208,8 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
               s.strip_floor, s.current.curve.t0(), s.current.curve.interval(), s.current.stop.t0(),
               s.current.stop.interval(), s.next.curve.t0(), s.next.curve.interval(),
               s.next.stop.t0(), s.next.stop.interval(), FiniteOrNone(s.current.t_stop),
-              s.current.proven, FiniteOrNone(s.next.t_stop), s.next.proven);
+              s.current.proven, s.current.from_unknown, FiniteOrNone(s.next.t_stop), s.next.proven,
+              s.next.from_unknown);
     WritePoints(point, id, "current", s.current.curve.control_points());
     WritePoints(point, id, "current_stop", s.current.stop.control_points());
     WritePoints(point, id, "next", s.next.curve.control_points());

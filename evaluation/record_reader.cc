@@ -185,36 +185,39 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
 
 void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   std::vector<std::map<std::string, Knots>> knots(plans->size());
-  ReadEach(TableRows(db, "replanner_state",
-                     "plan, planned, around_unseen, looked_t, look_x, look_y, look_z, climb, "
-                     "strip_t, strip_from_x, "
-                     "strip_from_y, strip_to_x, strip_to_y, strip_floor, current_t0, current_h, "
-                     "current_stop_t0, "
-                     "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
-                     "current_t_stop, current_proven, next_t_stop, next_proven",
-                     "plan"),
-           plans, [&](TableRows& row, RecordPlan* plan) {
-             planning::ReplannerState& s = plan->before;
-             s.planned = row.Flag();
-             s.around_unseen = row.Flag();
-             s.looked_t = row.Number();
-             const std::optional<double> x = row.Optional(), y = row.Optional(), z = row.Optional();
-             if (x && y && z) s.looks_at_W = Eigen::Vector3d(*x, *y, *z);
-             s.climb = row.Optional();
-             s.strip_t = row.Optional();
-             s.strip_from = row.Vector2();
-             s.strip_to = row.Vector2();
-             s.strip_floor = row.Number();
-             auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
-             for (const char* curve : {"current", "current_stop", "next", "next_stop"}) {
-               curves[curve].t0 = row.Number();
-               curves[curve].h = row.Number();
-             }
-             for (planning::FlightPair* pair : {&s.current, &s.next}) {
-               pair->t_stop = row.Optional().value_or(std::numeric_limits<double>::infinity());
-               pair->proven = row.Flag();
-             }
-           });
+  ReadEach(
+      TableRows(db, "replanner_state",
+                "plan, planned, around_unseen, looked_t, look_x, look_y, look_z, climb, "
+                "strip_t, strip_from_x, "
+                "strip_from_y, strip_to_x, strip_to_y, strip_floor, current_t0, current_h, "
+                "current_stop_t0, "
+                "current_stop_h, next_t0, next_h, next_stop_t0, next_stop_h, "
+                "current_t_stop, current_proven, current_from_unknown, next_t_stop, next_proven, "
+                "next_from_unknown",
+                "plan"),
+      plans, [&](TableRows& row, RecordPlan* plan) {
+        planning::ReplannerState& s = plan->before;
+        s.planned = row.Flag();
+        s.around_unseen = row.Flag();
+        s.looked_t = row.Number();
+        const std::optional<double> x = row.Optional(), y = row.Optional(), z = row.Optional();
+        if (x && y && z) s.looks_at_W = Eigen::Vector3d(*x, *y, *z);
+        s.climb = row.Optional();
+        s.strip_t = row.Optional();
+        s.strip_from = row.Vector2();
+        s.strip_to = row.Vector2();
+        s.strip_floor = row.Number();
+        auto& curves = knots[static_cast<std::size_t>(plan - plans->data())];
+        for (const char* curve : {"current", "current_stop", "next", "next_stop"}) {
+          curves[curve].t0 = row.Number();
+          curves[curve].h = row.Number();
+        }
+        for (planning::FlightPair* pair : {&s.current, &s.next}) {
+          pair->t_stop = row.Optional().value_or(std::numeric_limits<double>::infinity());
+          pair->proven = row.Flag();
+          pair->from_unknown = row.Flag();
+        }
+      });
   ReadMany(TableRows(db, "bound_part", "plan, t_from, t_to", "plan, i"), plans,
            [](TableRows& row, RecordPlan* plan) {
              const double from = row.Number();

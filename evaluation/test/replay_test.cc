@@ -66,7 +66,11 @@ TEST_F(Replayed, TheFirstCaseBitForBit) {
             DumpScenario(LoadScenario(FindScenario("straight_turn"), {}, registries_)));
   for (std::size_t i = 0; i < flight.plans.size(); ++i) {
     EXPECT_TRUE(Same(flight.plans[i].result, flown_.plans[i].result)) << i;
+    const planning::ReplannerState &read = flight.plans[i].before, &flown = flown_.plans[i].before;
+    EXPECT_EQ(read.current.from_unknown, flown.current.from_unknown) << i;
+    EXPECT_EQ(read.next.from_unknown, flown.next.from_unknown) << i;
   }
+  EXPECT_FALSE(flown_.plans.back().before.next.from_unknown);
   ExpectTheSameBits(flight, registries_);
 }
 
@@ -136,7 +140,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 12");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 13");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");
