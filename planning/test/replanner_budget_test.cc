@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/planning/test/replanner_fixtures.h"
+#include "touchdown/planning/work_budget.h"
 
 namespace touchdown::planning {
 namespace {
@@ -29,6 +30,19 @@ ReplannerOptions Within(int work, ArrivalMode arrival = ArrivalMode::kFree) {
   options.ceiling_height = 3.0;
   options.constants.way_greed = 6.0;
   return options;
+}
+
+TEST(ReplannerBudget, CountsTheSegmentsOfAStepThatSolvesOnce) {
+  const OccupancyMap map = ObservedMap();
+  const ArcPad pad({5.0, 0.5, 0.3}, 0.0, 0.0, 0.0);
+  const Eigen::Vector3d start(-5.0, 0.0, 1.6);
+  Replanner replanner(Within(10000), solvers::StandardBackends());
+  replanner.CommitHover(start, 0.0);
+  const ReplanResult& result = replanner.Replan(Input(start, pad, 0.0), map);
+  ASSERT_EQ(result.status, ReplanStatus::kPlanned);
+  ASSERT_EQ(result.solves, 1);
+  const int evaluations = result.solver.evaluations + WorkBudget::kOfSolve;
+  EXPECT_EQ(result.work, WorkBudget::kSegment * result.curve.segments() * evaluations);
 }
 
 TEST(ReplannerBudget, IsNeverExceeded) {
