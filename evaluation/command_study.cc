@@ -323,9 +323,7 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   command.Add("--guides", options.replanner.max_guides, "Most guide paths to try")
       .Check(Range(1, 8))
       .ShowDefault();
-  command
-      .Add("--max-work", options.replanner.max_work,
-           "What a step may do at most, in evaluated segments and searched spans")
+  command.Add("--max-work", options.replanner.max_work, "Units of work that a step may do at most")
       .Check(Range(1000, 1000000))
       .ShowDefault();
   command.Add("--horizon", options.scenes.horizon, "Start to end [m]")

@@ -25,6 +25,7 @@ namespace {
 
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
 constexpr double kKeepShare = 0.25;     // of the budget, kept for the committed plan
+constexpr int kLeastEvaluations = 12;   // of a curve along a way, that a search for it leaves
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
@@ -211,7 +212,10 @@ void PlanAttempt::KeepWay(const AttemptRequest& request, ReplanResult* result) {
 ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun& span,
                                  double max_cost, ReplanResult* result) {
   StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
-  const SearchStatus status = finder_.LeadPast(first_curve_, span, *request.space, &way_, max_cost);
+  // A way that nothing is left to follow would only be found again.
+  const int reserve = kLeastEvaluations * WorkBudget::kSegment * segments_;
+  const SearchStatus status =
+      finder_.LeadPast(first_curve_, span, *request.space, &way_, reserve, max_cost);
   // The search moves a blocked start to the nearest free cell: a start in the inflated zone is led out.
   if (span.at_start && status == SearchStatus::kEndsBlocked) return ReplanReason::kStartBlocked;
   // What is left for other ways is less than the budget.
@@ -369,7 +373,7 @@ ReplanReason PlanAttempt::Solve(const AttemptRequest& request, const Posed& pose
   stop.confirm = false;  // the certificate judges the plan
   stop.trace = request.log != nullptr;
   const int curve_work = WorkBudget::kSegment * posed.segments;
-  const int other_work = WorkBudget::kOfSolve * curve_work +
+  const int other_work = WorkBudget::kEvaluationsOfSetUp * curve_work +
                          WorkBudget::kPair * static_cast<int>(candidate->pairs.size());
   stop.max_evaluations = (budget_.left() - other_work) / curve_work;
   if (stop.max_evaluations <= 0) {

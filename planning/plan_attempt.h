@@ -51,6 +51,8 @@ class PlanAttempt {
   static constexpr int kMostControlPoints = PairBinder::kMostControlPoints;  ///< of a plan
 
   PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
+  PlanAttempt(const PlanAttempt&) = delete;  // its parts take from one budget
+  PlanAttempt& operator=(const PlanAttempt&) = delete;
 
   /// Makes room for searches on maps with this one's window.
   void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }

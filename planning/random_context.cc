@@ -32,6 +32,8 @@ estimation::PadState OnArc(const Vector3d& centre, double radius, double rate, d
   s.v_WP = radius * rate * along;
   s.a_WP = -radius * rate * rate * out;
   s.j_WP = -radius * rate * rate * rate * along;
+  s.v_WP.z() = 0.2;  // as on a swell
+  s.a_WP.z() = -0.3;
   s.yaw = angle;
   s.yaw_rate = rate;
   return s;

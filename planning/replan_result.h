@@ -50,8 +50,8 @@ struct ReplannerOptions {
   /// A solve ends so near to the optimum, as a share of the cost (solvers::Stop::gap): not the last digits of
   /// an optimum make a plan, but its certificate.
   double gap = 5e-3;
-  /// What a step may do (work_budget.h); without a plan to fly the next one goes on at the attempt that did not
-  /// fit.
+  /// What a step may do (work_budget.h). Without a plan to fly the next one goes on: behind a first attempt that
+  /// did not fit, at a later one.
   int max_work = 10000;
   StepConstants constants;  ///< what else a step decides by
 };

@@ -515,7 +515,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     }
     const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {
-      // What has had no whole budget gets one in the next step; what has is left behind.
+      // A later attempt gets a whole budget in the next step; a first one had it, and is left behind.
       unfinished_ = tried > 1 ? rung : climb.next;
       // Who rests and does not see what the way on needs may look from elsewhere (StepsAside).
       return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;

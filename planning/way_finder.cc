@@ -14,11 +14,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStep = 0.05;  // sampling of a curve [s]
-// Of the work that is left, what a search may take: the first way leaves what one curve along it takes, ...
-constexpr double kFirstShare = 0.9;
-// ... and others leave what a later attempt takes to find the first one again.
-constexpr double kOtherShare = 0.5;
+constexpr double kStep = 0.05;        // sampling of a curve [s]
 constexpr double kLevelMargin = 0.3;  // of a way from floor and ceiling, out of the window [m]
 
 void CutToWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
@@ -57,8 +53,8 @@ void WayFinder::Begin(double speed) {
 }
 
 SearchStatus WayFinder::Search(const FreeSpace& space, const Eigen::Vector3d& from,
-                               const Eigen::Vector3d& to, double share, double max_cost) {
-  const int most = static_cast<int>(share * budget_->left()) / WorkBudget::kSpan;
+                               const Eigen::Vector3d& to, int most_work, double max_cost) {
+  const int most = std::max(0, most_work) / WorkBudget::kSpan;
   const SearchStatus status = search_.Search(space, from, to, most, &detour_, barriers_, max_cost);
   budget_->Take(WorkBudget::kSpan * search_.expansions());
   return status;
@@ -69,12 +65,13 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
   way->Clear();
   FindBlockedRuns(committed, t_from, space, &runs_);
   if (!runs_.empty() && (runs_.front().at_start || runs_.back().at_end)) return;
+  const int left = budget_->left() / 2;
   double t = t_from;
   for (const BlockedRun& run : runs_) {
     way->AddCurve(committed, t, run.t_in);
     const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
     const SearchStatus status =
-        Search(space, from, to, kOtherShare, std::numeric_limits<double>::infinity());
+        Search(space, from, to, budget_->left() - left, std::numeric_limits<double>::infinity());
     const double longest = (to - from).norm() + constants_.detour_longer;
     if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
     way->AddDetour(committed, run, detour_, speed_);
@@ -84,12 +81,13 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
 }
 
 SearchStatus WayFinder::LeadPast(const UniformBspline& curve, BlockedRun run,
-                                 const FreeSpace& space, TimedWay* way, double max_cost) {
+                                 const FreeSpace& space, TimedWay* way, int reserve,
+                                 double max_cost) {
   way->Clear();
   CutToWindow(curve, *space.map, &run);
-  const double share = ways_closed() > 0 ? kOtherShare : kFirstShare;
+  const int most = (budget_->left() - reserve) / (ways_closed() > 0 ? 2 : 1);
   const SearchStatus status =
-      Search(space, curve.Position(run.t_in), curve.Position(run.t_out), share, max_cost);
+      Search(space, curve.Position(run.t_in), curve.Position(run.t_out), most, max_cost);
   // Out of the window only floor and ceiling block, and there is one way between them.
   if (status == SearchStatus::kEndsOutside && ways_closed() > 0) return SearchStatus::kNoPath;
   if (status == SearchStatus::kEndsOutside) SampleBetweenLevels(curve, run, space, &detour_);

@@ -26,15 +26,17 @@ class WayFinder {
   void Begin(double speed);
 
   /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
-  /// not found within half of what is left of the budget or is much longer than the straight line.
+  /// not found or is much longer than the straight line. Takes half of the work that is left at most.
   void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space, TimedWay* way);
 
   /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends is cut
   /// there: the search knows no more; one that begins out of it is led along the curve, between floor and
   /// ceiling. kFound and kEndsOutside leave a way.
+  /// Takes all work that is left but `reserve`; a way beside a closed one, half of that.
   /// @param max_cost of the detour; ways that cost more are not looked at [m].
   SearchStatus LeadPast(const UniformBspline& curve, BlockedRun run, const FreeSpace& space,
-                        TimedWay* way, double max_cost = std::numeric_limits<double>::infinity());
+                        TimedWay* way, int reserve = 0,
+                        double max_cost = std::numeric_limits<double>::infinity());
   /// Of the detour that was found last: its cost [m], and the places.
   double cost() const { return search_.cost(); }
   const GuidePath& detour() const { return detour_; }
@@ -45,7 +47,7 @@ class WayFinder {
 
  private:
   SearchStatus Search(const FreeSpace& space, const Eigen::Vector3d& from,
-                      const Eigen::Vector3d& to, double share, double max_cost);
+                      const Eigen::Vector3d& to, int most_work, double max_cost);
 
   StepConstants constants_;
   SpanSearch search_;

@@ -78,7 +78,7 @@ TEST(WayFinder, LeadsPastARunAndTheOtherWayWhenThatIsClosed) {
   }
   EXPECT_LT(farthest, -0.6);
   // It costs more, and is not looked at where that is forbidden.
-  EXPECT_EQ(finder.LeadPast(curve, run, space, &way, 0.9 * cost), SearchStatus::kNoPath);
+  EXPECT_EQ(finder.LeadPast(curve, run, space, &way, 0, 0.9 * cost), SearchStatus::kNoPath);
   EXPECT_FALSE(way.known());
   finder.Begin(1.0);
   EXPECT_EQ(finder.ways_closed(), 0);

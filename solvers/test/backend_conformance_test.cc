@@ -223,6 +223,10 @@ TEST_P(EveryBackend, StopsOnBudgetCallbackAndClock) {
   EXPECT_LE(few.iterations, 2);
   EXPECT_LE(few.cost, 24.2);
 
+  for (const int budget : {1, 2, 3, 5, 8}) {
+    EXPECT_LE(Solve(problem, start, {.max_evaluations = budget}).evaluations, budget);
+  }
+
   Stop callback;
   int asked = 0;
   callback.callback = [&](const StopQuery& query) {
