@@ -28,6 +28,9 @@ struct EndpointTarget {
   bool touches() const { return arrival_sink > 0.0; }
   /// Whether what follows it is contact: by this plan, or by the ones that sink with the height.
   bool leads_to_contact() const { return touches() || sink_rate > 0.0; }
+  /// Whether it may end in contact: a level stretch at the end of a landing, or a vertical descent, goes below the
+  /// height of contact [m].
+  bool may_touch(double contact_height) const { return touches() || height_floor < contact_height; }
 };
 
 /// The end condition at an arrival time, with the derivatives with respect to it that free arrival

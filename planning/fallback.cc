@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ladder below a plan. Each step of it is proven as a pair like any plan: the committed curve with a newer
+// The steps of the ladder below a plan (fallback_ladder.h). Each is proven as a pair like any plan: the committed curve with a newer
 // stop, a way to rest that is wanted, a way out of an obstacle's zone. Below them is the stop that was
 // stored with the committed pair: it is flown without being asked.
 

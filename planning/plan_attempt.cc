@@ -24,8 +24,6 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kRowTolerance = 2e-6;  // what backends leave of the equality rows, as a norm
-constexpr double kKeepShare = 0.25;     // of the budget, kept for the committed plan
-constexpr int kLeastEvaluations = 12;   // of a curve along a way, that a search for it leaves
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// Of the limits, the largest that a plan uses; that of a recovery is not told.
@@ -114,9 +112,10 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
     if (holds(reason)) return reason;
   }
   const bool may_keep = keeps && request.looks;
-  const int reserve = may_keep ? budget_.SetAside(kKeepShare) : 0;
+  std::optional<WorkBudget::SetAside> aside;
+  if (may_keep) aside.emplace(WorkBudget::kKeptShare, &budget_);
   const ReplanReason found = FindAnew(request, warm, leads_around, result);
-  budget_.GiveBack(reserve);
+  aside.reset();
   if (holds(found) || !may_keep) return found;
   // Who looks for a better plan and finds none keeps what holds, before a later arrival is tried.
   const ReplanReason kept = KeepCommitted(request, result);
@@ -213,7 +212,7 @@ ReplanReason PlanAttempt::LayWay(const AttemptRequest& request, const BlockedRun
                                  double max_cost, ReplanResult* result) {
   StageTimer timer(&result->times.search, StageTimer::kWhileLogged);
   // A way that nothing is left to follow would only be found again.
-  const int reserve = kLeastEvaluations * WorkBudget::kSegment * segments_;
+  const int reserve = WorkBudget::kLeastEvaluations * WorkBudget::kSegment * segments_;
   const SearchStatus status =
       finder_.LeadPast(first_curve_, span, *request.space, &way_, reserve, max_cost);
   // The search moves a blocked start to the nearest free cell: a start in the inflated zone is led out.

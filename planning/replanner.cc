@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The replanning step: start from the committed trajectory (or from the vehicle where tracking lost
 // it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified.
-// If nothing is, the ladder of fallback.h. What is committed is always a pair, a curve and its stop, so that
+// If nothing is, the ladder of fallback_ladder.h. What is committed is always a pair, a curve and its stop, so that
 // a step that has no answer needs none.
 
 #include "touchdown/planning/replanner.h"
@@ -15,12 +15,12 @@
 #include "touchdown/planning/attempt_ladder.h"
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/fallback.h"
+#include "touchdown/planning/fallback_ladder.h"
 #include "touchdown/planning/pad_strip.h"
 #include "touchdown/planning/plan_attempt.h"
 #include "touchdown/planning/replan_checks.h"
 #include "touchdown/planning/stage_timer.h"
 #include "touchdown/planning/timed_way.h"
-#include "touchdown/planning/vantage.h"
 
 namespace touchdown::planning {
 
@@ -29,12 +29,8 @@ namespace {
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
-constexpr double kClockRounding = 1e-6;            // [s]
-const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
-const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
-constexpr double kLookAhead = 2.0;  // of the cells that the next stops need [s]
-constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
+constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
 double DetourOf(const UniformBspline& curve, double from) {
@@ -49,7 +45,9 @@ SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat
 class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-      : options_(options), attempt_(options, backends), fallback_(options.limits) {
+      : options_(options),
+        attempt_(options, backends),
+        fallback_(options.limits, options.reaction) {
     for (UniformBspline* curve : {&current_.curve, &current_.stop, &next_.curve, &next_.stop,
                                   &result_.curve, &result_.stop}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
@@ -78,8 +76,7 @@ class Replanner::Impl {
     if (t > current_.t_stop) {
       next_ = current_;
       result_.committed = planned_before_ = false;
-      looks_at_W_.reset();
-      climbing_ = -1.0;
+      fallback_.Forget();
       Fallback::FlyStop(next_, t, HullSpace{}, &result_);
     }
   }
@@ -116,16 +113,12 @@ class Replanner::Impl {
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   HullSpace HullIn(const FreeSpace& space, const estimation::PadPrediction* pad) const;
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
-  bool LandsSoon(const ReplanInput& input, const HullSpace& hull) const;
-  bool GoesOn(const ReplanInput& input, const HullSpace& hull);
-  bool StillLooks(const OccupancyMap& map);
-  bool StepsAside(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
-  bool Stops(double t0, const SplineState& start, const Eigen::Vector3d& shift,
-             const HullSpace& hull, Fallback::Room room);
-  void StepDown(const ReplanInput& input, const SplineState& start, const HullSpace& hull);
+  FallbackFacts FactsFor(const ReplanInput& input, const SplineState& start,
+                         const HullSpace& hull) const;
+  const ReplanResult& Finish(const Fallen& fallen, double t0);
 
   PlanAttempt attempt_;
-  Fallback fallback_;
+  FallbackLadder fallback_;
   Limits limits_;        // what the pull of this step leaves
   double margin_ = 0.0;  // around the hull in this step [m]
   ReplanResult result_;
@@ -138,8 +131,6 @@ class Replanner::Impl {
   std::optional<Rung> resumes_;     // ... and the last one did
   FreeSpace strip_;                 // over the last known pad ...
   double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
-  std::optional<Eigen::Vector3d> looks_at_W_;  // the committed curve leads to where it is in sight
-  double climbing_ = -1.0;  // the committed curve is the caller's rest with this climb
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -180,8 +171,8 @@ ReplannerState Replanner::Impl::State() const {
   state.bound = bound_;
   state.looked_t = looked_t_;
   state.unfinished = unfinished_;
-  state.looks_at_W = looks_at_W_;
-  if (climbing_ >= 0.0) state.climb = climbing_;
+  state.looks_at_W = fallback_.memory().looks_at_W;
+  state.climb = fallback_.memory().climb;
   if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
   state.strip_from = strip_.pad_from;
   state.strip_to = strip_.pad_to;
@@ -198,8 +189,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   bound_ = state.bound;
   looked_t_ = state.looked_t;
   unfinished_ = state.unfinished;
-  looks_at_W_ = state.looks_at_W;
-  climbing_ = state.climb.value_or(-1.0);
+  fallback_.Restore({state.looks_at_W, state.climb});
   strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
   strip_.floor = options_.floor_height;
   strip_.ceiling = options_.ceiling_height;
@@ -220,9 +210,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.pairs = result_.solves = result_.rebinds = result_.work = 0;
   result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
-  // A level stretch at the end of a landing, or a vertical descent, may go below the height of contact.
-  result_.ends_in_contact =
-      input.endpoint.touches() || input.endpoint.height_floor < options_.contact_height;
+  result_.ends_in_contact = input.endpoint.may_touch(options_.contact_height);
   result_.unseen_W.reset();
   result_.reason = ReplanReason::kNone;
   result_.certificate = {};
@@ -273,11 +261,13 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   StageTimer total(&result_.times.total);
   if (!StateValid(input) || !InTime(input)) return RefuseState(input);
   const SplineState start = Start(input);
-  climbing_ = -1.0;
+  fallback_.ForgetClimb();
   const bool target_valid = TargetValid(input);
-  result_.reason = !target_valid     ? ReplanReason::kInvalidInput
-                   : StillLooks(map) ? ReplanReason::kUnobserved
-                                     : Plan(input, start, map);
+  const bool looks = target_valid && fallback_.StillLooks(map, result_.from_odometry);
+  if (looks) result_.unseen_W = fallback_.memory().looks_at_W;
+  result_.reason = !target_valid ? ReplanReason::kInvalidInput
+                   : looks       ? ReplanReason::kUnobserved
+                                 : Plan(input, start, map);
   if (target_valid) {
     strip_ = SpaceOverPad(input, start, WatchedUntil(input), map);
     strip_t_ = input.t_start;
@@ -291,7 +281,28 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
     return result_;
   }
   const FreeSpace space = target_valid ? strip_ : SpaceWithoutPad(input, map);
-  StepDown(input, start, HullIn(space, target_valid ? input.pad : nullptr));
+  const HullSpace hull = HullIn(space, target_valid ? input.pad : nullptr);
+  return Finish(fallback_.StepDown(FactsFor(input, start, hull), &result_), input.t_start);
+}
+
+/// They point to what is committed, and to `hull`.
+FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineState& start,
+                                        const HullSpace& hull) const {
+  FallbackFacts facts;
+  facts.committed = &next_;
+  facts.start = start;
+  facts.t0 = input.t_start;
+  facts.hull = &hull;
+  facts.endpoint = input.endpoint;
+  facts.pull_W = input.pull_W;
+  facts.planned = planned_before_;
+  return facts;
+}
+
+/// Commits what the ladder came to, if that is new.
+const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
+  planned_before_ = fallen.on_plan;
+  if (fallen.commits) Commit(t0);
   return result_;
 }
 
@@ -305,103 +316,6 @@ std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& in
   return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
 }
 
-/// The committed curve, with a newer stop.
-bool Replanner::Impl::GoesOn(const ReplanInput& input, const HullSpace& hull) {
-  return fallback_.GoesOn(next_, input.t_start, input.t_start + options_.reaction, hull, &result_);
-}
-
-/// Shortly before a contact that is still wanted nothing is put off: the committed pair was proven until then.
-bool Replanner::Impl::LandsSoon(const ReplanInput& input, const HullSpace& hull) const {
-  return result_.ends_in_contact && input.endpoint.leads_to_contact() && next_.Lands() &&
-         ContactTime(next_.curve, input.t_start, hull) - input.t_start < kLastStretch;
-}
-
-/// Commits a stop that ends `shift` from where braking does [m], if there is one.
-bool Replanner::Impl::Stops(double t0, const SplineState& start, const Eigen::Vector3d& shift,
-                            const HullSpace& hull, Fallback::Room room) {
-  if (!fallback_.Rests(t0, start, shift, hull, room, &result_)) return false;
-  result_.status = ReplanStatus::kBraking;
-  Commit(t0);
-  return true;
-}
-
-/// Who went to where a cell is in sight makes no plan before it is known, or there is no better place.
-bool Replanner::Impl::StillLooks(const OccupancyMap& map) {
-  if (!looks_at_W_) return false;
-  const CellIndex cell = map.CellOf(*looks_at_W_);
-  if (result_.from_odometry || map.IsObservedFree(cell) || map.IsOccupied(cell)) {
-    looks_at_W_.reset();
-  }
-  result_.unseen_W = looks_at_W_;
-  return looks_at_W_.has_value();
-}
-
-/// Who has looked for long and does not see what the way on needs goes to where it is better in sight. But not
-/// low, where the pad may come by, nor from where a landing goes on.
-bool Replanner::Impl::StepsAside(const ReplanInput& input, const SplineState& start,
-                                 const HullSpace& hull) {
-  const double t0 = input.t_start;
-  if (!result_.unseen_W || t0 - next_.Last().t_end() < kLookTime) return false;
-  looks_at_W_.reset();
-  const Eigen::Vector3d unseen = *result_.unseen_W;
-  if ((start.p - unseen).norm() > kAsideFrom) return false;
-  double lowest = -std::numeric_limits<double>::infinity();
-  if (hull.pad != nullptr) {
-    lowest = LowestRest(t0, hull);
-    if (input.endpoint.leads_to_contact() && hull.space->OverPad(start.p)) return false;
-  }
-  for (const Eigen::Vector3d& shift : Vantages(start.p, unseen, input.pull_W)) {
-    if (start.p.z() + shift.z() < lowest) continue;
-    if (!Stops(t0, start, shift, hull, Fallback::Room::kOfPlans)) continue;
-    looks_at_W_ = unseen;
-    return true;
-  }
-  return false;
-}
-
-/// Below a plan: the landing that is committed, the committed curve with a newer stop, a way out from rest,
-/// the stop that is stored; and where that was a landing that misses, up, proven or not.
-void Replanner::Impl::StepDown(const ReplanInput& input, const SplineState& start,
-                               const HullSpace& hull) {
-  const double t0 = input.t_start;
-  const Fallback::Landing landing = Fallback::LookAtLanding(next_, t0, hull);
-  if (!result_.from_odometry && LandsSoon(input, hull) && landing == Fallback::Landing::kHolds) {
-    Fallback::FlyStop(next_, t0, hull, &result_);
-    return;
-  }
-  const bool at_rest = !result_.from_odometry && Fallback::AtRest(next_, t0);
-  const bool on_plan = planned_before_ && !result_.from_odometry && !at_rest;
-  if (on_plan && GoesOn(input, hull)) {
-    result_.status = ReplanStatus::kKept;
-    return Commit(t0);
-  }
-  planned_before_ = false;
-  if (at_rest && fallback_.Escapes(t0, start, hull, &result_)) {
-    result_.status = ReplanStatus::kEscaping;
-    return Commit(t0);
-  }
-  if (at_rest && result_.reason == ReplanReason::kUnobserved && StepsAside(input, start, hull)) {
-    return;
-  }
-  // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
-  if (result_.from_odometry || next_.Lands()) {
-    if (Stops(t0, start, kNoShift, hull, Fallback::Room::kOfPlans) ||
-        Stops(t0, start, kUpFromMiss, hull, Fallback::Room::kOfPlans)) {
-      return;
-    }
-  }
-  if (landing == Fallback::Landing::kMisses) {
-    if (Stops(t0, start, kUpFromMiss, hull, Fallback::Room::kOfHull) ||
-        Stops(t0, start, kNoShift, hull, Fallback::Room::kOfHull)) {
-      return;
-    }
-    fallback_.RisesUnproven(t0, start, kUpFromMiss.z(), hull, &result_);
-    result_.status = ReplanStatus::kBraking;
-    return Commit(t0);
-  }
-  Fallback::FlyStop(next_, t0, hull, &result_);
-}
-
 const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& map) {
   Begin(input);
@@ -412,23 +326,7 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
   const FreeSpace space = remembered ? SpaceWithoutPad(input, map)
                                      : SpaceOverPad(input, start, WatchedUntil(input), map);
   const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
-  planned_before_ = false;
-  looks_at_W_.reset();
-  const bool under_way = climbing_ == climb && !result_.from_odometry;
-  if (!under_way) {
-    climbing_ = -1.0;
-    // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
-    for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
-      if (!Stops(input.t_start, start, {0.0, 0.0, rise}, hull, Fallback::Room::kOfPlans)) continue;
-      // That none came out is no reason to stop trying.
-      if (rise > 0.0 || climb == 0.0) climbing_ = climb;
-      if (rise > 0.0) result_.status = ReplanStatus::kClimbing;
-      return result_;
-    }
-  }
-  StepDown(input, start, hull);
-  if (under_way && result_.status == ReplanStatus::kBraking) result_.status = ReplanStatus::kKept;
-  return result_;
+  return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
 /// The first arrival from T on at which the plan's end is free, before the next attempt's would be, or T if
@@ -453,7 +351,8 @@ Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& sta
     return GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, detour);
   };
   facts->fresh = guess(1.0);
-  facts->lands_soon = !result_.from_odometry && LandsSoon(input, HullIn(plain, input.pad));
+  facts->lands_soon = !result_.from_odometry &&
+                      LandsSoon(next_, input.t_start, input.endpoint, HullIn(plain, input.pad));
   facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
@@ -510,14 +409,14 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
       return reason;
     // What is not seen yet may soon be: as long as it can, the committed curve goes on.
     if (reason == ReplanReason::kUnobserved && rung.attempt == 0 && on_plan && !facts.at_rest &&
-        !facts.lands_soon && GoesOn(input, hull)) {
+        !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
     }
     const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {
       // A later attempt gets a whole budget in the next step; a first one had it, and is left behind.
       unfinished_ = tried > 1 ? rung : climb.next;
-      // Who rests and does not see what the way on needs may look from elsewhere (StepsAside).
+      // Who rests and does not see what the way on needs may look from elsewhere (fallback_ladder.h).
       return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
     }
     if (!climb.next) return climb.reason;

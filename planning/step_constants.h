@@ -7,7 +7,7 @@
 namespace touchdown::planning {
 
 /// The numbers that a step decides by on its way to a plan, beside the budgets and counts of ReplannerOptions; those
-/// of the ladder below a plan are in replanner.cc and fallback.cc. `StepConstantTable` tells what each is; what
+/// of the ladder below a plan are in fallback_ladder.cc and fallback.cc. `StepConstantTable` tells what each is; what
 /// each is worth is measured by `touchdown study replan --parts sensitivity`.
 struct StepConstants {
   // Ways past what blocks a curve (way_finder.h).

@@ -65,13 +65,13 @@ void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeS
   way->Clear();
   FindBlockedRuns(committed, t_from, space, &runs_);
   if (!runs_.empty() && (runs_.front().at_start || runs_.back().at_end)) return;
-  const int left = budget_->left() / 2;
+  const WorkBudget::SetAside aside(1.0 - WorkBudget::kSearchShare, budget_);
   double t = t_from;
   for (const BlockedRun& run : runs_) {
     way->AddCurve(committed, t, run.t_in);
     const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
     const SearchStatus status =
-        Search(space, from, to, budget_->left() - left, std::numeric_limits<double>::infinity());
+        Search(space, from, to, budget_->left(), std::numeric_limits<double>::infinity());
     const double longest = (to - from).norm() + constants_.detour_longer;
     if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
     way->AddDetour(committed, run, detour_, speed_);
@@ -85,7 +85,8 @@ SearchStatus WayFinder::LeadPast(const UniformBspline& curve, BlockedRun run,
                                  double max_cost) {
   way->Clear();
   CutToWindow(curve, *space.map, &run);
-  const int most = (budget_->left() - reserve) / (ways_closed() > 0 ? 2 : 1);
+  const double share = ways_closed() > 0 ? WorkBudget::kSearchShare : 1.0;
+  const int most = static_cast<int>(share * (budget_->left() - reserve));
   const SearchStatus status =
       Search(space, curve.Position(run.t_in), curve.Position(run.t_out), most, max_cost);
   // Out of the window only floor and ceiling block, and there is one way between them.

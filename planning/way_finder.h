@@ -26,13 +26,13 @@ class WayFinder {
   void Begin(double speed);
 
   /// The committed curve from t_from [s] on. Not known where it starts or ends blocked, or where a detour is
-  /// not found or is much longer than the straight line. Takes half of the work that is left at most.
+  /// not found or is much longer than the straight line. Takes WorkBudget::kSearchShare of what is left at most.
   void Keep(const UniformBspline& committed, double t_from, const FreeSpace& space, TimedWay* way);
 
   /// The cheapest way past `run` that is not closed. A run that leaves the map's window before it ends is cut
   /// there: the search knows no more; one that begins out of it is led along the curve, between floor and
   /// ceiling. kFound and kEndsOutside leave a way.
-  /// Takes all work that is left but `reserve`; a way beside a closed one, half of that.
+  /// Takes all work that is left but `reserve`; a way beside a closed one, WorkBudget::kSearchShare of that.
   /// @param max_cost of the detour; ways that cost more are not looked at [m].
   SearchStatus LeadPast(const UniformBspline& curve, BlockedRun run, const FreeSpace& space,
                         TimedWay* way, int reserve = 0,

@@ -13,18 +13,33 @@ class WorkBudget {
   static constexpr int kEvaluationsOfSetUp = 2;  ///< what the rest of a solve takes: set-up, checks
   static constexpr int kPair = 5;                ///< of a solve: bound and evaluated
 
+  // Who asks first does not get all of it.
+  static constexpr double kKeptShare = 0.25;   ///< is for the committed plan, where it may be kept
+  static constexpr double kSearchShare = 0.5;  ///< of what is left is the most for a search: of the
+                                               ///< committed way, or beside a closed one
+  static constexpr int kLeastEvaluations = 12;  ///< a search leaves, of a curve along its way
+
   void Refill(int work) { whole_ = left_ = work; }
   int left() const { return left_; }
   int done() const { return whole_ - left_; }
 
   void Take(int work) { left_ -= work; }
-  /// Keeps this share back, and returns it; GiveBack puts it in again.
-  int SetAside(double share) {
-    const int aside = static_cast<int>(share * left_);
-    left_ -= aside;
-    return aside;
-  }
-  void GiveBack(int aside) { left_ += aside; }
+
+  /// Keeps a share of what is left back while it lives. @pre No Refill then.
+  class [[nodiscard]] SetAside {
+   public:
+    SetAside(double share, WorkBudget* budget)
+        : budget_(budget), aside_(static_cast<int>(share * budget->left_)) {
+      budget_->left_ -= aside_;
+    }
+    ~SetAside() { budget_->left_ += aside_; }
+    SetAside(const SetAside&) = delete;
+    SetAside& operator=(const SetAside&) = delete;
+
+   private:
+    WorkBudget* budget_;
+    int aside_;
+  };
 
  private:
   int whole_ = 0;

@@ -32,9 +32,10 @@ namespace {
 /// that the last steps converge quadratically.
 constexpr double kToBoundary = 0.995;
 constexpr double kFirstSlack = 0.1;  // least slack of the first point, share of the largest row
-constexpr double kFirstRoom = 1e-2;  // of its variables to their bounds, share of these and of their distance
-constexpr double kFirstMu = 0.1;     // complementarity of the first point, share of the cost
-constexpr double kNoCost = 1e-6;     // a cost that is less has not begun
+constexpr double kFirstRoom =
+    1e-2;  // of its variables to their bounds, share of these and of their distance
+constexpr double kFirstMu = 0.1;  // complementarity of the first point, share of the cost
+constexpr double kNoCost = 1e-6;  // a cost that is less has not begun
 /// Share of the merit by which a fast step may raise it. Over curved rows the good steps do (N.
 /// Maratos, 1978); but so do steps that go round in circles: later ones may lose hardly anything.
 constexpr double kFastSlack = 1.0;
@@ -62,7 +63,7 @@ constexpr double kLongestStep = 10.0;     // over the point's size
 constexpr double kLeastShift = 1e-3;      // that makes a step shorter, share of the curvature
 constexpr double kMostShift = 1e3;        // less than what holds the rows
 constexpr double kRaisedShift = 10.0;
-constexpr double kShiftRoom = 2.0;        // a shift that is just enough leaves a pivot of rounding
+constexpr double kShiftRoom = 2.0;  // a shift that is just enough leaves a pivot of rounding
 constexpr double kLeastCost = 0.1;
 constexpr int kLateEqualityStep = 8;  // steps that rows bend go round in circles sooner
 // Prices of a unit of violation, times the cost it starts from.
@@ -123,8 +124,9 @@ void BandedInteriorPoint::Prepare(const View& view) {
     give_.reserve(all_rows);
     equality_give_.assign(total, 0.0);
   }
-  for (auto* array : {&now_.s, &now_.z, &now_.e, &now_.w, &now_.v, &next_.s, &next_.z,
-                      &next_.e, &next_.w, &next_.v, &g_, &k_, &ds_, &dz_, &de_, &correction_s_, &correction_e_}) {
+  for (auto* array :
+       {&now_.s, &now_.z, &now_.e, &now_.w, &now_.v, &next_.s, &next_.z, &next_.e, &next_.w,
+        &next_.v, &g_, &k_, &ds_, &dz_, &de_, &correction_s_, &correction_e_}) {
     array->assign(total, 0.0);
   }
 }
@@ -302,7 +304,8 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
     evaluator->FinishIteration(length.primal * std::sqrt(Dot(step_, step_)), errors.dual);
     evaluator->CheckStop();
     // A far step goes as far as one step may.
-    const double allowed = std::min(1.0, kLongestStep * PointSize() / std::max(Largest(step_), 1e-300));
+    const double allowed =
+        std::min(1.0, kLongestStep * PointSize() / std::max(Largest(step_), 1e-300));
     stalls = length.primal < kStall * allowed ? stalls + 1 : 0;
     if (stalls >= kMostStalls) break;
   }
@@ -314,7 +317,8 @@ void BandedInteriorPoint::MoveInside(const View& view) {
   for (int i = 0; i < view.blocks() * view.block_size() && view.bounded(); ++i) {
     const double lower = view.lower(i), upper = view.upper(i), width = upper - lower;
     const auto room = [width](double bound) {
-      return std::isfinite(bound) ? kFirstRoom * std::min(std::max(1.0, std::abs(bound)), width) : 0.0;
+      return std::isfinite(bound) ? kFirstRoom * std::min(std::max(1.0, std::abs(bound)), width)
+                                  : 0.0;
     };
     y_[i] = std::clamp(y_[i], lower + room(lower), upper - room(upper));
   }
@@ -409,8 +413,7 @@ BandedInteriorPoint::Errors BandedInteriorPoint::MeasureErrors(const View& view,
     }
   }
   DualResidual(view, evaluator);
-  NewtonStep(view, y_.data(), right_.data(), factor_, step_.data());
-  errors.dual = -0.5 * Dot(right_, step_) / cost;
+  errors.dual = NewtonStep(view, y_.data(), right_.data(), factor_, step_.data()) / cost;
   return errors;
 }
 
@@ -463,8 +466,8 @@ double BandedInteriorPoint::Give(const Side& side, const Rows& rows, int i) cons
 bool BandedInteriorPoint::WeighEqualities(const View& view, Evaluator* evaluator) {
   if (!evaluator->EvaluateLagrangian(y_.data(), {})) return false;
   const ViewEvaluation& at = evaluator->last();
-  curvature_ = std::max({LargestDiagonal(at.hessian), kLeastCurvature * Largest(at.gradient),
-                         kSmallestCost});
+  curvature_ = std::max(
+      {LargestDiagonal(at.hessian), kLeastCurvature * Largest(at.gradient), kSmallestCost});
   rows_.Set(view, at);
   jacobian_.assign(static_cast<std::size_t>(rows_.nonzeros()), 0.0);
   give_.assign(static_cast<std::size_t>(rows_.size()), 0.0);
@@ -551,8 +554,8 @@ void BandedInteriorPoint::PlaceRows(const ViewEvaluation& at) {
     side.first = active_;
     const Box* box = BoxOf(side);
     side.rows = side.merged && !side.equality ? 0
-                : box                          ? static_cast<int>(box->variable.size())
-                    : at.full.terms[side.term].windows * side.outputs;
+                : box                         ? static_cast<int>(box->variable.size())
+                                              : at.full.terms[side.term].windows * side.outputs;
     active_ += side.rows;
     pairs_ += side.rows * ((HasSlack(side) ? 1 : 0) + (Elastic(side) ? 1 : 0));
   }

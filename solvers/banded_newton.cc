@@ -61,16 +61,15 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     if (!FactorDefinite(at.hessian, &factor_, curvature, &shift)) {
       return SolveStatus::kNumericalFailure;
     }
-    NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
-    double slope = Dot(gradient_, step_);
+    const double promised = NewtonStep(view, y_.data(), gradient_.data(), factor_, step_.data());
+    double slope = -2.0 * promised;
     const double scale = std::max(std::abs(value), kSmallestCost);
     // Of the cost; of what was gained, where a constant in the cost must not end the solve.
     const double gained = std::abs(evaluator->first_cost() - value);
     const double whole =
         tolerances.of_gain ? std::clamp(gained, kLeastShare * scale, scale) : scale;
-    const double promised = -0.5 * slope;
-    if (promised <= (shift > 0.0 ? tolerances.shifted : tolerances.gap) * whole) {
-      ended_near_ = promised > tolerances.shifted * whole;
+    if (promised <= (shift > 0.0 ? tolerances.own : tolerances.gap) * whole) {
+      ended_near_ = promised > tolerances.own * whole;
       return SolveStatus::kConverged;
     }
     slope *= Shorten();

@@ -15,13 +15,13 @@ class BandedNewton {
   /// this share of the cost.
   struct Tolerances {
     double gap = 1e-9;  ///< expected decrease, share of the cost
-    double shifted =
-        1e-9;  ///< the same where the Hessian had to be shifted: its promise is worth less
+    double own = 1e-9;  ///< the backend's own gap, <= `gap`: where the Hessian had to be shifted it
+                        ///< alone counts, for a promise is worth less there
     bool of_gain = false;  ///< or of what was gained, where that is less
   };
 
   void Prepare(const View& view);
-  /// The last run ended by the gap, before its promise was as small as where the Hessian is shifted.
+  /// The last run ended by the gap, before its promise was as small as `own` asks.
   bool ended_near() const { return ended_near_; }
   /// Does not allocate.
   SolveStatus Run(const View& view, const double* start, const Tolerances& tolerances,

@@ -15,23 +15,16 @@ namespace {
 /// Of the gap, where the point is to be confirmed: so that it is.
 constexpr double kConfirmedShare = 1e-2;
 
-bool HasRows(const View& view) {
-  for (int i = 0; i < view.problem().num_terms(); ++i) {
-    if (view.problem().role(i) == Role::kConstraint) return true;
-  }
-  return false;
-}
-
 /// In the result where a solve does not end as it should.
-const char* Words(SolveStatus status, bool has_rows) {
+const char* Words(SolveStatus status, bool constrained) {
   switch (status) {
     case SolveStatus::kInfeasible:
       return "the rows contradict each other near the least violation that was found";
     case SolveStatus::kUnconfirmed:
       return "the steps stalled, at a point that may be the optimum";
     case SolveStatus::kNumericalFailure:
-      return has_rows ? "fast, elastic and careful steps stalled, all of them"
-                      : "no step along a descent direction lowers the cost";
+      return constrained ? "fast, elastic and careful steps stalled, all of them"
+                         : "no step along a descent direction lowers the cost";
     default:
       return "";
   }
@@ -56,8 +49,7 @@ class BandedSolver : public SolverBackend {
   bool measures_gap() const override { return true; }
 
   void DoPrepare(const View& view) override {
-    has_rows_ = view.bounded() || HasRows(view);
-    if (has_rows_) {
+    if (view.constrained()) {
       interior_point_.Prepare(view);
     } else {
       newton_.Prepare(view);
@@ -70,16 +62,16 @@ class BandedSolver : public SolverBackend {
     const bool confirmed = stop.confirm && stop.gap == 0.0;
     const double own = (confirmed ? kConfirmedShare : 1.0) * options().Get("gap_tolerance");
     const double gap = std::max(own, stop.gap);
-    if (!has_rows_) {
+    if (!view.constrained()) {
       result->status = newton_.Run(view, warm.y.data(), {gap, own, confirmed}, evaluator);
       if (newton_.ended_near()) evaluator->EndNear();
-      result->message = Words(result->status, has_rows_);
+      result->message = Words(result->status, false);
       return;
     }
     result->status =
         interior_point_.Run(view, warm.y.data(), warm.multipliers,
                             {gap, options().Get("violation_tolerance"), confirmed}, evaluator);
-    result->message = Words(result->status, has_rows_);
+    result->message = Words(result->status, true);
     if (gap > own && result->status == SolveStatus::kConverged) evaluator->EndNear();
     result->multipliers.resize(static_cast<std::size_t>(view.problem().num_terms()));
     for (int i = 0; i < view.problem().num_terms(); ++i) {
@@ -88,7 +80,6 @@ class BandedSolver : public SolverBackend {
     interior_point_.BoundMultipliers(&result->bound_multipliers);
   }
 
-  bool has_rows_ = false;  // or bounds
   BandedNewton newton_;
   BandedInteriorPoint interior_point_;
 };

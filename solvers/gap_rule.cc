@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "touchdown/solvers/newton_step.h"
 
@@ -20,10 +19,6 @@ constexpr double kFallen = 0.5;  // of what a look found too much, before the ne
 void GapRule::Prepare(const View& view, OptimalityCheck* check) {
   check_ = check;
   view.Resize(&storage_);
-  has_rows_ = view.bounded();
-  for (int i = 0; i < view.problem().num_terms(); ++i) {
-    has_rows_ = has_rows_ || view.problem().role(i) == Role::kConstraint;
-  }
   factor_.Prepare(storage_.hessian);
   step_.assign(static_cast<std::size_t>(view.num_variables()), 0.0);
 }
@@ -43,7 +38,7 @@ bool GapRule::Met(const Eigen::VectorXd& y, double cost, double violation) {
   if (violation > Optimality::kFeasible || !(cost <= look_below_ || late)) return false;
   looked_ = points_;
   const double allowed = gap_ * std::max(std::abs(cost), kSmallestCost);
-  const double above = has_rows_ ? check_->Above(*view_, y, &storage_) : Promised(y);
+  const double above = view_->constrained() ? check_->Above(*view_, y, &storage_) : Promised(y);
   if (above <= allowed) return true;
   // Without a bound it has to fall by what would have been allowed.
   const double fall = std::isfinite(above) ? kFallen * (above - allowed) : allowed;
@@ -57,8 +52,7 @@ double GapRule::Promised(const Eigen::VectorXd& y) {
     return kInfinity;
   }
   if (factor_.Factor(storage_.hessian) != BorderedCholesky::Status::kDefinite) return kInfinity;
-  NewtonStep(*view_, y.data(), storage_.gradient.data(), factor_, step_.data());
-  return -0.5 * std::inner_product(step_.begin(), step_.end(), storage_.gradient.begin(), 0.0);
+  return NewtonStep(*view_, y.data(), storage_.gradient.data(), factor_, step_.data());
 }
 
 }  // namespace touchdown::solvers

@@ -37,7 +37,6 @@ class GapRule {
   ViewEvaluation storage_;
   BorderedCholesky factor_;
   std::vector<double> step_;
-  bool has_rows_ = false;  // or bounds
   double gap_ = 0.0;
   double look_below_ = 0.0;      // costs
   int points_ = 0, looked_ = 0;  // points that came, and had come at the last look

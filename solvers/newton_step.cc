@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace touchdown::solvers {
 
@@ -57,19 +58,21 @@ bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, doubl
   return false;
 }
 
-void NewtonStep(const View& view, const double* y, const double* gradient,
-                const BorderedCholesky& factor, double* step) {
+double NewtonStep(const View& view, const double* y, const double* gradient,
+                  const BorderedCholesky& factor, double* step) {
   const int n = view.num_variables();
   for (int i = 0; i < n; ++i) step[i] = -gradient[i];
   factor.Solve(step);
-  if (!view.free_interval()) return;
+  const auto promise = [&] { return -0.5 * std::inner_product(step, step + n, gradient, 0.0); };
+  if (!view.free_interval()) return promise();
   const ProblemShape& shape = view.problem().shape();
   const double h = y[n - 1];
   const double inside = std::clamp(h + step[n - 1], shape.interval_min, shape.interval_max);
-  if (inside == h + step[n - 1]) return;
+  if (inside == h + step[n - 1]) return promise();
   for (int i = 0; i < n - 1; ++i) step[i] = -gradient[i];
   step[n - 1] = inside - h;
   factor.SolveWithBorder(step);
+  return promise();
 }
 
 }  // namespace touchdown::solvers

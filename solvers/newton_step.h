@@ -30,8 +30,9 @@ bool FactorDefinite(const BorderedBandMatrix& H, BorderedCholesky* factor, doubl
 
 /// step = -H^-1 gradient with the factor of H, and a free interval kept in its bounds: where the
 /// step would leave them it ends on the bound, and the other variables take the best step with
-/// that. Does not allocate.
-void NewtonStep(const View& view, const double* y, const double* gradient,
-                const BorderedCholesky& factor, double* step);
+/// that. Returns what it promises: how far the quadratic model falls (half of that at least, where it ends on a
+/// bound). Does not allocate.
+double NewtonStep(const View& view, const double* y, const double* gradient,
+                  const BorderedCholesky& factor, double* step);
 
 }  // namespace touchdown::solvers

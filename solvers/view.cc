@@ -61,6 +61,13 @@ bool View::identity() const {
                      [](double c) { return c == 1.0; });
 }
 
+bool View::constrained() const {
+  for (int i = 0; i < problem_->num_terms(); ++i) {
+    if (problem_->role(i) == Role::kConstraint) return true;
+  }
+  return bounded();
+}
+
 double View::lower(int i) const {
   const bool interval = free_interval() && i == num_variables() - 1;
   return interval ? problem_->shape().interval_min : problem_->lower(i);

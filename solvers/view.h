@@ -51,6 +51,8 @@ class View {
   bool identity() const;
   /// Variables but the interval have bounds.
   bool bounded() const { return problem_->bounded(); }
+  /// Variables but the interval have bounds, or there are constraint rows.
+  bool constrained() const;
   /// Bounds of variable i, the interval among them; but for that one only of use where the view is
   /// the identity.
   double lower(int i) const;

@@ -52,9 +52,10 @@ class ChordSolver : public solvers::SolverBackend {
       if (fresh && !solvers::FactorDefinite(at.hessian, &factor_)) break;
       const double cost = at.full.value;
       gradient = Eigen::Map<const Eigen::VectorXd>(at.gradient.data(), y.size());
-      solvers::NewtonStep(view, y.data(), gradient.data(), factor_, step_.data());
-      const double slope = gradient.dot(step_);
-      if (-0.5 * slope <= options().Get("gap") * cost) return SolveStatus::kConverged;
+      const double promised =
+          solvers::NewtonStep(view, y.data(), gradient.data(), factor_, step_.data());
+      const double slope = -2.0 * promised;
+      if (promised <= options().Get("gap") * cost) return SolveStatus::kConverged;
 
       double t = 1.0;
       for (; t > 1e-10; t *= 0.5) {
