@@ -152,8 +152,7 @@ ReplanReason PlanAttempt::Pose(const AttemptRequest& request, int segments, Pose
   const bool hard = options_.problem.limits_mode == LimitsMode::kHard;
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
   const double t_end = request.t0 + request.duration;
-  const bool fixed = request.arrival == ArrivalMode::kFixed;
-  if (fixed && request.space->Blocked(EndStateAt(*request.pad, request.target, t_end).state.p)) {
+  if (request.space->Blocked(EndStateAt(*request.pad, request.target, t_end).state.p)) {
     return ReplanReason::kGoalBlocked;
   }
   return ReplanReason::kNone;

@@ -389,9 +389,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) rung = *resumes_;
   attempt_.BeginStep();
   for (int tried = 1;; ++tried) {
-    if (rung.arrival == ArrivalMode::kFixed && !facts.lands_soon) {
-      rung.duration = FirstFreeArrival(input, rung.duration, map);
-    }
+    if (!facts.lands_soon) rung.duration = FirstFreeArrival(input, rung.duration, map);
     FreeSpace space = SpaceOverPad(input, start, input.t_start + rung.duration, map);
     const HullSpace hull = HullIn(space, input.pad);
     if (rung.unseen_reach > 0.0) {

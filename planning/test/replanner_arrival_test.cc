@@ -73,28 +73,45 @@ TEST(ReplannerArrival, ALongWayRoundIsFlownToItsEnd) {
 }
 
 TEST(ReplannerArrival, APadThatPassesAnObstacleIsMetBehindIt) {
-  // At the first guess the endpoint is in the pillar.
-  const ReplannerOptions options = Options(ArrivalMode::kFixed);
-  const Eigen::Vector3d start(-4.0, 0.0, 1.6);
-  const ArcPad pad({1.0, -3.0, 0.3}, 1.0, 1.5707963267948966, 0.0);
-  ReplanInput input = Input(start, pad, 0.0);
-  const double guess =
-      Guess(options, input, {start, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
-  OccupancyMap map = ObservedMap();
-  const Eigen::Vector3d blocked = pad.At(input.t_start + guess).p_WP;
-  AddPillar(blocked.x(), blocked.y(), &map);
-  Replanner replanner(options, solvers::StandardBackends());
-  replanner.CommitHover(start, 0.0);
-  ReplanLog log;
-  replanner.set_log(&log);
-  const ReplanResult& result = replanner.Replan(input, map);
-  ASSERT_EQ(result.status, ReplanStatus::kPlanned);
-  // No attempt is spent on an end that is blocked, and it is met soon after that is over.
-  for (const AttemptLog& attempt : log.attempts) {
-    EXPECT_NE(attempt.reason, ReplanReason::kGoalBlocked);
+  for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+    // At the first guess the endpoint is in the pillar.
+    const ReplannerOptions options = Options(arrival);
+    const Eigen::Vector3d start(-4.0, 0.0, 1.6);
+    const ArcPad pad({1.0, -3.0, 0.3}, 1.0, 1.5707963267948966, 0.0);
+    ReplanInput input = Input(start, pad, 0.0);
+    const double guess =
+        Guess(options, input, {start, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+    OccupancyMap map = ObservedMap();
+    const Eigen::Vector3d blocked = pad.At(input.t_start + guess).p_WP;
+    AddPillar(blocked.x(), blocked.y(), &map);
+    Replanner replanner(options, solvers::StandardBackends());
+    replanner.CommitHover(start, 0.0);
+    ReplanLog log;
+    replanner.set_log(&log);
+    const ReplanResult& result = replanner.Replan(input, map);
+    ASSERT_EQ(result.status, ReplanStatus::kPlanned);
+    if (arrival == ArrivalMode::kFree) continue;  // it may move back to where the end is blocked
+    // No attempt is spent on an end that is blocked, and it is met soon after that is over.
+    for (const AttemptLog& attempt : log.attempts) {
+      EXPECT_NE(attempt.reason, ReplanReason::kGoalBlocked);
+    }
+    EXPECT_GT(log.attempts.front().duration, guess);
+    EXPECT_LT(log.attempts.front().duration, guess + 1.5);
   }
-  EXPECT_GT(log.attempts.front().duration, guess);
-  EXPECT_LT(log.attempts.front().duration, guess + 1.5);
+}
+
+TEST(ReplannerArrival, AnEndThatStaysBlockedCostsNoSolve) {
+  for (const ArrivalMode arrival : {ArrivalMode::kFixed, ArrivalMode::kFree}) {
+    const Eigen::Vector3d start(-4.0, 0.0, 1.6);
+    const ArcPad pad({1.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
+    OccupancyMap map = ObservedMap();
+    AddPillar(1.0, 0.0, &map);
+    Replanner replanner(Options(arrival), solvers::StandardBackends());
+    replanner.CommitHover(start, 0.0);
+    const ReplanResult& result = replanner.Replan(Input(start, pad, 0.0), map);
+    EXPECT_EQ(result.reason, ReplanReason::kGoalBlocked);
+    EXPECT_EQ(result.solves, 0);
+  }
 }
 
 }  // namespace
