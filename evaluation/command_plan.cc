@@ -105,7 +105,8 @@ void AddPlanCommand(Command app, const Registries& registries, CommandRun* run) 
           "--from", &arguments->from,
           "Solve replanning step N of a record again (`land --record`) instead of a first "
           "plan from the scenario's start, where obstacles and pad are known. --backend, "
-          "--set solver.*, terms.*, planning.guides and planning.warm_start change the planner",
+          "--set solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start "
+          "change the planner",
           "RECORD:N")
       .Excludes(seed)
       .Excludes(command.Find("SCENARIO"));

@@ -62,11 +62,11 @@ std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
   for (const std::string& text : overrides) {
     const auto begins = [&](const char* key) { return text.rfind(key, 0) == 0; };
     if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=") &&
-        !begins("planning.warm_start=")) {
-      throw BadInput(
-          fmt::format("--set {}: of a recorded flight only keys of solver and terms, "
-                      "planning.guides and planning.warm_start can be changed.",
-                      text));
+        !begins("planning.max_work=") && !begins("planning.warm_start=")) {
+      throw BadInput(fmt::format(
+          "--set {}: of a recorded flight only keys of solver and terms, planning.guides, "
+          "planning.max_work and planning.warm_start can be changed.",
+          text));
     }
   }
   return overrides;

@@ -193,6 +193,17 @@ TEST(Program, ARecordReplacesNoOtherFile) {
   std::filesystem::remove(file);
 }
 
+TEST(Program, AStepIsAskedAgainWithAnotherBudget) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "budget.db";
+  Call({"land", "forest", "--set", "timeout=1", "--record", file.c_str()});
+  const std::string step = file.string() + ":2";
+  const Ran flown = Call({"plan", "--from", step.c_str()});
+  EXPECT_THAT(flown.out, HasSubstr("the recorded answer, bit for bit")) << flown.err;
+  const Ran less = Call({"plan", "--from", step.c_str(), "--set", "planning.max_work=1000"});
+  EXPECT_THAT(less.out, HasSubstr("not the recorded answer, which was: planned")) << less.err;
+  std::filesystem::remove(file);
+}
+
 TEST(Program, AFormulationThatTheBackendRefusesIsBadInput) {
   for (const char* key :
        {"solver.limits=hard", "solver.endpoint=explicit", "terms.obstacle_pair.hard=true"}) {
