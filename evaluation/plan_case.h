@@ -22,11 +22,12 @@ struct SolvedStep {
   std::string source;  ///< in words: where the step comes from
   Scenario scenario;
   int step = 0;
-  RecordPlan recorded;         ///< the question; of a record the answer, too
-  std::optional<bool> same;    ///< as recorded, bit for bit; of a record
-  ReplanOutcome outcome;       ///< of the step solved again
+  RecordPlan recorded;                      ///< the question; of a record the answer, too
+  std::optional<bool> same;                 ///< as recorded, bit for bit; of a record
+  ReplanOutcome outcome;                    ///< of the step solved again
   std::optional<Eigen::Vector3d> unseen_W;  ///< cell that this step's pairs lack, or the next's [m]
   planning::StageTimes times;               ///< without the log
+  int work = 0;                             ///< of planning.max_work units; 0: it counts none
   planning::ReplanLog log;
   planning::Limits limits;
   std::vector<std::string> terms;             ///< of the objective, in the order of the log's costs

@@ -146,6 +146,7 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   for (const auto& path : solved.outcome.guide_paths) paths.push_back(PathJson(path));
   json["result"] = OutcomeJson(solved.outcome);
   json["unseen_W"] = solved.unseen_W ? VectorJson(*solved.unseen_W) : Json();
+  json["work"] = solved.work > 0 ? Json(solved.work) : Json();
   json["same_as_record"] = solved.same ? Json(*solved.same) : Json();
   Json& stages = json["wall_clock"]["stages"] = Json::object();
   const auto add = [&stages](const planning::StageTimes::Span& span) {

@@ -37,8 +37,7 @@ std::string QuestionText(const SolvedStep& solved) {
   }
   text += fmt::format("  committed  {} of {:.2f} s, until t = {:.3f} s\n",
                       asked.before.planned ? "a plan to the pad" : "a curve to rest",
-                      asked.before.next.curve.duration(),
-                      asked.before.next.curve.t_end());
+                      asked.before.next.curve.duration(), asked.before.next.curve.t_end());
   return text;
 }
 
@@ -135,6 +134,10 @@ std::string PlanText(const SolvedStep& solved) {
                       out.curve.t0(), out.curve.t_end(), out.curve.control_points().cols(),
                       out.curve.interval());
   text += CertificateText(out.certificate, solved.limits, "  ");
+  if (solved.work > 0) {
+    text += fmt::format("  did {} of {} units of work\n", solved.work,
+                        solved.scenario.planning.max_work);
+  }
   text += TimesText(solved.times);
   if (solved.same) {
     text += *solved.same ? "  the recorded answer, bit for bit\n"

@@ -91,12 +91,15 @@ std::string PlannerText(const ReplanStudyPart& part) {
                      part.options.replanner.max_guides, part.options.scenes.seed);
 }
 
-std::string OracleText(const ReplanSummary& s) {
+std::string OracleText(const ReplanSummary& s, bool asked) {
   return fmt::format(
-      "  the oracle finds a plan in {} of {} scenes, the first step in {} of these; in {} only the "
+      "  the oracle{} finds a plan in {} of {} scenes, the first step in {} of these; in {} only "
+      "the "
       "step does\n"
-      "    of those without a plan the end is blocked in {}, and {} more cannot stop in time\n",
-      s.found, s.asked, s.met, s.missed, s.end_blocked, s.cannot_stop);
+      "    where the oracle finds none, the end is blocked in {}, and {} more cannot stop in "
+      "time\n",
+      asked ? "" : " (shipped verdicts)", s.found, s.asked, s.met, s.missed, s.end_blocked,
+      s.cannot_stop);
 }
 
 std::string StepText(const ReplanStudyPart& part, SceneStep step) {
@@ -107,7 +110,7 @@ std::string StepText(const ReplanStudyPart& part, SceneStep step) {
       "all\n",
       ToString(step), s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi,
       s.scenes);
-  if (s.asked > 0) text += OracleText(s);
+  if (s.asked > 0) text += OracleText(s, part.options.oracle);
   for (const auto& [reason, count] : FailuresByReason(part.rows, step)) {
     text += fmt::format("    not planned: {} x {}\n", count, reason);
   }

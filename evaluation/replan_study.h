@@ -59,6 +59,7 @@ struct ReplanRow {
   planning::ReplanStatus status = planning::ReplanStatus::kUnsafe;
   planning::ReplanReason reason = planning::ReplanReason::kNone;
   planning::StageTimes times;  ///< of the repeat whose total is the median
+  int work = 0;                ///< of max_work units
   int solves = 0;
   int pairs = 0;
   int guides = 0;  ///< guide paths searched

@@ -17,15 +17,15 @@ constexpr double kSamePlan = 1e-9;  // relative difference of two costs
 /// Sums over the steps of all parts.
 struct Tally {
   SensitivityRow row;
-  std::vector<double> ms, ms_before;
+  double work = 0.0, work_before = 0.0;
   double cost = 0.0, cost_before = 0.0;
 
   void Add(const ReplanRow& before, const ReplanRow& after) {
     ++row.steps;
     row.gained += after.planned() && !before.planned();
     row.lost += before.planned() && !after.planned();
-    ms.push_back(after.times.total.cpu);
-    ms_before.push_back(before.times.total.cpu);
+    work += after.work;
+    work_before += before.work;
     if (!after.planned() || !before.planned()) {
       row.changed += after.planned() != before.planned();
       return;
@@ -36,13 +36,7 @@ struct Tally {
   }
 
   SensitivityRow Finish() {
-    double sum = 0.0, sum_before = 0.0;
-    for (const double t : ms) sum += t;
-    for (const double t : ms_before) sum_before += t;
-    if (sum_before > 0.0) {
-      row.mean_time = sum / sum_before;
-      row.p99_time = *QuantilesOf(ms).p99 / *QuantilesOf(ms_before).p99;
-    }
+    if (work_before > 0.0) row.mean_work = work / work_before;
     if (cost_before > 0.0) row.mean_cost = cost / cost_before;
     return row;
   }
@@ -82,19 +76,14 @@ std::vector<SensitivityRow> MeasureSensitivity(
     std::vector<ReplanScene> scenes;
     for (int i = 0; i < part.count; ++i) scenes.push_back(DrawReplanScene(part.scenes, i));
     const planning::StepConstants& usual = part.replanner.constants;
+    const std::vector<ReplanRow> before = Run(part, usual, scenes, backends);
     for (std::size_t k = 0; k < table.size(); ++k) {
-      // Which run comes first changes, so that caches and the machine's mood favour none.
-      std::vector<ReplanRow> before;
-      std::array<std::vector<ReplanRow>, std::size(kFactors)> after;
-      if (k % 2 == 0) before = Run(part, usual, scenes, backends);
       for (std::size_t i = 0; i < std::size(kFactors); ++i) {
         const planning::StepConstants changed = Scaled(usual, table[k], kFactors[i]);
         tallies[k][i].row.constant = &table[k];
         tallies[k][i].row.value = ValueOf(changed, table[k]);
-        after[i] = Run(part, changed, scenes, backends);
+        Compare(before, Run(part, changed, scenes, backends), &tallies[k][i]);
       }
-      if (k % 2 == 1) before = Run(part, usual, scenes, backends);
-      for (std::size_t i = 0; i < after.size(); ++i) Compare(before, after[i], &tallies[k][i]);
       report(++done, all);
     }
   }
@@ -108,15 +97,15 @@ std::vector<SensitivityRow> MeasureSensitivity(
 std::string SensitivityText(const std::vector<SensitivityRow>& rows) {
   std::string text = BuildLine() + "\n";
   if (!rows.empty()) text += fmt::format("{} steps\n", rows.front().steps);
-  text += fmt::format("{:<20}{:>9}{:>9} {:<15}{:>8}{:>7}{:>7}{:>10}{:>9}{:>10}\n", "constant", "is",
-                      "changed", "unit", "gained", "lost", "other", "mean time", "p99 time",
-                      "mean cost");
+  text += fmt::format("{:<16}{:>8}{:>9} {:<15}{:>7}{:>6}{:>6}{:>10}{:>10}  {}\n", "constant", "is",
+                      "changed", "unit", "gained", "lost", "other", "mean work", "mean cost",
+                      "meaning");
   const planning::StepConstants usual;
   for (const SensitivityRow& row : rows) {
-    text += fmt::format("{:<20}{:>9.4g}{:>9.4g} {:<15}{:>8}{:>7}{:>7}{:>10.3f}{:>9.3f}{:>10.4f}\n",
+    text += fmt::format("{:<16}{:>8.4g}{:>9.4g} {:<15}{:>7}{:>6}{:>6}{:>10.3f}{:>10.4f}  {}\n",
                         row.constant->name, ValueOf(usual, *row.constant), row.value,
-                        row.constant->unit, row.gained, row.lost, row.changed, row.mean_time,
-                        row.p99_time, row.mean_cost);
+                        row.constant->unit, row.gained, row.lost, row.changed, row.mean_work,
+                        row.mean_cost, row.constant->meaning);
   }
   return text;
 }
@@ -134,8 +123,7 @@ nlohmann::ordered_json SensitivityJson(const std::vector<SensitivityRow>& rows) 
                     {"gained", row.gained},
                     {"lost", row.lost},
                     {"other_plans", row.changed},
-                    {"mean_time_ratio", row.mean_time},
-                    {"p99_time_ratio", row.p99_time},
+                    {"mean_work_ratio", row.mean_work},
                     {"mean_cost_ratio", row.mean_cost}});
   }
   return json;

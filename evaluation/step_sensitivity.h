@@ -22,14 +22,12 @@ struct SensitivityRow {
   int gained = 0;          ///< steps that plan now and did not before
   int lost = 0;            ///< the other way round
   int changed = 0;         ///< steps whose plan is another, or that gained or lost one
-  double mean_time = 1.0;  ///< of a step, over before
-  double p99_time = 1.0;   ///< likewise; of single steps, so that it says little below 1.2
+  double mean_work = 1.0;  ///< of a step, over before
   double mean_cost = 1.0;  ///< of the plans of steps that plan in both, over before
 };
 
-/// First and later steps of `options.count` scenes of every part, which differ in set and kind. Each pair of
-/// changed runs comes beside a run of its own with nothing changed, so that the machine's mood is in
-/// no ratio for long. `report` is told of progress.
+/// First and later steps of `options.count` scenes of every part, which differ in set and kind. Nothing is timed:
+/// the same parts give the same rows. `report` is told of progress.
 std::vector<SensitivityRow> MeasureSensitivity(
     const std::vector<ReplanStudyOptions>& parts, const solvers::BackendRegistry& backends,
     const std::function<void(int done, int all)>& report);

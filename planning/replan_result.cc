@@ -91,7 +91,7 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kPadUnreachable:
       return "No arrival time up to the longest allowed reaches the pad within the limits.";
     case ReplanReason::kSearchFailed:
-      return "No way around an obstacle was found within the budget of expansions.";
+      return "No way around an obstacle was found, or the work that a search may do was done.";
     case ReplanReason::kSolverFailed:
       return "The solver returned no usable point.";
     case ReplanReason::kCollisionRemains:

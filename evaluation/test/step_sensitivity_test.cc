@@ -25,7 +25,7 @@ TEST(StepSensitivity, TellsTheConstantsThatDecideFromThoseThatDoNot) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i].constant, &table[i / 2]);
     EXPECT_GT(rows[i].steps, 2 * options.count);  // later steps, too
-    EXPECT_GT(rows[i].mean_time, 0.0);
+    EXPECT_GT(rows[i].mean_work, 0.0);
     decides += rows[i].changed > 0;
     // No step of these is near a landing, nor in sight of what was not seen.
     if (std::string(rows[i].constant->name) == "unseen_least") {
