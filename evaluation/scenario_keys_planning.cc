@@ -60,7 +60,7 @@ void AddPlanningKeys(KeyList& keys) {
   keys.push_back(
       Whole("planning.max_work", 1000, 1000000,
             "planner landing: what a step may do at most, in counted units, of which 10,000 take "
-            "2 to 4 ms; if it finds no plan within that, the next step goes on from there",
+            "1.7 to 3.6 ms; if it finds no plan within that, the next step goes on from there",
             TOUCHDOWN_AT(planning.max_work)));
   keys.push_back(Choice("planning.endpoint_velocity", {"pad", "rest"},
                         "planner landing: a plan ends with the pad's predicted velocity, or stands "
