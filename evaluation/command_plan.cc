@@ -103,10 +103,10 @@ void AddPlanCommand(Command app, const Registries& registries, CommandRun* run) 
   command
       .AddFile(
           "--from", &arguments->from,
-          "Solve replanning step N of a record again (`land --record`) instead of a first "
-          "plan from the scenario's start, where obstacles and pad are known. --backend, "
-          "--set solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start "
-          "change the planner",
+          std::string("Solve replanning step N of a record again (`land --record`) instead of a "
+                      "first plan from the scenario's start, where obstacles and pad are known. "
+                      "--backend, --set ") +
+              ScenarioArguments::kReplayKeys + " change the planner",
           "RECORD:N")
       .Excludes(seed)
       .Excludes(command.Find("SCENARIO"));

@@ -100,10 +100,11 @@ void AddProfileCommand(Command app, const Registries& registries, CommandRun* ru
   trials.Check(Range(1, 10000)).ShowDefault();
   const Option from = command.AddFile(
       "--from", &arguments->record,
-      "Replay every replanning step of a record (`land --record`) instead of flying: with the map, "
-      "the pad prediction, the committed trajectory and the input that it had, whatever the step "
-      "before it answers. --backend, --set solver.*, terms.*, planning.guides, "
-      "planning.max_work and planning.warm_start change the planner",
+      std::string(
+          "Replay every replanning step of a record (`land --record`) instead of flying: "
+          "with the map, the pad prediction, the committed trajectory and the input that it "
+          "had, whatever the step before it answers. --backend, --set ") +
+          ScenarioArguments::kReplayKeys + " change the planner",
       "RECORD");
   from.Excludes(seed).Excludes(trials).Excludes(command.Find("SCENARIO"));
   command

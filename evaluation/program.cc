@@ -63,10 +63,8 @@ std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
     const auto begins = [&](const char* key) { return text.rfind(key, 0) == 0; };
     if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=") &&
         !begins("planning.max_work=") && !begins("planning.warm_start=")) {
-      throw BadInput(fmt::format(
-          "--set {}: of a recorded flight only keys of solver and terms, planning.guides, "
-          "planning.max_work and planning.warm_start can be changed.",
-          text));
+      throw BadInput(
+          fmt::format("--set {}: of a recorded flight only {} can be changed.", text, kReplayKeys));
     }
   }
   return overrides;
