@@ -38,6 +38,18 @@ BackendRegistry StandardBackends() {
   };
 }
 
+BackendRegistry Overheard(const BackendRegistry& registry, const SolveListener& listener) {
+  BackendRegistry overheard = registry;
+  for (BackendEntry& entry : overheard) {
+    entry.make = [make = entry.make, listener] {
+      std::unique_ptr<SolverBackend> backend = make();
+      backend->set_listener(listener);
+      return backend;
+    };
+  }
+  return overheard;
+}
+
 std::unique_ptr<SolverBackend> MakeBackend(const BackendRegistry& registry,
                                            const std::string& name) {
   std::string known;

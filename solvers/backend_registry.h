@@ -23,6 +23,9 @@ using BackendRegistry = std::vector<BackendEntry>;
 /// Every backend of the library, those not compiled in included.
 BackendRegistry StandardBackends();
 
+/// The same backends; `listener` hears of every solve that instances made by the new registry are asked for.
+BackendRegistry Overheard(const BackendRegistry& registry, const SolveListener& listener);
+
 /// A new instance of the named backend. Throws std::invalid_argument naming the known ones.
 std::unique_ptr<SolverBackend> MakeBackend(const BackendRegistry& registry,
                                            const std::string& name);

@@ -111,6 +111,8 @@ void SolverBackend::Prepare(const View& view) {
   ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
 }
 
+bool SolverBackend::PreparedFor(const View& view) const { return Matches(view, prepared_); }
+
 void SolverBackend::Reserve(const View& view, SolverResult* result) {
   const Problem& problem = view.problem();
   result->x.resize(view.num_variables());
@@ -136,7 +138,7 @@ std::string WhatFailed(const Problem& problem, const Evaluation& at) {
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,
                           SolverResult* result) {
   const int n = view.num_variables();
-  if (!Matches(view, prepared_)) {
+  if (!PreparedFor(view)) {
     throw std::invalid_argument(
         "backend " + name_ +
         ": this view does not have the structure it was prepared for: sizes, "
@@ -163,6 +165,7 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     inside_.multipliers = warm.multipliers;
     return Solve(view, inside_, stop, result);
   }
+  if (listener_) listener_({view, warm, stop});
   const double cpu_start = ThreadCpuSeconds();
   const bool asks_rule = stop.gap > 0.0 && n > 0 && !measures_gap();
   if (asks_rule) rule_.Begin(view, stop.gap);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -26,6 +28,14 @@ struct Capabilities {
   bool needs_residuals = false;  ///< takes only costs that are sums of squares
 };
 
+/// A solve as it is asked for, before it is made. Valid during the call of a listener.
+struct AskedSolve {
+  const View& view;
+  const WarmStart& start;
+  const Stop& stop;
+};
+using SolveListener = std::function<void(const AskedSolve&)>;
+
 /// A solver behind one interface. Everything that does not differ between backends happens once,
 /// here: checks, timing, counting, best-point tracking. A backend writes DoPrepare and DoSolve.
 /// An instance serves one thread at a time.
@@ -44,6 +54,13 @@ class SolverBackend {
   /// Allocates for problems with the structure of `view`. Throws std::invalid_argument with the
   /// refusal if the backend cannot solve it.
   void Prepare(const View& view);
+
+  /// It was prepared for views of this structure.
+  bool PreparedFor(const View& view) const;
+
+  /// Hears of every solve before it is made, in the thread that asks for it, and may solve the same view
+  /// with other backends meanwhile. None by default.
+  void set_listener(SolveListener listener) { listener_ = std::move(listener); }
 
   /// Sizes a result for solves of this structure: so the first of them does not allocate it.
   static void Reserve(const View& view, SolverResult* result);
@@ -75,6 +92,7 @@ class SolverBackend {
 
   std::string name_;
   SolverOptions options_;
+  SolveListener listener_;
   Evaluator evaluator_;
   OptimalityCheck check_;
   GapRule rule_;
