@@ -44,7 +44,7 @@ StepName ParseStep(const std::string& text) {
 
 SolvedStep SolveRecorded(const PlanArguments& arguments, const Registries& registries) {
   const StepName name = ParseStep(arguments.from);
-  const std::vector<std::string> overrides = arguments.scenario.ReplayOverrides();
+  const std::vector<std::string> overrides = arguments.scenario.Overrides();
   const RecordedFlight flight = ReadRecord(name.record, overrides, registries);
   const int steps = static_cast<int>(flight.plans.size());
   if (name.step >= steps) {
@@ -106,7 +106,7 @@ void AddPlanCommand(Command app, const Registries& registries, CommandRun* run) 
           std::string("Solve replanning step N of a record again (`land --record`) instead of a "
                       "first plan from the scenario's start, where obstacles and pad are known. "
                       "--backend, --set ") +
-              ScenarioArguments::kReplayKeys + " change the planner",
+              kReplayKeys + " change the planner",
           "RECORD:N")
       .Excludes(seed)
       .Excludes(command.Find("SCENARIO"));

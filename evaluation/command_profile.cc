@@ -2,6 +2,7 @@
 // touchdown profile: what replanning costs, stage by stage.
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -13,15 +14,21 @@
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/profile.h"
+#include "touchdown/evaluation/profile_backends.h"
 #include "touchdown/evaluation/profile_report.h"
+#include "touchdown/evaluation/progress.h"
+#include "touchdown/evaluation/record_reader.h"
 
 namespace touchdown::evaluation {
 namespace {
+
+constexpr const char* kAll = "all";
 
 struct ProfileArguments {
   ScenarioArguments scenario;
   ProfileOptions options;
   std::string record;
+  BackendsOptions backends;  // of --backends
   std::string trace;
   std::string db;
   std::optional<int> pin;
@@ -35,6 +42,18 @@ void CheckOutputs(const ProfileArguments& arguments) {
   }
   if (!arguments.trace.empty()) CheckOutputPath("--trace", arguments.trace);
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
+}
+
+/// What a comparison of backends does not write is refused, and what nothing else heeds.
+void CheckApplies(const Command& command) {
+  if (!command.Given("--backends")) {
+    if (command.Given("--gap")) throw BadInput("--gap has no effect without --backends.");
+    return;
+  }
+  if (!command.Given("--from")) throw BadInput("--backends needs --from: a record to ask again.");
+  for (const char* alone : {"--backend", "--trace", "--db", "--deadline-ms"}) {
+    if (command.Given(alone)) throw BadInput(fmt::format("{} does not go with --backends.", alone));
+  }
 }
 
 Profile Run(const ProfileArguments& arguments, const Registries& registries,
@@ -51,7 +70,7 @@ Profile Run(const ProfileArguments& arguments, const Registries& registries,
   };
   if (!arguments.record.empty()) {
     const RecordedFlight flight =
-        ReadRecord(arguments.record, arguments.scenario.ReplayOverrides(), registries);
+        ReadRecord(arguments.record, arguments.scenario.Overrides(), registries);
     begin();
     return ProfileRecord(flight, options, registries, progress);
   }
@@ -69,8 +88,33 @@ void WriteTrace(const std::string& path, const Profile& profile) {
   file.Commit();
 }
 
+int RunBackends(const ProfileArguments& arguments, const Registries& registries) {
+  BackendsOptions options = arguments.backends;
+  options.record = arguments.record;
+  options.overrides = arguments.scenario.Overrides();
+  options.repeats = arguments.options.repeats;
+  if (options.backends == std::vector<std::string>{kAll}) options.backends.clear();
+  MachineState machine;
+  machine.pinned = arguments.pin;
+  if (arguments.pin) PinToCpu(*arguments.pin);
+  machine.load_before = LoadAverage();
+  std::map<std::string, Progress> progress;
+  const BackendsProfile profile =
+      ProfileBackends(options, registries, [&](const char* things, int done, int all) {
+        progress.try_emplace(things, ProgressText{.things = things}).first->second(done, all);
+      });
+  machine.load_after = LoadAverage();
+  if (arguments.json) {
+    std::cout << BackendsJson(profile, machine).dump(2) << std::endl;
+  } else {
+    std::cout << BackendsText(profile) << std::flush;
+  }
+  return kDone;
+}
+
 int RunProfile(const ProfileArguments& arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
+  if (!arguments.backends.backends.empty()) return RunBackends(arguments, registries);
   MachineState machine;
   machine.pinned = arguments.pin;
   const Profile profile = Run(arguments, registries, &machine);
@@ -104,7 +148,7 @@ void AddProfileCommand(Command app, const Registries& registries, CommandRun* ru
           "Replay every replanning step of a record (`land --record`) instead of flying: "
           "with the map, the pad prediction, the committed trajectory and the input that it "
           "had, whatever the step before it answers. --backend, --set ") +
-          ScenarioArguments::kReplayKeys + " change the planner",
+          kReplayKeys + " change the planner",
       "RECORD");
   from.Excludes(seed).Excludes(trials).Excludes(command.Find("SCENARIO"));
   command
@@ -119,6 +163,19 @@ void AddProfileCommand(Command app, const Registries& registries, CommandRun* ru
            "Steps that take longer than this wall time are misses; default: "
            "planning.latency, or the replanning period where that is measured or 0")
       .Check(Range(1e-3, 1e5));
+  std::vector<std::string> names = BackendNames(registries);
+  names.emplace_back(kAll);
+  command.AddList("--backends", &arguments->backends.backends,
+                  "With --from: compare these on the same steps, `all` of them: what a solve costs "
+                  "until it is within "
+                  "the gap, and the whole step",
+                  "NAME,NAME,...", OneOf(names));
+  command
+      .Add("--gap", arguments->backends.gap,
+           "With --backends: relative gap to the best known cost at which a solve has ended; "
+           "default: the "
+           "record's solver.gap")
+      .Check(Range(1e-9, 1.0));
   command.Add("--pin", arguments->pin, "Run on this CPU only").Check(Range(0, 1023));
   command.AddFile("--trace", &arguments->trace,
                   "Write the spans in Chrome's trace format, for Perfetto or chrome://tracing",
@@ -126,7 +183,8 @@ void AddProfileCommand(Command app, const Registries& registries, CommandRun* ru
   command.AddFile("--db", &arguments->db, "Write every sample, an SQLite file", "F.db");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
   command.AddFlag("--allow-debug", arguments->allow_debug, "Time a build that is not optimised");
-  command.OnChosen([arguments, &registries, run] {
+  command.OnChosen([arguments, &registries, run, command] {
+    CheckApplies(command);
     *run = [arguments, &registries] { return RunProfile(*arguments, registries); };
   });
 }

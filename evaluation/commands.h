@@ -43,11 +43,6 @@ struct ScenarioArguments {
   /// The scenario with these. @throws BadInput as LoadScenario does, and for a --backend of a planner that
   /// has its own.
   Scenario Load(const Registries& registries) const;
-  /// The overrides for a recorded flight, of which only the planner can be changed. @throws BadInput
-  std::vector<std::string> ReplayOverrides() const;
-  /// What ReplayOverrides takes, as a help text says it.
-  static constexpr const char* kReplayKeys =
-      "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
 };
 
 /// @throws BadInput if the timings of this build mean nothing and the user did not ask for them.

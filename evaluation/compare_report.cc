@@ -16,17 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* Arrival(const CompareOptions& options) {
-  return options.cases.problem.arrival == planning::ArrivalMode::kFree ? "free" : "fixed";
-}
-const char* Limits(const CompareOptions& options) {
-  return options.cases.problem.limits_mode == planning::LimitsMode::kHard ? "hard" : "soft";
-}
-const char* Endpoint(const CompareOptions& options) {
-  return options.cases.problem.endpoint == planning::EndpointMode::kExplicit ? "explicit"
-                                                                             : "eliminated";
-}
-
 std::string Cell(const std::optional<double>& value, const char* format) {
   if (!value) return "-";
   if (!std::isfinite(*value)) return "fail";
@@ -64,21 +53,21 @@ std::string TableRow(const BackendSummary& s) {
                      fmt::format("{}/{}", s.agreeing, s.reported_success), SharesText(s.shares));
 }
 
-std::string Table(const CompareResult& result, int points) {
+std::string Table(const std::vector<BackendSummary>& summaries) {
   std::string text =
       fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}{:>6}{:>6}{:>10}{:>10}{:>10}  {}\n", "backend",
                   "solved, 95 % interval", "median", "p95", "p99", "max ms", "it", "eval",
                   "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
-  for (const BackendSummary& summary : Summarise(result, points)) text += TableRow(summary);
+  for (const BackendSummary& summary : summaries) text += TableRow(summary);
   return text;
 }
 
-std::string DeadlineTable(const CompareOptions& options, const CompareResult& result, int points) {
+std::string DeadlineTable(double deadline_ms, const std::vector<BackendSummary>& summaries) {
   std::string text = fmt::format(
       "  stopped after {:.4g} ms of wall time:\n  {:<15}{:>12}{:>10}{:>10}{:>12}{:>12}{:>16}\n",
-      *options.deadline_ms, "backend", "back median", "p99", "max ms", "gap p50", "gap p95",
+      deadline_ms, "backend", "back median", "p99", "max ms", "gap p50", "gap p95",
       "best returned");
-  for (const BackendSummary& s : Summarise(result, points)) {
+  for (const BackendSummary& s : summaries) {
     if (!s.deadline) continue;
     const DeadlineSummary& d = *s.deadline;
     text +=
@@ -90,60 +79,63 @@ std::string DeadlineTable(const CompareOptions& options, const CompareResult& re
   return text;
 }
 
-std::string ScalingTable(const CompareOptions& options, const CompareResult& result) {
-  std::string text = "CPU time per iteration of the tight solves [ms], and its log-log slope\n  ";
-  text += fmt::format("{:<15}", "points");
-  for (const int points : options.points) text += fmt::format("{:>10}", points);
-  text += fmt::format("{:>10}\n", "slope");
-  for (std::size_t i = 0; i < result.backends.size(); ++i) {
-    text += fmt::format("  {:<15}", result.backends[i]);
-    for (const int points : options.points) {
-      text += fmt::format("{:>10}", Cell(Summarise(result, points)[i].ms_per_iteration, "{:.4f}"));
-    }
-    text += fmt::format("{:>10}\n", Cell(ScalingSlope(result, result.backends[i]), "{:.2f}"));
+/// What was solved, in figures.
+struct ProblemsSummary {
+  int all = 0;
+  int free_arrival = 0, hard_limits = 0, explicit_endpoint = 0;
+  int with_pairs = 0;       ///< bound to free space
+  int standing = 0;         ///< the start is within the gap
+  int without = 0;          ///< a reference
+  Quantiles points, pairs;  ///< pairs: of those that have any
+  Quantiles duration_s;
+};
+
+ProblemsSummary Of(const std::vector<ProblemRow>& problems) {
+  ProblemsSummary of;
+  std::vector<double> points, pairs, durations;
+  for (const ProblemRow& row : problems) {
+    ++of.all;
+    of.free_arrival += row.free_arrival;
+    of.hard_limits += row.hard_limits;
+    of.explicit_endpoint += row.explicit_endpoint;
+    of.with_pairs += row.pairs > 0;
+    of.standing += row.standing;
+    of.without += !std::isfinite(row.reference_cost);
+    points.push_back(row.points);
+    durations.push_back(row.duration_s);
+    if (row.pairs > 0) pairs.push_back(row.pairs);
   }
-  return text;
+  of.points = QuantilesOf(points);
+  of.pairs = QuantilesOf(pairs);
+  of.duration_s = QuantilesOf(durations);
+  return of;
 }
 
-// Figures of the problems, so that a reader knows what was solved.
-std::string ProblemsText(const CompareOptions& options, const CompareResult& result, int points) {
-  std::vector<double> pairs, durations;
-  int redrawn = 0;
-  int not_clear = 0;
-  int unsolved = 0;
-  int kept = 0;
-  int without = 0;
-  for (const ProblemRow& row : result.problems) {
-    if (row.points != points) continue;
-    pairs.push_back(static_cast<double>(row.made.pairs.size()));
-    durations.push_back(row.made.duration);
-    redrawn += row.made.draws - 1;
-    not_clear += row.made.not_clear;
-    unsolved += row.made.unsolved;
-    kept += !row.made.clear;
-    without += !std::isfinite(row.reference_cost);
-  }
+}  // namespace
+
+std::string CompareProblemsText(const CompareResult& result) {
+  const ProblemsSummary of = Of(result.problems);
+  const bool one = result.flights.size() == 1;
   std::string text = fmt::format(
-      "{} points, {} arrival, {} limits, {} endpoint, {} start: {} problems in forest {}, seed {}\n"
-      "  in the median T {:.2f} s and {:.0f} pairs\n"
-      "  {} scenes drawn again: {} not clear within the limits, {} where a solve for the pairs "
-      "failed, {} out of reach\n",
-      points, Arrival(options), Limits(options), Endpoint(options),
-      options.cases.warm ? "warm" : "cold", pairs.size(), options.cases.forest, options.cases.seed,
-      Quantile(durations, 0.5).value_or(0.0), Quantile(pairs, 0.5).value_or(0.0), redrawn,
-      not_clear, unsolved, redrawn - not_clear - unsolved);
-  if (kept > 0) {
-    text += fmt::format("  {} problems not clear with this many points: pairs of the last round\n",
-                        kept);
+      "{} problems as {} posed them, {} of {} solves{}\n"
+      "  arrival: free {}, fixed {}; limits: {}; end: {}; in the median {:.0f} control points, "
+      "T {:.2f} s; with pairs {}, {:.0f} in the median\n",
+      of.all, one ? result.flights.front() : fmt::format("{} flights", result.flights.size()),
+      result.every == 1 ? "all" : fmt::format("each {}th", result.every), result.asked,
+      one ? "" : fmt::format(" (from `{}` on)", result.flights.front()), of.free_arrival,
+      of.all - of.free_arrival, of.hard_limits > 0 ? "hard" : "soft",
+      of.explicit_endpoint > 0 ? "explicit" : "eliminated", of.points.median.value_or(0.0),
+      of.duration_s.median.value_or(0.0), of.with_pairs, of.pairs.median.value_or(0.0));
+  if (of.standing > 0) {
+    text += fmt::format("  {} not timed: their start is within the gap already\n", of.standing);
   }
-  if (without > 0) {
-    text +=
-        fmt::format("  {} problems without a feasible point from any backend, left out\n", without);
+  if (of.without > 0) {
+    text += fmt::format("  {} without a feasible point from any backend, left out\n", of.without);
   }
   return text;
 }
 
-Json SummaryJson(const BackendSummary& s) {
+Json BackendSummaryJson(const BackendSummary& s) {
   Json json;
   json["problems"] = s.problems;
   json["solved"] = s.solved;
@@ -158,8 +150,6 @@ Json SummaryJson(const BackendSummary& s) {
   json["tight_time_ms"] = QuantilesOrNull(s.tight_cpu_ms);
   json["reported_success"] = s.reported_success;
   json["reported_success_within_1e-4"] = s.agreeing;
-  json["endpoint_residual"] = {{"position_m_max", s.end_position_max},
-                               {"velocity_mps_max", s.end_velocity_max}};
   json["max_violation"] = s.violation_max;
   json["ms_per_iteration"] = Finite(s.ms_per_iteration);
   if (s.shares) {
@@ -177,33 +167,46 @@ Json SummaryJson(const BackendSummary& s) {
   return json;
 }
 
-/// What the problems of one size were drawn from.
-Json ScenesJson(const CompareResult& result, int points) {
-  int drawn = 0, not_clear = 0, unsolved = 0, clear = 0;
-  for (const ProblemRow& row : result.problems) {
-    if (row.points != points) continue;
-    drawn += row.made.draws;
-    not_clear += row.made.not_clear;
-    unsolved += row.made.unsolved;
-    clear += row.made.clear ? 1 : 0;
-  }
-  return {{"drawn", drawn}, {"not_clear", not_clear}, {"unsolved", unsolved}, {"clear", clear}};
+Json CompareProblemsJson(const CompareResult& result) {
+  const ProblemsSummary of = Of(result.problems);
+  return {{"all", of.all},
+          {"timed", TimedProblems(result)},
+          {"standing", of.standing},
+          {"without_reference", of.without},
+          {"free_arrival", of.free_arrival},
+          {"hard_limits", of.hard_limits},
+          {"explicit_endpoint", of.explicit_endpoint},
+          {"with_pairs", of.with_pairs},
+          {"points", QuantilesOrNull(of.points)},
+          {"pairs", QuantilesOrNull(of.pairs)},
+          {"duration_s", QuantilesOrNull(of.duration_s)},
+          {"solves_asked", result.asked},
+          {"every", result.every},
+          {"flights", result.flights}};
 }
 
-// Only backends that ran all problems: figures over different problems are not to be compared.
-Json PooledJson(const CompareResult& result) {
-  Json json = Json::object();
-  const int all = RatedProblems(result, 0);
-  for (const BackendSummary& summary : Summarise(result, 0)) {
-    if (summary.problems == all) json[summary.backend] = SummaryJson(summary);
+Json RefusalsJson(const std::vector<Refusal>& refusals) {
+  Json json = Json::array();
+  for (const Refusal& refusal : refusals) {
+    json.push_back({{"backend", refusal.backend}, {"reason", refusal.reason}});
   }
   return json;
 }
 
-Json BackendsJson(const CompareResult& result, int points) {
+namespace {
+
+// Figures over other problems are not to be compared.
+Json BackendsJson(const CompareResult& result) {
   Json json = Json::object();
-  for (const BackendSummary& summary : Summarise(result, points)) {
-    json[summary.backend] = SummaryJson(summary);
+  const int all = TimedProblems(result);
+  for (const BackendSummary& summary : Summarise(result)) {
+    Json& backend = json[summary.backend] = BackendSummaryJson(summary);
+    backend["ran_all"] = summary.problems == all;
+    Json& by_points = backend["ms_per_iteration_by_points"] = Json::object();
+    for (const auto& [points, ms] : TimePerIteration(result, summary.backend)) {
+      by_points[std::to_string(points)] = ms;
+    }
+    backend["scaling_slope"] = Finite(ScalingSlope(result, summary.backend));
   }
   return json;
 }
@@ -214,69 +217,33 @@ std::string CompareText(const CompareOptions& options, const CompareResult& resu
   std::string text = fmt::format(
       "Thread CPU time to within {:.0e} of the best known cost, feasible; judged outside the "
       "solvers\n{}\n",
-      options.gap, BuildLine());
-  for (const int points : options.points) {
-    text += ProblemsText(options, result, points) + Table(result, points);
-    if (options.deadline_ms) text += DeadlineTable(options, result, points);
-  }
-  if (options.points.size() > 1) text += ScalingTable(options, result);
-  for (const Refusal& refusal : result.refusals) {
-    text += options.points.size() > 1
-                ? fmt::format("{} points: {}\n", refusal.points, refusal.reason)
-                : refusal.reason + "\n";
-  }
+      options.bench.gap, BuildLine());
+  const std::vector<BackendSummary> summaries = Summarise(result);
+  text += CompareProblemsText(result) + Table(summaries);
+  if (options.bench.deadline_ms) text += DeadlineTable(*options.bench.deadline_ms, summaries);
+  for (const Refusal& refusal : result.refusals) text += refusal.reason + "\n";
   return text;
 }
 
 Json CompareSettings(const CompareOptions& options) {
-  const planning::LandingProblemOptions& problem = options.cases.problem;
-  Json terms = Json::object();
-  for (const planning::TermSettings& settings : problem.settings) {
-    Json& term = terms[settings.name];
-    if (settings.weight) term["weight"] = *settings.weight;
-    if (settings.hard) term["hard"] = *settings.hard;
-    for (const auto& [key, value] : settings.parameters) term[key] = value;
-  }
-  return {{"seed", options.cases.seed},
-          {"points", options.points},
-          {"start", options.cases.warm ? "warm" : "cold"},
-          {"arrival", Arrival(options)},
-          {"limits", Limits(options)},
-          {"endpoint", Endpoint(options)},
-          {"gap", options.gap},
-          {"repeats", options.repeats},
-          {"deadline_ms", options.deadline_ms ? Json(*options.deadline_ms) : Json()},
-          {"forest", options.cases.forest},
-          {"inflation_m", options.cases.inflation},
-          {"speed_limit_mps", problem.limits.speed},
-          {"acceleration_limit_mps2", problem.limits.acceleration},
-          {"terms", terms},
-          {"backend_seconds", options.backend_seconds}};
+  const BenchOptions& bench = options.bench;
+  return {{"from", options.from},
+          {"seed", options.seed},
+          {"set", options.set},
+          {"gap", bench.gap},
+          {"repeats", bench.repeats},
+          {"deadline_ms", bench.deadline_ms ? Json(*bench.deadline_ms) : Json()},
+          {"backend_seconds", bench.backend_seconds}};
 }
 
 Json CompareJson(const CompareOptions& options, const CompareResult& result,
                  const MachineState& machine) {
   Json json;
-  json["problems"] = options.problems;
+  json["problems"] = CompareProblemsJson(result);
   json["settings"] = CompareSettings(options);
-  json["backends"] = PooledJson(result);
-  json["by_points"] = Json::object();
-  for (const int points : options.points) {
-    json["by_points"][std::to_string(points)] = BackendsJson(result, points);
-    json["scenes"][std::to_string(points)] = ScenesJson(result, points);
-  }
-  json["scaling_slope"] = Json::object();
-  for (const std::string& backend : result.backends) {
-    json["scaling_slope"][backend] = Finite(ScalingSlope(result, backend));
-  }
-  json["refused"] = Json::array();
-  for (const Refusal& refusal : result.refusals) {
-    json["refused"].push_back(
-        {{"points", refusal.points}, {"backend", refusal.backend}, {"reason", refusal.reason}});
-  }
-  json["machine"] = {{"pinned_cpu", machine.pinned ? Json(*machine.pinned) : Json()},
-                     {"load_before", Finite(machine.load_before)},
-                     {"load_after", Finite(machine.load_after)}};
+  json["backends"] = BackendsJson(result);
+  json["refused"] = RefusalsJson(result.refusals);
+  json["machine"] = MachineJson(machine);
   return json;
 }
 

@@ -2,21 +2,30 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/compare.h"
+#include "touchdown/evaluation/compare_summary.h"
 #include "touchdown/evaluation/machine.h"
 
 namespace touchdown::evaluation {
 
-/// The comparison for people: a table for each number of points, refusals, the scaling.
+/// The comparison for people: problems, a table, refusals.
 std::string CompareText(const CompareOptions& options, const CompareResult& result);
 
 /// The comparison for programs (docs/compare.md). A time that is infinite because a problem was not
 /// solved is null.
 nlohmann::ordered_json CompareJson(const CompareOptions& options, const CompareResult& result,
                                    const MachineState& machine);
+
+/// Where its problems come from, and what they are.
+std::string CompareProblemsText(const CompareResult& result);
+nlohmann::ordered_json CompareProblemsJson(const CompareResult& result);
+
+nlohmann::ordered_json BackendSummaryJson(const BackendSummary& summary);
+nlohmann::ordered_json RefusalsJson(const std::vector<Refusal>& refusals);
 
 /// The settings of a comparison as key and value, for JSON and manifest.
 nlohmann::ordered_json CompareSettings(const CompareOptions& options);

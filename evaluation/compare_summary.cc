@@ -7,8 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
-#include <utility>
 
 namespace touchdown::evaluation {
 namespace {
@@ -17,8 +15,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAgreement = 1e-4;
 
 double Median(const std::vector<double>& values) { return *QuantilesOf(values).median; }
-
-using ProblemKey = std::pair<int, int>;  // points, problem
 
 struct Timed {
   std::vector<double> cpu, wall, iterations, evaluations;
@@ -41,28 +37,24 @@ ShareSummary Mean(const std::vector<solvers::SolveShares>& all) {
   return sum;
 }
 
-// Problems with a reference: without one a solve has nothing to be compared with.
-std::set<ProblemKey> Rated(const CompareResult& result) {
-  std::set<ProblemKey> rated;
-  for (const ProblemRow& row : result.problems) {
-    if (std::isfinite(row.reference_cost)) rated.insert({row.points, row.made.index});
-  }
-  return rated;
+const ProblemRow& ProblemOf(const BenchResult& result, const SolveRow& row) {
+  return result.problems[static_cast<std::size_t>(row.problem)];
 }
+
+// Without a reference a solve has nothing to be compared with.
+bool IsRated(const ProblemRow& problem) { return std::isfinite(problem.reference_cost); }
 
 BackendSummary SummariseOne(const std::vector<const SolveRow*>& solves,
                             const std::string& backend) {
   BackendSummary summary;
   summary.backend = backend;
-  std::map<ProblemKey, Timed> timed;
+  std::map<int, Timed> timed;  // by problem
   std::vector<double> tight_gaps, tight_cpu, per_iteration, deadline_wall, deadline_gaps;
   std::vector<solvers::SolveShares> shares;
   DeadlineSummary deadline;
   for (const SolveRow* row : solves) {
     const bool feasible = row->max_violation <= solvers::Evaluator::kFeasible;
     const double gap = feasible && std::isfinite(row->gap) ? row->gap : kInfinity;
-    summary.end_position_max = std::max(summary.end_position_max, row->end_position_m);
-    summary.end_velocity_max = std::max(summary.end_velocity_max, row->end_velocity_mps);
     if (row->reached) summary.violation_max = std::max(summary.violation_max, row->max_violation);
     switch (row->phase) {
       case SolvePhase::kTight:
@@ -75,7 +67,7 @@ BackendSummary SummariseOne(const std::vector<const SolveRow*>& solves,
         }
         break;
       case SolvePhase::kGap: {
-        Timed& of_problem = timed[{row->points, row->problem}];
+        Timed& of_problem = timed[row->problem];
         of_problem.cpu.push_back(row->reached ? row->cpu_ms : kInfinity);
         of_problem.wall.push_back(row->reached ? row->wall_ms : kInfinity);
         of_problem.iterations.push_back(row->iterations);
@@ -124,15 +116,14 @@ BackendSummary SummariseOne(const std::vector<const SolveRow*>& solves,
 
 }  // namespace
 
-std::vector<BackendSummary> Summarise(const CompareResult& result, int points) {
-  const std::set<ProblemKey> rated = Rated(result);
+std::vector<BackendSummary> Summarise(const BenchResult& result) {
   std::vector<BackendSummary> summaries;
   for (const std::string& backend : result.backends) {
     std::vector<const SolveRow*> solves;
     int wrong = 0;  // converged, as it says, at no feasible point of a problem without a reference
     for (const SolveRow& row : result.solves) {
-      if (row.backend != backend || (points != 0 && row.points != points)) continue;
-      if (rated.contains({row.points, row.problem})) {
+      if (row.backend != backend) continue;
+      if (IsRated(ProblemOf(result, row))) {
         solves.push_back(&row);
       } else {
         wrong += row.phase == SolvePhase::kTight &&
@@ -146,26 +137,33 @@ std::vector<BackendSummary> Summarise(const CompareResult& result, int points) {
   return summaries;
 }
 
-int RatedProblems(const CompareResult& result, int points) {
-  const std::set<ProblemKey> rated = Rated(result);
-  return static_cast<int>(std::count_if(rated.begin(), rated.end(), [points](const auto& key) {
-    return points == 0 || key.first == points;
-  }));
+int TimedProblems(const BenchResult& result) {
+  return static_cast<int>(
+      std::count_if(result.problems.begin(), result.problems.end(),
+                    [](const ProblemRow& row) { return IsRated(row) && !row.standing; }));
 }
 
-std::optional<double> ScalingSlope(const CompareResult& result, const std::string& backend) {
-  const std::set<ProblemKey> rated = Rated(result);
-  std::map<int, std::vector<double>> per_iteration;
+std::map<int, double> TimePerIteration(const BenchResult& result, const std::string& backend) {
+  std::map<int, std::vector<double>> times;
   for (const SolveRow& row : result.solves) {
-    if (!rated.contains({row.points, row.problem})) continue;
-    if (row.backend != backend || row.phase != SolvePhase::kTight || row.iterations == 0) continue;
-    per_iteration[row.points].push_back(row.cpu_ms / row.iterations);
+    const ProblemRow& problem = ProblemOf(result, row);
+    if (!IsRated(problem) || row.backend != backend || row.phase != SolvePhase::kTight ||
+        row.iterations == 0)
+      continue;
+    times[problem.points].push_back(row.cpu_ms / row.iterations);
   }
+  std::map<int, double> medians;
+  for (const auto& [points, of_size] : times) medians[points] = Median(of_size);
+  return medians;
+}
+
+std::optional<double> ScalingSlope(const BenchResult& result, const std::string& backend) {
+  const std::map<int, double> per_iteration = TimePerIteration(result, backend);
   if (per_iteration.size() < 2) return std::nullopt;
   double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
-  for (const auto& [points, times] : per_iteration) {
+  for (const auto& [points, ms] : per_iteration) {
     const double x = std::log(static_cast<double>(points));
-    const double y = std::log(Median(times));
+    const double y = std::log(ms);
     n += 1.0;
     sum_x += x;
     sum_y += y;

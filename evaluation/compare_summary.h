@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "touchdown/evaluation/compare.h"
+#include "touchdown/evaluation/solver_bench.h"
 #include "touchdown/evaluation/statistics.h"
 
 namespace touchdown::evaluation {
@@ -26,10 +27,10 @@ struct DeadlineSummary {
   int best_returned = 0;  ///< solves that returned the best feasible point they evaluated
 };
 
-/// One backend over the problems of one size, or of all sizes.
+/// One backend over all problems.
 struct BackendSummary {
   std::string backend;
-  int problems = 0;  ///< run, and with a reference
+  int problems = 0;  ///< run, with a reference, and with something to do
   int solved = 0;    ///< within the gap, feasible, in the median of the repeats
   Interval solved_interval;
   Quantiles cpu_ms;  ///< to the gap, a failure's time infinite
@@ -41,21 +42,22 @@ struct BackendSummary {
   int agreeing = 0;     ///< of these, within 1e-4 of the reference
   Quantiles tight_gap;  ///< of the tight solves; infinite where the point is not feasible
   Quantiles tight_cpu_ms;
-  double end_position_max = 0.0;  ///< [m], over all returned points
-  double end_velocity_max = 0.0;  ///< [m/s]
-  double violation_max = 0.0;     ///< of the points that counted as solved
+  double violation_max = 0.0;  ///< of the points that counted as solved
   std::optional<ShareSummary> shares;
   std::optional<double> ms_per_iteration;  ///< median over the tight solves, CPU time
   std::optional<DeadlineSummary> deadline;
 };
 
-/// Problems with a reference; `points` 0: of all sizes.
-int RatedProblems(const CompareResult& result, int points);
+/// Problems with a reference and with something to do: those that are timed.
+int TimedProblems(const BenchResult& result);
 
-/// All backends of the result, in its order; `points` 0: over all sizes.
-std::vector<BackendSummary> Summarise(const CompareResult& result, int points);
+/// All backends of the result, in its order.
+std::vector<BackendSummary> Summarise(const BenchResult& result);
 
-/// Slope of log(ms per iteration) over log(points), least squares; none for fewer than two sizes.
-std::optional<double> ScalingSlope(const CompareResult& result, const std::string& backend);
+/// Median CPU time per iteration of the tight solves, by control points [ms].
+std::map<int, double> TimePerIteration(const BenchResult& result, const std::string& backend);
+
+/// Slope of its logarithm over that of the points, least squares; none for fewer than two sizes.
+std::optional<double> ScalingSlope(const BenchResult& result, const std::string& backend);
 
 }  // namespace touchdown::evaluation

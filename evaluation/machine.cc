@@ -3,16 +3,26 @@
 #include "touchdown/evaluation/machine.h"
 
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 
 #include <fmt/format.h>
 #include <sched.h>
+#include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/bad_input.h"
 
 namespace touchdown::evaluation {
+
+nlohmann::ordered_json MachineJson(const MachineState& machine) {
+  using Json = nlohmann::ordered_json;
+  const auto or_null = [](double load) { return std::isfinite(load) ? Json(load) : Json(); };
+  return {{"pinned_cpu", machine.pinned ? Json(*machine.pinned) : Json()},
+          {"load_before", or_null(machine.load_before)},
+          {"load_after", or_null(machine.load_after)}};
+}
 
 double LoadAverage() {
   double load = 0.0;

@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include <nlohmann/json_fwd.hpp>
+
 namespace touchdown::evaluation {
 
 /// What else a timing depends on, besides build and CPU: where it ran and who ran beside it.
@@ -11,6 +13,9 @@ struct MachineState {
   double load_before = 0.0;   ///< load average over one minute
   double load_after = 0.0;
 };
+
+/// Document `machine` of --json: `pinned_cpu`, `load_before`, `load_after`.
+nlohmann::ordered_json MachineJson(const MachineState& machine);
 
 /// Load average over the last minute; NaN where the system does not tell.
 double LoadAverage();

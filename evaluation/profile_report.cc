@@ -23,16 +23,6 @@ Json MillisecondsJson(const Quantiles& q) {
           {"max_ms", OrNull(q.max)}};
 }
 
-Json StageJson(const StageSummary& s) {
-  Json json = MillisecondsJson(s.cpu_ms);
-  json["wall"] = MillisecondsJson(s.wall_ms);
-  json["samples"] = s.samples;
-  json["used"] = s.used;
-  json["allocations"] = {{"median", OrNull(s.allocations.median)},
-                         {"max", OrNull(s.allocations.max)}};
-  return json;
-}
-
 std::string Cell(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
@@ -79,6 +69,16 @@ std::string SlowestText(const Profile& profile, const ProfileSummary& summary) {
 }
 
 }  // namespace
+
+Json StageJson(const StageSummary& s) {
+  Json json = MillisecondsJson(s.cpu_ms);
+  json["wall"] = MillisecondsJson(s.wall_ms);
+  json["samples"] = s.samples;
+  json["used"] = s.used;
+  json["allocations"] = {{"median", OrNull(s.allocations.median)},
+                         {"max", OrNull(s.allocations.max)}};
+  return json;
+}
 
 std::string ProfileText(const Profile& profile) {
   const ProfileSummary summary = Summarise(profile);
@@ -140,9 +140,7 @@ Json ProfileJson(const Profile& profile, const MachineState& machine) {
     json["same_as_record"] = {{"same", profile.same}, {"compared", profile.compared}};
   }
   json["dropped_spans"] = profile.spans.dropped();
-  json["machine"] = {{"pinned_cpu", machine.pinned ? Json(*machine.pinned) : Json()},
-                     {"load_before", OrNull(machine.load_before)},
-                     {"load_after", OrNull(machine.load_after)}};
+  json["machine"] = MachineJson(machine);
   for (const auto& [key, value] : BuildManifest()) json["build"][key] = value;
   return json;
 }

@@ -57,19 +57,6 @@ Scenario ScenarioArguments::Load(const Registries& registries) const {
   return loaded;
 }
 
-std::vector<std::string> ScenarioArguments::ReplayOverrides() const {
-  std::vector<std::string> overrides = Overrides();
-  for (const std::string& text : overrides) {
-    const auto begins = [&](const char* key) { return text.rfind(key, 0) == 0; };
-    if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=") &&
-        !begins("planning.max_work=") && !begins("planning.warm_start=")) {
-      throw BadInput(
-          fmt::format("--set {}: of a recorded flight only {} can be changed.", text, kReplayKeys));
-    }
-  }
-  return overrides;
-}
-
 void CheckTimings(bool allow_debug) {
   if (TimingsMeanSomething() || allow_debug) return;
   throw BadInput(

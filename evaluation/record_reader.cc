@@ -327,6 +327,17 @@ void CheckFormat(const Meta& meta) {
   }
 }
 
+void CheckOverrides(const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) {
+    const auto begins = [&](const char* key) { return text.rfind(key, 0) == 0; };
+    if (!begins("solver.") && !begins("terms.") && !begins("planning.guides=") &&
+        !begins("planning.max_work=") && !begins("planning.warm_start=")) {
+      throw BadInput(
+          fmt::format("--set {}: of a recorded flight only {} can be changed.", text, kReplayKeys));
+    }
+  }
+}
+
 RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries) {
   SqliteDb db(path, SqliteDb::Mode::kReadOnly);
@@ -354,6 +365,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
 
 RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
                           const Registries& registries) {
+  CheckOverrides(overrides);
   if (!std::filesystem::is_regular_file(path)) {
     throw BadInput(fmt::format("{}: there is no such record.", path));
   }

@@ -18,9 +18,13 @@ struct RecordedFlight {
   std::vector<RecordPlan> plans;  ///< in the order in which they were made
 };
 
+/// What of a recorded flight can be changed, as a help text says it.
+inline constexpr const char* kReplayKeys =
+    "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
+
 /// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario. @throws BadInput
-/// with one sentence that names the file: it is not there, no record, of another version, or
-/// something in it is missing or out of its range.
+/// with one sentence: an override is none of kReplayKeys, or, with the file's name, it is not there, no record, of another
+/// version, or something in it is missing or out of its range.
 RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

@@ -245,9 +245,7 @@ Json ReplanStudyJson(const std::vector<ReplanStudyPart>& parts, const MachineSta
                              {"seed", part.options.scenes.seed},
                              {"steps", steps}});
   }
-  json["machine"] = {{"pinned_cpu", machine.pinned ? Json(*machine.pinned) : Json()},
-                     {"load_before", machine.load_before},
-                     {"load_after", machine.load_after}};
+  json["machine"] = MachineJson(machine);
   return json;
 }
 

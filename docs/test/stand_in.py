@@ -50,8 +50,8 @@ def shortened(arguments):
             word = str(min(int(word), SHORT[before]))
         if before == "--trials" and "--shard" in arguments:  # each part has one
             word = arguments[arguments.index("--shard") + 1].split("/")[1]
-        if before == "--points" and "," in word:  # the time goes into the largest sizes
-            word = ",".join(word.split(",")[:2])
+        if before == "--backends" and word == "all":
+            word = "banded,lbfgs"
         if before == "--pin":
             word = str(min(os.sched_getaffinity(0)))
         short.append(word)

@@ -10,7 +10,6 @@
 #include <map>
 #include <queue>
 
-#include "touchdown/planning/collision_pairs.h"
 #include "touchdown/planning/test/small_map.h"
 
 namespace touchdown::planning {

@@ -47,7 +47,7 @@ def test_the_slope_of_a_power_law():
 def table_path(run, tmp_path_factory):
     path = tmp_path_factory.mktemp("compare") / "compare.db"
     done = run(
-        *("compare", "--problems", "2", "--points", "12,16", "--repeats", "2", "--allow-debug"),
+        *("compare", "--problems", "3", "--every", "9", "--repeats", "2", "--allow-debug"),
         *("--backends", "banded,ceres,nlopt-lbfgs", "--db", str(path)),
     )
     assert done.returncode == 0, done.stderr
@@ -56,21 +56,21 @@ def table_path(run, tmp_path_factory):
 
 def test_a_table_is_read_and_tells_what_it_was_made_with(table_path):
     comparison = Comparison(table_path)
-    assert comparison.points == [12, 16]
     assert comparison.backends[0] == "banded" and "ceres" in comparison.backends
     for key in ("cpu", "build_type", "revision", "load_before", "pinned_cpu", "ceres", "seed"):
         assert key in comparison.manifest
-    times = comparison.times(12)
-    assert set(times["banded"]) == {0, 1}
-    assert comparison.rated(12) == 2
+    assert comparison.problems == 3 and comparison.flights == 1 and comparison.timed >= 1
+    times = comparison.times()
+    assert all(len(times[backend]) == comparison.timed for backend in times)
     assert all(ms > 0 for ms in times["banded"].values())
-    assert sorted(comparison.per_iteration("ceres")) == [12, 16]
     with sqlite3.connect(table_path) as db:
-        solves = "SELECT COUNT(*) FROM solve WHERE backend = 'banded' AND points = 12 AND phase = "
-        assert db.execute(solves + "'tight'").fetchone() == (2,)
-        assert db.execute(solves + "'gap'").fetchone() == (4,)
-        assert db.execute(solves + "'shares'").fetchone() == (2,)
-        assert db.execute("SELECT MIN(reached) FROM solve").fetchone() == (1,)
+        (command,) = db.execute("SELECT command FROM flight").fetchone()
+        assert command.startswith("touchdown land forest --seed ")
+        assert db.execute("SELECT solve FROM problem ORDER BY problem").fetchall() == [(0,), (9,), (18,)]
+        solves = "SELECT COUNT(*) FROM solve WHERE backend = 'banded' AND phase = "
+        assert db.execute(solves + "'tight'").fetchone() == (3,)
+        assert db.execute(solves + "'gap'").fetchone() == (2 * comparison.timed,)
+        assert db.execute(solves + "'shares'").fetchone() == (comparison.timed,)
 
 
 @pytest.mark.parametrize("kind", ["png", "svg"])
@@ -82,7 +82,7 @@ def test_the_picture_is_drawn(table_path, tmp_path, kind):
 
 def test_the_program_draws_without_keeping_a_table(run, tmp_path):
     done = run(
-        *("compare", "--problems", "1", "--points", "12", "--repeats", "1", "--allow-debug"),
+        *("compare", "--problems", "1", "--repeats", "1", "--allow-debug"),
         *("--backends", "banded", "--picture", "out.png"),
         cwd=tmp_path,
     )
@@ -93,15 +93,15 @@ def test_the_program_draws_without_keeping_a_table(run, tmp_path):
 @pytest.mark.parametrize(
     "option, value",
     [
-        *((name, "nan") for name in ("--gap", "--deadline-ms", "--inflation", "--speed-limit")),
-        ("--acceleration-limit", "inf"),
+        *((name, "nan") for name in ("--gap", "--deadline-ms")),
+        ("--every", "0"),
         ("--backend-seconds", "nan"),
         ("--backends", "banded,banded"),
         ("--backends", "banded,,ceres"),
     ],
 )
 def test_what_makes_no_sense_is_refused_by_name(run, option, value):
-    done = run("compare", "--problems", "1", "--points", "9", "--allow-debug", option, value)
+    done = run("compare", "--problems", "1", "--allow-debug", option, value)
     assert done.returncode == 2
     assert option in done.stderr and done.stdout == ""
 

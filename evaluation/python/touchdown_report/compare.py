@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of a comparison of solver backends (docs/compare.md): for each number of control
-points the performance profile (Dolan and Moré, 2002) and the distribution of the time to the gap;
-with several numbers also the time per iteration over them.
+"""The pictures of a comparison of solver backends (docs/compare.md): the performance profile (Dolan
+and Moré, 2002), the distribution of the time to the gap, and the time per iteration over the number
+of control points.
 
     /usr/bin/python3 -m touchdown_report.compare COMPARISON.db OUT.png
 """
@@ -16,11 +16,10 @@ import numpy as np  # noqa: E402
 from touchdown_report import command_line, database  # noqa: E402
 from touchdown_report.style import STYLE, made_with, sign  # noqa: E402
 
-SUPPORTED_VERSION = "2"
+SUPPORTED_VERSION = "3"
 # A line style for each backend: colour alone does not tell ten of them apart.
 COLOURS = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#D55E00", "#0072B2", "#CC79A7", "#999999"]
 DASHES = ["-", "--", ":", "-."]
-MOST_ROWS = 3
 # Beside the axes: curves fill all of them.
 LEGEND = {"fontsize": 7.5, "loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
 
@@ -30,40 +29,36 @@ class CompareError(Exception):
 
 
 class Comparison:
-    """One file: `manifest` (dict), `points` and `backends` in order, and their times."""
+    """One file: `manifest` (dict), `backends` in order, `timed` (problems that were), what was asked
+    of how many problems, and times."""
 
     def __init__(self, path):
         database.read(path, "comparison", "manifest", SUPPORTED_VERSION, CompareError, self._read)
 
     def _read(self, db, manifest):
         self.manifest = manifest
-        self.points = [n for n, in db.execute("SELECT DISTINCT points FROM problem ORDER BY 1")]
-        backend_order = "SELECT backend FROM summary GROUP BY backend ORDER BY MIN(rowid)"
-        self.backends = [name for name, in db.execute(backend_order)]
+        self.backends = [name for name, in db.execute("SELECT backend FROM summary ORDER BY rowid")]
+        rated = "reference_cost IS NOT NULL AND NOT standing"
+        (self.timed,) = db.execute(f"SELECT COUNT(*) FROM problem WHERE {rated}").fetchone()
+        self.problems, self.free, self.hard, self.explicit, self.flights = db.execute(
+            "SELECT COUNT(*), SUM(free_arrival), SUM(hard_limits), SUM(explicit_endpoint), "
+            "COUNT(DISTINCT flight) FROM problem"
+        ).fetchone()
         self._gap = db.execute(
-            "SELECT points, problem, backend, CASE reached WHEN 1 THEN time_cpu_ms END "
+            "SELECT problem, backend, CASE reached WHEN 1 THEN time_cpu_ms END "
             "FROM solve WHERE phase = 'gap'"
         ).fetchall()
         self._tight = db.execute(
-            "SELECT points, backend, time_cpu_ms / iterations FROM solve "
-            "JOIN problem USING(points, problem) "
+            "SELECT points, backend, time_cpu_ms / iterations FROM solve JOIN problem USING(problem) "
             "WHERE phase = 'tight' AND iterations > 0 AND reference_cost IS NOT NULL"
         ).fetchall()
-        self._rated = dict(
-            db.execute("SELECT points, COUNT(reference_cost) FROM problem GROUP BY points")
-        )
 
-    def rated(self, points):
-        """Number of problems with a reference cost."""
-        return self._rated[points]
-
-    def times(self, points):
+    def times(self):
         """Milliseconds to the gap: {backend: {problem: ms}}, the median of the repeats, infinite
         where the problem was not solved. Problems that a backend was not run on are left out."""
         repeats = {name: {} for name in self.backends}
-        for size, problem, backend, ms in self._gap:
-            if size == points:
-                repeats[backend].setdefault(problem, []).append(np.inf if ms is None else ms)
+        for problem, backend, ms in self._gap:
+            repeats[backend].setdefault(problem, []).append(np.inf if ms is None else ms)
         return {name: {k: middle(v) for k, v in runs.items()} for name, runs in repeats.items()}
 
     def per_iteration(self, backend):
@@ -147,16 +142,16 @@ def draw_steps(axes, curves, styles, runs, count):
     axes.set_ylim(0.0, 1.02)
 
 
-def draw_size(row, comparison, points, styles):
-    times = comparison.times(points)
-    count = comparison.rated(points)
+def draw_times(row, comparison, styles):
+    times = comparison.times()
+    count = comparison.timed
     runs = {backend: len(of_backend) for backend, of_backend in times.items()}
     draw_steps(row[0], profile(times, count), styles, runs, count)
-    row[0].set_title(f"{points} points: performance profile")
+    row[0].set_title("performance profile")
     row[0].set_xlabel("time / fastest backend's time on the same problem")
     row[0].set_ylabel("fraction of problems solved")
     draw_steps(row[1], ecdf(times, count), styles, runs, count)
-    row[1].set_title(f"{points} points: time to the gap")
+    row[1].set_title("time to the gap")
     row[1].set_xlabel("thread CPU time [ms]")
     row[1].legend(**LEGEND)
 
@@ -177,8 +172,8 @@ def draw_scaling(axes, beside, comparison, styles):
         )
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xticks(comparison.points)
-    axes.set_xticklabels([str(n) for n in comparison.points])
+    sizes = [n for n in (15, 20, 30, 50, 80, 120) if axes.get_xlim()[0] <= n <= axes.get_xlim()[1]]
+    axes.set_xticks(sizes, [str(n) for n in sizes])
     axes.minorticks_off()
     axes.set_xlabel("control points")
     axes.set_ylabel("thread CPU time per iteration [ms]")
@@ -188,32 +183,25 @@ def draw_scaling(axes, beside, comparison, styles):
     beside.legend(handles, labels, **{**LEGEND, "bbox_to_anchor": (0.0, 0.5)})
 
 
-def headline(manifest):
-    word = {key: value.strip('"') for key, value in manifest.items()}
+def headline(comparison):
+    word = {key: value.strip('"') for key, value in comparison.manifest.items()}
+    source = word["from"] or f"drawn flights, seed {word['seed']}"
     return (
-        f"{word['problems']} random landing problems, forest {word['forest']}, "
-        f"{word['arrival']} arrival, {word['limits']} limits, {word['endpoint']} endpoint, "
-        f"{word['start']} start, seed {word['seed']}",
+        f"{comparison.problems} problems as {comparison.flights} flights posed them ({source}): free arrival "
+        f"{comparison.free}, {'hard' if comparison.hard else 'soft'} limits, "
+        f"{'explicit' if comparison.explicit else 'eliminated'} end; {comparison.timed} timed",
         f"solved: within {float(word['gap']):.0e} of the best known cost and feasible, judged "
         f"outside the solvers  ·  {made_with(word)}",
     )
 
 
 def draw(comparison, path):
-    sizes = comparison.points
-    if len(sizes) > MOST_ROWS:
-        sizes = [sizes[0], sizes[len(sizes) // 2], sizes[-1]]
-    rows = len(sizes) + (1 if len(comparison.points) > 1 else 0)
     styles = looks(comparison.backends)
     with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(
-            rows, 2, figsize=(11.0, 0.9 + 3.6 * rows), squeeze=False, layout="constrained"
-        )
-        for row, points in zip(axes, sizes):
-            draw_size(row, comparison, points, styles)
-        if rows > len(sizes):
-            draw_scaling(*axes[-1], comparison, styles)
-        sign(figure, *headline(comparison.manifest))
+        figure, axes = plt.subplots(2, 2, figsize=(11.0, 8.1), squeeze=False, layout="constrained")
+        draw_times(axes[0], comparison, styles)
+        draw_scaling(*axes[1], comparison, styles)
+        sign(figure, *headline(comparison))
         figure.savefig(path, dpi=150)
         plt.close(figure)
 
