@@ -46,8 +46,10 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
                         t.relative_velocity.x(), t.relative_velocity.y(), t.relative_velocity.z());
     text +=
         fmt::format("  tilt over equilibrium  {:.1f} deg\n", t.tilt_over_equilibrium * kDegPerRad);
-    text += fmt::format("  mean |error|, last 5 s {:.3f} m in x, {:.3f} m in y\n",
-                        r.mean_abs_error_x_m.value_or(0.0), r.mean_abs_error_y_m.value_or(0.0));
+    if (const auto last = LastErrors(scenario, r)) {
+      text += fmt::format("  mean |error|, last 5 s {:.3f} m in x, {:.3f} m in y\n", last->x(),
+                          last->y());
+    }
   } else if (r.succeeded()) {
     text = fmt::format("followed the pad of {} for {:.2f} s (seed {})\n", scenario.name,
                        r.simulated_s, r.seed);

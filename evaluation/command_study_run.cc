@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -18,6 +17,7 @@
 #include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/launch.h"
 #include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/study_rates.h"
 #include "touchdown/evaluation/study_run.h"
 
 namespace touchdown::evaluation {
@@ -26,7 +26,7 @@ namespace {
 struct StudyRunArguments {
   std::string file;
   std::string out;
-  bool quick = false;
+  StudySelection selection;
   bool report_only = false;
   int jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::string seed;
@@ -35,48 +35,31 @@ struct StudyRunArguments {
   bool json = false;
 };
 
-nlohmann::ordered_json ReadSummary(const std::string& folder) {
-  std::ifstream stream(folder + "/summary.json");
-  return nlohmann::ordered_json::parse(stream);
-}
-
-// One line for each method in each cell.
-std::string SummaryText(const nlohmann::ordered_json& summary, const std::string& folder) {
-  std::string text;
-  std::string cell;
-  for (const auto& row : summary.at("parts")) {
-    if (row.at("cell") != cell)
-      text += fmt::format("{}\n", row.at("cell_title").get<std::string>());
-    cell = row.at("cell");
-    const auto seconds = row.at("time_to_land_median_s");
-    text += fmt::format(
-        "  {:<24} succeeded {} of {} [{:.1f}, {:.1f}] %{}\n", row.at("method").get<std::string>(),
-        row.at("succeeded").get<int>(), row.at("trials").get<int>(),
-        100.0 * row.at("rate_lo").get<double>(), 100.0 * row.at("rate_hi").get<double>(),
-        seconds.is_null() ? std::string()
-                          : fmt::format(", median {:.1f} s", seconds.get<double>()));
-  }
-  return text + fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
-}
-
-// A study flies for minutes: enough to install what its report needs, for those who know.
-void WarnOfNoReport() {
+// A study flies for minutes: enough to install what its report needs, for those who want one.
+bool CanReport() {
   try {
     CheckStudyReport();
+    return true;
   } catch (const std::runtime_error& missing) {
     spdlog::warn("{}", missing.what());
+    return false;
   }
 }
 
-int Report(const StudyRunArguments& arguments, const std::string& folder) {
-  WriteStudyReport(folder);
-  const nlohmann::ordered_json summary = ReadSummary(folder);
+// The rates need nothing but the folder; the report is drawn from it by another program.
+int Tell(const StudyRunArguments& arguments, const std::string& folder, bool report) {
+  if (report) WriteStudyReport(folder);
+  const StudyRates rates = ReadStudyRates(folder);
   if (arguments.json) {
-    std::cout << summary.dump(2) << std::endl;
+    nlohmann::ordered_json json = StudyRatesJson(rates);
+    json["report"] = report ? nlohmann::ordered_json(folder + "/report.html") : nullptr;
+    std::cout << json.dump(2) << std::endl;
   } else {
-    std::cout << SummaryText(summary, folder) << std::flush;
+    std::cout << StudyRatesText(rates);
+    if (report) std::cout << fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
+    std::cout << std::flush;
   }
-  return summary.at("errors").get<int>() == 0 ? kDone : kFellShort;
+  return rates.errors == 0 ? kDone : kFellShort;
 }
 
 int Run(const StudyRunArguments& arguments, const Registries& registries) {
@@ -84,14 +67,14 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
   if (arguments.report_only) {
     if (arguments.retry) throw BadInput("--retry has no effect with --report-only.");
-    if (std::filesystem::exists(StudyTablePath(folder))) return Report(arguments, folder);
+    if (std::filesystem::exists(StudyTablePath(folder))) return Tell(arguments, folder, true);
     throw BadInput(fmt::format("--report-only: {} is missing; the study must be flown first.",
                                StudyTablePath(folder)));
   }
   const Shard shard = Shard::Parse(arguments.shard);
   const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
-  const StudyPlan plan = PlanStudy(file, arguments.quick, seed, registries);
-  if (shard.of == 1 && !LaunchedAsOneOfSeveral()) WarnOfNoReport();
+  const StudyPlan plan = PlanStudy(file, arguments.selection, seed, registries);
+  const bool report = shard.of == 1 && !LaunchedAsOneOfSeveral() && CanReport();
   CampaignOptions options;
   options.jobs = arguments.jobs;
   options.shard = shard;
@@ -99,7 +82,7 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const CampaignResult result = FlyStudy(plan, folder, options, registries);
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));
-  if (shard.of == 1) return Report(arguments, folder);
+  if (shard.of == 1) return Tell(arguments, folder, report);
   std::cout << fmt::format("{} trials of shard {} are in {}\n", result.state.flown, arguments.shard,
                            StudyTablePath(folder, shard));
   return kDone;
@@ -107,7 +90,15 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
 
 void AddOptions(Command command, const std::shared_ptr<StudyRunArguments>& arguments,
                 const Registries& registries, CommandRun* run) {
-  command.AddFlag("--quick", arguments->quick, "The short form: few seeds, main cells");
+  command.AddFlag("--quick", arguments->selection.quick, "The short form: few seeds, main cells");
+  command.AddList("--cells", &arguments->selection.cells, "Only these cells", "NAME,NAME,...",
+                  AnyWord());
+  command.AddList("--methods", &arguments->selection.methods, "Only these methods", "NAME,NAME,...",
+                  AnyWord());
+  command
+      .Add("--trials", arguments->selection.trials,
+           "Of each method in each cell: the first so many seeds, also more than its file says")
+      .Check(Range(1, 100000));
   command.AddFile("--out", &arguments->out,
                   "The study's folder, made where it is missing; study_NAME unless given",
                   "FOLDER");

@@ -117,6 +117,7 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   // A light vehicle never presses as hard as the default asks.
   parameters_.contact_force =
       std::min(parameters_.contact_force, kContactShare * model.HoverThrust());
+  parameters_.corridor_radius = scenario.mission.corridor_radius;
   parameters_.contact_distance = scenario.pad.deck_size * std::sqrt(0.5) + model.foot_radius;
   // A plan that turns away from the deck is made at the next step, flown a latency later and followed when
   // the attitude is there.

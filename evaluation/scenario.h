@@ -175,6 +175,9 @@ struct Scenario {
     bool disturbance = true;  ///< the controller geometric compensates what it estimates
   } control;
   DescentKind descent = DescentKind::kPlanned;
+  struct Mission {
+    double corridor_radius = 0.12;  ///< horizontal error at the deck with which it sinks [m]
+  } mission;
   PlannerKind planner = PlannerKind::kLanding;
   struct Planning {
     double rate = 10.0;  ///< [Hz]

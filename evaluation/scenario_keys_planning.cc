@@ -18,6 +18,12 @@ void AddPlanningKeys(KeyList& keys) {
                         "planned flies one plan to contact; the baselines, which make none, "
                         "have vertical unless it is given",
                         TOUCHDOWN_AT(descent)));
+  keys.push_back(Number<Scenario>(
+      "mission.corridor_radius", In(0.01, 0.5, "m"),
+      "a vertical descent goes on while the horizontal error is at most this at the deck, and 0.35 "
+      "m more for each "
+      "metre above it: 0.24 m from where contact is committed to, with every planner",
+      TOUCHDOWN_AT(mission.corridor_radius)));
   keys.push_back(Choice(
       "planner", {"landing", "ego", "ego-velocity", "pid"},
       "landing: this project's; ego: the EGO-Planner baseline, at rest at the pad; "

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/evaluation/sweep.h"
 
 namespace touchdown::evaluation {
@@ -40,9 +42,20 @@ std::string FindScenarioOf(const StudyFile& file, const StudyCell& cell) {
                                                            : FindScenario(cell.scenario);
 }
 
-bool Flies(const StudyCell& cell, const StudyMethod& method) {
-  return cell.methods.empty() ||
-         std::find(cell.methods.begin(), cell.methods.end(), method.name) != cell.methods.end();
+// An empty list holds everything.
+bool Holds(const std::vector<std::string>& names, const std::string& name) {
+  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+template <class Entry>
+void CheckNames(const char* option, const std::vector<std::string>& names,
+                const std::vector<Entry>& entries, const std::string& study) {
+  std::vector<std::string> known;
+  for (const Entry& entry : entries) known.push_back(entry.name);
+  for (const std::string& name : names) {
+    if (Holds(known, name)) continue;
+    throw BadInput(fmt::format("{} {}: study {} has {}.", option, name, study, Enumerate(known)));
+  }
 }
 
 void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* plan) {
@@ -66,7 +79,8 @@ void AddPart(const StudyPart& part, const Registries& registries, StudyPlan* pla
 // Adds the trials, or why there are none.
 void PlanPart(StudyPart part, const Registries& registries, StudyPlan* plan) {
   const StudyMethod& method = plan->MethodOf(part);
-  part.trials = plan->quick ? method.quick : method.trials;
+  const StudySelection& selection = plan->selection;
+  part.trials = selection.trials.value_or(selection.quick ? method.quick : method.trials);
   part.first = static_cast<int>(plan->campaign.trials.size());
   try {
     AddPart(part, registries, plan);
@@ -97,25 +111,33 @@ bool StudyPlan::Records(const StudyPart& part) const {
   return method.record || std::find(cells.begin(), cells.end(), CellOf(part).name) != cells.end();
 }
 
-StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,
+StudyPlan PlanStudy(const StudyFile& file, const StudySelection& selection, std::uint64_t seed,
                     const Registries& registries) {
+  CheckNames("--cells", selection.cells, file.cells, file.name);
+  CheckNames("--methods", selection.methods, file.methods, file.name);
   StudyPlan plan;
   plan.file = file;
-  plan.quick = quick;
+  plan.selection = selection;
   plan.campaign.name = "study " + file.name;
   plan.campaign.seed = seed;
   plan.campaign.keys = {{"cell"}, {"method"}};
   for (const auto& [label, value] : file.cells.front().labels)
     plan.campaign.keys.push_back({label});
   for (std::size_t c = 0; c < file.cells.size(); ++c) {
-    if (quick && !file.cells[c].quick) continue;
+    const StudyCell& cell = file.cells[c];
+    if (!Holds(selection.cells, cell.name) || (selection.quick && !cell.quick)) continue;
     for (std::size_t m = 0; m < file.methods.size(); ++m) {
-      if (!Flies(file.cells[c], file.methods[m])) continue;
+      const std::string& method = file.methods[m].name;
+      if (!Holds(selection.methods, method) || !Holds(cell.methods, method)) continue;
       StudyPart part;
       part.cell = static_cast<int>(c);
       part.method = static_cast<int>(m);
       PlanPart(std::move(part), registries, &plan);
     }
+  }
+  if (plan.parts.empty()) {
+    throw BadInput(fmt::format("study {}: none of these methods flies in these cells{}.", file.name,
+                               selection.quick ? " in the short form" : ""));
   }
   CheckTrials(plan.campaign);
   return plan;
@@ -132,7 +154,7 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
                    {"title", plan.file.title},
                    {"report", plan.file.report},
                    {"reference", plan.file.reference},
-                   {"quick", plan.quick},
+                   {"quick", plan.selection.quick},
                    {"seed", plan.campaign.seed},
                    {"trials", plan.campaign.trials.size()},
                    {"set", text_map(plan.file.set)},
@@ -156,8 +178,10 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
                   {"trials", part.trials},
                   {"recorded", plan.Records(part)}};
     if (part.refusal.empty()) {
-      entry["timeout_s"] =
-          plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario.timeout;
+      const Scenario& scenario =
+          plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario;
+      entry["timeout_s"] = scenario.timeout;
+      entry["descent"] = FindScenarioKey("descent")->get(scenario);
     } else {
       entry["refusal"] = part.refusal;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,18 @@ struct StudyPart {
   std::string refusal;  ///< why it is not flown; empty: it is
 };
 
+/// What of a study is flown.
+struct StudySelection {
+  bool quick = false;                ///< the short form
+  std::vector<std::string> cells;    ///< names; empty: all
+  std::vector<std::string> methods;  ///< names; empty: all
+  std::optional<int> trials;         ///< of each method in each cell; none: as the file says
+};
+
 /// Everything that a study is to fly.
 struct StudyPlan {
   StudyFile file;
-  bool quick = false;
+  StudySelection selection;
   std::vector<StudyPart> parts;  ///< cell by cell, in the order of the file
   Campaign campaign;             ///< part by part; labels `cell`, `method` and the cell's own
 
@@ -34,9 +43,10 @@ struct StudyPlan {
   bool Records(const StudyPart& part) const;
 };
 
-/// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i): common random numbers.
-/// @throws BadInput as LoadScenario does, but for the backends of a study, which may refuse a cell.
-StudyPlan PlanStudy(const StudyFile& file, bool quick, std::uint64_t seed,
+/// Plans a study. Trial i of every part has the same seed, TrialSeed(seed, i): common random numbers, also of
+/// a part that is selected alone. @throws BadInput as LoadScenario does, but for the backends of a study,
+/// which may refuse a cell; and for a selection that names what is not there, or nothing
+StudyPlan PlanStudy(const StudyFile& file, const StudySelection& selection, std::uint64_t seed,
                     const Registries& registries);
 
 /// What the report needs to know beside the trials (docs/record.md).

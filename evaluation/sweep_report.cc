@@ -63,10 +63,6 @@ const Figure kFigures[] = {
        return AtTouchdown(r,
                           [](const Touchdown& d) { return d.tilt_over_equilibrium * kDegPerRad; });
      }},
-    {"mean_abs_error_x_m", "mean |error| x, last 5 s", "m",
-     [](const TrialResult& r) { return r.landed() ? r.mean_abs_error_x_m : std::nullopt; }},
-    {"mean_abs_error_y_m", "mean |error| y, last 5 s", "m",
-     [](const TrialResult& r) { return r.landed() ? r.mean_abs_error_y_m : std::nullopt; }},
     {"min_clearance_m", "least true clearance", "m",
      [](const TrialResult& r) { return r.min_clearance_m; }},
     {"estimator_nees_position", "pad NEES (2 expected)", "",
@@ -108,6 +104,17 @@ std::vector<Column> Columns(const std::vector<SweepRow>& rows) {
         column.values.push_back(*value);
     }
   }
+  // Only some styles have them.
+  Column x{"mean_abs_error_x_m", "mean |error| x, last 5 s", "m", {}};
+  Column y{"mean_abs_error_y_m", "mean |error| y, last 5 s", "m", {}};
+  for (const SweepRow& row : rows) {
+    const auto last = LastErrors(row.trial.scenario, row.result);
+    if (!last) continue;
+    x.values.push_back(last->x());
+    y.values.push_back(last->y());
+  }
+  columns.push_back(std::move(x));
+  columns.push_back(std::move(y));
   return columns;
 }
 

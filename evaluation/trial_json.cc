@@ -107,7 +107,14 @@ Json QuantilesJson(const std::vector<double>& values) {
           {"max", OrNull(Quantile(values, 1.0))}};
 }
 
+std::optional<Eigen::Vector2d> LastErrors(const Scenario& scenario, const TrialResult& result) {
+  if (scenario.descent != DescentKind::kVertical || !result.landed()) return std::nullopt;
+  if (!result.mean_abs_error_x_m || !result.mean_abs_error_y_m) return std::nullopt;
+  return Eigen::Vector2d(*result.mean_abs_error_x_m, *result.mean_abs_error_y_m);
+}
+
 Json LandJson(const Scenario& scenario, const TrialResult& result) {
+  const std::optional<Eigen::Vector2d> last = LastErrors(scenario, result);
   Json json;
   json["landed"] = result.landed();
   json["outcome"] = ToString(result.outcome);
@@ -118,9 +125,8 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["time_ratio"] = OrNull(result.time_ratio());
   json["within_limits"] = result.within_limits;
   json["touchdown"] = TouchdownJson(result);
-  json["mean_abs_error_last_5s_m"] = {
-      {"x", OrNull(result.landed() ? result.mean_abs_error_x_m : std::nullopt)},
-      {"y", OrNull(result.landed() ? result.mean_abs_error_y_m : std::nullopt)}};
+  json["mean_abs_error_last_5s_m"] = {{"x", last ? Json(last->x()) : Json()},
+                                      {"y", last ? Json(last->y()) : Json()}};
   json["following"] = FollowingJson(result.following);
   json["min_clearance_m"] = OrNull(result.min_clearance_m);
   json["simulated_s"] = result.simulated_s;

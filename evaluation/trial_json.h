@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/trial_result.h"
 
 namespace touchdown::evaluation {
+
+/// Mean |error| in x and y over the last 5 s [m] of a landing whose style follows the pad before it sinks:
+/// a planned descent is still on its way then, so that its figure compares with nothing.
+std::optional<Eigen::Vector2d> LastErrors(const Scenario& scenario, const TrialResult& result);
 
 /// The document of `touchdown land --json`. Everything but `wall_clock` is the same for the same
 /// scenario and seed.

@@ -20,7 +20,7 @@ const Registries kRegistries = StandardRegistries();
 
 StudyPlan Shipped(const std::string& name, bool quick) {
   const StudyFile file = LoadStudyFile(FindStudyFile(name), kRegistries);
-  return PlanStudy(file, quick, file.seed, kRegistries);
+  return PlanStudy(file, {.quick = quick}, file.seed, kRegistries);
 }
 
 /// Trials of each method in each cell.
@@ -58,14 +58,29 @@ TEST_P(ShippedStudy, EveryScenarioLoadsAndSeedsArePaired) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedStudy, testing::ValuesIn(ListStudyFiles()));
 
 TEST(PaperStudy, HasTheSampleSizesThatWereFixed) {
-  const auto counts = Counts(Shipped("paper", false));
-  std::set<std::string> cells;
+  const StudyPlan plan = Shipped("paper", false);
+  const auto counts = Counts(plan);
+  const auto scenarios_assume = [&](const std::string& cell) {
+    for (const SweepTrial& trial : plan.campaign.trials) {
+      if (trial.varied.at(0).second != cell) continue;
+      return trial.scenario.own_state == OwnStateKind::kTrue && trial.scenario.plant.mass == 1.0;
+    }
+    return false;
+  };
+  std::set<std::string> cells, without;
   for (const auto& [part, count] : counts) {
-    if (part.first != "figure_4_following") cells.insert(part.first);
+    const bool assumes = scenarios_assume(part.first);
+    if (part.first != "figure_4_following") (assumes ? cells : without).insert(part.first);
     const std::set<std::string> large = {"planned", "vertical", "ego"};
     EXPECT_EQ(count, large.count(part.second) > 0 ? 100 : 30) << part.first << " " << part.second;
   }
-  EXPECT_EQ(cells.size(), 15U);  // Figure 4, two cases with three sigmas and four winds
+  EXPECT_EQ(cells.size(), 15U);   // Figure 4, two cases with three sigmas and four winds
+  EXPECT_EQ(without.size(), 6U);  // own state, vehicle, both in noise and wind
+  for (const std::string& cell : without) {
+    for (const char* method : {"planned", "vertical", "ego", "ego_velocity_10hz"}) {
+      EXPECT_EQ(counts.count({cell, method}), 1U) << cell << " " << method;
+    }
+  }
   for (const std::string& cell : cells) {
     for (const char* method :
          {"planned", "vertical", "vertical_2mps", "oracle", "ego", "ego_2hz", "ego_10hz",
@@ -125,7 +140,7 @@ class WrittenStudy : public testing::Test {
   /// The sentence that loading it, or planning it, is refused with.
   std::string Refusal(const std::string& text) const {
     try {
-      PlanStudy(Load(text), true, 1, kRegistries);
+      PlanStudy(Load(text), {.quick = true}, 1, kRegistries);
     } catch (const BadInput& error) {
       return error.what();
     }
@@ -142,7 +157,7 @@ TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
            "set: {timeout: 9, descent: none}\n"
            "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
            "methods: [{name: a, set: {timeout: 7}, quick: 2, record: [c]}, {name: b}]\n");
-  const StudyPlan plan = PlanStudy(file, true, 4, kRegistries);
+  const StudyPlan plan = PlanStudy(file, {.quick = true}, 4, kRegistries);
   ASSERT_EQ(plan.parts.size(), 2U);
   EXPECT_TRUE(plan.Records(plan.parts[0]));
   EXPECT_FALSE(plan.Records(plan.parts[1]));
@@ -152,12 +167,52 @@ TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
   EXPECT_EQ(plan.campaign.trials.at(2).scenario.descent, DescentKind::kNone);
 }
 
+// A part that is flown again is the part of the whole.
+TEST_F(WrittenStudy, ASelectionHasTheSeedsOfTheWhole) {
+  const StudyFile file =
+      Load(std::string(kHead) +
+           "cells: [{name: c, scenario: open}, {name: d, scenario: circle, quick: false},"
+           " {name: e, scenario: open, methods: [b]}]\n"
+           "methods: [{name: a, trials: 3}, {name: b, set: {timeout: 7}, trials: 4}]\n");
+  const StudyPlan whole = PlanStudy(file, {}, 4, kRegistries);
+  const StudyPlan part = PlanStudy(file, {.cells = {"d"}, .methods = {"b"}}, 4, kRegistries);
+  ASSERT_EQ(part.campaign.trials.size(), 4U);
+  const StudyPart& of_whole = whole.parts.at(3);
+  ASSERT_EQ(whole.CellOf(of_whole).name + whole.MethodOf(of_whole).name, "db");
+  for (int i = 0; i < 4; ++i) {
+    const SweepTrial& one = part.campaign.trials.at(static_cast<std::size_t>(i));
+    const SweepTrial& other =
+        whole.campaign.trials.at(static_cast<std::size_t>(of_whole.first + i));
+    EXPECT_EQ(one.index, i);
+    EXPECT_EQ(one.Replay(), other.Replay());
+    EXPECT_EQ(one.varied, other.varied);
+    EXPECT_EQ(DumpScenario(one.scenario), DumpScenario(other.scenario));
+  }
+  const StudyPlan more = PlanStudy(file, {.methods = {"a"}, .trials = 9}, 4, kRegistries);
+  EXPECT_EQ(more.campaign.trials.size(), 18U);
+  EXPECT_EQ(more.campaign.trials.at(8).seed, TrialSeed(4, 8));
+  const auto refusal = [&](const StudySelection& selection) -> std::string {
+    try {
+      PlanStudy(file, selection, 4, kRegistries);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using testing::AllOf;
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal({.cells = {"f"}}), AllOf(HasSubstr("--cells f"), HasSubstr("c, d")));
+  EXPECT_THAT(refusal({.methods = {"z"}}), AllOf(HasSubstr("--methods z"), HasSubstr("a")));
+  EXPECT_THAT(refusal({.cells = {"e"}, .methods = {"a"}}), HasSubstr("none of these methods"));
+  EXPECT_THAT(refusal({.quick = true, .cells = {"d"}}), HasSubstr("in the short form"));
+}
+
 TEST_F(WrittenStudy, ScenarioFilesBesideTheStudyAreFound) {
   const std::string beside = testing::TempDir() + "beside_the_study.yaml";
   std::ofstream(beside) << "timeout: 17\n";
   const std::string rest =
       "cells: [{name: c, scenario: beside_the_study.yaml}]\nmethods: [{name: a}]\n";
-  const StudyPlan plan = PlanStudy(Load(kHead + rest), true, 1, kRegistries);
+  const StudyPlan plan = PlanStudy(Load(kHead + rest), {.quick = true}, 1, kRegistries);
   EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 17.0);
   EXPECT_THAT(plan.campaign.trials.at(0).command, testing::HasSubstr(beside));
   std::filesystem::remove(beside);

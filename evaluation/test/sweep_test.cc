@@ -109,6 +109,7 @@ TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
   const Campaign campaign = SweepCampaign(OpenSweep(1), kRegistries);
   SweepRow row;
   row.trial = campaign.trials.front();
+  row.trial.scenario.descent = DescentKind::kVertical;
   TrialResult& r = row.result;
   r.outcome = Outcome::kLanded;
   r.touchdown.emplace();
@@ -142,6 +143,10 @@ TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
     EXPECT_NEAR(value["median"].get<double>(), expected.at(key), 1e-12) << key;
   }
   for (const auto& [key, value] : expected) EXPECT_TRUE(summary.contains(key)) << key << value;
+  // Five seconds before contact a planned descent is still on its way.
+  row.trial.scenario.descent = DescentKind::kPlanned;
+  EXPECT_EQ(SweepJson(campaign, {row})["summary"]["mean_abs_error_x_m"]["n"], 0);
+  EXPECT_EQ(SweepText(campaign, {row}).find("last 5 s"), std::string::npos);
 }
 
 TrialResult After(std::optional<double> landed_after_s) {

@@ -154,6 +154,46 @@ def test_a_finished_study_is_reported_again_without_a_flight(flown, run):
     assert summary["trials"] == 13 and summary["errors"] == 0 and len(summary["parts"]) == 5
 
 
+def test_a_part_flown_again_is_the_part_of_the_whole(flown, run):
+    folder, _ = flown
+    part = ("--cells", "figure_4", "--methods", "planned,ego", "--trials", "2")
+    done = run("study", "run", "tiny.yaml", "--out", "part", *part, "--json", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    rates = json.loads(done.stdout)
+    assert [(p["method"], p["trials"]) for p in rates["parts"]] == [("planned", 2), ("ego", 2)]
+    assert rates["parts"][1]["outcomes"] == {"timeout": 2}
+
+    def rows(out):
+        trials = Study(str(folder / out)).trials
+        chosen = trials[(trials["cell"] == "figure_4") & trials["method"].isin(["planned", "ego"])]
+        timing = [c for c in trials if c.endswith(("cpu_s", "wall_s", "_ms")) or c in ("trial", "deadline_misses")]
+        kept = chosen.groupby("method").head(2).drop(columns=timing)
+        return kept.sort_values(["method", "seed"]).reset_index(drop=True)
+
+    pd.testing.assert_frame_equal(rows("part"), rows("out"), check_exact=True)
+    done = run("study", "run", "tiny.yaml", "--out", "out", *part, cwd=folder)
+    assert done.returncode == 2 and "study.db" in done.stderr
+
+
+def test_the_summary_has_what_the_page_shows(flown):
+    out = flown[0] / "out"
+    summary = json.loads((out / "summary.json").read_text())
+    page = (out / "report.md").read_text()
+    shown = [line for line in page.splitlines() if line.startswith("| ")]
+    told = [
+        "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |"
+        for table in summary["tables"]
+        for row in (table["columns"], *table["rows"])
+    ]
+    assert told == shown
+    for name in ("parts", "comparisons", "outcomes", "failures"):
+        csv = pd.read_csv(out / "csv" / f"{name}.csv")
+        assert len(summary[name]) == len(csv) and set(csv.columns) <= set(summary[name][0])
+    # An error of the last 5 s is told of styles that follow the pad first.
+    errors = {p["method"]: p["mean_abs_error_x_median_m"] for p in summary["parts"] if p["cell"] == "case_1_wind_4"}
+    assert errors["planned"] is None
+
+
 def test_another_form_of_the_study_is_refused(flown, run):
     folder, _ = flown
     done = run("study", "run", "tiny.yaml", "--out", "out", "--quick", cwd=folder)

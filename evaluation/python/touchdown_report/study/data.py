@@ -88,6 +88,11 @@ class Study:
         """False where flights only follow the pad, which is when that is measured."""
         return bool(self.part(cell, method)["following_mean_error_m"].isna().all())
 
+    def follows_before_it_sinks(self, cell, method):
+        """Whether the style keeps above the pad before it descends."""
+        descents = {(p["cell"], p["method"]): p.get("descent") for p in self.plan["parts"]}
+        return descents[cell, method] == "vertical"
+
     @property
     def reference(self):
         return self.plan["reference"]

@@ -59,6 +59,16 @@ class Document:
         """`path` of a PNG, relative to the document's folder."""
         self._blocks.append(("picture", path, caption))
 
+    def tables(self):
+        """Every table as it is shown: {chapter, columns, rows}, the chapter being the heading above it."""
+        shown, chapter = [], ""
+        for kind, *block in self._blocks:
+            if kind == "heading":
+                chapter = block[1]
+            elif kind == "table":
+                shown.append({"chapter": chapter, "columns": block[0], "rows": block[1]})
+        return shown
+
     def markdown(self):
         out = [f"# {self.title}", ""]
         for kind, *block in self._blocks:

@@ -53,15 +53,15 @@ def _landed(study, cell, method):
     return of(int(landed.sum()), statistics.rate(int(landed.sum()), len(landed)))
 
 
-def _measured(study, cell, column, digits, note):
-    """A figure of both styles with n."""
+def _measured(study, cell, column, digits):
+    """A figure of both styles with n, where the style makes it comparable."""
     texts = []
     for method in STYLES:
-        if not _flown(study, cell, method):
+        if not _flown(study, cell, method) or not study.follows_before_it_sinks(cell, method):
             texts.append("–")
             continue
         estimate = _estimate(study, cell, method, column)
-        texts.append(f"{interval(estimate, digits)} (n {estimate.n}){note.get(method, '')}")
+        texts.append(f"{interval(estimate, digits)} (n {estimate.n})")
     return texts
 
 
@@ -121,7 +121,7 @@ def number_rows(study):
                     [
                         f"Table 1, wind {wind} m/s, mean error in {axis} [m], case {case}",
                         f"{error:.3f}",
-                        *_measured(study, cell, column, 3, {"planned": " †"}),
+                        *_measured(study, cell, column, 3),
                         _below(_estimate(study, cell, "vertical", column), error) + _of_some(study, cell),
                     ]
                 )
@@ -183,8 +183,8 @@ def write(study, document, gallery, parts, comparisons):
     )
     document.table(COLUMNS, number_rows(study))
     document.text(
-        "† Five seconds before contact a planned descent is still on its way to the pad, so that this error "
-        "compares with nothing; it stands here for completeness."
+        "The errors are means over the last 5 s. Then a planned descent is still on its way to the pad, so that they "
+        "compare with nothing."
     )
     document.heading(3, "Approach")
     document.text("First within 0.5 m of the pad's centre, horizontally; one recorded flight each, as in the paper.")

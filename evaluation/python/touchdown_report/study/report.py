@@ -213,15 +213,17 @@ def _headline(study, document, parts):
     document.points(points)
 
 
-def _summary(study, parts):
-    keys = ["cell", "method", "trials", "succeeded", "rate_lo", "rate_hi", "time_to_land_median_s",
-            "touchdown_error_median_m"]  # fmt: skip
+def _rows(table):
+    """A table as JSON: its columns as they stand in csv/."""
+    return [{key: tables.finite(value) for key, value in row.items()} for _, row in table.iterrows()]
+
+
+def _summary(study, document, parts, comparisons, counts, failures):
+    """All that the page shows, as numbers under the names of csv/, and its tables as they are read."""
+    titles = {"cell_title": study.cell_title, "method_title": study.method_title}
     rows = [
-        {
-            **{key: tables.finite(row[key]) for key in keys},
-            "cell_title": study.cell_title(row["cell"]),
-        }
-        for _, row in parts.iterrows()
+        {**row, **{key: title(row[key.removesuffix("_title")]) for key, title in titles.items()}}
+        for row in _rows(parts)
     ]
     return {
         "study": study.plan["study"],
@@ -231,6 +233,10 @@ def _summary(study, parts):
         "errors": tables.errors(study),
         "report": os.path.join(study.folder, "report.html"),
         "parts": rows,
+        "comparisons": _rows(comparisons),
+        "outcomes": _rows(counts.reset_index()),
+        "failures": _rows(failures),
+        "tables": document.tables(),
     }
 
 
@@ -259,6 +265,7 @@ def write_report(study):
     _failures(study, document, failures)
     _how(study, document)
 
+    summary = _summary(study, document, parts, comparisons, counts, failures)
     folder = os.path.join(study.folder, "csv")
     os.makedirs(folder, exist_ok=True)
     for name, table in (
@@ -271,4 +278,4 @@ def write_report(study):
         _write(folder, f"{name}.csv", table.to_csv(index=False))
     _write(study.folder, "report.md", document.markdown())
     _write(study.folder, "report.html", document.html(study.folder))
-    _write(study.folder, "summary.json", json.dumps(_summary(study, parts), indent=2) + "\n")
+    _write(study.folder, "summary.json", json.dumps(summary, indent=2) + "\n")

@@ -15,6 +15,8 @@ FIGURES = {
     "time_ratio": "time_ratio_median",
     "effort_n2s": "effort_median_n2s",
 }
+# Five seconds before contact a planned descent is still on its way: there they compare with nothing.
+LAST_5_S = ("mean_abs_error_x_m", "mean_abs_error_y_m")
 PAIRED = ("time_to_land_s", "touchdown_error_m", "effort_n2s")
 ALL_CELLS = "all"
 
@@ -48,7 +50,8 @@ def parts(study):
         }
         landed = trials[trials["landed"]]
         for column, name in FIGURES.items():
-            estimate = statistics.bootstrap(landed[column])
+            told = study.follows_before_it_sinks(cell, method) or column not in LAST_5_S
+            estimate = statistics.bootstrap(landed[column] if told else [])
             row |= {name: estimate.value, f"{name}_lo": estimate.lo, f"{name}_hi": estimate.hi}
         survival = statistics.time_to_land(
             trials["time_to_land_s"], trials["landed"], trials["horizon_s"]

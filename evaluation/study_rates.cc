@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/evaluation/study_rates.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/campaign_facts.h"
+#include "touchdown/evaluation/sqlite_db.h"
+#include "touchdown/evaluation/study_run.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ReadPlan(const std::string& folder) {
+  const std::string path = folder + "/study.json";
+  std::ifstream stream(path);
+  Json plan = Json::parse(stream, nullptr, false);
+  if (!plan.is_object() || !plan.contains("parts")) {
+    throw BadInput(fmt::format("{}: it is not a study's plan.", path));
+  }
+  return plan;
+}
+
+std::string TitleOf(const Json& entries, const std::string& name) {
+  for (const Json& entry : entries) {
+    if (entry.at("name") == name) return entry.at("title");
+  }
+  return name;
+}
+
+struct Row {
+  std::string outcome;
+  bool landed = false;
+  double time_to_land_s = 0.0, touchdown_error_m = 0.0;
+};
+
+std::map<std::pair<std::string, std::string>, std::vector<Row>> ReadRows(
+    const std::string& folder) {
+  const std::string path = StudyTablePath(folder);
+  SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+  ReadManifest(db, path);
+  std::map<std::pair<std::string, std::string>, std::vector<Row>> rows;
+  SqliteStatement trials = db.Prepare(
+      "SELECT cell.value, method.value, outcome, landed, time_to_land_s, touchdown_error_m FROM "
+      "trial "
+      "JOIN variation AS cell ON cell.trial = trial.trial AND cell.key = 'cell' "
+      "JOIN variation AS method ON method.trial = trial.trial AND method.key = 'method' "
+      "ORDER BY trial.trial");
+  while (trials.Step()) {
+    rows[{trials.Text(0), trials.Text(1)}].push_back(
+        {trials.Text(2), trials.Integer(3) != 0, trials.Real(4), trials.Real(5)});
+  }
+  return rows;
+}
+
+PartRates RatesOf(const std::vector<Row>& rows) {
+  PartRates part;
+  std::vector<double> times, errors;
+  for (const Row& row : rows) {
+    ++part.trials;
+    ++part.outcomes[row.outcome];
+    part.succeeded += row.landed || row.outcome == "followed";
+    if (!row.landed) continue;
+    times.push_back(row.time_to_land_s);
+    errors.push_back(row.touchdown_error_m);
+  }
+  part.rate = ClopperPearson(part.succeeded, part.trials);
+  part.time_to_land_s = QuantilesOf(times);
+  part.touchdown_error_m = QuantilesOf(errors);
+  return part;
+}
+
+bool IsError(const std::string& outcome) {
+  return outcome == "error" || outcome == "crashed" || outcome == "hung";
+}
+
+std::string OthersText(const PartRates& part) {
+  std::vector<std::string> others;
+  for (const auto& [outcome, count] : part.outcomes) {
+    if (outcome != "landed" && outcome != "followed")
+      others.push_back(fmt::format("{} {}", count, outcome));
+  }
+  return others.empty() ? "" : fmt::format("; {}", fmt::join(others, ", "));
+}
+
+Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+}  // namespace
+
+StudyRates ReadStudyRates(const std::string& folder) {
+  const Json plan = ReadPlan(folder);
+  StudyRates rates;
+  rates.folder = folder;
+  rates.study = plan.at("study");
+  rates.quick = plan.at("quick");
+  rates.seed = plan.at("seed");
+  const auto rows = ReadRows(folder);
+  for (const Json& planned : plan.at("parts")) {
+    const auto flown = rows.find({planned.at("cell"), planned.at("method")});
+    if (flown == rows.end()) continue;
+    PartRates part = RatesOf(flown->second);
+    std::tie(part.cell, part.method) = flown->first;
+    part.cell_title = TitleOf(plan.at("cells"), part.cell);
+    part.method_title = TitleOf(plan.at("methods"), part.method);
+    rates.trials += part.trials;
+    for (const auto& [outcome, count] : part.outcomes) rates.errors += IsError(outcome) ? count : 0;
+    rates.parts.push_back(std::move(part));
+  }
+  return rates;
+}
+
+std::string StudyRatesText(const StudyRates& rates) {
+  std::string text;
+  std::string cell;
+  for (const PartRates& part : rates.parts) {
+    if (part.cell != cell) text += part.cell_title + "\n";
+    cell = part.cell;
+    const std::optional<double>& median = part.time_to_land_s.median;
+    text += fmt::format("  {:<24} succeeded {} of {} [{:.1f}, {:.1f}] %{}{}\n", part.method, part.succeeded,
+                        part.trials, 100.0 * part.rate.lo, 100.0 * part.rate.hi,
+                        median ? fmt::format(", median {:.1f} s", *median) : "", OthersText(part));
+  }
+  return text;
+}
+
+Json StudyRatesJson(const StudyRates& rates) {
+  Json json = {{"study", rates.study},  {"folder", rates.folder}, {"quick", rates.quick},
+               {"seed", rates.seed},    {"trials", rates.trials}, {"errors", rates.errors},
+               {"parts", Json::array()}};
+  for (const PartRates& part : rates.parts) {
+    json["parts"].push_back({{"cell", part.cell},
+                             {"cell_title", part.cell_title},
+                             {"method", part.method},
+                             {"method_title", part.method_title},
+                             {"trials", part.trials},
+                             {"succeeded", part.succeeded},
+                             {"rate_lo", part.rate.lo},
+                             {"rate_hi", part.rate.hi},
+                             {"time_to_land_median_s", OrNull(part.time_to_land_s.median)},
+                             {"touchdown_error_median_m", OrNull(part.touchdown_error_m.median)},
+                             {"outcomes", part.outcomes}});
+  }
+  return json;
+}
+
+}  // namespace touchdown::evaluation
