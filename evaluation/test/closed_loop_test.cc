@@ -32,11 +32,9 @@ TEST(ClosedLoop, LandsInThePapersFirstCase) {
   TrialRecord record;
   const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
   ASSERT_EQ(result.outcome, Outcome::kLanded) << result.detail;
-  EXPECT_LE(result.touchdown->t, 15.0);
-  EXPECT_LE(result.touchdown->error_m, 0.15);
-  EXPECT_GT(*result.min_clearance_m, 0.0);
-  EXPECT_LT(*result.mean_abs_error_x_m, 0.226);
-  EXPECT_LT(*result.mean_abs_error_y_m, 0.263);
+  // Its time, error and clearance are in regression_test. Over six seeds these are 0.011 to 0.014 and 0.006 to 0.008.
+  EXPECT_LT(*result.mean_abs_error_x_m, 0.016);
+  EXPECT_LT(*result.mean_abs_error_y_m, 0.010);
   ASSERT_TRUE(result.t_star_s && result.t_star_upper_s);
   EXPECT_LE(*result.t_star_s, *result.t_star_upper_s);
   EXPECT_LE(*result.t_star_upper_s, 1.02 * *result.t_star_s);  // docs/t_star.md
@@ -132,7 +130,8 @@ TEST(ClosedLoop, AClearanceBelowWhatPairsKeepIsRaised) {
   const auto clearance = [&](const std::vector<std::string>& sets) {
     return PlanClearance(Shipped("open", sets), model);
   };
-  const double least = std::hypot(model.hull_radius, model.foot_depth) + 0.04 + planning::kSweepRoom;
+  const double least =
+      std::hypot(model.hull_radius, model.foot_depth) + 0.04 + planning::kSweepRoom;
   EXPECT_NEAR(clearance({"planning.clearance=0.2"}), least, 1e-9);
   EXPECT_EQ(clearance({"planning.clearance=0.5"}), 0.5);
   // The baselines prove no pairs.
