@@ -1,11 +1,27 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what is missing, builds everything and runs the whole test suite: C++ and Python.
+#   ./test.sh           the suite
+#   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two
+#   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
 set -euo pipefail
 
 # shellcheck source=.ci/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/.ci/setup.sh"
 cd "$TOUCHDOWN_ROOT"
+
+case ${1:-} in
+  '') ;;
+  deep) exec .ci/deep ;;
+  mutants)
+    install_tiers build test
+    exec .ci/mutants.py "${@:2}"
+    ;;
+  *)
+    echo "./test.sh $1: there is ./test.sh, ./test.sh deep and ./test.sh mutants." >&2
+    exit 2
+    ;;
+esac
 
 install_tiers build report study notebooks test
 build_release ON
