@@ -12,20 +12,35 @@ namespace touchdown::evaluation {
 
 Rule::Rule(std::shared_ptr<const CLI::Validator> validator) : validator_(std::move(validator)) {}
 
-Rule Range(int low, int high) {
-  return Rule(std::make_shared<CLI::Validator>(CLI::Range(low, high)));
+namespace {
+
+template <class Whole>
+Rule WholeIn(const char* kind, Whole low, Whole high) {
+  const auto check = [low, high](const std::string& text) {
+    Whole value = 0;
+    const bool whole = CLI::detail::lexical_cast(text, value);
+    if (whole && value >= low && value <= high) return std::string();
+    return fmt::format("{} is {} [{}, {}]", text, whole ? "not in" : "not a whole number in", low,
+                       high);
+  };
+  return Rule(
+      std::make_shared<CLI::Validator>(check, fmt::format("{} in [{} - {}]", kind, low, high)));
 }
 
-Rule Range(std::uint64_t low, std::uint64_t high) {
-  return Rule(std::make_shared<CLI::Validator>(CLI::Range(low, high)));
-}
+}  // namespace
+
+Rule Range(int low, int high) { return WholeIn("INT", low, high); }
+
+Rule Range(std::uint64_t low, std::uint64_t high) { return WholeIn("UINT", low, high); }
 
 Rule Range(double low, double high) {
   const std::string range = fmt::format("[{:g} - {:g}]", low, high);
-  const auto check = [low, high, range](const std::string& text) {
+  const auto check = [low, high](const std::string& text) {
     double value = 0.0;
-    const bool inside = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-    return inside ? std::string() : fmt::format("Value {} not in range {}", text, range);
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && value >= low && value <= high) return std::string();
+    return fmt::format("{} is {} [{:g}, {:g}]", text, number ? "not in" : "not a number in", low,
+                       high);
   };
   return Rule(std::make_shared<CLI::Validator>(check, "FLOAT in " + range));
 }

@@ -39,11 +39,17 @@ std::string SharesText(const std::optional<ShareSummary>& shares) {
                      100.0 * shares->whitening, 100.0 * shares->native, 100.0 * shares->adapter);
 }
 
-std::string TableRow(const BackendSummary& s) {
+// Times over some of the problems are not to be set beside times over all.
+std::string TableRow(const BackendSummary& s, int all) {
+  if (s.problems < all) {
+    return fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}\n", s.backend,
+                       fmt::format("{} of {} run, of {}", s.solved, s.problems, all), "-", "-", "-",
+                       "-");
+  }
   const std::string solved =
-      s.problems == 0 ? "-"
-                      : fmt::format("{} of {} [{:.1f}, {:.1f}] %", s.solved, s.problems,
-                                    100.0 * s.solved_interval.lo, 100.0 * s.solved_interval.hi);
+      all == 0 ? "-"
+               : fmt::format("{} of {} [{:.1f}, {:.1f}] %", s.solved, s.problems,
+                             100.0 * s.solved_interval.lo, 100.0 * s.solved_interval.hi);
   return fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}{:>6}{:>6}{:>10}{:>10}{:>10}  {}\n",
                      s.backend, solved, Cell(s.cpu_ms.median, "{:.3f}"),
                      Cell(s.cpu_ms.p95, "{:.3f}"), Cell(s.cpu_ms.p99, "{:.3f}"),
@@ -53,12 +59,12 @@ std::string TableRow(const BackendSummary& s) {
                      fmt::format("{}/{}", s.agreeing, s.reported_success), SharesText(s.shares));
 }
 
-std::string Table(const std::vector<BackendSummary>& summaries) {
+std::string Table(const std::vector<BackendSummary>& summaries, int all) {
   std::string text =
       fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}{:>6}{:>6}{:>10}{:>10}{:>10}  {}\n", "backend",
                   "solved, 95 % interval", "median", "p95", "p99", "max ms", "it", "eval",
                   "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
-  for (const BackendSummary& summary : summaries) text += TableRow(summary);
+  for (const BackendSummary& summary : summaries) text += TableRow(summary, all);
   return text;
 }
 
@@ -219,7 +225,7 @@ std::string CompareText(const CompareOptions& options, const CompareResult& resu
       "solvers\n{}\n",
       options.bench.gap, BuildLine());
   const std::vector<BackendSummary> summaries = Summarise(result);
-  text += CompareProblemsText(result) + Table(summaries);
+  text += CompareProblemsText(result) + Table(summaries, TimedProblems(result));
   if (options.bench.deadline_ms) text += DeadlineTable(*options.bench.deadline_ms, summaries);
   for (const Refusal& refusal : result.refusals) text += refusal.reason + "\n";
   return text;

@@ -127,7 +127,6 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   const planning::ReplanResult& result = replay.Solve();
   solved.outcome = OutcomeOf(result);
   solved.unseen_W = result.unseen_W;
-  solved.work = result.work;
   for (const solvers::TermCost& term : result.solver.cost_by_term)
     solved.terms.push_back(term.name);
   solved.resolution = replay.map().resolution();

@@ -27,7 +27,6 @@ struct SolvedStep {
   ReplanOutcome outcome;                    ///< of the step solved again
   std::optional<Eigen::Vector3d> unseen_W;  ///< cell that this step's pairs lack, or the next's [m]
   planning::StageTimes times;               ///< without the log
-  int work = 0;                             ///< of planning.max_work units; 0: it counts none
   planning::ReplanLog log;
   planning::Limits limits;
   std::vector<std::string> terms;             ///< of the objective, in the order of the log's costs

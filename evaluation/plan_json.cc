@@ -31,6 +31,8 @@ Json CertificateJson(const planning::Certificate& c) {
           {"endpoint_velocity_residual_mps", c.endpoint_velocity_residual},
           {"speed_bound_mps", c.speed_bound},
           {"acceleration_bound_mps2", c.acceleration_bound},
+          {"body_rate_bound_radps", c.body_rate_bound},
+          {"earlier", c.earlier()},
           {"limits_kept", c.limits_kept},
           {"recovering", c.recovering},
           {"clear", c.clear},
@@ -48,6 +50,7 @@ Json OutcomeJson(const ReplanOutcome& r) {
           {"rebinds", r.rebinds},
           {"iterations", r.iterations},
           {"cost", r.cost},
+          {"work", r.work},
           {"certificate", CertificateJson(r.certificate)},
           {"curve", CurveJson(r.curve)}};
 }
@@ -146,7 +149,6 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   for (const auto& path : solved.outcome.guide_paths) paths.push_back(PathJson(path));
   json["result"] = OutcomeJson(solved.outcome);
   json["unseen_W"] = solved.unseen_W ? VectorJson(*solved.unseen_W) : Json();
-  json["work"] = solved.work > 0 ? Json(solved.work) : Json();
   json["same_as_record"] = solved.same ? Json(*solved.same) : Json();
   Json& stages = json["wall_clock"]["stages"] = Json::object();
   const auto add = [&stages](const planning::StageTimes::Span& span) {

@@ -67,12 +67,24 @@ std::string RoundText(const planning::RoundLog& round, int number) {
 // `indent` stands before every line.
 std::string CertificateText(const planning::Certificate& c, const planning::Limits& limits,
                             const std::string& indent) {
+  if (c.earlier()) {
+    return fmt::format("{}committed before: {}\n", indent,
+                       c.stops_in_observed_space ? "proven when it was committed"
+                                                 : "what was proven of it then does not hold now");
+  }
   std::string text =
       fmt::format("{}certificate {}\n", indent, c.passed() ? "passed" : "not passed");
-  const char* kept = c.limits_kept ? (c.recovering ? ", recovering" : "") : ": not kept";
-  text += fmt::format(
-      "{}  speed bound {:.4f} of {:.4g} m/s, acceleration bound {:.4f} of {:.4g} m/s^2{}\n", indent,
-      c.speed_bound, limits.speed, c.acceleration_bound, limits.acceleration, kept);
+  const auto bound = [&](const char* what, double value, double limit, const char* unit) {
+    const bool beyond = value > limit + planning::kLimitSlack;
+    return fmt::format("{} {:.4g} of {:.4g} {}{}", what, value, limit, unit,
+                       !beyond         ? ""
+                       : c.limits_kept ? " (recovering)"
+                                       : " (not kept)");
+  };
+  text += fmt::format("{}  bounds: {}, {}, {}\n", indent,
+                      bound("speed", c.speed_bound, limits.speed, "m/s"),
+                      bound("acceleration", c.acceleration_bound, limits.acceleration, "m/s^2"),
+                      bound("body rate", c.body_rate_bound, limits.body_rate, "rad/s"));
   if (c.endpoint_required) {
     text += fmt::format("{}  endpoint residual {:.1e} m, {:.1e} m/s\n", indent,
                         c.endpoint_position_residual, c.endpoint_velocity_residual);
@@ -134,9 +146,9 @@ std::string PlanText(const SolvedStep& solved) {
                       out.curve.t0(), out.curve.t_end(), out.curve.control_points().cols(),
                       out.curve.interval());
   text += CertificateText(out.certificate, solved.limits, "  ");
-  if (solved.work > 0) {
-    text += fmt::format("  did {} of {} units of work\n", solved.work,
-                        solved.scenario.planning.max_work);
+  if (out.work > 0) {
+    text +=
+        fmt::format("  did {} of {} units of work\n", out.work, solved.scenario.planning.max_work);
   }
   text += TimesText(solved.times);
   if (solved.same) {

@@ -86,15 +86,16 @@ std::string BackendsText(const BackendsProfile& profile) {
       "  {:<15}{:>12}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>7}{:>12}{:>8}\n",
       profile.gap, "", "", "solve", "whole step", "", "allocations a step", "backend", "reached",
       "median", "p95", "p99", "median", "p95", "p99", "plans", "median", "max");
+  const int all = TimedProblems(profile.solves);
   for (const BackendLatency& of : profile.backends) {
     const Quantiles& heap = of.step.allocations;
     const auto count = [](const std::optional<double>& n) {
       return n ? fmt::format("{:.0f}", *n) : std::string("-");
     };
     text += fmt::format("  {:<15}{:>12}{}   {}{:>7}{:>12}{:>8}\n", of.solves.backend,
-                        fmt::format("{} of {}", of.solves.solved, of.solves.problems),
-                        Cells(of.solves.cpu_ms), Cells(of.step.cpu_ms), of.plans,
-                        count(heap.median), count(heap.max));
+                        fmt::format("{} of {}", of.solves.solved, all),
+                        Cells(of.solves.problems < all ? Quantiles() : of.solves.cpu_ms),
+                        Cells(of.step.cpu_ms), of.plans, count(heap.median), count(heap.max));
   }
   for (const Refusal& refusal : profile.solves.refusals) text += refusal.reason + "\n";
   return text;

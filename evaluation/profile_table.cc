@@ -7,12 +7,12 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr ResultFormat kFormat{"touchdown profile", 1};
+constexpr ResultFormat kFormat{"touchdown profile", 2};
 
 constexpr char kSchema[] = R"sql(
 CREATE TABLE run(run INTEGER PRIMARY KEY, seed INTEGER, outcome TEXT, warm_up INTEGER);
 CREATE TABLE replan(run INTEGER, replan INTEGER, t_now REAL, status TEXT, reason TEXT,
-  from_odometry INTEGER, pairs INTEGER, solves INTEGER, rebinds INTEGER, iterations INTEGER,
+  from_odometry INTEGER, pairs INTEGER, solves INTEGER, rebinds INTEGER, iterations INTEGER, work INTEGER,
   deadline_missed INTEGER, PRIMARY KEY(run, replan));
 CREATE TABLE stage(run INTEGER, replan INTEGER, stage TEXT, wall_ms REAL, cpu_ms REAL,
   allocations INTEGER, PRIMARY KEY(run, replan, stage));
@@ -38,13 +38,14 @@ std::optional<int> Allocations(const Profile& profile, const planning::StageTime
 
 void WriteReplans(SqliteDb& db, const Profile& profile, int run,
                   const std::vector<ReplanSample>& samples) {
-  SqliteStatement replan = db.Prepare("INSERT INTO replan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement replan =
+      db.Prepare("INSERT INTO replan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement stage = db.Prepare("INSERT INTO stage VALUES(?, ?, ?, ?, ?, ?)");
   int step = 0;
   for (const ReplanSample& s : samples) {
     const planning::StageTimes::Span& total = s.times.total;
     replan.Run(run, step, s.t_now, planning::ToString(s.status), planning::ToString(s.reason),
-               s.from_odometry, s.pairs, s.solves, s.rebinds, s.iterations,
+               s.from_odometry, s.pairs, s.solves, s.rebinds, s.iterations, s.work,
                1e3 * total.wall > profile.deadline_ms);
     const auto write = [&](const planning::StageTimes::Span& span) {
       stage.Run(run, step, span.stage, 1e3 * span.wall, 1e3 * span.cpu, Allocations(profile, span));

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
@@ -102,6 +103,23 @@ void CheckCommand(const CLI::App& app, const char* const* word, const char* cons
       fmt::format("unknown command {}{}; the commands are {}.", *word, of, Enumerate(names)));
 }
 
+// The words that the chosen command does not know, the options among them where there are any: what follows
+// an unknown option is its value.
+std::string Unknown(const CLI::App& app) {
+  const CLI::App* command = &app;
+  std::string name = app.get_name();
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    name += " " + command->get_name();
+  }
+  std::vector<std::string> options, words = app.remaining(true);
+  std::copy_if(words.begin(), words.end(), std::back_inserter(options),
+               [](const std::string& word) { return word.starts_with("-"); });
+  return options.empty()
+             ? fmt::format("{} takes no {} (try --help)", name, fmt::join(words, " "))
+             : fmt::format("{} has no option {} (try --help)", name, fmt::join(options, ", "));
+}
+
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const Registries& registries) {
@@ -136,6 +154,9 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     return run();
   } catch (const CLI::Success& help) {
     return app.exit(help);
+  } catch (const CLI::ExtrasError&) {
+    spdlog::error("{}", Unknown(app));
+    return kBadInput;
   } catch (const CLI::ParseError& error) {
     spdlog::error("{} (try --help)", error.what());
     return kBadInput;

@@ -30,8 +30,9 @@ CREATE TABLE mode(t REAL, mode TEXT);
 CREATE TABLE event(t REAL, kind TEXT, text TEXT);
 CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT, reason TEXT,
   from_odometry INTEGER, t0 REAL, h REAL, points INTEGER, pairs INTEGER, solves INTEGER,
-  rebinds INTEGER, iterations INTEGER, cost REAL, passed INTEGER, endpoint_position_residual REAL,
-  endpoint_velocity_residual REAL, speed_bound REAL, acceleration_bound REAL, limits_kept INTEGER,
+  rebinds INTEGER, iterations INTEGER, cost REAL, work INTEGER, passed INTEGER, endpoint_position_residual REAL,
+  endpoint_velocity_residual REAL, speed_bound REAL, acceleration_bound REAL, body_rate_bound REAL,
+  limits_kept INTEGER,
   recovering INTEGER, clear INTEGER, clearance REAL, endpoint_required INTEGER,
   escaping INTEGER, stops_in_observed_space INTEGER);
 CREATE TABLE control_point(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL);
@@ -135,9 +136,9 @@ void WriteResult(SqliteStatement& insert, int id, const RecordPlan& row) {
   insert.Run(id, row.request.input.t_now, row.request.input.t_start, planning::ToString(r.status),
              planning::ToString(r.reason), r.from_odometry, r.curve.t0(), r.curve.interval(),
              static_cast<int>(r.curve.control_points().cols()), r.pairs, r.solves, r.rebinds,
-             r.iterations, r.cost, c.passed(), c.endpoint_position_residual,
-             c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.limits_kept,
-             c.recovering, c.clear, c.clearance, c.endpoint_required, c.escaping,
+             r.iterations, r.cost, r.work, c.passed(), c.endpoint_position_residual,
+             c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.body_rate_bound,
+             c.limits_kept, c.recovering, c.clear, c.clearance, c.endpoint_required, c.escaping,
              c.stops_in_observed_space);
 }
 
@@ -221,7 +222,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
 void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement plan = db.Prepare(
       "INSERT INTO plan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO control_point VALUES(?, ?, ?, ?, ?)");
   SqliteStatement guide = db.Prepare("INSERT INTO guide_path VALUES(?, ?, ?, ?, ?, ?)");
   SqliteStatement window = db.Prepare("INSERT INTO map_window VALUES(?, ?, ?, ?)");

@@ -69,8 +69,9 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
   TableRows rows(
       db, "plan",
       "id, status, reason, from_odometry, t0, h, pairs, solves, rebinds, iterations, cost, "
-      "endpoint_position_residual, endpoint_velocity_residual, speed_bound, "
-      "acceleration_bound, limits_kept, recovering, clear, clearance, endpoint_required, "
+      "work, endpoint_position_residual, endpoint_velocity_residual, speed_bound, "
+      "acceleration_bound, body_rate_bound, limits_kept, recovering, clear, clearance, "
+      "endpoint_required, "
       "escaping, stops_in_observed_space",
       "id");
   std::vector<Knots> knots;
@@ -88,11 +89,13 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
     r.rebinds = rows.Count();
     r.iterations = rows.Count();
     r.cost = rows.NumberOrNan();
+    r.work = rows.Count();
     planning::Certificate& c = r.certificate;
     c.endpoint_position_residual = rows.NumberOrNan();
     c.endpoint_velocity_residual = rows.NumberOrNan();
     c.speed_bound = rows.NumberOrNan();
     c.acceleration_bound = rows.NumberOrNan();
+    c.body_rate_bound = rows.NumberOrNan();
     c.limits_kept = rows.Flag();
     c.recovering = rows.Flag();
     c.clear = rows.Flag();
@@ -271,6 +274,17 @@ void ReadMap(SqliteDb& db, std::vector<RecordPlan>* plans) {
 
 using Meta = std::map<std::string, std::string>;
 
+// Every other file of the program has a manifest.
+void CheckIsRecord(SqliteDb& db) {
+  SqliteStatement other =
+      db.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'manifest'");
+  if (!other.Step()) return;
+  SqliteStatement format = db.Prepare("SELECT value FROM manifest WHERE key = 'format'");
+  throw std::invalid_argument(
+      fmt::format("it holds a {}, not the record of one flight (land --record)",
+                  format.Step() ? format.Text(0) : "result"));
+}
+
 Meta ReadMeta(SqliteDb& db) {
   Meta meta;
   SqliteStatement rows = db.Prepare("SELECT key, value FROM meta");
@@ -341,6 +355,7 @@ void CheckOverrides(const std::vector<std::string>& overrides) {
 RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries) {
   SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+  CheckIsRecord(db);
   const Meta meta = ReadMeta(db);
   CheckFormat(meta);
   RecordedFlight flight;

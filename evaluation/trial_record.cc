@@ -19,9 +19,9 @@ bool Same(const planning::Certificate& a, const planning::Certificate& b) {
          Same(a.endpoint_position_residual, b.endpoint_position_residual) &&
          Same(a.endpoint_velocity_residual, b.endpoint_velocity_residual) &&
          Same(a.speed_bound, b.speed_bound) && Same(a.acceleration_bound, b.acceleration_bound) &&
-         a.limits_kept == b.limits_kept && a.recovering == b.recovering && a.clear == b.clear &&
-         Same(a.clearance, b.clearance) && a.escaping == b.escaping &&
-         a.stops_in_observed_space == b.stops_in_observed_space;
+         Same(a.body_rate_bound, b.body_rate_bound) && a.limits_kept == b.limits_kept &&
+         a.recovering == b.recovering && a.clear == b.clear && Same(a.clearance, b.clearance) &&
+         a.escaping == b.escaping && a.stops_in_observed_space == b.stops_in_observed_space;
 }
 
 }  // namespace
@@ -39,6 +39,7 @@ ReplanOutcome OutcomeOf(const planning::ReplanResult& result) {
   outcome.rebinds = result.rebinds;
   outcome.iterations = result.solver.iterations;
   outcome.cost = result.solver.cost;
+  outcome.work = result.work;
   return outcome;
 }
 
@@ -46,7 +47,8 @@ bool Same(const ReplanOutcome& a, const ReplanOutcome& b) {
   return a.status == b.status && a.reason == b.reason && a.from_odometry == b.from_odometry &&
          Same(a.curve, b.curve) && Same(a.certificate, b.certificate) &&
          a.guide_paths == b.guide_paths && a.pairs == b.pairs && a.solves == b.solves &&
-         a.rebinds == b.rebinds && a.iterations == b.iterations && Same(a.cost, b.cost);
+         a.rebinds == b.rebinds && a.iterations == b.iterations && Same(a.cost, b.cost) &&
+         a.work == b.work;
 }
 
 }  // namespace touchdown::evaluation

@@ -52,6 +52,7 @@ struct ReplanOutcome {
   int rebinds = 0;
   int iterations = 0;
   double cost = 0.0;
+  int work = 0;  ///< of planning.max_work
 };
 ReplanOutcome OutcomeOf(const planning::ReplanResult& result);
 

@@ -20,6 +20,7 @@ struct ReplanSample {
   int solves = 0;
   int rebinds = 0;
   int iterations = 0;  ///< of the last solve
+  int work = 0;        ///< of planning.max_work
   planning::StageTimes times;
 };
 
@@ -40,7 +41,7 @@ struct TrialSamples {
 inline ReplanSample SampleOf(double t_now, const planning::ReplanResult& result) {
   return {t_now,        result.status, result.reason,  result.from_odometry,
           result.pairs, result.solves, result.rebinds, result.solver.iterations,
-          result.times};
+          result.work,  result.times};
 }
 
 }  // namespace touchdown::evaluation

@@ -16,7 +16,6 @@ namespace {
 
 // Limits are met with equality at times: up to the rounding of sums of control points, and where
 // they were hard rows up to what backends count as feasible (Evaluator::kFeasible) [m/s, m/s^2].
-constexpr double kLimitSlack = 2e-6;
 
 /// The speed that the start fixes: its own, and V_1 = v0 + h a0 / 2 of the hull, which no solver can
 /// change. A start just below the limit that still speeds up is beyond it by V_1.
@@ -112,6 +111,7 @@ Certificate Certify(const UniformBspline& curve, double t_from, const SplineStat
   const DerivativeBounds bounds = BoundDerivatives(curve, limits.pull_W);
   c.speed_bound = bounds.speed;
   c.acceleration_bound = bounds.acceleration;
+  c.body_rate_bound = bounds.body_rate;
   const bool turns = bounds.body_rate <= limits.body_rate + kLimitSlack;
   c.limits_kept = turns && bounds.speed <= limits.speed + kLimitSlack &&
                   bounds.acceleration <= limits.acceleration + kLimitSlack;

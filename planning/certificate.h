@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+
 #include "touchdown/planning/free_space.h"
 #include "touchdown/planning/limits.h"
 #include "touchdown/planning/swept_hull.h"
 #include "touchdown/planning/uniform_bspline.h"
 
 namespace touchdown::planning {
+
+/// By so much a limit may be exceeded, in its own unit: what backends leave of hard rows.
+inline constexpr double kLimitSlack = 2e-6;
 
 /// What was proven about a trajectory. A new plan is committed only if passed().
 struct Certificate {
@@ -16,12 +21,15 @@ struct Certificate {
   double start_velocity_residual = 0.0;     ///< |v(t_from) - start| [m/s]
   double endpoint_position_residual = 0.0;  ///< |p(T) - wanted| [m]
   double endpoint_velocity_residual = 0.0;  ///< |v(T) - wanted| [m/s]
-  double speed_bound = 0.0;                 ///< hull bound over the curve [m/s]
-  double acceleration_bound = 0.0;          ///< hull bound over the curve [m/s^2]
-  bool limits_kept = false;                 ///< bounds within the limits, or the recovery profile
-  bool recovering = false;                  ///< the start was beyond a limit: certified against
-                                            ///< the recovery profile instead
-  bool clear = false;                       ///< every cell the curve passes is free after inflation
+  /// Hull bounds over the curve [m/s], [m/s^2], and of who flies it exactly [rad/s]. NaN, as `clearance`, of
+  /// what was committed before and is flown on: that was proven then, and is not measured again.
+  double speed_bound = 0.0;
+  double acceleration_bound = 0.0;
+  double body_rate_bound = 0.0;
+  bool limits_kept = false;  ///< bounds within the limits, or the recovery profile
+  bool recovering = false;   ///< the start was beyond a limit: certified against
+                             ///< the recovery profile instead
+  bool clear = false;        ///< every cell the curve passes is free after inflation
   /// The start itself is blocked; the curve leaves the inflated cells and on the way never comes
   /// back by more than 2 cm towards an occupied one.
   bool escaping = false;
@@ -32,6 +40,8 @@ struct Certificate {
   double clearance = 0.0;    ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 
+  /// Of what was committed before.
+  bool earlier() const { return std::isnan(speed_bound); }
   bool endpoint_met() const {
     return !endpoint_required || (endpoint_position_residual <= endpoint_tolerance &&
                                   endpoint_velocity_residual <= endpoint_tolerance);

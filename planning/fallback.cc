@@ -115,12 +115,13 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
                                            : ReplanStatus::kBraking;
   result->pair() = committed;
   if (t0 >= committed.t_stop) result->curve = committed.stop;
-  result->certificate = {};
-  result->certificate.endpoint_required = false;
-  result->certificate.limits_kept = result->certificate.clear = true;
-  result->certificate.stops_in_observed_space =
-      committed.proven && !result->from_odometry &&
-      LookAtLanding(committed, t0, hull) != Landing::kMisses;
+  Certificate& certificate = result->certificate = {};
+  certificate.endpoint_required = false;
+  certificate.limits_kept = certificate.clear = true;
+  certificate.speed_bound = certificate.acceleration_bound = certificate.body_rate_bound =
+      certificate.clearance = std::numeric_limits<double>::quiet_NaN();
+  certificate.stops_in_observed_space = committed.proven && !result->from_odometry &&
+                                        LookAtLanding(committed, t0, hull) != Landing::kMisses;
   // A landing is looked at against the deck, or not at all.
   const bool looked_at = hull.space != nullptr && (hull.pad != nullptr || !committed.Lands());
   if (looked_at) {

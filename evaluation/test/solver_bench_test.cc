@@ -182,6 +182,7 @@ TEST_F(Bench, ASlowBackendSitsOutAndARefereeStillHelps) {
   static_cast<BenchResult&>(told) = result;
   told.flights = {"by hand"};
   EXPECT_FALSE(CompareJson({}, told, {})["backends"]["ceres"]["ran_all"].get<bool>());
+  EXPECT_THAT(CompareText({}, told), HasSubstr("1 of 1 run, of 3"));
 }
 
 TEST_F(Bench, TurnsAreRandomAndRepeat) {

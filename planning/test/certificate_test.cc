@@ -69,7 +69,11 @@ TEST(Certificate, WhatTheAttitudeCannotFollowBreaksALimit) {
   Limits limits{4.0, 6.0};
   EXPECT_FALSE(Certify(curve, 0.0, nullptr, &end, limits, space).limits_kept);
   limits.body_rate = 10.0;
-  EXPECT_TRUE(Certify(curve, 0.0, nullptr, &end, limits, space).limits_kept);
+  const Certificate turns = Certify(curve, 0.0, nullptr, &end, limits, space);
+  EXPECT_TRUE(turns.limits_kept);
+  EXPECT_FALSE(turns.earlier());
+  EXPECT_EQ(turns.body_rate_bound, BoundDerivatives(curve, limits.pull_W).body_rate);
+  EXPECT_LE(turns.body_rate_bound, 10.0);
 }
 
 TEST(Certificate, AStartInTheInflatedZoneMayOnlyLeave) {

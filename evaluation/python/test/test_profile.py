@@ -161,6 +161,10 @@ def test_what_is_no_record_is_refused(run, record_path, tmp_path, command, suffi
     with sqlite3.connect(record_path) as db, sqlite3.connect(old) as copy:
         db.backup(copy)
         copy.execute("UPDATE meta SET value = '1' WHERE key = 'version'")
+    trials = tmp_path / "trials.db"
+    with sqlite3.connect(trials) as db:
+        db.execute("CREATE TABLE manifest(key, value)")
+        db.execute("INSERT INTO manifest VALUES('format', 'touchdown trials')")
     table = tmp_path / "table.db"
     with sqlite3.connect(table) as db:
         db.execute("CREATE TABLE t(a)")
@@ -169,6 +173,7 @@ def test_what_is_no_record_is_refused(run, record_path, tmp_path, command, suffi
         (text, "not a record"),
         (old, "version 1"),
         (table, "not a record"),
+        (trials, "it holds a touchdown trials, not the record of one flight"),
     ):
         done = run(command, "--from", f"{path}{suffix}", *(("--allow-debug",) * (not suffix)))
         assert done.returncode == 2 and done.stdout == ""

@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "13"
+SUPPORTED_VERSION = "14"
 
 
 class RecordError(Exception):
