@@ -165,10 +165,12 @@ TEST_P(EveryBackend, TellsEveryIterationAndWhereTheTimeWent) {
   ASSERT_EQ(static_cast<int>(result.trace.size()), result.iterations);
   for (std::size_t i = 0; i < result.trace.size(); ++i) {
     EXPECT_EQ(result.trace[i].iteration, static_cast<int>(i) + 1);
-    EXPECT_LE(result.trace[i].cost, result.trace[i > 0 ? i - 1 : 0].cost);
+    EXPECT_LE(result.trace[i].cost, result.trace[i > 0 ? i - 1 : 0].cost) << "the best so far";
     EXPECT_FALSE(result.trace[i].step_norm < 0.0);
   }
   EXPECT_EQ(result.trace.back().cost, result.cost);
+  EXPECT_LT(result.cost, 0.3);  // nlopt-ccsaq is slow along the valley
+  EXPECT_GT(result.trace.front().cost, 1.0) << "of the first iteration, not of the last";
   const SolveShares& s = result.shares;
   EXPECT_NEAR(s.evaluation_s + s.whitening_s + s.native_s + s.adapter_s, result.wall_s,
               1e-3 * result.wall_s + 1e-4);
@@ -217,11 +219,11 @@ TEST_P(EveryBackend, StopsOnBudgetCallbackAndClock) {
   const Eigen::Vector2d start(-1.2, 1.0);
 
   Stop iterations;
-  iterations.max_iterations = 2;
+  iterations.max_iterations = 5;
   const SolverResult few = Solve(problem, start, iterations);
   EXPECT_EQ(few.status, SolveStatus::kIterationLimit);
-  EXPECT_LE(few.iterations, 2);
-  EXPECT_LE(few.cost, 24.2);
+  EXPECT_LE(few.iterations, 5);
+  EXPECT_LT(few.cost, 0.9 * 24.2) << "the start's: it would be told without any step";
 
   for (const int budget : {1, 2, 3, 5, 8}) {
     EXPECT_LE(Solve(problem, start, {.max_evaluations = budget}).evaluations, budget);
