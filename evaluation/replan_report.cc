@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/build_info.h"
+#include "touchdown/evaluation/statistics.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
@@ -91,28 +92,40 @@ std::string PlannerText(const ReplanStudyPart& part) {
                      part.options.replanner.max_guides, part.options.scenes.seed);
 }
 
-std::string OracleText(const ReplanSummary& s, bool asked) {
+std::string Of(int good, int all) {
+  if (all == 0) return "0 of 0";
+  const Interval share = ClopperPearson(good, all);
+  return fmt::format("{} of {} = {:.1f} [{:.1f}, {:.1f}] %", good, all, 100.0 * good / all,
+                     100.0 * share.lo, 100.0 * share.hi);
+}
+
+// A search finds a way into many scenes whose end is blocked or which nobody can fly: where the oracle was asked,
+// its word comes first.
+std::string FoundText(const ReplanStudyPart& part, SceneStep step, const ReplanSummary& s) {
+  const std::string search =
+      fmt::format("{} scenes that a search finds a way through, blocked ends among them",
+                  Of(s.succeeded, s.feasible));
+  if (s.asked == 0) {
+    return fmt::format("  {} step: a plan in {}; {} scenes in all; no verdicts of the oracle\n",
+                       ToString(step), search, s.scenes);
+  }
   return fmt::format(
-      "  the oracle{} finds a plan in {} of {} scenes, the first step in {} of these; in {} only "
-      "the "
-      "step does\n"
-      "    where the oracle finds none, the end is blocked in {}, and {} more cannot stop in "
-      "time\n",
-      asked ? "" : " (shipped verdicts)", s.found, s.asked, s.met, s.missed, s.end_blocked,
-      s.cannot_stop);
+      "  {} step: a plan in {} scenes in which the oracle{} finds one, and in {} in which it finds "
+      "none; "
+      "{} scenes in all\n"
+      "    where the oracle finds none, the end is blocked in {}, and {} more cannot stop in time\n"
+      "    a plan in {}\n",
+      ToString(step), Of(s.met, s.found), part.options.oracle ? "" : " (shipped verdicts)",
+      s.missed, s.asked, s.end_blocked, s.cannot_stop, search);
 }
 
 std::string StepText(const ReplanStudyPart& part, SceneStep step) {
   const ReplanSummary s = Summarise(part.rows, step);
   if (s.scenes == 0) return {};
-  std::string text = fmt::format(
-      "  {} step: planned in {} of {} feasible scenes, 95 % [{:.2f}, {:.2f}] %; {} scenes in "
-      "all\n",
-      ToString(step), s.succeeded, s.feasible, 100.0 * s.success.lo, 100.0 * s.success.hi,
-      s.scenes);
-  if (s.asked > 0) text += OracleText(s, part.options.oracle);
+  std::string text = FoundText(part, step, s);
+  const char* possible = s.asked > 0 ? "of those in which the oracle finds one" : "of these";
   for (const auto& [reason, count] : FailuresByReason(part.rows, step)) {
-    text += fmt::format("    not planned: {} x {}\n", count, reason);
+    text += fmt::format("    no plan, {}: {} x {}\n", possible, count, reason);
   }
   text += fmt::format(
       "  {} plans accepted; of {} checked at 1 cm {} collide, {} beyond a limit; checkers disagree "

@@ -199,6 +199,10 @@ def _headline(study, document, parts):
         f"{len(study.trials)} trials, {len(study.cells())} cells, {len(study.methods())} methods."
         + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
     )
+    document.text(
+        "Unless a cell or a method sets it otherwise (`own_state`, `plant.*`, `sensing`), the vehicle knows its own state, its model is the "
+        "vehicle that flies, and cameras are geometric. The height of the deck is always given."
+    )
     points = []
     landings = parts[[study.asks_to_land(row.cell, row.method) for row in parts.itertuples()]]
     for method in study.methods():
