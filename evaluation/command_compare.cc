@@ -97,7 +97,14 @@ int Compare(CompareArguments arguments, const Registries& registries) {
   for (const auto& [key, value] : {std::pair("solver.arrival", arguments.arrival),
                                    std::pair("solver.limits", arguments.limits),
                                    std::pair("solver.endpoint", arguments.endpoint)}) {
-    if (!value.empty()) options.set.push_back(fmt::format("{}={}", key, value));
+    if (value.empty()) continue;
+    for (const std::string& text : options.set) {
+      if (text.rfind(std::string(key) + "=", 0) == 0) {
+        throw BadInput(
+            fmt::format("--set {}: --{} says it, too.", text, std::string(key).substr(7)));
+      }
+    }
+    options.set.push_back(fmt::format("{}={}", key, value));
   }
   CheckOutputs(arguments.db, arguments.picture);
   MachineState machine = BeginTiming(arguments.pin);
@@ -138,9 +145,8 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
                               "record --set changes ") +
                       kReplayKeys,
                   "FILE");
-  command.Add("--problems", options.problems, "Most problems that are taken")
-      .Check(Range(1, 100000))
-      .ShowDefault();
+  command.Add("--problems", options.problems, "Most problems that are taken; default: all of a record, else 20")
+      .Check(Range(1, 100000));
   command
       .Add("--every", options.every,
            "One of so many solves that the flights ask for is a problem; default: 1 of a record, "

@@ -20,7 +20,7 @@ Rule WholeIn(const char* kind, Whole low, Whole high) {
     Whole value = 0;
     const bool whole = CLI::detail::lexical_cast(text, value);
     if (whole && value >= low && value <= high) return std::string();
-    return fmt::format("{} is {} [{}, {}]", text, whole ? "not in" : "not a whole number in", low,
+    return fmt::format("{} is {} [{}, {}]", text, whole ? "not in" : "no whole number in", low,
                        high);
   };
   return Rule(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown profile: what replanning costs, stage by stage.
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -93,15 +94,24 @@ int RunBackends(const ProfileArguments& arguments, const Registries& registries)
   options.record = arguments.record;
   options.overrides = arguments.scenario.Overrides();
   options.repeats = arguments.options.repeats;
-  if (options.backends == std::vector<std::string>{kAll}) options.backends.clear();
+  const auto all = std::find(options.backends.begin(), options.backends.end(), kAll);
+  if (all != options.backends.end()) {
+    if (options.backends.size() > 1) throw BadInput("--backends all: it stands alone.");
+    options.backends.clear();
+  }
+  for (const std::string& text : options.overrides) {
+    if (text.rfind("solver.backend=", 0) == 0 || text.rfind("solver.gap=", 0) == 0) {
+      throw BadInput(fmt::format("--set {}: it does not go with --backends.", text));
+    }
+  }
   MachineState machine;
   machine.pinned = arguments.pin;
   if (arguments.pin) PinToCpu(*arguments.pin);
   machine.load_before = LoadAverage();
   std::map<std::string, Progress> progress;
   const BackendsProfile profile =
-      ProfileBackends(options, registries, [&](const char* things, int done, int all) {
-        progress.try_emplace(things, ProgressText{.things = things}).first->second(done, all);
+      ProfileBackends(options, registries, [&](const char* things, int done, int of) {
+        progress.try_emplace(things, ProgressText{.things = things}).first->second(done, of);
       });
   machine.load_after = LoadAverage();
   if (arguments.json) {

@@ -46,24 +46,36 @@ bool CanReport() {
   }
 }
 
-// The rates need nothing but the folder; the report is drawn from it by another program.
+// The rates need nothing but the folder. The report is drawn from it by another program, which may fail.
 int Tell(const StudyRunArguments& arguments, const std::string& folder, bool report) {
-  if (report) WriteStudyReport(folder);
   const StudyRates rates = ReadStudyRates(folder);
+  if (!arguments.json) std::cout << StudyRatesText(rates) << std::flush;
+  bool failed = false;
+  if (report) {
+    try {
+      WriteStudyReport(folder);
+    } catch (const std::runtime_error& error) {
+      spdlog::error("{}", error.what());
+      failed = true;
+    }
+  }
+  report = report && !failed;
   if (arguments.json) {
     nlohmann::ordered_json json = StudyRatesJson(rates);
     json["report"] = report ? nlohmann::ordered_json(folder + "/report.html") : nullptr;
     std::cout << json.dump(2) << std::endl;
-  } else {
-    std::cout << StudyRatesText(rates);
-    if (report) std::cout << fmt::format("Report: {0}/report.html, {0}/report.md\n", folder);
-    std::cout << std::flush;
+  } else if (report) {
+    std::cout << fmt::format("Report: {0}/report.html, {0}/report.md\n", folder) << std::flush;
   }
-  return rates.errors == 0 ? kDone : kFellShort;
+  return rates.errors == 0 && !failed ? kDone : kFellShort;
 }
 
 int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const StudyFile file = LoadStudyFile(FindStudyFile(arguments.file), registries);
+  if (arguments.selection.Part() && arguments.out.empty()) {
+    throw BadInput("--cells, --methods and --trials need --out: study_" + file.name +
+                   " is the whole study's folder.");
+  }
   const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
   if (arguments.report_only) {
     if (arguments.retry) throw BadInput("--retry has no effect with --report-only.");
@@ -74,7 +86,8 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const Shard shard = Shard::Parse(arguments.shard);
   const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
   const StudyPlan plan = PlanStudy(file, arguments.selection, seed, registries);
-  const bool report = shard.of == 1 && !LaunchedAsOneOfSeveral() && CanReport();
+  const bool alone = !LaunchedAsOneOfSeveral();
+  const bool report = shard.of == 1 && (!alone || CanReport());
   CampaignOptions options;
   options.jobs = arguments.jobs;
   options.shard = shard;
@@ -82,7 +95,7 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const CampaignResult result = FlyStudy(plan, folder, options, registries);
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));
-  if (shard.of == 1) return Tell(arguments, folder, report);
+  if (shard.of == 1) return Tell(arguments, folder, report && (alone || CanReport()));
   std::cout << fmt::format("{} trials of shard {} are in {}\n", result.state.flown, arguments.shard,
                            StudyTablePath(folder, shard));
   return kDone;

@@ -14,10 +14,10 @@
 namespace touchdown::evaluation {
 
 struct CompareOptions {
-  std::string from;              ///< a record, or a file of trials; empty: flights are drawn
-  std::uint64_t seed = 1;        ///< of drawn flights
-  std::vector<std::string> set;  ///< "solver.limits=hard": keys of the scenarios of all flights
-  int problems = 20;             ///< most
+  std::string from;                  ///< a record, or a file of trials; empty: flights are drawn
+  std::uint64_t seed = 1;            ///< of drawn flights
+  std::vector<std::string> set;      ///< "solver.limits=hard": keys of the scenarios of all flights
+  std::optional<int> problems;  ///< most; none: all of one flight, 20 of several
   /// One of so many solves that are asked for is a problem. Default: each, of one flight; of several one in
   /// 25, so that hundreds of problems come from dozens of flights.
   std::optional<int> every;
@@ -28,13 +28,15 @@ struct CompareResult : BenchResult {
   std::vector<std::string> flights;  ///< that posed the problems: the commands that fly them
   int every = 1;
   int asked = 0;  ///< solves that the flights asked for, until there were enough problems
+  /// Of flights that could not be flown, or were others than their file holds.
+  std::vector<std::string> notes;
 };
 
 /// Flies, and has every backend solve the problems that replanning steps pose, as they are posed: with the
 /// same terms, weights, pairs and start. Which are taken is a matter of counting. What the flight's own backend
 /// answers has a say in what is asked next.
-/// `report(done, all)` is called after each problem.
-/// Throws BadInput if a backend is unknown or named twice, if none can solve the formulation, or if the
+/// A flight that cannot be flown is noted, and the next one is flown. `report(done, all)` is called after each
+/// problem, with 0 for all where nobody knows. Throws BadInput if a backend is unknown or named twice, if none can solve the formulation, or if the
 /// flights pose no problem.
 CompareResult RunCompare(const CompareOptions& options, const Registries& registries,
                          const std::function<void(int done, int all)>& report);

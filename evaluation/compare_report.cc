@@ -40,16 +40,16 @@ std::string SharesText(const std::optional<ShareSummary>& shares) {
 }
 
 // Times over some of the problems are not to be set beside times over all.
-std::string TableRow(const BackendSummary& s, int all) {
-  if (s.problems < all) {
-    return fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}\n", s.backend,
-                       fmt::format("{} of {} run, of {}", s.solved, s.problems, all), "-", "-", "-",
+std::string TableRow(const BackendSummary& s, int all, bool interval) {
+  std::string solved = SolvedText(s, all);
+  if (!s.ran_all) {
+    return fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}\n", s.backend, solved, "-", "-", "-",
                        "-");
   }
-  const std::string solved =
-      all == 0 ? "-"
-               : fmt::format("{} of {} [{:.1f}, {:.1f}] %", s.solved, s.problems,
-                             100.0 * s.solved_interval.lo, 100.0 * s.solved_interval.hi);
+  if (interval && all > 0) {
+    solved += fmt::format(" [{:.1f}, {:.1f}] %", 100.0 * s.solved_interval.lo,
+                          100.0 * s.solved_interval.hi);
+  }
   return fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}{:>6}{:>6}{:>10}{:>10}{:>10}  {}\n",
                      s.backend, solved, Cell(s.cpu_ms.median, "{:.3f}"),
                      Cell(s.cpu_ms.p95, "{:.3f}"), Cell(s.cpu_ms.p99, "{:.3f}"),
@@ -59,12 +59,12 @@ std::string TableRow(const BackendSummary& s, int all) {
                      fmt::format("{}/{}", s.agreeing, s.reported_success), SharesText(s.shares));
 }
 
-std::string Table(const std::vector<BackendSummary>& summaries, int all) {
+std::string Table(const std::vector<BackendSummary>& summaries, int all, bool interval) {
   std::string text =
       fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}{:>6}{:>6}{:>10}{:>10}{:>10}  {}\n", "backend",
-                  "solved, 95 % interval", "median", "p95", "p99", "max ms", "it", "eval",
-                  "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
-  for (const BackendSummary& summary : summaries) text += TableRow(summary, all);
+                  interval ? "solved, 95 % interval" : "solved", "median", "p95", "p99", "max ms",
+                  "it", "eval", "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
+  for (const BackendSummary& summary : summaries) text += TableRow(summary, all, interval);
   return text;
 }
 
@@ -74,7 +74,7 @@ std::string DeadlineTable(double deadline_ms, const std::vector<BackendSummary>&
       deadline_ms, "backend", "back median", "p99", "max ms", "gap p50", "gap p95",
       "best returned");
   for (const BackendSummary& s : summaries) {
-    if (!s.deadline) continue;
+    if (!s.deadline || !s.ran_all) continue;
     const DeadlineSummary& d = *s.deadline;
     text +=
         fmt::format("  {:<15}{:>12}{:>10}{:>10}{:>12}{:>12}{:>16}\n", s.backend,
@@ -95,6 +95,12 @@ struct ProblemsSummary {
   Quantiles points, pairs;  ///< pairs: of those that have any
   Quantiles duration_s;
 };
+
+// One word, unless the flights differ.
+std::string Kinds(const char* one, int of_one, const char* other, int of_other) {
+  if (of_other == 0) return one;
+  return of_one == 0 ? other : fmt::format("{} {}, {} {}", one, of_one, other, of_other);
+}
 
 ProblemsSummary Of(const std::vector<ProblemRow>& problems) {
   ProblemsSummary of;
@@ -119,6 +125,11 @@ ProblemsSummary Of(const std::vector<ProblemRow>& problems) {
 
 }  // namespace
 
+std::string SolvedText(const BackendSummary& s, int all) {
+  return s.ran_all ? fmt::format("{} of {}", s.solved, all)
+                   : fmt::format("{} of {} run, of {}", s.solved, s.problems, all);
+}
+
 std::string CompareProblemsText(const CompareResult& result) {
   const ProblemsSummary of = Of(result.problems);
   const bool one = result.flights.size() == 1;
@@ -127,14 +138,19 @@ std::string CompareProblemsText(const CompareResult& result) {
       "  arrival: free {}, fixed {}; limits: {}; end: {}; in the median {:.0f} control points, "
       "T {:.2f} s; with pairs {}, {:.0f} in the median\n",
       of.all, one ? result.flights.front() : fmt::format("{} flights", result.flights.size()),
-      result.every == 1 ? "all" : fmt::format("each {}th", result.every), result.asked,
+      result.every == 1 ? "all" : fmt::format("one in {}", result.every), result.asked,
       one ? "" : fmt::format(" (from `{}` on)", result.flights.front()), of.free_arrival,
-      of.all - of.free_arrival, of.hard_limits > 0 ? "hard" : "soft",
-      of.explicit_endpoint > 0 ? "explicit" : "eliminated", of.points.median.value_or(0.0),
-      of.duration_s.median.value_or(0.0), of.with_pairs, of.pairs.median.value_or(0.0));
+      of.all - of.free_arrival, Kinds("soft", of.all - of.hard_limits, "hard", of.hard_limits),
+      Kinds("eliminated", of.all - of.explicit_endpoint, "explicit", of.explicit_endpoint),
+      of.points.median.value_or(0.0), of.duration_s.median.value_or(0.0), of.with_pairs,
+      of.pairs.median.value_or(0.0));
   if (of.standing > 0) {
     text += fmt::format("  {} not timed: their start is within the gap already\n", of.standing);
   }
+  if (result.refused > 0) {
+    text += fmt::format("  {} more that none of these backends takes\n", result.refused);
+  }
+  for (const std::string& note : result.notes) text += fmt::format("  {}\n", note);
   if (of.without > 0) {
     text += fmt::format("  {} without a feasible point from any backend, left out\n", of.without);
   }
@@ -144,6 +160,7 @@ std::string CompareProblemsText(const CompareResult& result) {
 Json BackendSummaryJson(const BackendSummary& s) {
   Json json;
   json["problems"] = s.problems;
+  json["ran_all"] = s.ran_all;
   json["solved"] = s.solved;
   json["solved_fraction"] =
       s.problems > 0 ? Json(static_cast<double>(s.solved) / s.problems) : Json();
@@ -188,6 +205,8 @@ Json CompareProblemsJson(const CompareResult& result) {
           {"duration_s", QuantilesOrNull(of.duration_s)},
           {"solves_asked", result.asked},
           {"every", result.every},
+          {"refused_by_all", result.refused},
+          {"notes", result.notes},
           {"flights", result.flights}};
 }
 
@@ -204,15 +223,12 @@ namespace {
 // Figures over other problems are not to be compared.
 Json BackendsJson(const CompareResult& result) {
   Json json = Json::object();
-  const int all = TimedProblems(result);
   for (const BackendSummary& summary : Summarise(result)) {
     Json& backend = json[summary.backend] = BackendSummaryJson(summary);
-    backend["ran_all"] = summary.problems == all;
     Json& by_points = backend["ms_per_iteration_by_points"] = Json::object();
     for (const auto& [points, ms] : TimePerIteration(result, summary.backend)) {
       by_points[std::to_string(points)] = ms;
     }
-    backend["scaling_slope"] = Finite(ScalingSlope(result, summary.backend));
   }
   return json;
 }
@@ -225,7 +241,8 @@ std::string CompareText(const CompareOptions& options, const CompareResult& resu
       "solvers\n{}\n",
       options.bench.gap, BuildLine());
   const std::vector<BackendSummary> summaries = Summarise(result);
-  text += CompareProblemsText(result) + Table(summaries, TimedProblems(result));
+  text += CompareProblemsText(result) +
+          Table(summaries, TimedProblems(result), result.flights.size() > 1);
   if (options.bench.deadline_ms) text += DeadlineTable(*options.bench.deadline_ms, summaries);
   for (const Refusal& refusal : result.refusals) text += refusal.reason + "\n";
   return text;

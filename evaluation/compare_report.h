@@ -24,6 +24,8 @@ nlohmann::ordered_json CompareJson(const CompareOptions& options, const CompareR
 std::string CompareProblemsText(const CompareResult& result);
 nlohmann::ordered_json CompareProblemsJson(const CompareResult& result);
 
+/// "281 of 281", or of a backend that did not run all "66 of 66 run, of 297".
+std::string SolvedText(const BackendSummary& summary, int all);
 nlohmann::ordered_json BackendSummaryJson(const BackendSummary& summary);
 nlohmann::ordered_json RefusalsJson(const std::vector<Refusal>& refusals);
 

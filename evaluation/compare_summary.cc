@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAgreement = 1e-4;
+constexpr std::size_t kLeastOfASize = 5;
 
 double Median(const std::vector<double>& values) { return *QuantilesOf(values).median; }
 
@@ -133,6 +134,7 @@ std::vector<BackendSummary> Summarise(const BenchResult& result) {
     }
     summaries.push_back(SummariseOne(solves, backend));
     summaries.back().reported_success += wrong;
+    summaries.back().ran_all = summaries.back().problems == TimedProblems(result);
   }
   return summaries;
 }
@@ -153,24 +155,10 @@ std::map<int, double> TimePerIteration(const BenchResult& result, const std::str
     times[problem.points].push_back(row.cpu_ms / row.iterations);
   }
   std::map<int, double> medians;
-  for (const auto& [points, of_size] : times) medians[points] = Median(of_size);
-  return medians;
-}
-
-std::optional<double> ScalingSlope(const BenchResult& result, const std::string& backend) {
-  const std::map<int, double> per_iteration = TimePerIteration(result, backend);
-  if (per_iteration.size() < 2) return std::nullopt;
-  double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
-  for (const auto& [points, ms] : per_iteration) {
-    const double x = std::log(static_cast<double>(points));
-    const double y = std::log(ms);
-    n += 1.0;
-    sum_x += x;
-    sum_y += y;
-    sum_xx += x * x;
-    sum_xy += x * y;
+  for (const auto& [points, of_size] : times) {
+    if (of_size.size() >= kLeastOfASize) medians[points] = Median(of_size);
   }
-  return (n * sum_xy - sum_x * sum_y) / (n * sum_xx - sum_x * sum_x);
+  return medians;
 }
 
 }  // namespace touchdown::evaluation

@@ -30,8 +30,9 @@ struct DeadlineSummary {
 /// One backend over all problems.
 struct BackendSummary {
   std::string backend;
-  int problems = 0;  ///< run, with a reference, and with something to do
-  int solved = 0;    ///< within the gap, feasible, in the median of the repeats
+  int problems = 0;      ///< run, with a reference, and with something to do
+  bool ran_all = false;  ///< else its figures are not to be set beside those of others
+  int solved = 0;        ///< within the gap, feasible, in the median of the repeats
   Interval solved_interval;
   Quantiles cpu_ms;  ///< to the gap, a failure's time infinite
   Quantiles wall_ms;
@@ -54,10 +55,8 @@ int TimedProblems(const BenchResult& result);
 /// All backends of the result, in its order.
 std::vector<BackendSummary> Summarise(const BenchResult& result);
 
-/// Median CPU time per iteration of the tight solves, by control points [ms].
+/// Median CPU time per iteration of the tight solves, by control points [ms], of sizes with at least five
+/// problems.
 std::map<int, double> TimePerIteration(const BenchResult& result, const std::string& backend);
-
-/// Slope of its logarithm over that of the points, least squares; none for fewer than two sizes.
-std::optional<double> ScalingSlope(const BenchResult& result, const std::string& backend);
 
 }  // namespace touchdown::evaluation

@@ -28,7 +28,7 @@ CREATE TABLE solve(problem INTEGER, backend TEXT, phase TEXT, repeat INTEGER,
   PRIMARY KEY(problem, backend, phase, repeat));
 CREATE TABLE refusal(backend TEXT, reason TEXT);
 CREATE TABLE summary(backend TEXT PRIMARY KEY, problems INTEGER, solved INTEGER,
-  solved_lo REAL, solved_hi REAL, cpu_median_ms REAL, cpu_p95_ms REAL, cpu_p99_ms REAL,
+  ran_all INTEGER, solved_lo REAL, solved_hi REAL, cpu_median_ms REAL, cpu_p95_ms REAL, cpu_p99_ms REAL,
   cpu_max_ms REAL, iterations_median REAL, evaluations_median REAL, reported_success INTEGER,
   agreeing INTEGER, tight_gap_median REAL, tight_gap_p95 REAL, max_violation REAL,
   ms_per_iteration REAL);
@@ -72,13 +72,13 @@ void WriteSolves(SqliteDb& db, const CompareResult& result) {
 }
 
 void WriteSummary(SqliteDb& db, const CompareResult& result) {
-  SqliteStatement insert =
-      db.Prepare("INSERT INTO summary VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement insert = db.Prepare(
+      "INSERT INTO summary VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   for (const BackendSummary& s : Summarise(result)) {
-    insert.Run(s.backend, s.problems, s.solved, s.solved_interval.lo, s.solved_interval.hi,
-               s.cpu_ms.median, s.cpu_ms.p95, s.cpu_ms.p99, s.cpu_ms.max, s.iterations.median,
-               s.evaluations.median, s.reported_success, s.agreeing, s.tight_gap.median,
-               s.tight_gap.p95, s.violation_max, s.ms_per_iteration);
+    insert.Run(s.backend, s.problems, s.solved, s.ran_all, s.solved_interval.lo,
+               s.solved_interval.hi, s.cpu_ms.median, s.cpu_ms.p95, s.cpu_ms.p99, s.cpu_ms.max,
+               s.iterations.median, s.evaluations.median, s.reported_success, s.agreeing,
+               s.tight_gap.median, s.tight_gap.p95, s.violation_max, s.ms_per_iteration);
   }
 }
 

@@ -32,7 +32,7 @@ Json CertificateJson(const planning::Certificate& c) {
           {"speed_bound_mps", c.speed_bound},
           {"acceleration_bound_mps2", c.acceleration_bound},
           {"body_rate_bound_radps", c.body_rate_bound},
-          {"earlier", c.earlier()},
+          {"earlier", c.earlier},
           {"limits_kept", c.limits_kept},
           {"recovering", c.recovering},
           {"clear", c.clear},

@@ -67,10 +67,10 @@ std::string RoundText(const planning::RoundLog& round, int number) {
 // `indent` stands before every line.
 std::string CertificateText(const planning::Certificate& c, const planning::Limits& limits,
                             const std::string& indent) {
-  if (c.earlier()) {
+  if (c.earlier) {
     return fmt::format("{}committed before: {}\n", indent,
-                       c.stops_in_observed_space ? "proven when it was committed"
-                                                 : "what was proven of it then does not hold now");
+                       c.stops_in_observed_space ? "proven then, and it still holds"
+                                                 : "not proven, then or now (docs/safety.md)");
   }
   std::string text =
       fmt::format("{}certificate {}\n", indent, c.passed() ? "passed" : "not passed");

@@ -26,34 +26,41 @@ constexpr const char* kForest = "forest";
 constexpr const char* kHostile = "study hostile";  // as its files say
 
 // Who listens takes time in a step: where the clock decides the flight it would be another one.
-PosingFlight Flown(SweepTrial trial, std::string command) {
+PosingFlight Flown(SweepTrial trial, std::string command,
+                   std::function<std::string(const TrialResult&)> judge) {
   if (trial.FliesAlone()) {
     throw BadInput(fmt::format(
         "{}: with planning.latency: measured the flight depends on the clock.", command));
   }
-  return {std::move(command), [trial = std::move(trial)](const Registries& registries) {
-            RunTrial(trial.scenario, trial.seed, registries);
+  return {std::move(command),
+          [trial = std::move(trial), judge = std::move(judge)](const Registries& registries) {
+            return judge(RunTrial(trial.scenario, trial.seed, registries));
           }};
 }
 
-PosingFlight HostileFlightOf(const HostileOptions& options, int index,
-                             const Registries& registries) {
+using Judge = std::function<std::string(const TrialResult&)>;
+
+std::string NothingKnown(const TrialResult&) { return ""; }
+
+PosingFlight HostileFlightOf(const HostileOptions& options, int index, const Registries& registries,
+                             const Judge& judge = NothingKnown) {
   return Flown(DrawHostileFlight(options, index, registries).trial,
-               fmt::format("{} --only {}", HostileCommand(options), index));
+               fmt::format("{} --only {}", HostileCommand(options), index), judge);
 }
 
 PosingFlight LandingOf(const std::string& scenario, const std::vector<std::string>& overrides,
-                       std::uint64_t seed, const Registries& registries) {
+                       std::uint64_t seed, const Registries& registries,
+                       const Judge& judge = NothingKnown) {
   SweepTrial trial = MakeTrial(FindScenario(scenario), overrides, registries);
   trial.seed = seed;
-  return Flown(trial, trial.Replay());
+  return Flown(trial, trial.Replay(), judge);
 }
 
-// The words of a command line as a shell reads them.
+// The words of a command line as a shell reads them: none where it asks for more than words.
 std::vector<std::string> Words(const std::string& command) {
   wordexp_t expanded;
   std::vector<std::string> words;
-  if (wordexp(command.c_str(), &expanded, WRDE_NOCMD) != 0) return words;
+  if (wordexp(command.c_str(), &expanded, WRDE_NOCMD | WRDE_UNDEF) != 0) return words;
   words.assign(expanded.we_wordv, expanded.we_wordv + expanded.we_wordc);
   wordfree(&expanded);
   return words;
@@ -63,15 +70,34 @@ struct FlownTrial {
   int trial = 0;
   std::uint64_t seed = 0;
   std::string replay;
+  std::string outcome;
+  double simulated_s = 0.0;
+
+  /// With the file's own scenario it has to come to the same again.
+  Judge Again() const {
+    return [this_trial = *this](const TrialResult& result) -> std::string {
+      if (ToString(result.outcome) == this_trial.outcome &&
+          result.simulated_s == this_trial.simulated_s)
+        return "";
+      return fmt::format(
+          "trial {} was {} after {:.2f} s and is {} after {:.2f} s now: another build, or its "
+          "files have "
+          "changed",
+          this_trial.trial, this_trial.outcome, this_trial.simulated_s, ToString(result.outcome),
+          result.simulated_s);
+    };
+  }
 };
 
 std::vector<FlownTrial> FlownTrials(SqliteDb& db) {
   std::vector<FlownTrial> trials;
   SqliteStatement rows = db.Prepare(
-      "SELECT planned.trial, planned.seed, replay FROM planned JOIN trial USING(trial) ORDER BY 1");
+      "SELECT planned.trial, planned.seed, replay, outcome, simulated_s FROM planned "
+      "JOIN trial USING(trial) WHERE outcome NOT IN ('error', 'crashed', 'hung') ORDER BY 1");
   while (rows.Step()) {
     trials.push_back({static_cast<int>(rows.Integer(0)),
-                      static_cast<std::uint64_t>(rows.Integer(1)), rows.Text(2)});
+                      static_cast<std::uint64_t>(rows.Integer(1)), rows.Text(2), rows.Text(3),
+                      rows.Real(4)});
   }
   return trials;
 }
@@ -89,17 +115,22 @@ PosingFlight Again(const FlownTrial& trial, const std::vector<std::string>& over
     if (words[i] == "--set") set.push_back(words[++i]);
   }
   set.insert(set.end(), overrides.begin(), overrides.end());
-  return LandingOf(words[2], set, trial.seed, registries);
+  return LandingOf(words[2], set, trial.seed, registries,
+                   overrides.empty() ? trial.Again() : NothingKnown);
 }
 
-// The options of the study whose file has this manifest.
-HostileOptions HostileOptionsOf(const Manifest& manifest,
+// The options of the study whose file has this manifest. @throws BadInput
+HostileOptions HostileOptionsOf(const Manifest& manifest, const std::string& path,
                                 const std::vector<std::string>& overrides) {
   HostileOptions options;
-  options.seed = std::stoull(manifest.at("sweep_seed"));
-  options.share_beyond = std::stod(manifest.at("share_beyond"));
-  if (!manifest.at("families").empty()) options.families = Split(manifest.at("families"), ',');
-  options.set = nlohmann::json::parse(manifest.at("set")).get<std::vector<std::string>>();
+  try {
+    options.seed = std::stoull(manifest.at("sweep_seed"));
+    options.share_beyond = std::stod(manifest.at("share_beyond"));
+    if (!manifest.at("families").empty()) options.families = Split(manifest.at("families"), ',');
+    options.set = nlohmann::json::parse(manifest.at("set")).get<std::vector<std::string>>();
+  } catch (const std::exception&) {
+    throw BadInput(fmt::format("{}: its manifest does not say how its flights were drawn.", path));
+  }
   options.set.insert(options.set.end(), overrides.begin(), overrides.end());
   return options;
 }
@@ -108,11 +139,14 @@ FlightSource TrialsOf(SqliteDb& db, const std::string& path,
                       const std::vector<std::string>& overrides, const Registries& registries) {
   const Manifest manifest = ReadManifest(db, path);
   const std::vector<FlownTrial> trials = FlownTrials(db);
-  const bool hostile = manifest.at("campaign") == kHostile;
-  const HostileOptions options = hostile ? HostileOptionsOf(manifest, overrides) : HostileOptions();
+  const auto campaign = manifest.find("campaign");
+  const bool hostile = campaign != manifest.end() && campaign->second == kHostile;
+  const HostileOptions options =
+      hostile ? HostileOptionsOf(manifest, path, overrides) : HostileOptions();
   return {static_cast<int>(trials.size()), [=](int index) {
             const FlownTrial& trial = trials[static_cast<std::size_t>(index)];
-            return hostile ? HostileFlightOf(options, trial.trial, registries)
+            const Judge judge = overrides.empty() ? trial.Again() : NothingKnown;
+            return hostile ? HostileFlightOf(options, trial.trial, registries, judge)
                            : Again(trial, overrides, path, registries);
           }};
 }
@@ -130,6 +164,7 @@ FlightSource RecordOf(const std::string& path, const std::vector<std::string>& o
       replay.Seek(step);
       replay.Solve();
     }
+    return std::string();
   };
   return {1, [=](int) {
             return PosingFlight{fmt::format("the replanning steps of {}", flight->path), ask_again};

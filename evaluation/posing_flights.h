@@ -15,7 +15,9 @@ namespace touchdown::evaluation {
 /// A flight that can be flown with any registries: those it is given decide who hears of its solves.
 struct PosingFlight {
   std::string command;  ///< that flies it alone
-  std::function<void(const Registries& registries)> fly;
+  /// Says in a sentence where it was another flight than the file holds; empty: it was the same, or nothing is
+  /// known. Throws what RunTrial or a replay throws.
+  std::function<std::string(const Registries& registries)> fly;
 };
 
 struct FlightSource {
@@ -30,7 +32,8 @@ FlightSource DrawnFlights(std::uint64_t seed, const std::vector<std::string>& ov
                           const Registries& registries);
 
 /// The flights of a file: a record, whose steps are asked again one by one from what the planner then knew; or
-/// the trials of a sweep or a study, which are flown again from their seeds. Throws BadInput with one sentence for
+/// the trials of a sweep or a study, which are flown again from their seeds, but for those that crashed, hung or
+/// ended in an error. Throws BadInput with one sentence for
 /// another file, and for a flight whose plans take as long as the clock says.
 FlightSource FlightsOf(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries);

@@ -20,7 +20,8 @@ struct BackendsOptions {
   std::string record;
   std::vector<std::string> overrides;  ///< kReplayKeys
   std::vector<std::string> backends;   ///< none: all that can solve the formulation
-  std::optional<double> gap;           ///< of the solves; none: the record's solver.gap, or 1e-4
+  /// Of solves and steps; none: the record's solver.gap, or where that is 0 1e-4 of the solves.
+  std::optional<double> gap;
   int repeats = 5;
 };
 
@@ -29,8 +30,10 @@ struct BackendLatency {
   /// Its solves of the problems that the record's own backend was asked: until a feasible point is within the
   /// gap of the best known.
   BackendSummary solves;
-  StageSummary step;  ///< whole steps with this backend in the loop, as it would fly
-  int plans = 0;      ///< steps that made a new plan
+  /// Whole steps with this backend in the loop, as it would fly: of each the median of its passes.
+  Quantiles step_ms;
+  Quantiles allocations;  ///< of a step
+  int plans = 0;          ///< steps that made a new plan
 };
 
 struct BackendsProfile {

@@ -68,8 +68,6 @@ std::string SlowestText(const Profile& profile, const ProfileSummary& summary) {
   return text;
 }
 
-}  // namespace
-
 Json StageJson(const StageSummary& s) {
   Json json = MillisecondsJson(s.cpu_ms);
   json["wall"] = MillisecondsJson(s.wall_ms);
@@ -79,6 +77,8 @@ Json StageJson(const StageSummary& s) {
                          {"max", OrNull(s.allocations.max)}};
   return json;
 }
+
+}  // namespace
 
 std::string ProfileText(const Profile& profile) {
   const ProfileSummary summary = Summarise(profile);

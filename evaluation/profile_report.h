@@ -16,8 +16,6 @@ std::string ProfileText(const Profile& profile);
 /// The document of `touchdown profile --json` (docs/profile.md).
 nlohmann::ordered_json ProfileJson(const Profile& profile, const MachineState& machine);
 
-nlohmann::ordered_json StageJson(const StageSummary& stage);
-
 /// The spans in the Chrome trace event format, which Perfetto and chrome://tracing load: complete
 /// events, one track for perception and one for planning.
 nlohmann::ordered_json ChromeTrace(const Profile& profile);

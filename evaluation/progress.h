@@ -15,6 +15,7 @@ struct ProgressText {
 
 /// "kind C: 3 of 20 flights, 12 s left": the time left at the rate so far.
 /// @param done at least 1. @param elapsed_s since the first one was begun [s].
+/// `all` 0: nobody knows.
 std::string ProgressLine(const ProgressText& text, int done, int all, double elapsed_s);
 
 /// Tells the log about every two seconds, and at the end, how far a long run is. Time counts from

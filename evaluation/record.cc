@@ -33,7 +33,7 @@ CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT,
   rebinds INTEGER, iterations INTEGER, cost REAL, work INTEGER, passed INTEGER, endpoint_position_residual REAL,
   endpoint_velocity_residual REAL, speed_bound REAL, acceleration_bound REAL, body_rate_bound REAL,
   limits_kept INTEGER,
-  recovering INTEGER, clear INTEGER, clearance REAL, endpoint_required INTEGER,
+  recovering INTEGER, clear INTEGER, clearance REAL, endpoint_required INTEGER, earlier INTEGER,
   escaping INTEGER, stops_in_observed_space INTEGER);
 CREATE TABLE control_point(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE guide_path(plan INTEGER, path INTEGER, i INTEGER, x REAL, y REAL, z REAL);
@@ -138,8 +138,8 @@ void WriteResult(SqliteStatement& insert, int id, const RecordPlan& row) {
              static_cast<int>(r.curve.control_points().cols()), r.pairs, r.solves, r.rebinds,
              r.iterations, r.cost, r.work, c.passed(), c.endpoint_position_residual,
              c.endpoint_velocity_residual, c.speed_bound, c.acceleration_bound, c.body_rate_bound,
-             c.limits_kept, c.recovering, c.clear, c.clearance, c.endpoint_required, c.escaping,
-             c.stops_in_observed_space);
+             c.limits_kept, c.recovering, c.clear, c.clearance, c.endpoint_required, c.earlier,
+             c.escaping, c.stops_in_observed_space);
 }
 
 void WriteInput(SqliteStatement& insert, int id, const RecordPlan& row) {
@@ -222,7 +222,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
 void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement plan = db.Prepare(
       "INSERT INTO plan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO control_point VALUES(?, ?, ?, ?, ?)");
   SqliteStatement guide = db.Prepare("INSERT INTO guide_path VALUES(?, ?, ?, ?, ?, ?)");
   SqliteStatement window = db.Prepare("INSERT INTO map_window VALUES(?, ?, ?, ?)");

@@ -72,7 +72,7 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
       "work, endpoint_position_residual, endpoint_velocity_residual, speed_bound, "
       "acceleration_bound, body_rate_bound, limits_kept, recovering, clear, clearance, "
       "endpoint_required, "
-      "escaping, stops_in_observed_space",
+      "earlier, escaping, stops_in_observed_space",
       "id");
   std::vector<Knots> knots;
   while (rows.Next()) {
@@ -101,6 +101,7 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
     c.clear = rows.Flag();
     c.clearance = rows.NumberOrNan();
     c.endpoint_required = rows.Flag();
+    c.earlier = rows.Flag();
     c.escaping = rows.Flag();
     c.stops_in_observed_space = rows.Flag();
   }
@@ -281,7 +282,7 @@ void CheckIsRecord(SqliteDb& db) {
   if (!other.Step()) return;
   SqliteStatement format = db.Prepare("SELECT value FROM manifest WHERE key = 'format'");
   throw std::invalid_argument(
-      fmt::format("it holds a {}, not the record of one flight (land --record)",
+      fmt::format("its format is '{}', not that of a record of one flight (land --record)",
                   format.Step() ? format.Text(0) : "result"));
 }
 

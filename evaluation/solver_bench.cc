@@ -59,6 +59,25 @@ Stop Limited() {
   return stop;
 }
 
+/// Takes every problem, and is asked for nothing but whether it is of one structure.
+class StructureKey final : public SolverBackend {
+ public:
+  StructureKey() : SolverBackend("structure", {}) {}
+  solvers::Capabilities capabilities() const override {
+    return {.hard_rows = true, .equality_rows = true, .variable_bounds = true};
+  }
+
+ private:
+  void DoPrepare(const solvers::View&) override {}
+  void DoSolve(const solvers::View&, const solvers::WarmStart&, const Stop&, solvers::Evaluator*,
+               solvers::SolverResult*) override {}
+};
+
+std::ptrdiff_t PlaceOf(const solvers::BackendRegistry& registry, const std::string& name) {
+  const auto named = [&](const solvers::BackendEntry& entry) { return entry.name == name; };
+  return std::find_if(registry.begin(), registry.end(), named) - registry.begin();
+}
+
 void CheckNames(const std::vector<std::string>& names, const solvers::BackendRegistry& registry) {
   std::vector<std::string> known;
   for (const solvers::BackendEntry& entry : registry) known.push_back(entry.name);
@@ -85,6 +104,7 @@ struct SolverBench::Contestant {
 
 /// All backends that can solve the problems of one structure.
 struct SolverBench::Field {
+  std::unique_ptr<SolverBackend> key;
   std::vector<Contestant> contestants;
   solvers::ViewEvaluation outside;
 };
@@ -148,17 +168,23 @@ void SolverBench::Enter(const solvers::BackendEntry& entry, const solvers::View&
   SetTolerances(kTight, kTightViolation, &who.tight->options());
   SetTolerances(kNever, kNeverViolation, &who.unending->options());
   for (const auto& backend : {&who.tight, &who.unending, &who.usual}) (*backend)->Prepare(view);
-  if (compared && !Contains(result_.backends, entry.name)) result_.backends.push_back(entry.name);
+  if (compared && !Contains(result_.backends, entry.name)) {
+    result_.backends.push_back(entry.name);
+    std::sort(result_.backends.begin(), result_.backends.end(), [&](const auto& a, const auto& b) {
+      return PlaceOf(registry_, a) < PlaceOf(registry_, b);
+    });
+  }
   field->contestants.push_back(std::move(who));
 }
 
 // First solves pay for pages, caches and lazy set-up; nobody is timed on them.
 SolverBench::Field& SolverBench::FieldFor(const solvers::AskedSolve& asked) {
   for (Field& field : fields_) {
-    if (!field.contestants.empty() && field.contestants.front().tight->PreparedFor(asked.view))
-      return field;
+    if (field.key->PreparedFor(asked.view)) return field;
   }
   Field& field = fields_.emplace_back();
+  field.key = std::make_unique<StructureKey>();
+  field.key->Prepare(asked.view);
   asked.view.Resize(&field.outside);
   for (const solvers::BackendEntry& entry : registry_) Enter(entry, asked.view, &field);
   Stop stop;
@@ -189,7 +215,8 @@ SolverBench::Merit SolverBench::Judge(const Eigen::VectorXd& y) {
   Merit merit;
   merit.ok = asked_->view.Evaluate(y.data(), {}, {}, &field_->outside);
   merit.cost = field_->outside.full.value;
-  merit.violation = field_->outside.full.max_violation;
+  merit.violation =
+      merit.ok ? field_->outside.full.max_violation : std::numeric_limits<double>::quiet_NaN();
   return merit;
 }
 
@@ -299,9 +326,9 @@ void SolverBench::EndTurns() {
     out_.insert(who.name);
     if (!Compares(who.name)) continue;
     result_.refusals.push_back(
-        {who.name, fmt::format("backend {} sits out after {} problems: it had used {:.4g} s "
-                               "(--backend-seconds).",
-                               who.name, index(), seconds_[who.name])});
+        {who.name,
+         fmt::format("backend {} sits out after {} problems: it had used its time, {:.4g} s.",
+                     who.name, index(), seconds_[who.name])});
   }
 }
 
@@ -310,9 +337,12 @@ void SolverBench::Run(const solvers::AskedSolve& asked, int flight, int solve) {
   field_ = &FieldFor(asked);
   const bool anybody = std::any_of(field_->contestants.begin(), field_->contestants.end(),
                                    [&](const Contestant& who) { return Compares(who.name); });
-  if (!anybody) return;  // their refusals say why
+  if (!anybody) {
+    ++result_.refused;  // the refusals say why
+    return;
+  }
   const Merit start = Judge(asked.start.y);
-  ProblemRow row = Facts(asked.view);
+  ProblemRow row = Facts(asked.view);  // as that look has placed the terms
   row.flight = flight;
   row.solve = solve;
   FindReference(&row);
@@ -336,6 +366,7 @@ void SolverBench::Run(const solvers::AskedSolve& asked, int flight, int solve) {
   }
   result_.problems.push_back(std::move(row));
   EndTurns();
+  asked_ = nullptr;
 }
 
 }  // namespace touchdown::evaluation

@@ -87,6 +87,7 @@ struct BenchResult {
   std::vector<ProblemRow> problems;
   std::vector<SolveRow> solves;
   std::vector<Refusal> refusals;
+  int refused = 0;  ///< problems that nobody compared could take
 };
 
 /// All backends of a registry, which solve the problems that they are shown, in place. Backends take turns

@@ -143,6 +143,19 @@ StudyPlan PlanStudy(const StudyFile& file, const StudySelection& selection, std:
   return plan;
 }
 
+namespace {
+
+// Of a part of a study alone, what was asked for.
+nlohmann::ordered_json SelectionJson(const StudySelection& selection) {
+  using Json = nlohmann::ordered_json;
+  if (!selection.Part()) return nullptr;
+  return {{"cells", selection.cells},
+          {"methods", selection.methods},
+          {"trials", selection.trials ? Json(*selection.trials) : Json()}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
   using Json = nlohmann::ordered_json;
   const auto text_map = [](const StudyPairs& pairs) {
@@ -150,17 +163,12 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
     for (const auto& [key, value] : pairs) map[key] = value;
     return map;
   };
-  Json document = {{"study", plan.file.name},
-                   {"title", plan.file.title},
-                   {"report", plan.file.report},
-                   {"reference", plan.file.reference},
-                   {"quick", plan.selection.quick},
-                   {"seed", plan.campaign.seed},
-                   {"trials", plan.campaign.trials.size()},
-                   {"set", text_map(plan.file.set)},
-                   {"cells", Json::array()},
-                   {"methods", Json::array()},
-                   {"parts", Json::array()}};
+  Json document = {{"study", plan.file.name},        {"title", plan.file.title},
+                   {"report", plan.file.report},     {"reference", plan.file.reference},
+                   {"quick", plan.selection.quick},  {"selection", SelectionJson(plan.selection)},
+                   {"seed", plan.campaign.seed},     {"trials", plan.campaign.trials.size()},
+                   {"set", text_map(plan.file.set)}, {"cells", Json::array()},
+                   {"methods", Json::array()},       {"parts", Json::array()}};
   for (const StudyCell& cell : plan.file.cells) {
     document["cells"].push_back({{"name", cell.name},
                                  {"title", cell.title},

@@ -28,6 +28,9 @@ struct StudySelection {
   std::vector<std::string> cells;    ///< names; empty: all
   std::vector<std::string> methods;  ///< names; empty: all
   std::optional<int> trials;         ///< of each method in each cell; none: as the file says
+
+  /// Not the whole study, nor its short form.
+  bool Part() const { return !cells.empty() || !methods.empty() || trials.has_value(); }
 };
 
 /// Everything that a study is to fly.

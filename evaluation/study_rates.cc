@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/study_rates.h"
 
-#include <algorithm>
 #include <fstream>
-#include <iterator>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -92,23 +92,24 @@ std::string OthersText(const PartRates& part) {
 
 Json OrNull(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-}  // namespace
-
-StudyRates ReadStudyRates(const std::string& folder) {
-  const Json plan = ReadPlan(folder);
+// The plan as study_plan.cc wrote it.
+StudyRates Gather(const std::string& folder, const Json& plan) {
   StudyRates rates;
   rates.folder = folder;
   rates.study = plan.at("study");
   rates.quick = plan.at("quick");
+  rates.part = plan.contains("selection") && !plan.at("selection").is_null();
   rates.seed = plan.at("seed");
   const auto rows = ReadRows(folder);
   for (const Json& planned : plan.at("parts")) {
-    const auto flown = rows.find({planned.at("cell"), planned.at("method")});
-    if (flown == rows.end()) continue;
-    PartRates part = RatesOf(flown->second);
-    std::tie(part.cell, part.method) = flown->first;
+    const std::pair<std::string, std::string> of(planned.at("cell"), planned.at("method"));
+    const auto flown = rows.find(of);
+    PartRates part = flown == rows.end() ? PartRates() : RatesOf(flown->second);
+    std::tie(part.cell, part.method) = of;
     part.cell_title = TitleOf(plan.at("cells"), part.cell);
     part.method_title = TitleOf(plan.at("methods"), part.method);
+    part.planned = planned.at("trials");
+    part.refusal = planned.value("refusal", "");
     rates.trials += part.trials;
     for (const auto& [outcome, count] : part.outcomes) rates.errors += IsError(outcome) ? count : 0;
     rates.parts.push_back(std::move(part));
@@ -116,29 +117,60 @@ StudyRates ReadStudyRates(const std::string& folder) {
   return rates;
 }
 
+std::string PartText(const PartRates& part) {
+  if (!part.refusal.empty()) return "not flown: " + part.refusal;
+  const std::optional<double>& median = part.time_to_land_s.median;
+  std::string text =
+      part.trials == 0
+          ? "none flown yet"
+          : fmt::format("succeeded {} of {} [{:.1f}, {:.1f}] %{}{}", part.succeeded, part.trials,
+                        100.0 * part.rate.lo, 100.0 * part.rate.hi,
+                        median ? fmt::format(", median of the landed {:.1f} s", *median) : "",
+                        OthersText(part));
+  if (part.trials < part.planned) text += fmt::format("; {} planned", part.planned);
+  return text;
+}
+
+}  // namespace
+
+StudyRates ReadStudyRates(const std::string& folder) {
+  const Json plan = ReadPlan(folder);
+  try {
+    return Gather(folder, plan);
+  } catch (const nlohmann::json::exception& error) {
+    throw BadInput(
+        fmt::format("{}/study.json: it is not a study's plan ({}).", folder, error.what()));
+  } catch (const SqliteError& error) {
+    throw BadInput(fmt::format("{}.", error.what()));
+  }
+}
+
 std::string StudyRatesText(const StudyRates& rates) {
-  std::string text;
+  std::string text = rates.part ? "a part of study " + rates.study + "\n" : "";
   std::string cell;
   for (const PartRates& part : rates.parts) {
     if (part.cell != cell) text += part.cell_title + "\n";
     cell = part.cell;
-    const std::optional<double>& median = part.time_to_land_s.median;
-    text += fmt::format("  {:<24} succeeded {} of {} [{:.1f}, {:.1f}] %{}{}\n", part.method, part.succeeded,
-                        part.trials, 100.0 * part.rate.lo, 100.0 * part.rate.hi,
-                        median ? fmt::format(", median {:.1f} s", *median) : "", OthersText(part));
+    text += fmt::format("  {:<24} {}\n", part.method, PartText(part));
+  }
+  if (rates.errors > 0) {
+    text += fmt::format("{} trials ended in an error of the program, crashed or hung (--retry)\n",
+                        rates.errors);
   }
   return text;
 }
 
 Json StudyRatesJson(const StudyRates& rates) {
-  Json json = {{"study", rates.study},  {"folder", rates.folder}, {"quick", rates.quick},
-               {"seed", rates.seed},    {"trials", rates.trials}, {"errors", rates.errors},
-               {"parts", Json::array()}};
+  Json json = {{"study", rates.study},   {"folder", rates.folder}, {"quick", rates.quick},
+               {"part", rates.part},     {"seed", rates.seed},     {"trials", rates.trials},
+               {"errors", rates.errors}, {"parts", Json::array()}};
   for (const PartRates& part : rates.parts) {
     json["parts"].push_back({{"cell", part.cell},
                              {"cell_title", part.cell_title},
                              {"method", part.method},
                              {"method_title", part.method_title},
+                             {"planned", part.planned},
+                             {"refusal", part.refusal.empty() ? Json() : Json(part.refusal)},
                              {"trials", part.trials},
                              {"succeeded", part.succeeded},
                              {"rate_lo", part.rate.lo},

@@ -2,6 +2,7 @@
 // What a study came to, in rates with intervals: what its command says without any other program.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,7 +17,9 @@ namespace touchdown::evaluation {
 struct PartRates {
   std::string cell, cell_title;
   std::string method, method_title;
-  int trials = 0;
+  int planned = 0;                              ///< trials
+  std::string refusal;                          ///< why none is flown; empty: they are
+  int trials = 0;                               ///< flown
   int succeeded = 0;                            ///< landed, or followed
   Interval rate;                                ///< 95 % Clopper-Pearson
   Quantiles time_to_land_s, touchdown_error_m;  ///< of the landed
@@ -26,6 +29,7 @@ struct PartRates {
 struct StudyRates {
   std::string folder, study;
   bool quick = false;
+  bool part = false;  ///< of the study, as --cells, --methods or --trials asked for
   std::uint64_t seed = 0;
   int trials = 0;
   int errors = 0;                ///< trials that ended in an error of the program

@@ -19,9 +19,10 @@ bool Same(const planning::Certificate& a, const planning::Certificate& b) {
          Same(a.endpoint_position_residual, b.endpoint_position_residual) &&
          Same(a.endpoint_velocity_residual, b.endpoint_velocity_residual) &&
          Same(a.speed_bound, b.speed_bound) && Same(a.acceleration_bound, b.acceleration_bound) &&
-         Same(a.body_rate_bound, b.body_rate_bound) && a.limits_kept == b.limits_kept &&
-         a.recovering == b.recovering && a.clear == b.clear && Same(a.clearance, b.clearance) &&
-         a.escaping == b.escaping && a.stops_in_observed_space == b.stops_in_observed_space;
+         Same(a.body_rate_bound, b.body_rate_bound) && a.earlier == b.earlier &&
+         a.limits_kept == b.limits_kept && a.recovering == b.recovering && a.clear == b.clear &&
+         Same(a.clearance, b.clearance) && a.escaping == b.escaping &&
+         a.stops_in_observed_space == b.stops_in_observed_space;
 }
 
 }  // namespace

@@ -87,8 +87,9 @@ class CellBlocks {
 
 template <class Visit>
 void CellBlocks::ForEach(Visit&& visit) const {
-  for (const auto& [key, block] : blocks_) {
-    const CellIndex low = LowOf(key);
+  for (const auto& entry : blocks_) {
+    const CellBlock& block = entry.second;
+    const CellIndex low = LowOf(entry.first);
     ForEachCell({low, low.array() + CellBlock::kSide}, [&](const CellIndex& cell) {
       if (block[cell] != kUnknownLogOdds) visit(CellValue{cell, block[cell]});
     });

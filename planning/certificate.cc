@@ -14,9 +14,6 @@ namespace touchdown::planning {
 
 namespace {
 
-// Limits are met with equality at times: up to the rounding of sums of control points, and where
-// they were hard rows up to what backends count as feasible (Evaluator::kFeasible) [m/s, m/s^2].
-
 /// The speed that the start fixes: its own, and V_1 = v0 + h a0 / 2 of the hull, which no solver can
 /// change. A start just below the limit that still speeds up is beyond it by V_1.
 double StartSpeed(const UniformBspline& curve) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
-
 #include "touchdown/planning/free_space.h"
 #include "touchdown/planning/limits.h"
 #include "touchdown/planning/swept_hull.h"
@@ -10,7 +8,8 @@
 
 namespace touchdown::planning {
 
-/// By so much a limit may be exceeded, in its own unit: what backends leave of hard rows.
+/// By so much a limit may be exceeded [m/s, m/s^2, rad/s]. Limits are met with equality at times: up to the rounding of sums
+/// of control points, and where they were hard rows up to what backends count as feasible (Evaluator::kFeasible).
 inline constexpr double kLimitSlack = 2e-6;
 
 /// What was proven about a trajectory. A new plan is committed only if passed().
@@ -21,8 +20,10 @@ struct Certificate {
   double start_velocity_residual = 0.0;     ///< |v(t_from) - start| [m/s]
   double endpoint_position_residual = 0.0;  ///< |p(T) - wanted| [m]
   double endpoint_velocity_residual = 0.0;  ///< |v(T) - wanted| [m/s]
-  /// Hull bounds over the curve [m/s], [m/s^2], and of who flies it exactly [rad/s]. NaN, as `clearance`, of
-  /// what was committed before and is flown on: that was proven then, and is not measured again.
+  /// What was committed before is flown on: its bounds and its clearance are not measured again, and are NaN here.
+  /// stops_in_observed_space says whether it was proven then and still holds.
+  bool earlier = false;
+  /// Hull bounds over the curve [m/s], [m/s^2], and of who flies it exactly [rad/s].
   double speed_bound = 0.0;
   double acceleration_bound = 0.0;
   double body_rate_bound = 0.0;
@@ -40,8 +41,6 @@ struct Certificate {
   double clearance = 0.0;    ///< that `clear` or `escaping` stands for [m]
   double first_hit_t = 0.0;  ///< absolute time of the first blocked cell if !clear [s]
 
-  /// Of what was committed before.
-  bool earlier() const { return std::isnan(speed_bound); }
   bool endpoint_met() const {
     return !endpoint_required || (endpoint_position_residual <= endpoint_tolerance &&
                                   endpoint_velocity_residual <= endpoint_tolerance);

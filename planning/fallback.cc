@@ -116,6 +116,7 @@ void Fallback::FlyStop(const FlightPair& committed, double t0, const HullSpace& 
   result->pair() = committed;
   if (t0 >= committed.t_stop) result->curve = committed.stop;
   Certificate& certificate = result->certificate = {};
+  certificate.earlier = true;
   certificate.endpoint_required = false;
   certificate.limits_kept = certificate.clear = true;
   certificate.speed_bound = certificate.acceleration_bound = certificate.body_rate_bound =

@@ -152,7 +152,9 @@ struct Panels {
       for (int c = 0; c < d; ++c) {
         const double* __restrict column = Column(band, j, c);
         const double value = at[c] * column[c];
+#ifndef __clang__  // which sees by itself that nothing overlaps
 #pragma GCC ivdep
+#endif
         for (int r = 0; r < kStride - 4; ++r) at[r] -= value * column[r];
         at[c] = value;
       }

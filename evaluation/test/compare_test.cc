@@ -13,6 +13,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/campaign.h"
 #include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/hostile_study.h"
 #include "touchdown/evaluation/posing_flights.h"
 #include "touchdown/evaluation/record.h"
 #include "touchdown/evaluation/sqlite_db.h"
@@ -36,6 +37,13 @@ class Flights : public ::testing::Test {
         [&](const solvers::AskedSolve& asked) { starts.push_back(asked.start.y); });
     flight.fly(overheard);
     return starts;
+  }
+
+  static PosingFlight FlownAs(const SweepTrial& trial) {
+    return {"", [trial](const Registries& overheard) {
+              RunTrial(trial.scenario, trial.seed, overheard);
+              return std::string();
+            }};
   }
 
   CompareResult Compared(const CompareOptions& options) const {
@@ -76,6 +84,7 @@ TEST_F(Flights, ARecordAsksWhatTheFlightAsked) {
   const PosingFlight flight{"", [&](const Registries& overheard) {
                               WriteRecord(path_, scenario,
                                           RunTrial(scenario, 1, overheard, &record), record);
+                              return std::string();
                             }};
   flown = Asked(flight);
   const FlightSource source = FlightsOf(path_, {}, registries_);
@@ -98,9 +107,48 @@ TEST_F(Flights, TheTrialsOfAFileAreFlownAgain) {
   EXPECT_EQ(source.flights, static_cast<int>(campaign.trials.size()));
   const SweepTrial& trial = campaign.trials.back();
   EXPECT_EQ(source.flight(trial.index).command, trial.Replay());
-  const PosingFlight flown{
-      "", [&](const Registries& overheard) { RunTrial(trial.scenario, trial.seed, overheard); }};
-  EXPECT_EQ(Asked(source.flight(trial.index)), Asked(flown));
+  EXPECT_EQ(Asked(source.flight(trial.index)), Asked(FlownAs(trial)));
+}
+
+TEST_F(Flights, ThoseOfTheHostileStudyToo) {
+  HostileOptions options;
+  options.seed = 5;
+  options.flights = 2;
+  options.share_beyond = 0.0;
+  options.set = kShort;
+  const Campaign campaign = HostileCampaign(options, DrawHostileFlights(options, 1, registries_));
+  CampaignOptions flight;
+  flight.db = path_;
+  RunCampaign(campaign, flight, registries_, [](const CampaignState&) {});
+  const FlightSource source = FlightsOf(path_, {}, registries_);
+  EXPECT_EQ(source.flights, 2);
+  EXPECT_THAT(source.flight(1).command, HasSubstr("study hostile --seed 5"));
+  EXPECT_EQ(source.flight(1).fly(registries_), "") << "the same flight again";
+  EXPECT_EQ(Asked(source.flight(1)), Asked(FlownAs(campaign.trials[1])));
+}
+
+// The file says what became of its trials: what is flown again has to come to that.
+TEST_F(Flights, AnotherFlightThanTheFilesIsNoted) {
+  SweepOptions sweep;
+  sweep.scenario_path = FindScenario("forest");
+  sweep.overrides = kShort;
+  sweep.trials = 2;
+  CampaignOptions options;
+  options.db = path_;
+  RunCampaign(SweepCampaign(sweep, registries_), options, registries_, [](const CampaignState&) {});
+  SqliteDb(path_, SqliteDb::Mode::kReadWrite)
+      .Execute(
+          "UPDATE trial SET simulated_s = 1.25 WHERE trial = 0; "
+          "UPDATE trial SET outcome = 'hung' WHERE trial = 1");
+  const FlightSource source = FlightsOf(path_, {}, registries_);
+  EXPECT_EQ(source.flights, 1) << "what hung is not flown again";
+  EXPECT_THAT(source.flight(0).fly(registries_), HasSubstr("was timeout after 1.25 s"));
+  CompareOptions compare;
+  compare.from = path_;
+  compare.problems = 100000;
+  compare.every = 40;
+  compare.bench.backends = {"banded"};
+  EXPECT_EQ(Compared(compare).notes.size(), 1U);
 }
 
 TEST_F(Flights, OtherFilesAreRefused) {

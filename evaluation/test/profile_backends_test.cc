@@ -44,7 +44,8 @@ TEST_F(BackendsOfARecord, AreMeasuredOnTheSameSolvesAndSteps) {
   std::vector<std::string> told;
   const BackendsProfile profile =
       ProfileBackends(options, registries_, [&](const char* things, int done, int all) {
-        if (done == all) told.emplace_back(things);
+        if (told.empty() || told.back() != things) told.emplace_back(things);
+        EXPECT_TRUE(all == 0 || done <= all);
       });
   EXPECT_THAT(told, ElementsAre("problems", "backends"));
   EXPECT_EQ(profile.gap, 0.01) << "the record's";
@@ -55,7 +56,8 @@ TEST_F(BackendsOfARecord, AreMeasuredOnTheSameSolvesAndSteps) {
   for (const BackendLatency& of : profile.backends) {
     EXPECT_EQ(of.solves.problems, timed);
     EXPECT_EQ(of.solves.solved, timed) << of.solves.backend;
-    EXPECT_EQ(of.step.samples, 2 * steps_);
+    EXPECT_GT(*of.step_ms.median, 0.0);
+    EXPECT_LE(*of.step_ms.median, *of.step_ms.max);
     EXPECT_GT(of.plans, 0);
   }
   const std::string text = BackendsText(profile);

@@ -269,9 +269,12 @@ TEST(CompareSummary, FailuresAreInfiniteAndTheMedianRepeatCounts) {
   EXPECT_EQ(TimedProblems(MadeUp()), 9);
 }
 
-TEST(CompareSummary, SlopeOfATimeThatIsQuadratic) {
-  EXPECT_NEAR(*ScalingSlope(MadeUp(), "a"), 2.0, 1e-9);
-  EXPECT_FALSE(ScalingSlope(MadeUp(), "b"));
+TEST(CompareSummary, TimePerIterationIsOfSizesThatAreThereOften) {
+  BenchResult result = MadeUp();
+  EXPECT_TRUE(TimePerIteration(result, "a").empty()) << "three problems of each size";
+  for (ProblemRow& row : result.problems) row.points = 20;
+  EXPECT_NEAR(TimePerIteration(result, "a").at(20), 0.04, 1e-12);
+  EXPECT_TRUE(TimePerIteration(result, "b").empty());
 }
 
 }  // namespace

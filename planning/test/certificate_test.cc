@@ -71,7 +71,7 @@ TEST(Certificate, WhatTheAttitudeCannotFollowBreaksALimit) {
   limits.body_rate = 10.0;
   const Certificate turns = Certify(curve, 0.0, nullptr, &end, limits, space);
   EXPECT_TRUE(turns.limits_kept);
-  EXPECT_FALSE(turns.earlier());
+  EXPECT_FALSE(turns.earlier);
   EXPECT_EQ(turns.body_rate_bound, BoundDerivatives(curve, limits.pull_W).body_rate);
   EXPECT_LE(turns.body_rate_bound, 10.0);
 }

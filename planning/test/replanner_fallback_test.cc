@@ -115,7 +115,7 @@ TEST(ReplannerFallback, WhoHoldsWithTheHullInHitCellsSaysSo) {
   }
   const ReplanResult& result = replanner.Replan(Input(start, pad, 0.1), map);
   EXPECT_EQ(result.status, ReplanStatus::kHolding);
-  EXPECT_TRUE(result.certificate.earlier()) << "no bound is told of what is not measured again";
+  EXPECT_TRUE(result.certificate.earlier) << "no bound is told of what is not measured again";
   EXPECT_TRUE(result.map_error);
 }
 

@@ -151,6 +151,19 @@ def test_what_flies_alone_is_flown_with_two_ranks_too(program, tmp_path):
         assert db.execute(rows).fetchall() == [("20", 3), ("measured", 3)]
 
 
+@pytest.mark.skipif(shutil.which("mpirun") is None, reason="there is no mpirun")
+def test_a_study_in_two_ranks_has_its_report(program, tmp_path):
+    pytest.importorskip("statsmodels")
+    (tmp_path / "s.yaml").write_text(
+        "title: s\nreport: plain\nseed: 1\nreference: a\nset: {timeout: 1.5}\n"
+        "cells: [{name: c, scenario: open}]\nmethods: [{name: a, trials: 3}]\n"
+    )
+    ranks = in_two_ranks(program, tmp_path, "study", "run", "s.yaml", "--out", "out")
+    assert ranks.returncode == 0, ranks.stderr
+    assert ranks.stdout.count("succeeded 0 of 3") == 1
+    assert (tmp_path / "out" / "report.html").exists() and "Report: out/report.html" in ranks.stdout
+
+
 def in_two_ranks(program, folder, *arguments):
     ranks = subprocess.run(
         ["mpirun", "--oversubscribe", "-n", "2", program, *arguments],

@@ -38,11 +38,6 @@ def test_the_median_of_repeats_with_failures():
     assert compare.middle([1.0, 3.0]) == 2.0
 
 
-def test_the_slope_of_a_power_law():
-    assert compare.slope({n: 0.01 * n**1.5 for n in (10, 20, 40)}) == pytest.approx(1.5)
-    assert np.isnan(compare.slope({20: 1.0}))
-
-
 @pytest.fixture(scope="module")
 def table_path(run, tmp_path_factory):
     path = tmp_path_factory.mktemp("compare") / "compare.db"

@@ -173,7 +173,7 @@ def test_what_is_no_record_is_refused(run, record_path, tmp_path, command, suffi
         (text, "not a record"),
         (old, "version 1"),
         (table, "not a record"),
-        (trials, "it holds a touchdown trials, not the record of one flight"),
+        (trials, "its format is 'touchdown trials'"),
     ):
         done = run(command, "--from", f"{path}{suffix}", *(("--allow-debug",) * (not suffix)))
         assert done.returncode == 2 and done.stdout == ""

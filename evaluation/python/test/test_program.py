@@ -98,7 +98,7 @@ def test_help_lists_what_is_built(run):
             ["--backend", "landing"],
         ),
         (("compare", "--problems", "0"), ["--problems", "0 is not in [1, 100000]"]),
-        (("compare", "--problems", "1e3"), ["--problems", "1e3 is not a whole number in [1, 100000]"]),
+        (("compare", "--problems", "1e3"), ["--problems", "1e3 is no whole number in [1, 100000]"]),
         (("compare", "--gap", "small"), ["--gap", "small is not a number in [1e-09, 1]"]),
         (("compare", "--forest", "B"), ["touchdown compare has no option --forest"]),
         (("study", "replan", "--max-works", "9"), ["touchdown study replan has no option --max-works"]),

@@ -189,9 +189,22 @@ def test_the_summary_has_what_the_page_shows(flown):
     for name in ("parts", "comparisons", "outcomes", "failures"):
         csv = pd.read_csv(out / "csv" / f"{name}.csv")
         assert len(summary[name]) == len(csv) and set(csv.columns) <= set(summary[name][0])
-    # An error of the last 5 s is told of styles that follow the pad first.
-    errors = {p["method"]: p["mean_abs_error_x_median_m"] for p in summary["parts"] if p["cell"] == "case_1_wind_4"}
-    assert errors["planned"] is None
+
+
+def test_an_error_of_the_last_seconds_is_told_where_the_style_follows_first(flown, tmp_path):
+    for name in ("study.db", "study.json"):
+        (tmp_path / name).write_bytes((flown[0] / "out" / name).read_bytes())
+    with sqlite3.connect(tmp_path / "study.db") as db:
+        db.execute(
+            "UPDATE trial SET landed = 1, outcome = 'landed', time_to_land_s = 4, touchdown_error_m = 0.1, "
+            "mean_abs_error_x_m = 0.25, mean_abs_error_y_m = 0.5"
+        )
+    write_report(Study(str(tmp_path)))
+    parts = json.loads((tmp_path / "summary.json").read_text())["parts"]
+    told = {(p["cell"], p["method"]): p["mean_abs_error_x_median_m"] for p in parts}
+    assert told["case_1_wind_4", "vertical"] == 0.25 and told["case_1_wind_4", "planned"] is None
+    rows = [line for line in (tmp_path / "report.md").read_text().splitlines() if "wind 4 m/s, mean error in x" in line]
+    assert [cell.strip() for cell in rows[0].split("|")[3:5]] == ["0.250 (n 2)", "–"]
 
 
 def test_another_form_of_the_study_is_refused(flown, run):

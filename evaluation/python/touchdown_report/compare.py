@@ -20,6 +20,7 @@ SUPPORTED_VERSION = "3"
 # A line style for each backend: colour alone does not tell ten of them apart.
 COLOURS = ["#000000", "#E69F00", "#56B4E9", "#009E73", "#D55E00", "#0072B2", "#CC79A7", "#999999"]
 DASHES = ["-", "--", ":", "-."]
+LEAST = 5  # problems of a size whose median is drawn
 # Beside the axes: curves fill all of them.
 LEGEND = {"fontsize": 7.5, "loc": "center left", "bbox_to_anchor": (1.0, 0.5), "frameon": False}
 
@@ -42,7 +43,7 @@ class Comparison:
         (self.timed,) = db.execute(f"SELECT COUNT(*) FROM problem WHERE {rated}").fetchone()
         self.problems, self.free, self.hard, self.explicit, self.flights = db.execute(
             "SELECT COUNT(*), SUM(free_arrival), SUM(hard_limits), SUM(explicit_endpoint), "
-            "COUNT(DISTINCT flight) FROM problem"
+            "(SELECT COUNT(*) FROM flight) FROM problem"
         ).fetchone()
         self._gap = db.execute(
             "SELECT problem, backend, CASE reached WHEN 1 THEN time_cpu_ms END "
@@ -67,7 +68,7 @@ class Comparison:
         for size, name, ms in self._tight:
             if name == backend:
                 times.setdefault(size, []).append(ms)
-        return {size: float(np.median(times[size])) for size in sorted(times)}
+        return {size: float(np.median(times[size])) for size in sorted(times) if len(times[size]) >= LEAST}
 
 
 def middle(values):
@@ -100,14 +101,6 @@ def profile(times, count):
 def ecdf(times, count):
     """{backend: (milliseconds, fraction of `count` problems solved by then)}."""
     return {backend: steps(list(runs.values()), count) for backend, runs in times.items()}
-
-
-def slope(per_iteration):
-    """Least-squares slope of log(ms) over log(points); NaN for fewer than two sizes."""
-    if len(per_iteration) < 2:
-        return float("nan")
-    sizes, times = np.array(list(per_iteration.items()), dtype=float).T
-    return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
 
 
 def looks(backends):
@@ -167,13 +160,14 @@ def draw_scaling(axes, beside, comparison, styles):
             marker="o",
             ms=3,
             lw=1.4,
-            label=f"{backend}: slope {slope(known):.2f}",
+            label=backend,
             **styles[backend],
         )
     axes.set_xscale("log")
     axes.set_yscale("log")
-    sizes = [n for n in (15, 20, 30, 50, 80, 120) if axes.get_xlim()[0] <= n <= axes.get_xlim()[1]]
-    axes.set_xticks(sizes, [str(n) for n in sizes])
+    sizes = sorted({n for backend in comparison.backends for n in comparison.per_iteration(backend)})
+    shown = sizes[:: max(1, len(sizes) // 8)]
+    axes.set_xticks(shown, [str(n) for n in shown])
     axes.minorticks_off()
     axes.set_xlabel("control points")
     axes.set_ylabel("thread CPU time per iteration [ms]")
@@ -188,8 +182,8 @@ def headline(comparison):
     source = word["from"] or f"drawn flights, seed {word['seed']}"
     return (
         f"{comparison.problems} problems as {comparison.flights} flights posed them ({source}): free arrival "
-        f"{comparison.free}, {'hard' if comparison.hard else 'soft'} limits, "
-        f"{'explicit' if comparison.explicit else 'eliminated'} end; {comparison.timed} timed",
+        f"{comparison.free}, hard limits {comparison.hard}, "
+        f"explicit end {comparison.explicit}; {comparison.timed} timed",
         f"solved: within {float(word['gap']):.0e} of the best known cost and feasible, judged "
         f"outside the solvers  ·  {made_with(word)}",
     )

@@ -90,8 +90,10 @@ class Study:
 
     def follows_before_it_sinks(self, cell, method):
         """Whether the style keeps above the pad before it descends."""
-        descents = {(p["cell"], p["method"]): p.get("descent") for p in self.plan["parts"]}
-        return descents[cell, method] == "vertical"
+        part = next(p for p in self.plan["parts"] if (p["cell"], p["method"]) == (cell, method))
+        if "descent" not in part:
+            raise StudyError(f"{self.folder}/study.json: it lacks the descent of its parts; fly the study anew.")
+        return part["descent"] == "vertical"
 
     @property
     def reference(self):

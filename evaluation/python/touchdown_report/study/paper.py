@@ -83,6 +83,12 @@ def _of_some(study, cell):
     return "" if landed.all() else f", of the {landed.sum()} of {len(landed)} that landed"
 
 
+def _verdict(study, cell, column, error):
+    if not study.follows_before_it_sinks(cell, "vertical"):
+        return "not comparable"
+    return _below(_estimate(study, cell, "vertical", column), error) + _of_some(study, cell)
+
+
 def number_rows(study):
     """Every number of the paper beside ours: rows of COLUMNS."""
     rows = []
@@ -122,7 +128,7 @@ def number_rows(study):
                         f"Table 1, wind {wind} m/s, mean error in {axis} [m], case {case}",
                         f"{error:.3f}",
                         *_measured(study, cell, column, 3),
-                        _below(_estimate(study, cell, "vertical", column), error) + _of_some(study, cell),
+                        _verdict(study, cell, column, error),
                     ]
                 )
     return rows

@@ -194,10 +194,23 @@ def _how(study, document):
     )
 
 
+def _selected(study):
+    """What of the study was asked for, where it is not the whole."""
+    asked = study.plan.get("selection")
+    if not asked:
+        return ""
+    words = [f"{name}: {', '.join(asked[name])}" for name in ("cells", "methods") if asked[name]]
+    words += [f"trials of each: {asked['trials']}"] if asked["trials"] else []
+    return (
+        f" This is a part of the study ({'; '.join(words)}). Its p-values after Holm are adjusted over this part alone."
+    )
+
+
 def _headline(study, document, parts):
     document.text(
         f"{len(study.trials)} trials, {len(study.cells())} cells, {len(study.methods())} methods."
         + (" This is the short form: few seeds, wide intervals." if study.plan["quick"] else "")
+        + _selected(study)
     )
     document.text(
         "Unless a cell or a method sets it otherwise (`own_state`, `plant.*`, `sensing`), the vehicle knows its own state, its model is the "
