@@ -30,6 +30,9 @@ using solvers::Stop;
 
 constexpr double kSolveLimit = 5.0;  // wall time of any one solve [s]
 constexpr int kIterations = 3000;    // of any one solve
+// Tolerances below rounding never end some solves: one that gains nothing in so many evaluations is at its end.
+constexpr int kIdleEvaluations = 200;
+constexpr double kGain = 1e-13;  // of the cost
 // What tolerances are set to where a backend's own test is to mean something, and where it shall
 // not end a solve before the test from outside does.
 constexpr double kTight = 1e-10;
@@ -76,6 +79,21 @@ class StructureKey final : public SolverBackend {
 std::ptrdiff_t PlaceOf(const solvers::BackendRegistry& registry, const std::string& name) {
   const auto named = [&](const solvers::BackendEntry& entry) { return entry.name == name; };
   return std::find_if(registry.begin(), registry.end(), named) - registry.begin();
+}
+
+Stop UntilIdle() {
+  Stop stop = Limited();
+  stop.callback = [best = std::numeric_limits<double>::infinity(),
+                   idle = 0](const solvers::StopQuery& query) mutable {
+    const bool feasible = query.max_violation <= solvers::Evaluator::kFeasible;
+    if (!std::isfinite(best) && !feasible) return false;
+    if (feasible && !(query.cost >= best - kGain * std::abs(best))) {
+      best = query.cost;
+      idle = 0;
+    }
+    return ++idle > kIdleEvaluations;
+  };
+  return stop;
 }
 
 void CheckNames(const std::vector<std::string>& names, const solvers::BackendRegistry& registry) {
@@ -257,7 +275,7 @@ void SolverBench::FindReference(ProblemRow* row) {
   for (Contestant* who : Shuffled(SolvePhase::kTight, 0)) {
     if (out_.contains(who->name) && !IsReferee(who->name)) continue;
     ++row->reference_solves;
-    SolveRow solve = Solve(who, SolvePhase::kTight, Limited());
+    SolveRow solve = Solve(who, SolvePhase::kTight, UntilIdle());
     if (solve.reached && !(solve.cost >= row->reference_cost)) {
       row->reference_cost = solve.cost;
       row->reference_backend = solve.backend;

@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 Json ReadPlan(const std::string& folder) {
   const std::string path = folder + "/study.json";
   std::ifstream stream(path);
+  if (!stream) throw BadInput(fmt::format("{}: it cannot be read.", path));
   Json plan = Json::parse(stream, nullptr, false);
   if (!plan.is_object() || !plan.contains("parts")) {
     throw BadInput(fmt::format("{}: it is not a study's plan.", path));
@@ -136,7 +137,9 @@ std::string PartText(const PartRates& part) {
 StudyRates ReadStudyRates(const std::string& folder) {
   const Json plan = ReadPlan(folder);
   try {
-    return Gather(folder, plan);
+    StudyRates rates = Gather(folder, plan);
+    if (rates.trials > 0) return rates;
+    throw BadInput(fmt::format("{}: the study holds no trial.", StudyTablePath(folder)));
   } catch (const nlohmann::json::exception& error) {
     throw BadInput(
         fmt::format("{}/study.json: it is not a study's plan ({}).", folder, error.what()));

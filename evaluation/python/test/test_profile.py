@@ -124,7 +124,7 @@ def test_a_recorded_step_is_explained(run, record_path, tmp_path):
         ).fetchone()
     done = run("plan", "--from", f"{record_path}:{step}", "--picture", "p.png", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    for words in ("attempt 1", "round 2", "cost by term", "certificate passed", "speed bound"):
+    for words in ("attempt 1", "round 2", "cost by term", "certificate passed", "bounds: speed", "body rate"):
         assert words in done.stdout
     assert "the recorded answer, bit for bit" in done.stdout
     assert [path.name for path in tmp_path.iterdir()] == ["p.png"]

@@ -102,7 +102,7 @@ def test_help_lists_what_is_built(run):
         (("compare", "--gap", "small"), ["--gap", "small is not a number in [1e-09, 1]"]),
         (("compare", "--forest", "B"), ["touchdown compare has no option --forest"]),
         (("study", "replan", "--max-works", "9"), ["touchdown study replan has no option --max-works"]),
-        (("list", "terms", "now"), ["touchdown list terms takes no now"]),
+        (("list", "terms", "now"), ["touchdown list takes no now"]),
         (("compare", "--set", "terms.speed_limit.weight=heavy"), ["terms.speed_limit.weight", "heavy"]),
         (("compare", "--set", "limits.speed=fast"), ["limits.speed", "fast"]),
         (("compare", "--set", "terms.nothing.weight=3"), ["nothing", "speed_limit"]),
