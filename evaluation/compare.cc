@@ -35,6 +35,7 @@ CompareResult RunCompare(const CompareOptions& options, const Registries& regist
                                   ? DrawnFlights(options.seed, options.set, registries)
                                   : FlightsOf(options.from, options.set, registries);
   CompareResult result;
+  result.flights_there = source.flights;
   result.every = options.every.value_or(source.flights == 1 ? 1 : kEveryOfSeveral);
   const int all = source.flights == 1 ? std::numeric_limits<int>::max() : kOfSeveral;
   const int most = options.problems.value_or(all);

@@ -14,10 +14,10 @@
 namespace touchdown::evaluation {
 
 struct CompareOptions {
-  std::string from;                  ///< a record, or a file of trials; empty: flights are drawn
-  std::uint64_t seed = 1;            ///< of drawn flights
-  std::vector<std::string> set;      ///< "solver.limits=hard": keys of the scenarios of all flights
-  std::optional<int> problems;  ///< most; none: all of one flight, 20 of several
+  std::string from;              ///< a record, or a file of trials; empty: flights are drawn
+  std::uint64_t seed = 1;        ///< of drawn flights
+  std::vector<std::string> set;  ///< "solver.limits=hard": keys of the scenarios of all flights
+  std::optional<int> problems;   ///< most; none: all of one flight, 20 of several
   /// One of so many solves that are asked for is a problem. Default: each, of one flight; of several one in
   /// 25, so that hundreds of problems come from dozens of flights.
   std::optional<int> every;
@@ -26,6 +26,7 @@ struct CompareOptions {
 
 struct CompareResult : BenchResult {
   std::vector<std::string> flights;  ///< that posed the problems: the commands that fly them
+  std::optional<int> flights_there;  ///< in the file; none: they are drawn without end
   int every = 1;
   int asked = 0;  ///< solves that the flights asked for, until there were enough problems
   /// Of flights that could not be flown, or were others than their file holds.

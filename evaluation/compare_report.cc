@@ -60,10 +60,12 @@ std::string TableRow(const BackendSummary& s, int all, bool interval) {
 }
 
 std::string Table(const std::vector<BackendSummary>& summaries, int all, bool interval) {
-  std::string text =
+  std::string text = fmt::format("  {:<42}{:>36}{:>12}{:>30}  {}\n", "", "time to the gap [ms]", "",
+                                 "tight solves", "wall time of the solves to the gap");
+  text +=
       fmt::format("  {:<15}{:>27}{:>9}{:>9}{:>9}{:>9}{:>6}{:>6}{:>10}{:>10}{:>10}  {}\n", "backend",
-                  interval ? "solved, 95 % interval" : "solved", "median", "p95", "p99", "max ms",
-                  "it", "eval", "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
+                  interval ? "reached, 95 % interval" : "reached", "median", "p95", "p99", "max",
+                  "iter", "eval", "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
   for (const BackendSummary& summary : summaries) text += TableRow(summary, all, interval);
   return text;
 }
@@ -95,6 +97,13 @@ struct ProblemsSummary {
   Quantiles points, pairs;  ///< pairs: of those that have any
   Quantiles duration_s;
 };
+
+std::string FlightsText(const CompareResult& result) {
+  const std::size_t flown = result.flights.size();
+  return result.flights_there && *result.flights_there > static_cast<int>(flown)
+             ? fmt::format("the first {} of {} flights", flown, *result.flights_there)
+             : fmt::format("{} flights", flown);
+}
 
 // One word, unless the flights differ.
 std::string Kinds(const char* one, int of_one, const char* other, int of_other) {
@@ -137,7 +146,7 @@ std::string CompareProblemsText(const CompareResult& result) {
       "{} problems as {} posed them, {} of {} solves{}\n"
       "  arrival: free {}, fixed {}; limits: {}; end: {}; in the median {:.0f} control points, "
       "T {:.2f} s; with pairs {}, {:.0f} in the median\n",
-      of.all, one ? result.flights.front() : fmt::format("{} flights", result.flights.size()),
+      of.all, one ? result.flights.front() : FlightsText(result),
       result.every == 1 ? "all" : fmt::format("one in {}", result.every), result.asked,
       one ? "" : fmt::format(" (from `{}` on)", result.flights.front()), of.free_arrival,
       of.all - of.free_arrival, Kinds("soft", of.all - of.hard_limits, "hard", of.hard_limits),
@@ -238,7 +247,8 @@ Json BackendsJson(const CompareResult& result) {
 std::string CompareText(const CompareOptions& options, const CompareResult& result) {
   std::string text = fmt::format(
       "Thread CPU time to within {:.0e} of the best known cost, feasible; judged outside the "
-      "solvers\n{}\n",
+      "solvers. Medians "
+      "at another gap are over other problems\n{}\n",
       options.bench.gap, BuildLine());
   const std::vector<BackendSummary> summaries = Summarise(result);
   text += CompareProblemsText(result) +
@@ -267,6 +277,7 @@ Json CompareJson(const CompareOptions& options, const CompareResult& result,
   json["backends"] = BackendsJson(result);
   json["refused"] = RefusalsJson(result.refusals);
   json["machine"] = MachineJson(machine);
+  for (const auto& [key, value] : BuildManifest()) json["build"][key] = value;
   return json;
 }
 

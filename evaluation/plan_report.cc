@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/plan_report.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace touchdown::evaluation {
@@ -125,6 +127,26 @@ std::string TimesText(const planning::StageTimes& times) {
 
 }  // namespace
 
+namespace {
+
+// What was committed before and is flown on: without a newer pair, to the end of its stop.
+std::string CommittedText(const planning::FlightPair& pair) {
+  const planning::UniformBspline& last = pair.Last();
+  const std::string end =
+      fmt::format("until t = {:.3f} s at {} m", last.t_end(), Vector(last.Position(last.t_end())));
+  if (!std::isfinite(pair.t_stop)) return fmt::format("  flown: what was committed, {}\n", end);
+  return fmt::format("  flown: what was committed until t = {:.3f} s, then its stored stop {}\n",
+                     pair.t_stop, end);
+}
+
+std::string RecordedText(const ReplanOutcome& result) {
+  return result.status == planning::ReplanStatus::kPlanned
+             ? fmt::format("{}, cost {:.6g}", planning::ToString(result.status), result.cost)
+             : std::string(planning::ToString(result.status));
+}
+
+}  // namespace
+
 std::string PlanText(const SolvedStep& solved) {
   std::string text = fmt::format("{}, backend {}: ", solved.source, solved.scenario.solver.backend);
   text += QuestionText(solved);
@@ -142,9 +164,13 @@ std::string PlanText(const SolvedStep& solved) {
     text += fmt::format("  to be seen next: the cell at {} m\n", Vector(*solved.unseen_W));
   }
   if (out.from_odometry) text += "  it starts at the vehicle: tracking had lost the reference\n";
-  text += fmt::format("  flown from t = {:.3f} s to {:.3f} s: {} control points every {:.4f} s\n",
-                      out.curve.t0(), out.curve.t_end(), out.curve.control_points().cols(),
-                      out.curve.interval());
+  if (out.certificate.earlier) {
+    text += CommittedText(solved.recorded.before.next);
+  } else {
+    text += fmt::format("  flown from t = {:.3f} s to {:.3f} s: {} control points every {:.4f} s\n",
+                        out.curve.t0(), out.curve.t_end(), out.curve.control_points().cols(),
+                        out.curve.interval());
+  }
   text += CertificateText(out.certificate, solved.limits, "  ");
   if (out.work > 0) {
     text +=
@@ -153,9 +179,8 @@ std::string PlanText(const SolvedStep& solved) {
   text += TimesText(solved.times);
   if (solved.same) {
     text += *solved.same ? "  the recorded answer, bit for bit\n"
-                         : fmt::format("  not the recorded answer, which was: {}, cost {:.6g}\n",
-                                       planning::ToString(solved.recorded.result.status),
-                                       solved.recorded.result.cost);
+                         : fmt::format("  not the recorded answer, which was: {}\n",
+                                       RecordedText(solved.recorded.result));
   }
   return text;
 }

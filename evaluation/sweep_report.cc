@@ -8,9 +8,11 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "touchdown/evaluation/degrees.h"
 #include "touchdown/evaluation/statistics.h"
+#include "touchdown/evaluation/sweep_cells.h"
 #include "touchdown/evaluation/trial_json.h"
 
 namespace touchdown::evaluation {
@@ -153,14 +155,78 @@ Json TrialJson(const SweepRow& row) {
 
 }  // namespace
 
+namespace {
+
+struct FlownCell {
+  std::vector<std::pair<std::string, std::string>> values;
+  CellFigures figures;
+};
+
+// What is varied over listed values is told for each: a rate over all of them means nothing.
+std::vector<FlownCell> FlownCells(const Campaign& campaign, const std::vector<SweepRow>& rows) {
+  const CellPlan plan = PlanCells(campaign);
+  std::vector<CellTally> tallies(plan.cells.size());
+  for (const SweepRow& row : rows) {
+    const int cell = plan.cell_of.at(static_cast<std::size_t>(row.trial.index));
+    tallies.at(static_cast<std::size_t>(cell)).Add(row.result);
+  }
+  std::vector<FlownCell> cells;
+  for (std::size_t i = 0; i < tallies.size(); ++i) {
+    cells.push_back({plan.cells[i].values, tallies[i].Figures()});
+  }
+  return cells;
+}
+
+std::string CellsText(const std::vector<FlownCell>& cells) {
+  std::string text;
+  for (const FlownCell& cell : cells) {
+    std::vector<std::string> values;
+    for (const auto& [key, value] : cell.values) values.push_back(key + "=" + value);
+    const CellFigures& f = cell.figures;
+    text += fmt::format("  {:<40} {} of {}", fmt::format("{}", fmt::join(values, " ")), f.succeeded,
+                        f.trials);
+    if (f.rate) text += fmt::format(" [{:.1f}, {:.1f}] %", 100.0 * f.rate->lo, 100.0 * f.rate->hi);
+    if (f.time_to_land_median_s) {
+      text += fmt::format(", medians of the landed {:.2f} s, {:.3f} m", *f.time_to_land_median_s,
+                          *f.touchdown_error_median_m);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+Json CellsJson(const std::vector<FlownCell>& cells) {
+  Json json = Json::array();
+  for (const FlownCell& cell : cells) {
+    const CellFigures& f = cell.figures;
+    Json& entry = json.emplace_back();
+    for (const auto& [key, value] : cell.values) entry["values"][key] = value;
+    entry["trials"] = f.trials;
+    entry["succeeded"] = f.succeeded;
+    entry["interval_95"] = f.rate ? Json({f.rate->lo, f.rate->hi}) : Json();
+    entry["time_to_land_median_s"] =
+        f.time_to_land_median_s ? Json(*f.time_to_land_median_s) : Json();
+    entry["touchdown_error_median_m"] =
+        f.touchdown_error_median_m ? Json(*f.touchdown_error_median_m) : Json();
+  }
+  return json;
+}
+
+}  // namespace
+
 std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& rows) {
   const int n = static_cast<int>(rows.size());
   const int k = Count(rows, &TrialResult::succeeded);
   const Interval interval = ClopperPearson(k, n);
+  const std::vector<FlownCell> cells = FlownCells(campaign, rows);
+  const std::string rate = cells.size() > 1
+                               ? "95 % Clopper-Pearson of each value"
+                               : fmt::format("95 % Clopper-Pearson [{:.1f} %, {:.1f} %]",
+                                             100.0 * interval.lo, 100.0 * interval.hi);
   std::string text =
-      fmt::format("{}: {} of {} {}, 95 % Clopper-Pearson [{:.1f} %, {:.1f} %], sweep seed {}\n",
-                  rows.front().trial.scenario.name, k, n, SuccessWord(rows), 100.0 * interval.lo,
-                  100.0 * interval.hi, campaign.seed);
+      fmt::format("{}: {} of {} {}, {}, sweep seed {}\n", rows.front().trial.scenario.name, k, n,
+                  SuccessWord(rows), rate, campaign.seed);
+  if (cells.size() > 1) text += CellsText(cells);
   text += fmt::format("  {:<33}{:>10}{:>10}{:>10}{:>10}{:>6}\n", "", "median", "p95", "min", "max",
                       "n");
   for (const Column& column : Columns(rows)) {
@@ -209,7 +275,9 @@ Json SweepJson(const Campaign& campaign, const std::vector<SweepRow>& rows) {
   json["trials"] = n;
   json["landed"] = k;
   json["landed_fraction"] = static_cast<double>(k) / n;
-  json["landed_interval_95"] = {interval.lo, interval.hi};
+  const std::vector<FlownCell> cells = FlownCells(campaign, rows);
+  json["landed_interval_95"] = cells.size() > 1 ? Json() : Json({interval.lo, interval.hi});
+  json["cells"] = CellsJson(cells);
   json["succeeded"] = Count(rows, &TrialResult::succeeded);
   Json summary = Json::object();
   for (const Column& column : Columns(rows)) {

@@ -64,7 +64,7 @@ const char* Explain(ReplanStatus status) {
     case ReplanStatus::kKept:
       return "The committed curve is still safe and goes on.";
     case ReplanStatus::kBraking:
-      return "The vehicle brakes to rest; the certificate says what of that is proven.";
+      return "The vehicle brakes to rest.";
     case ReplanStatus::kClimbing:
       return "The vehicle climbs to rest along a certified curve.";
     case ReplanStatus::kEscaping:

@@ -126,7 +126,9 @@ TEST_F(Bench, AStartWithinTheGapIsNotTimed) {
   SolverBench bench({.backends = {"banded"}, .gap = 1.0, .repeats = 2}, backends_, terms_);
   Solve(&bench, 1);
   planning::LandingProblem problem(16, {});
-  problem.SetBoundary({{0.0, 0.0, 1.5}, {}, {}}, 0.0, pad_, {0.0, 0.3, 0.3, -1.0e3});
+  planning::SplineState start;
+  start.p = {0.0, 0.0, 1.5};
+  problem.SetBoundary(start, 0.0, pad_, {0.0, 0.3, 0.3, -1.0e3});
   problem.SetDuration(12.0);
   auto backend = solvers::MakeBackend(backends_, "banded");
   backend->Prepare(problem.view());
