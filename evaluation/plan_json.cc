@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/plan_report.h"
 
+#include <cmath>
+
 #include "touchdown/evaluation/scenario_schema.h"
 
 namespace touchdown::evaluation {
@@ -148,6 +150,10 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   Json& paths = json["guide_paths"] = Json::array();
   for (const auto& path : solved.outcome.guide_paths) paths.push_back(PathJson(path));
   json["result"] = OutcomeJson(solved.outcome);
+  const planning::FlightPair& committed = solved.recorded.before.next;
+  const bool stops = solved.outcome.certificate.earlier && std::isfinite(committed.t_stop);
+  json["result"]["stop"] =
+      stops ? Json({{"t_stop", committed.t_stop}, {"curve", CurveJson(committed.stop)}}) : Json();
   json["unseen_W"] = solved.unseen_W ? VectorJson(*solved.unseen_W) : Json();
   json["same_as_record"] = solved.same ? Json(*solved.same) : Json();
   Json& stages = json["wall_clock"]["stages"] = Json::object();

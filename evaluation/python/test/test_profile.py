@@ -117,6 +117,20 @@ def test_another_backend_plans_on_the_same_inputs(run, record_path):
     assert document["same_as_record"]["same"] < document["same_as_record"]["compared"]
 
 
+def test_a_step_that_flies_a_stop_tells_where_it_ends(run, record_path, tmp_path):
+    with sqlite3.connect(record_path) as db:
+        (step,) = db.execute("SELECT id FROM plan WHERE earlier ORDER BY id LIMIT 1").fetchone()
+    done = run("plan", "--from", f"{record_path}:{step}", "--picture", "p.png", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "then its stored stop until t = " in done.stdout and "committed before: proven then" in done.stdout
+    assert "flown from" not in done.stdout and (tmp_path / "p.png").exists()
+    document = json.loads(run("plan", "--from", f"{record_path}:{step}", "--json").stdout)
+    assert document["result"]["certificate"]["speed_bound_mps"] is None
+    before, stop = plan.flown(document)
+    assert before[0][-1] <= document["result"]["stop"]["t_stop"] <= stop[0][-1]
+    assert stop[2][-1] == pytest.approx(0.0, abs=1e-6), "it ends at rest"
+
+
 def test_a_recorded_step_is_explained(run, record_path, tmp_path):
     with sqlite3.connect(record_path) as db:
         step, pairs = db.execute(
@@ -134,7 +148,7 @@ def test_a_recorded_step_is_explained(run, record_path, tmp_path):
     attempt = document["attempts"][-1]
     best = attempt["rounds"][attempt["best"]]
     assert len(best["pairs"]) == pairs and best["blocked"] == []
-    assert best["curve"] == document["result"]["curve"]
+    assert best["curve"] == document["result"]["curve"] and document["result"]["stop"] is None
     assert best["trace"][-1]["cost"] == pytest.approx(best["cost"])
     assert list(best["cost_by_term"]) == document["terms"]
     assert document["wall_clock"]["stages"]["total"]["cpu_ms"] > 0.0

@@ -75,6 +75,22 @@ def draw_cells(axes, plan, down):
     axes.add_collection(PatchCollection(squares, facecolor="#DDD8CF", edgecolor="none"))
 
 
+def flown(plan):
+    """What is flown without a newer plan, as pieces (t, points, speed, acceleration): the curve, or what was
+    committed before until its stored stop begins, and the stop."""
+    result = plan["result"]
+    stop = result.get("stop")
+    pieces = []
+    for curve, until in [(result["curve"], stop["t_stop"] if stop else np.inf)] + (
+        [(stop["curve"], np.inf)] if stop else []
+    ):
+        t, speed, acceleration = bspline.derivative_norms(curve["control_points"], curve["h"], 8)
+        keep = curve["t0"] + t <= until
+        points = bspline.sample(curve["control_points"], 8)
+        pieces.append((curve["t0"] + t[keep], points[keep], speed[keep], acceleration[keep]))
+    return pieces
+
+
 def draw_view(axes, plan, down):
     draw_cells(axes, plan, down)
     for path in plan["guide_paths"]:
@@ -82,7 +98,7 @@ def draw_view(axes, plan, down):
         axes.plot(points[:, 0], points[:, down], color=GUIDE, lw=1.2, ls=":", label="guide path")
     old = bspline.sample(plan["input"]["committed"]["control_points"])
     axes.plot(old[:, 0], old[:, down], color=OLD, lw=2.0, ls="--", label="committed before")
-    new = bspline.sample(plan["result"]["curve"]["control_points"])
+    new = np.vstack([points for _, points, _, _ in flown(plan)])
     axes.plot(new[:, 0], new[:, down], color=NEW, lw=2.2, label=plan["result"]["status"])
     solve = best_round(plan)
     if solve and solve["pairs"]:
@@ -106,10 +122,10 @@ def draw_view(axes, plan, down):
 
 
 def draw_profiles(axes, plan):
-    curve, limits = plan["result"]["curve"], plan["input"]["limits"]
-    t, speed, acceleration = bspline.derivative_norms(curve["control_points"], curve["h"])
-    axes.plot(curve["t0"] + t, speed, color=NEW, label="speed [m/s]")
-    axes.plot(curve["t0"] + t, acceleration, color=PAIR, label="acceleration [m/s²]")
+    limits = plan["input"]["limits"]
+    t, _, speed, acceleration = (np.concatenate(column) for column in zip(*flown(plan)))
+    axes.plot(t, speed, color=NEW, label="speed [m/s]")
+    axes.plot(t, acceleration, color=PAIR, label="acceleration [m/s²]")
     axes.axhline(limits["speed_mps"], color=NEW, lw=0.8, ls="--")
     axes.axhline(limits["acceleration_mps2"], color=PAIR, lw=0.8, ls="--")
     axes.set_ylim(bottom=0.0)
