@@ -91,6 +91,25 @@ TEST(LandingStateMachine, TrackingHoldsAndRecovers) {
   EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kRecovered);
 }
 
+// Committed, a descent goes on without a sighting. So both the command and the vehicle have to be low, and the gate open.
+TEST(LandingStateMachine, CommitsWhereCommandAndVehicleAreLowAndTheGateIsOpen) {
+  const MissionParameters parameters;
+  const auto committed = [&](double vehicle, bool sees) {
+    Mission mission;
+    mission.DescendTo(0.4);
+    mission.height_follows = false;
+    for (int k = 0; k < 200; ++k) {
+      mission.in.height = std::max(vehicle, mission.outputs.foot_height);
+      if (!sees) mission.in.tag_age = 10.0;
+      mission.Tick([](MissionInputs&) {});
+    }
+    return mission.state.committed;
+  };
+  EXPECT_TRUE(committed(0.0, true));
+  EXPECT_FALSE(committed(parameters.commit_height + 0.05, true)) << "the vehicle lags above it";
+  EXPECT_FALSE(committed(0.0, false)) << "the gate is closed";
+}
+
 TEST(LandingStateMachine, TheCommandWaitsForAVehicleThatLags) {
   Mission mission;
   mission.DescendTo(0.8);
