@@ -14,36 +14,28 @@ Rule::Rule(std::shared_ptr<const CLI::Validator> validator) : validator_(std::mo
 
 namespace {
 
-template <class Whole>
-Rule WholeIn(const char* kind, Whole low, Whole high) {
-  const auto check = [low, high](const std::string& text) {
-    Whole value = 0;
-    const bool whole = CLI::detail::lexical_cast(text, value);
-    if (whole && value >= low && value <= high) return std::string();
-    return fmt::format("{} is {} [{}, {}]", text, whole ? "not in" : "no whole number in", low,
-                       high);
+template <class Number>
+Rule NumberIn(const char* type, const char* kind, Number low, Number high) {
+  const std::string range = fmt::format("[{}, {}]", low, high);
+  const auto check = [=](const std::string& text) {
+    Number value = 0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    if (number && value >= low && value <= high) return std::string();
+    return fmt::format("{} is {} {}", text, number ? "not in" : kind, range);
   };
   return Rule(
-      std::make_shared<CLI::Validator>(check, fmt::format("{} in [{} - {}]", kind, low, high)));
+      std::make_shared<CLI::Validator>(check, fmt::format("{} in [{} - {}]", type, low, high)));
 }
 
 }  // namespace
 
-Rule Range(int low, int high) { return WholeIn("INT", low, high); }
+Rule Range(int low, int high) { return NumberIn("INT", "no whole number in", low, high); }
 
-Rule Range(std::uint64_t low, std::uint64_t high) { return WholeIn("UINT", low, high); }
-
-Rule Range(double low, double high) {
-  const std::string range = fmt::format("[{:g} - {:g}]", low, high);
-  const auto check = [low, high](const std::string& text) {
-    double value = 0.0;
-    const bool number = CLI::detail::lexical_cast(text, value);
-    if (number && value >= low && value <= high) return std::string();
-    return fmt::format("{} is {} [{:g}, {:g}]", text, number ? "not in" : "not a number in", low,
-                       high);
-  };
-  return Rule(std::make_shared<CLI::Validator>(check, "FLOAT in " + range));
+Rule Range(std::uint64_t low, std::uint64_t high) {
+  return NumberIn("UINT", "no whole number in", low, high);
 }
+
+Rule Range(double low, double high) { return NumberIn("FLOAT", "not a number in", low, high); }
 
 Rule OneOf(const std::vector<std::string>& words) {
   return Rule(std::make_shared<CLI::Validator>(CLI::IsMember(words)));

@@ -14,6 +14,7 @@
 #include "touchdown/evaluation/hostile_study.h"
 #include "touchdown/evaluation/record_reader.h"
 #include "touchdown/evaluation/replay.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/evaluation/split.h"
 #include "touchdown/evaluation/sqlite_db.h"
@@ -171,12 +172,6 @@ FlightSource RecordOf(const std::string& path, const std::vector<std::string>& o
           }};
 }
 
-bool HoldsTrials(SqliteDb& db) {
-  SqliteStatement found =
-      db.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'manifest'");
-  return found.Step();
-}
-
 }  // namespace
 
 FlightSource DrawnFlights(std::uint64_t seed, const std::vector<std::string>& overrides,
@@ -196,7 +191,7 @@ FlightSource FlightsOf(const std::string& path, const std::vector<std::string>& 
                        const Registries& registries) {
   try {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
-    if (HoldsTrials(db)) return TrialsOf(db, path, overrides, registries);
+    if (HasManifest(db)) return TrialsOf(db, path, overrides, registries);
   } catch (const SqliteError& error) {
     throw BadInput(fmt::format("{}.", error.what()));
   }

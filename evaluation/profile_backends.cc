@@ -20,7 +20,6 @@ CompareOptions SolvesOf(const BackendsOptions& options, double gap) {
   CompareOptions compare;
   compare.from = options.record;
   compare.set = options.overrides;
-  compare.problems.reset();
   compare.bench.backends = options.backends;
   compare.bench.gap = gap;
   compare.bench.repeats = options.repeats;

@@ -12,6 +12,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/evaluation/table_rows.h"
 #include "touchdown/sim/vehicle_file.h"
@@ -277,9 +278,7 @@ using Meta = std::map<std::string, std::string>;
 
 // Every other file of the program has a manifest.
 void CheckIsRecord(SqliteDb& db) {
-  SqliteStatement other =
-      db.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'manifest'");
-  if (!other.Step()) return;
+  if (!HasManifest(db)) return;
   SqliteStatement format = db.Prepare("SELECT value FROM manifest WHERE key = 'format'");
   throw std::invalid_argument(
       fmt::format("its format is '{}', not that of a record of one flight (land --record)",

@@ -27,6 +27,12 @@ void FillResultFile(SqliteDb& db, const ResultFormat& format, const char* schema
   transaction.Commit();
 }
 
+bool HasManifest(SqliteDb& db) {
+  SqliteStatement found =
+      db.Prepare("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'manifest'");
+  return found.Step();
+}
+
 void WriteResultFile(const std::string& path, const ResultFormat& format, const char* schema,
                      const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill) {
   AtomicFile file(path);

@@ -29,6 +29,9 @@ void AddMachine(const MachineState& machine, ManifestFacts* facts);
 void FillResultFile(SqliteDb& db, const ResultFormat& format, const char* schema,
                     const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
 
+/// The file has that table: it is a result file, and no record of a flight.
+bool HasManifest(SqliteDb& db);
+
 /// Writes a result file, an SQLite file that appears at `path` when it is complete, see FillResultFile.
 /// @throws SqliteError, std::filesystem::filesystem_error
 void WriteResultFile(const std::string& path, const ResultFormat& format, const char* schema,
