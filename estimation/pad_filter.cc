@@ -90,9 +90,8 @@ PadUpdate PadFilter::Insert(const Measurement& measurement) {
 
   if (late) {
     const double newest = (end - 1)->measurement.t;
-    const bool before_buffer =
-        place == begin && begin->before.initialized && begin->before.belief.t > measurement.t;
-    if (measurement.t < newest - options_.max_delay || before_buffer) {
+    const bool older_than_all = place == begin && history_size_ == kHistory;
+    if (measurement.t < newest - options_.max_delay || older_than_all) {
       ++current_.diagnostics.too_old;
       return PadUpdate::kTooOld;
     }
@@ -103,10 +102,6 @@ PadUpdate PadFilter::Insert(const Measurement& measurement) {
   Snapshot state = late ? place->before : current_;
 
   if (history_size_ == kHistory) {
-    if (place == begin) {  // older than all that is kept
-      ++current_.diagnostics.too_old;
-      return PadUpdate::kTooOld;
-    }
     std::move(begin + 1, place, begin);
     --place;
   } else {

@@ -155,8 +155,10 @@ TEST(LandingStateMachine, LargeErrorGoesAround) {
   EXPECT_EQ(mission.outputs.guidance, Guidance::kFollowPad);
   Mission committed;
   committed.DescendTo(0.2);
+  EXPECT_TRUE(committed.outputs.committed);
   committed.in.horizontal_distance = 0.6;
   EXPECT_EQ(committed.RunUntil(MissionMode::kGoAround), TransitionReason::kErrorTooLarge);
+  EXPECT_FALSE(committed.outputs.committed) << "a climb is not committed, low as it is";
 }
 
 TEST(LandingStateMachine, LandingGivesUpWithoutPadOrPlan) {

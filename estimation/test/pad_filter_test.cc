@@ -95,6 +95,23 @@ TEST_P(BothModels, StandingPadWithTagsHasAHeading) {
   EXPECT_NEAR(filter.Estimate(15.0).yaw, 1.0, 0.05);
 }
 
+// What a camera sees of a level pad is seen from a body that leans: the heading is that of the level one.
+TEST_P(BothModels, ALeaningVehicleSeesTheHeadingOfTheLevelPad) {
+  const PadDrive drive = StandingDrive(1.0);
+  std::mt19937_64 random(8);
+  for (const double lean : {0.0, 0.3, 0.6, -0.6}) {
+    VehicleState vehicle = Onlooker(drive, 0.0, 1.5);
+    vehicle.q_WB = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(lean, Eigen::Vector3d(0.6, 0.8, 0.0));
+    PadSighting sighting = Sighting(drive, vehicle, 0.0, 0.0, random);
+    sighting.sigma_p.setConstant(1e-3);
+    sighting.sigma_yaw = 1e-3;
+    PadFilter filter(With(GetParam()));
+    EXPECT_EQ(filter.AddSighting(sighting, vehicle), PadUpdate::kInitialized);
+    EXPECT_NEAR(filter.Estimate(0.0).yaw, 1.0, 1e-9) << lean;
+  }
+}
+
 TEST_P(BothModels, HeadingIsGivenUpAtStandstillAndFoundAgain) {
   const PadDrive drive(
       PadStart(0, 0, 0.8, 0.0), [](double t) { return t < 2.0 || t > 60.0 ? 0.8 : 0.0; },
