@@ -62,20 +62,6 @@ Stop Limited() {
   return stop;
 }
 
-/// Takes every problem, and is asked for nothing but whether it is of one structure.
-class StructureKey final : public SolverBackend {
- public:
-  StructureKey() : SolverBackend("structure", {}) {}
-  solvers::Capabilities capabilities() const override {
-    return {.hard_rows = true, .equality_rows = true, .variable_bounds = true};
-  }
-
- private:
-  void DoPrepare(const solvers::View&) override {}
-  void DoSolve(const solvers::View&, const solvers::WarmStart&, const Stop&, solvers::Evaluator*,
-               solvers::SolverResult*) override {}
-};
-
 std::ptrdiff_t PlaceOf(const solvers::BackendRegistry& registry, const std::string& name) {
   const auto named = [&](const solvers::BackendEntry& entry) { return entry.name == name; };
   return std::find_if(registry.begin(), registry.end(), named) - registry.begin();
@@ -122,7 +108,7 @@ struct SolverBench::Contestant {
 
 /// All backends that can solve the problems of one structure.
 struct SolverBench::Field {
-  std::unique_ptr<SolverBackend> key;
+  solvers::ViewStructure structure;
   std::vector<Contestant> contestants;
   solvers::ViewEvaluation outside;
 };
@@ -198,11 +184,10 @@ void SolverBench::Enter(const solvers::BackendEntry& entry, const solvers::View&
 // First solves pay for pages, caches and lazy set-up; nobody is timed on them.
 SolverBench::Field& SolverBench::FieldFor(const solvers::AskedSolve& asked) {
   for (Field& field : fields_) {
-    if (field.key->PreparedFor(asked.view)) return field;
+    if (field.structure.IsOf(asked.view)) return field;
   }
   Field& field = fields_.emplace_back();
-  field.key = std::make_unique<StructureKey>();
-  field.key->Prepare(asked.view);
+  field.structure = solvers::ViewStructure(asked.view);
   asked.view.Resize(&field.outside);
   for (const solvers::BackendEntry& entry : registry_) Enter(entry, asked.view, &field);
   Stop stop;

@@ -56,62 +56,17 @@ std::string SolverBackend::Refusal(const View& view) const {
   return "";
 }
 
-namespace {
-
-/// Everything of a view's structure that storage, sparsity or a refusal depends on.
-template <class Visit>
-void ForEachStructureNumber(const View& view, Visit&& visit) {
-  const Problem& problem = view.problem();
-  visit(problem.shape().blocks);
-  visit(problem.shape().block_size);
-  visit(problem.shape().free_interval);
-  visit(view.blocks());
-  for (const int block : view.lift().block) visit(block);
-  for (const double coefficient : view.lift().coefficient) visit(coefficient);
-  for (int i = 0; view.bounded() && i < view.num_variables(); ++i) {
-    // Their values may be others in each solve.
-    visit(std::isfinite(view.lower(i)));
-    visit(std::isfinite(view.upper(i)));
-    visit(view.lower(i) == view.upper(i));
-  }
-  visit(problem.num_terms());
-  for (int i = 0; i < problem.num_terms(); ++i) {
-    const TermShape& shape = problem.term(i).shape();
-    visit(shape.window);
-    visit(shape.outputs);
-    visit(shape.max_windows);
-    visit(shape.has_residual);
-    visit(problem.role(i) == Role::kConstraint);
-    visit(problem.term(i).bounds().lo);
-    visit(problem.term(i).bounds().hi);
-  }
-}
-
-bool Matches(const View& view, const std::vector<double>& signature) {
-  std::size_t at = 0;
-  bool same = true;
-  ForEachStructureNumber(view, [&](double number) {
-    same = same && at < signature.size() && signature[at] == number;
-    ++at;
-  });
-  return same && at == signature.size();
-}
-
-}  // namespace
-
 void SolverBackend::Prepare(const View& view) {
   const std::string refusal = Refusal(view);
   if (!refusal.empty()) throw std::invalid_argument(refusal);
-  prepared_.clear();  // what follows may throw with half of it sized
+  prepared_ = {};  // what follows may throw with half of it sized
   evaluator_.Prepare(view);
   check_.Prepare(view);
   if (!measures_gap()) rule_.Prepare(view, &check_);
   inside_.y.resize(view.num_variables());
   if (view.num_variables() > 0) DoPrepare(view);
-  ForEachStructureNumber(view, [this](double number) { prepared_.push_back(number); });
+  prepared_ = ViewStructure(view);
 }
-
-bool SolverBackend::PreparedFor(const View& view) const { return Matches(view, prepared_); }
 
 void SolverBackend::Reserve(const View& view, SolverResult* result) {
   const Problem& problem = view.problem();
@@ -138,7 +93,7 @@ std::string WhatFailed(const Problem& problem, const Evaluation& at) {
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,
                           SolverResult* result) {
   const int n = view.num_variables();
-  if (!PreparedFor(view)) {
+  if (!prepared_.IsOf(view)) {
     throw std::invalid_argument(
         "backend " + name_ +
         ": this view does not have the structure it was prepared for: sizes, "

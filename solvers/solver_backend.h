@@ -4,7 +4,6 @@
 #include <functional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -15,6 +14,7 @@
 #include "touchdown/solvers/solver_result.h"
 #include "touchdown/solvers/stop.h"
 #include "touchdown/solvers/view.h"
+#include "touchdown/solvers/view_structure.h"
 
 namespace touchdown::solvers {
 
@@ -55,9 +55,6 @@ class SolverBackend {
   /// refusal if the backend cannot solve it.
   void Prepare(const View& view);
 
-  /// It was prepared for views of this structure.
-  bool PreparedFor(const View& view) const;
-
   /// Hears of every solve before it is made, in the thread that asks for it, and may solve the same view
   /// with other backends meanwhile. None by default.
   void set_listener(SolveListener listener) { listener_ = std::move(listener); }
@@ -97,7 +94,7 @@ class SolverBackend {
   OptimalityCheck check_;
   GapRule rule_;
   WarmStart inside_{Eigen::VectorXd()};  // a warm start moved into the bounds
-  std::vector<double> prepared_;         // signature of the prepared structure
+  ViewStructure prepared_;
 };
 
 }  // namespace touchdown::solvers
