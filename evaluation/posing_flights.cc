@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/posing_flights.h"
 
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "touchdown/evaluation/campaign_facts.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/hostile_study.h"
+#include "touchdown/evaluation/landing_judge.h"
 #include "touchdown/evaluation/record_reader.h"
 #include "touchdown/evaluation/replay.h"
 #include "touchdown/evaluation/result_file.h"
@@ -94,8 +96,10 @@ std::vector<FlownTrial> FlownTrials(SqliteDb& db) {
   std::vector<FlownTrial> trials;
   SqliteStatement rows = db.Prepare(
       "SELECT planned.trial, planned.seed, replay, outcome, simulated_s FROM planned "
-      "JOIN trial USING(trial) WHERE outcome NOT IN ('error', 'crashed', 'hung') ORDER BY 1");
+      "JOIN trial USING(trial) ORDER BY 1");
   while (rows.Step()) {
+    const std::optional<Outcome> outcome = OutcomeNamed(rows.Text(3));
+    if (outcome && IsLost(*outcome)) continue;
     trials.push_back({static_cast<int>(rows.Integer(0)),
                       static_cast<std::uint64_t>(rows.Integer(1)), rows.Text(2), rows.Text(3),
                       rows.Real(4)});
@@ -189,6 +193,14 @@ FlightSource DrawnFlights(std::uint64_t seed, const std::vector<std::string>& ov
 
 FlightSource FlightsOf(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    throw BadInput(
+        fmt::format("{}: there is no such file; flights are taken from a record, or from the file "
+                    "of a sweep, of a study "
+                    "(study.db in its folder) or of hostile worlds.",
+                    path));
+  }
   try {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
     if (HasManifest(db)) return TrialsOf(db, path, overrides, registries);

@@ -10,6 +10,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/campaign_facts.h"
+#include "touchdown/evaluation/landing_judge.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/study_run.h"
 
@@ -78,8 +79,9 @@ PartRates RatesOf(const std::vector<Row>& rows) {
   return part;
 }
 
-bool IsError(const std::string& outcome) {
-  return outcome == "error" || outcome == "crashed" || outcome == "hung";
+bool IsError(const std::string& name) {
+  const std::optional<Outcome> outcome = OutcomeNamed(name);
+  return outcome && IsLost(*outcome);
 }
 
 std::string OthersText(const PartRates& part) {

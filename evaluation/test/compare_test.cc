@@ -152,7 +152,14 @@ TEST_F(Flights, AnotherFlightThanTheFilesIsNoted) {
 }
 
 TEST_F(Flights, OtherFilesAreRefused) {
-  EXPECT_THROW(FlightsOf(path_, {}, registries_), BadInput);
+  for (const std::string& none : {path_, testing::TempDir()}) {
+    try {
+      FlightsOf(none, {}, registries_);
+      FAIL() << none;
+    } catch (const BadInput& refusal) {
+      EXPECT_THAT(refusal.what(), HasSubstr(none + ": there is no such file"));
+    }
+  }
   SqliteDb(path_, SqliteDb::Mode::kCreate).Execute("CREATE TABLE manifest(key TEXT, value TEXT)");
   EXPECT_THROW(FlightsOf(path_, {}, registries_), BadInput);
   EXPECT_THAT(Refusal({.set = {"planning.latency=measured"}}), HasSubstr("depends on the clock"));
