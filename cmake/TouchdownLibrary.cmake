@@ -32,8 +32,13 @@ function(touchdown_compile_options target)
   endif()
   if(TOUCHDOWN_SANITIZE)
     # With its own checks between them GCC no longer sees that numbers are set before they are read.
-    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
-    target_compile_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE} -fno-omit-frame-pointer)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+    endif()
+    # What is found fails the test that finds it.
+    target_compile_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE} -fno-sanitize-recover=all
+                                            -fno-omit-frame-pointer)
+    target_compile_definitions(${target} PUBLIC TOUCHDOWN_SANITIZED)
     target_link_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE})
   endif()
 endfunction()

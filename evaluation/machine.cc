@@ -40,8 +40,7 @@ void PinToCpu(int cpu) {
 }
 
 bool TimingsMeanSomething() {
-#if defined(NDEBUG) && defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+#if defined(NDEBUG) && defined(__OPTIMIZE__) && !defined(TOUCHDOWN_SANITIZED)
   return true;
 #else
   return false;

@@ -8,7 +8,7 @@
 
 #include "touchdown/solvers/allocation_count.h"
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(TOUCHDOWN_SANITIZED)
 
 namespace {
 

@@ -76,6 +76,26 @@ TEST(Certificate, WhatTheAttitudeCannotFollowBreaksALimit) {
   EXPECT_LE(turns.body_rate_bound, 10.0);
 }
 
+TEST(Certificate, LimitsAreKeptUpToTheSlackOfRounding) {
+  OccupancyMap map(SmallMap(0.2));
+  map.MarkFree(Eigen::Vector3d::Zero(), 5.0);
+  const FreeSpace space = SpaceOf(map);
+  const SplineState start{{-2, 0, 0}, {0, 0, 0}, {0, 0, 0}}, end{{2, 1, 0}, {0, 0, 0}, {0, 0, 0}};
+  const UniformBspline curve(HermiteControlPoints(start, end, 12, 4.0), 4.0 / 12, 0.0);
+  const DerivativeBounds bounds = BoundDerivatives(curve);
+  Limits exact;
+  exact.speed = bounds.speed;
+  exact.acceleration = bounds.acceleration;
+  exact.body_rate = bounds.body_rate;
+  for (double Limits::*limit : {&Limits::speed, &Limits::acceleration, &Limits::body_rate}) {
+    for (const double share : {0.5, 2.0}) {
+      Limits limits = exact;
+      limits.*limit -= share * kLimitSlack;
+      EXPECT_EQ(Certify(curve, 0.0, nullptr, &end, limits, space).limits_kept, share < 1.0);
+    }
+  }
+}
+
 TEST(Certificate, AStartInTheInflatedZoneMayOnlyLeave) {
   OccupancyMap map(SmallMap(0.4));
   map.MarkFree(Eigen::Vector3d::Zero(), 5.0);
@@ -108,6 +128,25 @@ TEST(Certificate, AnEscapeProvesNothingFromInsideAnObstacleOrPastAnother) {
   map.SetOccupied({0.85, 0.05, 0.05});
   const UniformBspline between = curve({0.25, 0.05, 0.05}, {0.70, 0.05, 0.05});
   EXPECT_FALSE(Proven(Certify(between, 0.0, nullptr, nullptr, {3.0, 6.0}, space)));
+}
+
+// Away from a wall it may sink as far as the floor, and from below the floor not at all.
+TEST(Certificate, AnEscapeSinksNoLowerThanTheFloor) {
+  OccupancyMap map(SmallMap(0.4));
+  map.MarkFree(Eigen::Vector3d::Zero(), 5.0);
+  for (int i = -20; i < 20; ++i) map.SetOccupied({0.05, 0.05, 0.1 * i + 0.05});  // a post
+  FreeSpace space = SpaceOf(map);
+  const auto escapes = [&](double floor, double height, double change) {
+    space.floor = floor;
+    const SplineState start{{0.35, 0.05, height}, {0, 0, 0}, {0, 0, 0}};
+    const SplineState end{{1.0, 0.05, height + change}, {0, 0, 0}, {0, 0, 0}};
+    const UniformBspline curve(HermiteControlPoints(start, end, 12, 2.0), 2.0 / 12, 0.0);
+    return Certify(curve, 0.0, nullptr, &end, {3.0, 6.0}, space).escaping;
+  };
+  EXPECT_TRUE(escapes(0.3, 0.8, -0.3)) << "above the floor";
+  EXPECT_FALSE(escapes(0.3, 0.8, -0.6)) << "through the floor";
+  EXPECT_TRUE(escapes(0.3, 0.2, 0.2)) << "up from below it";
+  EXPECT_FALSE(escapes(0.3, 0.2, -0.3)) << "down from below it";
 }
 
 TEST(Certificate, WithoutAProvenPairNothingPasses) {
