@@ -36,6 +36,7 @@ CREATE TABLE plan(id INTEGER PRIMARY KEY, t_now REAL, t_start REAL, status TEXT,
   recovering INTEGER, clear INTEGER, clearance REAL, endpoint_required INTEGER, earlier INTEGER,
   escaping INTEGER, stops_in_observed_space INTEGER);
 CREATE TABLE control_point(plan INTEGER, i INTEGER, x REAL, y REAL, z REAL);
+CREATE TABLE term_cost(plan INTEGER, i INTEGER, term TEXT, cost REAL);
 CREATE TABLE guide_path(plan INTEGER, path INTEGER, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE map_window(plan INTEGER PRIMARY KEY, ix INTEGER, iy INTEGER, iz INTEGER);
 CREATE TABLE map_change(plan INTEGER, ix INTEGER, iy INTEGER, iz INTEGER, count INTEGER,
@@ -224,6 +225,7 @@ void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       "INSERT INTO plan VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO control_point VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement cost = db.Prepare("INSERT INTO term_cost VALUES(?, ?, ?, ?)");
   SqliteStatement guide = db.Prepare("INSERT INTO guide_path VALUES(?, ?, ?, ?, ?, ?)");
   SqliteStatement window = db.Prepare("INSERT INTO map_window VALUES(?, ?, ?, ?)");
   SqliteStatement change = db.Prepare("INSERT INTO map_change VALUES(?, ?, ?, ?, ?, ?)");
@@ -232,6 +234,9 @@ void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
     WriteResult(plan, id, row);
     const planning::ControlPoints& q = row.result.curve.control_points();
     for (int i = 0; i < q.cols(); ++i) point.Run(id, i, q(0, i), q(1, i), q(2, i));
+    for (int i = 0; const solvers::TermCost& term : row.result.cost_by_term) {
+      cost.Run(id, i++, term.name, term.cost);
+    }
     const auto& paths = row.result.guide_paths;
     for (std::size_t k = 0; k < paths.size(); ++k) {
       for (std::size_t i = 0; i < paths[k].size(); ++i) {

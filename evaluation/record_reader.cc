@@ -111,6 +111,14 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
              knots[static_cast<std::size_t>(plan - plans->data())].Add(row);
            });
   for (std::size_t i = 0; i < plans->size(); ++i) (*plans)[i].result.curve = knots[i].Curve();
+  ReadMany(TableRows(db, "term_cost", "plan, i, term, cost", "plan, i"), plans,
+           [](TableRows& row, RecordPlan* plan) {
+             auto& costs = plan->result.cost_by_term;
+             const auto next = static_cast<std::int64_t>(costs.size());
+             row.Integer(next, next);
+             costs.push_back({row.Text(), 0.0});
+             costs.back().cost = row.NumberOrNan();
+           });
   ReadMany(TableRows(db, "guide_path", "plan, path, i, x, y, z", "plan, path, i"), plans,
            [](TableRows& row, RecordPlan* plan) {
              auto& paths = plan->result.guide_paths;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/trial_record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -40,16 +41,24 @@ ReplanOutcome OutcomeOf(const planning::ReplanResult& result) {
   outcome.rebinds = result.rebinds;
   outcome.iterations = result.solver.iterations;
   outcome.cost = result.solver.cost;
+  for (const solvers::TermCost& term : result.solver.cost_by_term) {
+    if (term.cost != 0.0) outcome.cost_by_term.push_back(term);
+  }
   outcome.work = result.work;
   return outcome;
 }
 
 bool Same(const ReplanOutcome& a, const ReplanOutcome& b) {
+  const auto same_cost = [](const solvers::TermCost& x, const solvers::TermCost& y) {
+    return x.name == y.name && Same(x.cost, y.cost);
+  };
   return a.status == b.status && a.reason == b.reason && a.from_odometry == b.from_odometry &&
          Same(a.curve, b.curve) && Same(a.certificate, b.certificate) &&
          a.guide_paths == b.guide_paths && a.pairs == b.pairs && a.solves == b.solves &&
          a.rebinds == b.rebinds && a.iterations == b.iterations && Same(a.cost, b.cost) &&
-         a.work == b.work;
+         a.work == b.work &&
+         std::equal(a.cost_by_term.begin(), a.cost_by_term.end(), b.cost_by_term.begin(),
+                    b.cost_by_term.end(), same_cost);
 }
 
 }  // namespace touchdown::evaluation

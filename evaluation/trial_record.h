@@ -52,7 +52,8 @@ struct ReplanOutcome {
   int rebinds = 0;
   int iterations = 0;
   double cost = 0.0;
-  int work = 0;  ///< of planning.max_work
+  std::vector<solvers::TermCost> cost_by_term;  ///< those that cost anything
+  int work = 0;                                 ///< of planning.max_work
 };
 ReplanOutcome OutcomeOf(const planning::ReplanResult& result);
 

@@ -64,12 +64,19 @@ TEST_F(Replayed, TheFirstCaseBitForBit) {
   ASSERT_GT(flight.plans.size(), 50u);
   EXPECT_EQ(DumpScenario(flight.scenario),
             DumpScenario(LoadScenario(FindScenario("straight_turn"), {}, registries_)));
+  int with_costs = 0;
   for (std::size_t i = 0; i < flight.plans.size(); ++i) {
     EXPECT_TRUE(Same(flight.plans[i].result, flown_.plans[i].result)) << i;
+    const ReplanOutcome& result = flight.plans[i].result;
+    double cost = 0.0;
+    for (const solvers::TermCost& term : result.cost_by_term) cost += term.cost;
+    EXPECT_NEAR(cost, result.cost, 1e-9 * result.cost) << i;
+    with_costs += !result.cost_by_term.empty();
     const planning::ReplannerState &read = flight.plans[i].before, &flown = flown_.plans[i].before;
     EXPECT_EQ(read.current.from_unknown, flown.current.from_unknown) << i;
     EXPECT_EQ(read.next.from_unknown, flown.next.from_unknown) << i;
   }
+  EXPECT_GT(with_costs, 50);
   EXPECT_FALSE(flown_.plans.back().before.next.from_unknown);
   ExpectTheSameBits(flight, registries_);
 }
@@ -140,7 +147,7 @@ TEST_F(Replayed, ABadRecordIsRefusedInASentence) {
     EXPECT_THAT(refusal, ::testing::HasSubstr(words)) << sql;
     std::filesystem::rename(kept, path_);
   };
-  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 14");
+  damaged("UPDATE meta SET value = '1' WHERE key = 'version'", "version 1, this build reads 15");
   damaged("UPDATE meta SET value = 'touchdown trials' WHERE key = 'format'", "no record");
   damaged("DELETE FROM meta WHERE key = 'scenario_yaml'", "lacks scenario_yaml");
   damaged("UPDATE meta SET value = '0.2' WHERE key = 'map_resolution'", "cells of 0.2 m");

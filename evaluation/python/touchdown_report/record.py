@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "14"
+SUPPORTED_VERSION = "15"
 
 
 class RecordError(Exception):
