@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ownership and errors of MuJoCo 2.2.2's C structures.
+// Ownership of MuJoCo 2.2.2's C structures.
 //
-// mju_error ends the process ("Press Enter to exit") unless a handler is installed, and the handler
-// must not return. Ours throws: Debian's libmujoco carries unwind tables for its C functions (the
-// x86-64 and AArch64 ABIs ask for them), they have no clean-up code of their own to skip, and its
-// C++ parts are unwound properly, which a longjmp would not do. The compiler inside mj_loadXML
-// catches its own errors per thread and does not touch the handler. mjData is not usable after an
-// error.
-//
-// mj_loadXML keeps the model parsed last in a global, hence the lock. mjVFS is megabytes large,
+// mj_loadXML reports what is wrong with a model in its message; only where memory runs out does it leave by an error, and
+// then what its C++ parts hold is lost. It keeps the model parsed last in a global, hence the lock. mjVFS is megabytes large,
 // hence the heap; the text in it is freed by mj_deleteVFS, so it is allocated by mju_malloc.
 
 #include "touchdown/sim/mujoco_model.h"
@@ -20,16 +14,12 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "touchdown/sim/mujoco_call.h"
+
 namespace touchdown::sim {
 namespace {
 
 constexpr char kSceneName[] = "scene.xml";
-
-[[noreturn]] void ThrowMujocoError(const char* message) {
-  throw std::runtime_error(std::string("MuJoCo: ") + message);
-}
-
-void IgnoreMujocoWarning(const char* /*message*/) {}
 
 struct VfsDeleter {
   void operator()(mjVFS* vfs) const noexcept {
@@ -48,11 +38,13 @@ void AddText(const char* name, const std::string& text, mjVFS* vfs) {
 }
 
 MujocoModel Load(const char* name, const mjVFS* vfs) {
-  InstallMujocoErrorHandler();
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   std::array<char, 1024> message{};
-  MujocoModel model(mj_loadXML(name, vfs, message.data(), static_cast<int>(message.size())));
+  MujocoModel model;
+  CallMujoco([&] {
+    model.reset(mj_loadXML(name, vfs, message.data(), static_cast<int>(message.size())));
+  });
   if (!model) {
     for (char& c : message) {
       if (c == '\n') c = ' ';
@@ -67,14 +59,6 @@ MujocoModel Load(const char* name, const mjVFS* vfs) {
 void MujocoModelDeleter::operator()(mjModel_* model) const noexcept { mj_deleteModel(model); }
 void MujocoDataDeleter::operator()(mjData_* data) const noexcept { mj_deleteData(data); }
 
-void InstallMujocoErrorHandler() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    mju_user_error = ThrowMujocoError;
-    mju_user_warning = IgnoreMujocoWarning;
-  });
-}
-
 MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
   std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
   mj_defaultVFS(vfs.get());
@@ -86,8 +70,8 @@ MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf
 MujocoModel CompileMjcfFile(const std::string& path) { return Load(path.c_str(), nullptr); }
 
 MujocoData MakeMujocoData(const mjModel_& model) {
-  InstallMujocoErrorHandler();
-  MujocoData data(mj_makeData(&model));
+  MujocoData data;
+  CallMujoco([&] { data.reset(mj_makeData(&model)); });
   if (!data) throw std::runtime_error("MuJoCo: no memory for the simulation's state");
   return data;
 }

@@ -32,9 +32,4 @@ MujocoModel CompileMjcfFile(const std::string& path);
 /// Throws std::runtime_error if MuJoCo cannot allocate.
 MujocoData MakeMujocoData(const mjModel_& model);
 
-/// Makes MuJoCo report a fatal error as a std::runtime_error thrown out of the function called,
-/// and stay silent about warnings (they are counted in mjData). Holds for the process, done once;
-/// CompileMjcf and MakeMujocoData do it.
-void InstallMujocoErrorHandler();
-
 }  // namespace touchdown::sim

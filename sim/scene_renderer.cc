@@ -22,6 +22,7 @@
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/gl_context.h"
 #include "touchdown/sim/ground_texture.h"
+#include "touchdown/sim/mujoco_call.h"
 #include "touchdown/sim/mujoco_model.h"
 
 namespace touchdown::sim {
@@ -53,11 +54,11 @@ class GlScene {
     mjv_defaultScene(&scene_);
     mjr_defaultContext(&render_);
     try {
-      mjv_makeScene(&model, &scene_, model.ngeom + 16);
+      CallMujoco([&] { mjv_makeScene(&model, &scene_, model.ngeom + 16); });
       // The first call in a process looks up OpenGL's functions, into globals.
       static std::mutex one_at_a_time;
       const std::lock_guard<std::mutex> lock(one_at_a_time);
-      mjr_makeContext(&model, &render_, mjFONTSCALE_50);
+      CallMujoco([&] { mjr_makeContext(&model, &render_, mjFONTSCALE_50); });
     } catch (...) {
       Free();
       throw;
@@ -82,7 +83,7 @@ class GlScene {
   void Free() noexcept {
     try {
       context_.MakeCurrent();
-      mjr_freeContext(&render_);
+      CallMujoco([&] { mjr_freeContext(&render_); });
     } catch (const std::runtime_error&) {
       // The context goes with all its objects.
     }
@@ -140,15 +141,17 @@ class SceneRenderer::Impl {
     const Eigen::Quaterniond q_WP(Eigen::AngleAxisd(pad.yaw, Eigen::Vector3d::UnitZ()));
     Place(camera_, camera.p_WC, q_WC);
     Place(pad_, pad.p_WP, q_WP);
-    mj_kinematics(model_.get(), data_.get());
-    mj_comPos(model_.get(), data_.get());
-    mj_camlight(model_.get(), data_.get());
     gl_.context().MakeCurrent();
-    mjv_updateScene(model_.get(), data_.get(), &option_, nullptr, &view_camera_, mjCAT_ALL,
-                    gl_.scene());
     const mjrRect viewport = {0, 0, view_.width, view_.height};
-    mjr_render(viewport, gl_.scene(), gl_.render());
-    mjr_readPixels(rgb, depth, viewport, gl_.render());
+    CallMujoco([&] {
+      mj_kinematics(model_.get(), data_.get());
+      mj_comPos(model_.get(), data_.get());
+      mj_camlight(model_.get(), data_.get());
+      mjv_updateScene(model_.get(), data_.get(), &option_, nullptr, &view_camera_, mjCAT_ALL,
+                      gl_.scene());
+      mjr_render(viewport, gl_.scene(), gl_.render());
+      mjr_readPixels(rgb, depth, viewport, gl_.render());
+    });
   }
 
   ViewConfig view_;

@@ -18,6 +18,7 @@
 
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/mjcf_text.h"
+#include "touchdown/sim/mujoco_call.h"
 #include "touchdown/sim/mujoco_model.h"
 #include "touchdown/sim/vehicle_file.h"
 
@@ -65,7 +66,7 @@ class Import {
  public:
   Import(const mjModel& m, const AirframeExtras& extras)
       : m_(m), data_(MakeMujocoData(m)), d_(*data_), extras_(extras) {
-    mj_kinematics(&m_, data_.get());
+    CallMujoco([&] { mj_kinematics(&m_, data_.get()); });
     FindBase();
     ReadMass();
     if (m_.nu != 4)

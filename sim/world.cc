@@ -20,6 +20,7 @@
 #include "touchdown/sim/argument_check.h"
 #include "touchdown/sim/drag.h"
 #include "touchdown/sim/ground_effect.h"
+#include "touchdown/sim/mujoco_call.h"
 #include "touchdown/sim/mujoco_model.h"
 #include "touchdown/sim/start_check.h"
 #include "touchdown/sim/trim.h"
@@ -212,7 +213,8 @@ void World::Impl::AlterPlant() {
     m->actuator_dynprm[mjNDYN * rotor] = plant_.rotor_lag_s;
     m->actuator_gainprm[mjNGAIN * rotor] = config_.plant.thrust;
   }
-  mj_setConst(m, data_.get());  // what the compiler derived from mass and inertia
+  CallMujoco(
+      [&] { mj_setConst(m, data_.get()); });  // what the compiler derived from mass and inertia
 }
 
 void World::Impl::SetInitialState(double thrust) {
@@ -264,7 +266,7 @@ void World::Impl::Step(const std::array<double, 4>& commands, const Eigen::Vecto
   PushByAir(wind_W);
 
   failed_ = true;  // until the step came back whole
-  mj_step(mujoco_.get(), d);
+  CallMujoco([&] { mj_step(mujoco_.get(), d); });
   ThrowOnWarning();
   failed_ = false;
   ++steps_;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/solvers/allocation_count.h"
 
+#include <dlfcn.h>
+
 namespace touchdown::solvers {
 namespace {
-long (*counter_in_use)() noexcept = nullptr;
-}
 
-long AllocationCount() noexcept { return counter_in_use ? counter_in_use() : -1; }
+using Counter = long (*)() noexcept;
+const auto counter = reinterpret_cast<Counter>(dlsym(RTLD_DEFAULT, "touchdown_allocation_count"));
 
-void SetAllocationCounter(long (*counter)() noexcept) noexcept { counter_in_use = counter; }
+}  // namespace
+
+long AllocationCount() noexcept { return counter != nullptr ? counter() : -1; }
 
 }  // namespace touchdown::solvers

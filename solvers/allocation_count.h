@@ -4,11 +4,8 @@
 namespace touchdown::solvers {
 
 /// Heap allocations of this thread so far, by new, malloc or anything above them, libraries
-/// included; -1 where nobody counts: a program counts if it compiles in allocation_hook.cc and no
-/// sanitizer owns the heap. Does not allocate.
+/// included; -1 where nobody counts: a program counts if it is linked with the library touchdown_allocations, or
+/// started with it in LD_PRELOAD, and no sanitizer owns the heap. Does not allocate.
 long AllocationCount() noexcept;
-
-/// Names who counts. allocation_hook.cc does before main.
-void SetAllocationCounter(long (*counter)() noexcept) noexcept;
 
 }  // namespace touchdown::solvers

@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts allocations by standing in front of the C library's allocator: operator new, Eigen and
-// shared libraries all end there. Compiled into an executable, never into a library: what is linked
-// decides whether a program counts. Needs glibc's own names for its allocator.
+// The library touchdown_allocations: counts allocations by standing in front of the C library's allocator, where
+// operator new, Eigen and other libraries all end. Programs of ours are not linked with it: who wants to count
+// preloads it, the tests link it. Needs glibc's own names for its allocator.
 
 #include <cerrno>
 #include <cstddef>
-
-#include "touchdown/solvers/allocation_count.h"
 
 #if !defined(TOUCHDOWN_SANITIZED)
 
 namespace {
 
-thread_local long allocations = 0;
-
-long Count() noexcept { return allocations; }
-
-[[maybe_unused]] const bool registered = [] {
-  touchdown::solvers::SetAllocationCounter(&Count);
-  return true;
-}();
+// Its place is fixed when the program starts: else to find it could allocate.
+__attribute__((tls_model("initial-exec"))) thread_local long allocations = 0;
 
 }  // namespace
 
 extern "C" {
+/// Of this thread. solvers/allocation_count.cc looks for it by its name.
+long touchdown_allocation_count() noexcept { return allocations; }
+
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);

@@ -3,10 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include <atomic>
 #include <stdexcept>
-#include <thread>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,55 +29,6 @@ TEST(MujocoModel, BadMjcfIsASentence) {
                 CompileMjcf("<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>");
               }),
               HasSubstr("mass"));
-}
-
-// mju_error from the top of the library and from deep within a step: an exception, not the end of
-// the process, and the library is usable afterwards.
-TEST(MujocoModel, FatalErrorIsAnException) {
-  const MujocoModel model = CompileMjcf(DefaultVehicleMjcf());
-  const MujocoData data = MakeMujocoData(*model);
-  EXPECT_THAT(MessageOf<std::runtime_error>([&] { mj_stackAlloc(data.get(), data->nstack + 1); }),
-              AllOf(HasSubstr("MuJoCo: "), HasSubstr("Stack overflow")));
-  const int whole = data->nstack;
-  data->nstack = 4;
-  EXPECT_THAT(MessageOf<std::runtime_error>([&] { mj_step(model.get(), data.get()); }),
-              HasSubstr("Stack overflow"));
-  data->nstack = whole;
-  mj_resetData(model.get(), data.get());
-  mj_step(model.get(), data.get());
-  EXPECT_GT(data->time, 0.0);
-}
-
-TEST(MujocoModel, ErrorsOfOneThreadLeaveCompilationInAnotherAlone) {
-  std::atomic<int> wrong = 0;
-  const auto errors = [&] {
-    const MujocoModel model = CompileMjcf(DefaultVehicleMjcf());
-    const MujocoData data = MakeMujocoData(*model);
-    for (int i = 0; i < 300; ++i) {
-      try {
-        mj_stackAlloc(data.get(), data->nstack + 1);
-        ++wrong;
-      } catch (const std::runtime_error&) {
-      }
-    }
-  };
-  const auto compilations = [&] {
-    for (int i = 0; i < 15; ++i) {
-      try {
-        CompileMjcf("<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>");
-        ++wrong;
-      } catch (const std::invalid_argument&) {
-      }
-      if (CompileMjcf(DefaultVehicleMjcf())->nu != 4) ++wrong;
-    }
-  };
-  std::vector<std::thread> threads;
-  threads.emplace_back(errors);
-  threads.emplace_back(compilations);
-  threads.emplace_back(errors);
-  threads.emplace_back(compilations);
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(wrong, 0);
 }
 
 TEST(WorldMjcf, HasTheMeasuredSettingsWhateverTheVehicleSays) {
