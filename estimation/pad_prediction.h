@@ -32,4 +32,7 @@ class PadPrediction {
   virtual PadState MeanAt(double t) const noexcept { return At(t); }
 };
 
+/// Of a pad of which nothing has been said yet: NaN at all times, so that what is computed from it is no number.
+const PadPrediction& UnknownPad() noexcept;
+
 }  // namespace touchdown::estimation

@@ -132,6 +132,7 @@ Json ListTerms(const Registries& registries) {
                     {"source", entry.info.source},
                     {"convex", entry.info.convex},
                     {"can_be_hard", entry.can_be_hard},
+                    {"in_flights", entry.use != planning::TermUse::kMovingObstacles},
                     {"default_weight", entry.default_weight},
                     {"parameters", parameters}});
   }
@@ -144,7 +145,9 @@ void PrintTerms(const Json& list) {
     std::cout << fmt::format(
         "{}  [{}]  {}, {}, {}; {}\n  {}\n", entry["name"].get<std::string>(),
         entry["unit"].get<std::string>(), entry["convex"].get<bool>() ? "convex" : "not convex",
-        weight > 0.0 ? fmt::format("weight {:g}", weight) : "off unless it is asked for",
+        !entry["in_flights"].get<bool>() ? "not in flights"
+        : weight > 0.0                   ? fmt::format("weight {:g}", weight)
+                                         : "off unless it is asked for",
         entry["can_be_hard"].get<bool>() ? "cost or rows" : "cost only",
         entry["source"].get<std::string>(), entry["formula"].get<std::string>());
     for (const Json& parameter : entry["parameters"]) {

@@ -84,7 +84,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   planning::ReplannerOptions options;
   options.backend = scenario.solver.backend;
   options.solver_options.assign(scenario.solver.options.begin(), scenario.solver.options.end());
-  planning::LandingProblemOptions& problem = options.problem;
+  planning::Formulation& problem = options.problem;
   problem.terms = terms;
   for (const auto& [name, keys] : scenario.terms) {
     problem.settings.push_back(TermSettingsOf(name, keys));

@@ -141,6 +141,10 @@ void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& term
     for (const auto& [key, value] : keys) {
       try {
         const planning::TermEntry& entry = planning::FindTerm(terms, name);
+        if (entry.use == planning::TermUse::kMovingObstacles) {
+          throw std::invalid_argument(
+              "term " + name + " does nothing in a flight, where nobody tells of moving obstacles");
+        }
         planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
         planning::ApplySettings(entry, TermSettingsOf(name, {{key, value}}), &setup);
       } catch (const std::invalid_argument& error) {

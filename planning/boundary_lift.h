@@ -39,7 +39,7 @@ class BoundaryLift : public solvers::LiftOffset {
   /// Throws std::invalid_argument unless segments >= 4.
   BoundaryLift(int segments, bool free_end_acceleration);
 
-  /// The pad prediction must outlive every later call of At.
+  /// The pad prediction must outlive every later call of At, which before Set gives NaN.
   void Set(const SplineState& start, double t0, const estimation::PadPrediction& pad,
            const EndpointTarget& target);
 
@@ -54,7 +54,7 @@ class BoundaryLift : public solvers::LiftOffset {
   std::vector<BoundaryWeights> weights_;  // [control point]
   SplineState start_;
   double t0_ = 0.0;
-  const estimation::PadPrediction* pad_ = nullptr;
+  const estimation::PadPrediction* pad_ = &estimation::UnknownPad();
   EndpointTarget target_;
 };
 

@@ -5,6 +5,7 @@
 #include "touchdown/planning/landing_problem.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -79,6 +80,7 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
   const bool explicit_end = options.endpoint == EndpointMode::kExplicit;
   if (entry.use == TermUse::kFreeArrival && options.arrival != ArrivalMode::kFree) return;
   if (entry.use == TermUse::kExplicitEndpoint && !explicit_end) return;
+  if (entry.use == TermUse::kMovingObstacles && options.max_obstacles == 0) return;
   setup.hard = entry.use == TermUse::kExplicitEndpoint ||
                (entry.is_limit && options.limits_mode == LimitsMode::kHard);
   bool asked_for = setup.weight > 0.0;
@@ -100,13 +102,16 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
 }
 
 void LandingProblem::Update() {
-  if (context_.pad == nullptr) return;  // the boundary comes first
+  if (!has_boundary_) return;
   for (ContextUser* user : context_users_) user->Update(context_);
 }
 
 void LandingProblem::SetBoundary(const SplineState& start, double t0,
                                  const estimation::PadPrediction& pad, const EndpointTarget& target,
                                  const Eigen::Vector3d& pull_W) {
+  Require(start.p.allFinite() && start.v.allFinite() && start.a.allFinite() && std::isfinite(t0),
+          "time of the start", t0, "finite, and the start too");
+  has_boundary_ = true;
   context_.limits = LimitsUnder(limits_, vehicle_, pull_W);
   context_.pull_W = pull_W;
   context_.start = start;
@@ -118,7 +123,14 @@ void LandingProblem::SetBoundary(const SplineState& start, double t0,
   Update();
 }
 
+void LandingProblem::RequireBoundary(const char* call) const {
+  if (has_boundary_) return;
+  throw std::invalid_argument(std::string("LandingProblem: ") + call +
+                              " before SetBoundary: there is no start and no end");
+}
+
 void LandingProblem::SetDuration(double T) {
+  Require(T > 0.0 && std::isfinite(T), "duration", T, "> 0 s and finite");
   context_.interval = T / segments_;
   problem_.set_interval(context_.interval);
   Update();
@@ -163,6 +175,7 @@ void LandingProblem::SetPrevious(const UniformBspline* previous) {
 }
 
 BoundaryFacts LandingProblem::boundary_facts() const {
+  RequireBoundary("boundary_facts()");
   const double h = context_.interval;
   BoundaryFacts facts;
   facts.start_speed = context_.start.v.norm();
@@ -182,6 +195,7 @@ Eigen::VectorXd LandingProblem::Guess() const {
 }
 
 void LandingProblem::Guess(Eigen::VectorXd* y) const {
+  RequireBoundary("Guess()");
   y->setZero(view_->num_variables());
   if (!view_->lift().offset) lift_->At(context_.interval, y->data(), nullptr, nullptr);
   if (view_->free_interval()) (*y)[y->size() - 1] = context_.interval;
@@ -210,6 +224,7 @@ void LandingProblem::WarmGuess(const UniformBspline& previous, Eigen::VectorXd* 
 }
 
 UniformBspline LandingProblem::Curve(const Eigen::VectorXd& y) const {
+  RequireBoundary("Curve()");
   std::vector<double> x;
   double h = 0.0;
   view_->Lift(y.data(), &x, &h);
@@ -218,6 +233,7 @@ UniformBspline LandingProblem::Curve(const Eigen::VectorXd& y) const {
 }
 
 void LandingProblem::Curve(const Eigen::VectorXd& y, UniformBspline* curve) {
+  RequireBoundary("Curve()");
   double h = 0.0;
   view_->Lift(y.data(), &x_, &h);
   curve->Assign(Eigen::Map<const ControlPoints>(x_.data(), 3, segments_ + 3), h, context_.t0);

@@ -21,19 +21,23 @@ enum class EndpointMode { kEliminated, kExplicit };
 /// Terms that are limits are costs that act from a margin on, or rows u <= 0 at the full limit.
 enum class LimitsMode { kSoft, kHard };
 
-struct LandingProblemOptions {
-  ArrivalMode arrival = ArrivalMode::kFixed;
+/// How a landing is put as a problem: its terms, and how ends and limits are kept.
+struct Formulation {
   EndpointMode endpoint = EndpointMode::kEliminated;
   LimitsMode limits_mode = LimitsMode::kSoft;
   bool free_end_acceleration = true;  ///< else the pad's own acceleration at arrival
-  Limits limits;
   VehicleFacts vehicle;
   TermRegistry terms = StandardTerms();  ///< what the objective is built from ...
   std::vector<TermSettings> settings;    ///< ... where it shall differ from the entries' defaults
-  double max_duration = 30.0;            ///< upper bound of a free arrival [s]
-  double min_duration = 0.5;             ///< lower bound of a free arrival [s]
   int max_pairs_per_point = 6;           ///< at least 2 to keep clear of floor and ceiling
-  int max_obstacles = 8;                 ///< moving ones
+};
+
+struct LandingProblemOptions : Formulation {
+  ArrivalMode arrival = ArrivalMode::kFixed;
+  Limits limits;
+  double max_duration = 30.0;  ///< upper bound of a free arrival [s]
+  double min_duration = 0.5;   ///< lower bound of a free arrival [s]
+  int max_obstacles = 0;       ///< room for moving ones (SetObstacles)
 };
 
 /// What the boundary fixes whatever the solver does: no rows, but facts to look at first.
@@ -59,12 +63,16 @@ class LandingProblem {
   LandingProblem(const LandingProblem&) = delete;
   LandingProblem& operator=(const LandingProblem&) = delete;
 
-  /// Start state at the absolute time t0 and the moving end. The prediction must outlive the solve.
-  /// The limits are what a steady pull leaves of the options' [m/s^2] (LimitsUnder).
+  /// Start state at the absolute time t0 and the moving end; until then every evaluation of the problem fails. The
+  /// prediction must outlive the solve. The limits are what a steady pull leaves of the options' [m/s^2]
+  /// (LimitsUnder). Throws std::invalid_argument if the start is not finite.
   void SetBoundary(const SplineState& start, double t0, const estimation::PadPrediction& pad,
                    const EndpointTarget& target,
                    const Eigen::Vector3d& pull_W = Eigen::Vector3d::Zero());
-  /// Duration, or the first guess of a free one [s].
+  void SetBoundary(const SplineState&, double, const estimation::PadPrediction&&,
+                   const EndpointTarget&,
+                   const Eigen::Vector3d& = Eigen::Vector3d::Zero()) = delete;
+  /// Duration, or the first guess of a free one [s]. Throws std::invalid_argument unless 0 < T, finite.
   void SetDuration(double T);
   /// Throws std::invalid_argument if there are more than max_pairs() or one is out of range.
   void SetPairs(std::span<const ObstaclePair> pairs);
@@ -81,10 +89,11 @@ class LandingProblem {
   int segments() const { return segments_; }
   /// What backends solve: the Reduced view, or with an explicit endpoint the Full one.
   const solvers::View& view() const { return *view_; }
-  /// Of the present boundary and duration.
+  /// Of the present boundary and duration. Throws std::invalid_argument before SetBoundary.
   BoundaryFacts boundary_facts() const;
 
-  /// The view's variables at the quintic Hermite guess, and the interval if it is free.
+  /// The view's variables at the quintic Hermite guess, and the interval if it is free. This one and those that
+  /// follow throw std::invalid_argument before SetBoundary.
   Eigen::VectorXd Guess() const;
   /// The same without allocation, once `y` has this size.
   void Guess(Eigen::VectorXd* y) const;
@@ -101,6 +110,7 @@ class LandingProblem {
   void AddTerms(const LandingProblemOptions& options);
   void AddTerm(const TermEntry& entry, const LandingProblemOptions& options);
   void Update();
+  void RequireBoundary(const char* call) const;
 
   int segments_;
   int max_pairs_;
@@ -110,6 +120,7 @@ class LandingProblem {
   Limits limits_;         // of the options
   VehicleFacts vehicle_;  // alike
   LandingContext context_;
+  bool has_boundary_ = false;
   std::vector<ObstaclePair> pairs_;                     // what context_ points to
   std::vector<MovingObstacle> obstacles_;               // alike
   std::vector<ContextUser*> context_users_;             // among the problem's terms

@@ -46,7 +46,7 @@ struct LandingContext {
   SplineState start;      ///< at knot 0
   double t0 = 0.0;        ///< absolute time of knot 0 [s]
   double interval = 1.0;  ///< h, or the first guess of a free one [s]
-  const estimation::PadPrediction* pad = nullptr;
+  const estimation::PadPrediction* pad = &estimation::UnknownPad();  ///< never null
   EndpointTarget target;
   Limits limits;                                     ///< at most those of the TermSetup
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
@@ -90,8 +90,9 @@ struct TermSetup {
   solvers::HingeLoss Hinge() const { return solvers::HingeLoss(weight, Get("width")); }
 };
 
-/// When a landing problem can use a term at all.
-enum class TermUse { kAlways, kFreeArrival, kExplicitEndpoint };
+/// When a landing problem can use a term at all. kMovingObstacles: where LandingProblem is told of some, which a flight
+/// is not.
+enum class TermUse { kAlways, kFreeArrival, kExplicitEndpoint, kMovingObstacles };
 
 /// An entry of a term registry.
 struct TermEntry {

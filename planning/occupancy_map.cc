@@ -24,6 +24,8 @@ std::int8_t Quantise(double probability) {
       std::lround(std::log(probability / (1.0 - probability)) / OccupancyMap::kLogOddsStep));
 }
 
+constexpr double kFarthestFree = 1e4;  // [m]
+
 void Require(bool ok, const std::string& sentence) {
   if (!ok) throw std::invalid_argument("OccupancyMap: " + sentence);
 }
@@ -280,6 +282,7 @@ void OccupancyMap::MakeCertain(const CellIndex& cell, bool explained) {
 }
 
 void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
+  Require(p_W.allFinite(), "SetOccupied at a point that is not finite");
   SetState(CellOf(p_W), CellState::kOccupied);
 }
 
@@ -292,10 +295,14 @@ void OccupancyMap::SetState(const CellIndex& cell, CellState state) {
 }
 
 void OccupancyMap::MarkFree(const Eigen::Vector3d& p_W, double radius) {
-  const CellIndex low = CellOf(p_W.array() - radius);
-  const CellIndex high = CellOf(p_W.array() + radius) + CellIndex::Ones();
+  Require(p_W.allFinite(), "MarkFree at a point that is not finite");
+  Require(radius >= 0.0 && radius <= kFarthestFree,
+          "MarkFree with radius " + std::to_string(radius) + " m, it must be in [0, 1e4]");
+  const CellIndex low = CellOf(p_W.array() - radius).cwiseMax(origin_);
+  const CellIndex high =
+      (CellOf(p_W.array() + radius) + CellIndex::Ones()).cwiseMin(origin_ + size_);
   ForEachCell({low, high}, [&](const CellIndex& cell) {
-    if (!InWindow(cell) || (CentreOf(cell) - p_W).norm() > radius) return;
+    if ((CentreOf(cell) - p_W).norm() > radius) return;
     Cell value = cells_[Address(cell)];
     if (Blocks(value)) return;
     if (value.log_odds >= 0 || value.log_odds == kUnknown) value.log_odds = miss_;

@@ -103,11 +103,12 @@ class OccupancyMap {
   template <class OutlineAt>
   void ExplainDoubts(OutlineAt&& outline_at);
 
-  /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored.
+  /// Sets one cell to surely occupied, as prior knowledge or in tests. Out of the window: ignored. Throws
+  /// std::invalid_argument where p_W is not finite.
   void SetOccupied(const Eigen::Vector3d& p_W);
 
   /// Marks the cells within `radius` of p_W that are not occupied as observed free: what is given around
-  /// the start, or known otherwise.
+  /// the start, or known otherwise. Throws std::invalid_argument unless p_W is finite and radius in [0, 1e4] m.
   void MarkFree(const Eigen::Vector3d& p_W, double radius);
 
   /// Takes every cell of the window that is not occupied as observed free: all of the map is known

@@ -22,11 +22,11 @@ constexpr int kLevels = 2;             // pairs of a control point for floor and
 constexpr double kFloorMargin = 0.05;  // kept from floor and ceiling [m]
 
 /// s_f of the term obstacle_pair.
-double PairClearance(const LandingProblemOptions& options) {
-  for (const TermEntry& entry : options.terms) {
+double PairClearance(const Formulation& formulation) {
+  for (const TermEntry& entry : formulation.terms) {
     if (entry.info.name != kPairTerm) continue;
     TermSetup setup = DefaultSetup(entry, PairBinder::kMostControlPoints);
-    for (const TermSettings& settings : options.settings) {
+    for (const TermSettings& settings : formulation.settings) {
       if (settings.name == kPairTerm) ApplySettings(entry, settings, &setup);
     }
     return setup.Get("clearance");
@@ -81,11 +81,11 @@ double TimeOf(const UniformBspline& curve, int control_point) {
 
 }  // namespace
 
-PairBinder::PairBinder(const LandingProblemOptions& options, const StepConstants& constants)
+PairBinder::PairBinder(const Formulation& formulation, const StepConstants& constants)
     : constants_(constants),
-      corridor_(PairClearance(options), kFloorMargin),
-      planes_(options.max_pairs_per_point - kLevels),
-      per_point_(options.max_pairs_per_point) {
+      corridor_(PairClearance(formulation), kFloorMargin),
+      planes_(formulation.max_pairs_per_point - kLevels),
+      per_point_(formulation.max_pairs_per_point) {
   if (per_point_ < kLevels) {
     throw std::invalid_argument("PairBinder: max_pairs_per_point is " + std::to_string(per_point_) +
                                 ", it must be >= 2, for floor and ceiling");

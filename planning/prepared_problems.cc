@@ -44,7 +44,8 @@ int SegmentsFor(double duration, const Limits& limits, double share) {
 }
 
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival) {
-  LandingProblemOptions problem = options.problem;
+  LandingProblemOptions problem;
+  static_cast<Formulation&>(problem) = options.problem;
   problem.arrival = arrival;
   problem.limits = options.limits;
   problem.min_duration = options.min_duration;

@@ -29,10 +29,9 @@ struct ReplannerOptions {
   std::vector<std::pair<std::string, double>> solver_options;  ///< of the backend, by name
   ArrivalMode arrival = ArrivalMode::kFixed;
   Limits limits;
-  LandingProblemOptions problem;  ///< terms, their settings and the formulation; its limits,
-                                  ///< arrival and durations follow from here
-  double floor_height = 0.45;     ///< body origin stays above this away from the pad [m]
-  double ceiling_height = 10.0;   ///< and below this everywhere [m]
+  Formulation problem;
+  double floor_height = 0.45;    ///< body origin stays above this away from the pad [m]
+  double ceiling_height = 10.0;  ///< and below this everywhere [m]
   double pad_radius = 1.2;  ///< half width of the strip over the pad [m], which has as its floor
   double contact_height = 0.12;  ///< ... this, body origin above the deck when the feet touch [m]
   double max_duration = 30.0;    ///< a pad farther away in time is unreachable [s]

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "touchdown/planning/attempt_ladder.h"
@@ -217,6 +218,7 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.solver.status = solvers::SolveStatus::kNumericalFailure;
   result_.solver.iterations = result_.solver.evaluations = 0;
   result_.solver.cost = 0.0;
+  for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
 }
 
 /// Without a usable state of the vehicle nothing can be decided: what is committed goes on, to its stop.
@@ -487,7 +489,10 @@ const ReplanResult& Replanner::Rest(const ReplanInput& input, double climb,
   return impl_->Rest(input, climb, map);
 }
 
-void Replanner::TakeOverAt(double t) { impl_->TakeOverAt(t); }
+void Replanner::TakeOverAt(double t) {
+  if (std::isnan(t)) throw std::invalid_argument("Replanner: TakeOverAt(NaN), it takes a time");
+  impl_->TakeOverAt(t);
+}
 
 FlatState Replanner::Reference(double t) const { return impl_->InForce(t).At(t); }
 

@@ -145,18 +145,18 @@ class Bench {
 
   bool MoveRow(int row, double wanted, VectorXd* y) {
     const solvers::TermShape& shape = view_->problem().term(0).shape();
-    const int d = view_->block_size(), v = shape.window * d;
+    const int d = view_->block_size();
     for (int step = 0; step < kNewtonSteps; ++step) {
       if (!view_->Evaluate(y->data(), {.gradient = true}, {}, &at_)) return false;
       const solvers::TermBlock& block = at_.full.terms[0];
       const double miss = block.u[row] - wanted;
       if (std::abs(miss) <= kReached) return true;
-      const int first = block.first_block[row / shape.outputs];
+      const int first = block.first_block[block.window_of(row)];
       VectorXd gradient = VectorXd::Zero(y->size());
       std::vector<int> reduced(static_cast<std::size_t>(shape.window));
       const int count = view_->WindowBlocks(first, shape.window, reduced.data());
       VectorXd by_block(count * d);
-      view_->WindowJacobian(&block.du[row * v], first, shape.window, 1.0, by_block.data());
+      view_->WindowJacobian(block.slopes(row), first, shape.window, 1.0, by_block.data());
       for (int b = 0; b < count; ++b) {
         gradient.segment(reduced[b] * d, d) = by_block.segment(b * d, d);
       }

@@ -61,7 +61,7 @@ double UniformBspline::SquaredJerk() const {
 
 UniformBspline::Place UniformBspline::PlaceOf(double t) const {
   const double s = std::clamp((t - t0_) / h_, 0.0, static_cast<double>(segments()));
-  const int i = std::min(static_cast<int>(s), segments() - 1);
+  const int i = s > 0.0 ? std::min(static_cast<int>(s), segments() - 1) : 0;  // NaN belongs nowhere
   return {i, s - i};
 }
 
@@ -97,6 +97,10 @@ FlatState UniformBspline::Evaluate(double t) const {
 }
 
 SplineState UniformBspline::AtKnot(int k) const {
+  if (k < 0 || k > segments()) {
+    throw std::invalid_argument("UniformBspline: knot " + std::to_string(k) +
+                                ", it has knots 0 to " + std::to_string(segments()));
+  }
   const Eigen::Map<const ControlPoints> q = control_points();
   const auto q0 = q.col(k);
   const auto q1 = q.col(k + 1);

@@ -48,7 +48,7 @@ class UniformBspline {
   double duration() const { return segments() * h_; }  ///< T [s]
   double t_end() const { return t0_ + duration(); }    ///< [s]
 
-  /// Position and its first three derivatives at time t, which is clamped to [t0, t0 + T]. The yaw
+  /// Position and its first three derivatives at time t, which is clamped to [t0, t0 + T]; NaN at NaN. The yaw
   /// fields are left zero. Does not allocate.
   FlatState Evaluate(double t) const;
 
@@ -62,7 +62,8 @@ class UniformBspline {
   /// allocate.
   double SquaredJerk() const;
 
-  /// State at knot k in 0..M: p = (Q_k + 4 Q_{k+1} + Q_{k+2})/6 and its derivatives.
+  /// State at knot k: p = (Q_k + 4 Q_{k+1} + Q_{k+2})/6 and its derivatives. Throws std::invalid_argument
+  /// unless 0 <= k <= M.
   SplineState AtKnot(int k) const;
 
  private:

@@ -55,13 +55,13 @@ class WindowResidual : public ceres::CostFunction {
   void Fill(const ViewEvaluation& point, bool with_jacobian) {
     const TermShape& shape = view_->problem().term(term_).shape();
     const TermBlock& block = point.full.terms[term_];
-    const int first = window_ * shape.outputs;
+    const int first = shape.row(window_, 0);
     std::copy_n(&block.r[first], shape.outputs, residuals_.data());
     if (!with_jacobian || jacobian_is_known_) return;
     jacobian_is_known_ = shape.quadratic && !view_->free_interval();
     double* row = jacobian_.data();
     for (int i = first; i < first + shape.outputs; ++i, row += stride_) {
-      const double* du = &block.du[i * shape.window * view_->block_size()];
+      const double* du = block.slopes(i);
       view_->WindowJacobian(du, first_block_, shape.window, block.dr[i], row);
       if (!view_->free_interval()) continue;
       row[stride_ - 1] = block.dr[i] * view_->IntervalDerivative(du, block.du_dh[i], first_block_,

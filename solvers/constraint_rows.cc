@@ -85,7 +85,8 @@ void ConstraintRows::Values(const ViewEvaluation& evaluation, double* u) const {
   const int blocks = view_->blocks() * view_->block_size();
   for (int r = first_bound_; r < size(); ++r) {
     const int variable = column_[start_[r]];
-    *u++ = variable < blocks ? evaluation.x[variable] : evaluation.h;  // bounds of blocks: an identity
+    *u++ =
+        variable < blocks ? evaluation.x[variable] : evaluation.h;  // bounds of blocks: an identity
   }
 }
 
@@ -95,8 +96,8 @@ void ConstraintRows::Jacobian(const ViewEvaluation& evaluation, double* values) 
     const TermShape& shape = view_->problem().term(w.term).shape();
     const TermBlock& block = evaluation.full.terms[w.term];
     for (int c = 0; c < shape.outputs; ++c) {
-      const int j = w.index * shape.outputs + c;
-      const double* du = &block.du[j * shape.window * d];
+      const int j = shape.row(w.index, c);
+      const double* du = block.slopes(j);
       view_->WindowJacobian(du, w.first_block, shape.window, 1.0, values);
       values += w.reduced_count * d;
       if (!view_->free_interval()) continue;

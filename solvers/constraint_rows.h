@@ -42,12 +42,12 @@ class ConstraintRows {
   /// Every nonzero; the evaluation must hold gradients.
   void Jacobian(const ViewEvaluation& evaluation, double* values) const;
 
-  /// Multipliers row by row to [term][window x output], without bounds, 0 at constant rows; sized
+  /// Multipliers row by row to [term][row], without bounds, 0 at constant rows; sized
   /// by Prepare.
   void Spread(const double* flat, std::vector<std::vector<double>>* by_term) const;
   /// The inverse; false if `by_term` does not hold every row.
   bool Gather(const std::vector<std::vector<double>>& by_term, double* flat) const;
-  /// Sizes [term][window x output] for the most rows.
+  /// Sizes [term][row] for the most rows.
   static void Size(const View& view, std::vector<std::vector<double>>* by_term);
 
  private:

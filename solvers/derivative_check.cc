@@ -42,10 +42,9 @@ MatrixXd StackJacobian(const View& view, const ViewEvaluation& e, bool residuals
   for (int i = 0; i < view.problem().num_terms(); ++i) {
     const TermBlock& block = e.full.terms[i];
     const TermShape& shape = view.problem().term(i).shape();
-    const int v = shape.window * d;
-    for (int j = 0; j < block.windows * shape.outputs; ++j) {
-      const int first = block.first_block[j / shape.outputs];
-      const double* du = &block.du[j * v];
+    for (int j = 0; j < block.rows(); ++j) {
+      const int first = block.first_block[block.window_of(j)];
+      const double* du = block.slopes(j);
       VectorXd row = VectorXd::Zero(view.num_variables());
       std::vector<int> reduced(static_cast<std::size_t>(shape.window));
       const int count = view.WindowBlocks(first, shape.window, reduced.data());
@@ -110,12 +109,11 @@ Magnitudes MagnitudesOf(const View& view, const ViewEvaluation& e, const Lagrang
     const TermShape& shape = view.problem().term(i).shape();
     const bool cost = view.problem().role(i) == Role::kCost;
     const double* multiplier = lagrangian.rows ? lagrangian.rows[i].multiplier : nullptr;
-    const int v = shape.window * d;
-    for (int j = 0; j < block.windows * shape.outputs; ++j) {
-      const double* x = &e.x[static_cast<std::size_t>(block.first_block[j / shape.outputs] * d)];
+    for (int j = 0; j < block.rows(); ++j) {
+      const double* x = &e.x[static_cast<std::size_t>(block.first_block[block.window_of(j)] * d)];
       double u = std::abs(block.u[j]) + std::abs(block.du_dh[j] * e.h), steepest = 0.0;
-      for (int k = 0; k < v; ++k) {
-        const double du = std::abs(block.du[j * v + k]);
+      for (int k = 0; k < shape.variables(); ++k) {
+        const double du = std::abs(block.slopes(j)[k]);
         u += du * std::abs(x[k]);
         steepest = std::max(steepest, du);
       }

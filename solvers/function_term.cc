@@ -4,8 +4,8 @@
 #include "touchdown/solvers/function_term.h"
 
 #include <algorithm>
-#include <limits>
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -129,7 +129,7 @@ void FunctionTerm::AddGradient(int window, const TermRequest& request, const Ter
       (cost ? sums.gradient : sums.row_gradient) + block.first_block[window] * shape_.block_size;
   for (int c = 0; c < m; ++c) {
     if (weights[c] == 0.0) continue;
-    const double* du = &block.du[(window * m + c) * variables_];
+    const double* du = block.slopes(shape_.row(window, c));
     for (int i = 0; i < variables_; ++i) out[i] += weights[c] * du[i];
   }
 }
@@ -141,7 +141,7 @@ void FunctionTerm::AddHessian(int window, const double* q, const TermRequest& re
   std::array<double, kMostOutputs> weight{}, slope{};
   bool bends = false;
   for (int c = 0; c < m; ++c) {
-    const int i = window * m + c;
+    const int i = shape_.row(window, c);
     if (request.role == Role::kCost) {
       weight[c] = request.objective_factor * block.d2rho[i];
       slope[c] = request.objective_factor * block.drho[i];
@@ -162,7 +162,7 @@ void FunctionTerm::AddHessian(int window, const double* q, const TermRequest& re
     for (int j = i / d * d; j < n; ++j) {
       double sum = 0.0;
       for (int c = 0; c < m; ++c) {
-        const double* du = &block.du[(window * m + c) * n];
+        const double* du = block.slopes(shape_.row(window, c));
         sum += weight[c] * du[i] * du[j];
         if (bends && slope[c] != 0.0) sum += slope[c] * out[c].curvature(i, j);
       }

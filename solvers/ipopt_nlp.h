@@ -37,7 +37,7 @@ class IpoptNlp : public Ipopt::TNLP {
   bool has_warm_multipliers() const { return warm_multipliers_; }
   const ConstraintRows& rows() const { return rows_; }
   const Report& report() const { return report_; }
-  /// [term][window x output].
+  /// [term][row].
   const std::vector<std::vector<double>>& multipliers() const { return multipliers_; }
   /// [variable].
   const std::vector<double>& bound_multipliers() const { return bound_multipliers_; }

@@ -136,6 +136,17 @@ void Problem::Resize(Evaluation* evaluation) const {
   evaluation->hold_ = false;
 }
 
+bool Problem::Fits(const Evaluation& evaluation) const {
+  const BorderedBandMatrix& H = evaluation.hessian;
+  bool fits = evaluation.terms.size() == terms_.size() && H.blocks() == shape_.blocks &&
+              H.block_size() == shape_.block_size && H.half_bandwidth() == half_bandwidth_ &&
+              H.bordered() == shape_.free_interval;
+  for (std::size_t i = 0; fits && i < terms_.size(); ++i) {
+    fits = evaluation.terms[i].Fits(terms_[i].term->shape());
+  }
+  return fits;
+}
+
 bool Problem::Evaluate(const double* x, double h, Want want, const Lagrangian& lagrangian,
                        Evaluation* evaluation) const noexcept {
   evaluation->ok = EvaluateAll(x, h, want, lagrangian, evaluation);
@@ -152,6 +163,10 @@ bool Problem::EvaluateAll(const double* x, double h, Want want, const Lagrangian
   evaluation->failed_term = -1;
   evaluation->failure.clear();
   want.gradient = want.gradient || want.hessian;
+  if (!Fits(*evaluation)) {
+    evaluation->failure = "the evaluation was not resized for this problem as it is now";
+    return false;
+  }
   const TermSums sums{evaluation->gradient.data(), evaluation->row_gradient.data(),
                       shape_.blocks * shape_.block_size, &evaluation->hessian};
   if (want.gradient) std::fill(evaluation->gradient.begin(), evaluation->gradient.end(), 0.0);
@@ -233,9 +248,8 @@ void Problem::StartHessian(const Lagrangian& lagrangian, const TermInput& input,
 
 bool Problem::AddCost(std::size_t i, Evaluation* evaluation) const {
   const TermBlock& block = evaluation->terms[i];
-  const int outputs = block.windows * terms_[i].term->shape().outputs;
   double sum = 0.0;
-  for (int j = 0; j < outputs; ++j) sum += block.rho[j];
+  for (int j = 0; j < block.rows(); ++j) sum += block.rho[j];
   evaluation->cost_by_term[i] = sum;
   evaluation->value += sum;
   return std::isfinite(sum);
@@ -250,17 +264,15 @@ void Problem::AddBoundViolation(const double* x, Evaluation* evaluation) const {
 
 bool Problem::AddViolation(std::size_t i, bool gradient, Evaluation* evaluation) const {
   const TermBlock& block = evaluation->terms[i];
-  const TermShape& shape = terms_[i].term->shape();
-  const int outputs = block.windows * shape.outputs;
   const LossBounds bounds = terms_[i].term->bounds();
-  for (int j = 0; j < outputs; ++j) {
+  for (int j = 0; j < block.rows(); ++j) {
     const double violation = std::max(bounds.lo - block.u[j], block.u[j] - bounds.hi);
     if (!std::isfinite(block.u[j])) return false;
     evaluation->max_violation = std::max(evaluation->max_violation, violation);
   }
   // A row may have a value where its slope has none.
-  const auto rows = static_cast<std::size_t>(outputs);
-  const std::size_t slopes = rows * static_cast<std::size_t>(shape.window * shape.block_size);
+  const auto rows = static_cast<std::size_t>(block.rows());
+  const auto slopes = rows * static_cast<std::size_t>(terms_[i].term->shape().variables());
   return !gradient || (IsFinite(block.du.data(), slopes) && IsFinite(block.du_dh.data(), rows));
 }
 

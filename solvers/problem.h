@@ -31,7 +31,7 @@ struct Lagrangian {
 struct Evaluation {
   bool ok = false;                   ///< false: a value or a slope is not finite, or a term threw
   int failed_term = -1;              ///< which one; -1: none, or the gradient of the sum
-  std::string failure;               ///< what it threw
+  std::string failure;               ///< what it threw, or why nothing was evaluated
   double value = 0.0;                ///< sum of the cost terms
   double max_violation = 0.0;        ///< worst violation of a constraint row or a bound
   std::vector<double> gradient;      ///< of the objective: blocks x d, then h if free
@@ -97,9 +97,11 @@ class Problem {
 
   /// Allocates everything that Evaluate needs.
   void Resize(Evaluation* evaluation) const;
+  /// Resize has been called since the last AddTerm.
+  bool Fits(const Evaluation& evaluation) const;
 
   /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. Does not allocate.
-  /// Returns evaluation->ok.
+  /// Returns evaluation->ok; false, and says why in `failure`, where it does not fit.
   bool Evaluate(const double* x, double h, Want want, const Lagrangian& lagrangian,
                 Evaluation* evaluation) const noexcept;
 

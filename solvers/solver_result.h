@@ -116,7 +116,7 @@ struct SolverSummary {
 
 struct SolverResult : SolverSummary {
   Eigen::VectorXd x;  ///< best feasible point, variables of the solved view
-  /// [term][window x output] of constraint terms at the backend's last point (x, where it
+  /// [term][row] (TermShape::row) of constraint terms at the backend's last point (x, where it
   /// converged), empty where the backend has none.
   std::vector<std::vector<double>> multipliers;
   /// Of the variables' bounds, the interval's among them: positive at an upper one, negative at a

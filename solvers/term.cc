@@ -6,13 +6,19 @@
 namespace touchdown::solvers {
 
 void TermBlock::Resize(const TermShape& shape) {
-  const std::size_t windows_max = static_cast<std::size_t>(shape.max_windows);
-  const std::size_t outputs = windows_max * static_cast<std::size_t>(shape.outputs);
-  const std::size_t v = static_cast<std::size_t>(shape.window * shape.block_size);
+  outputs_ = shape.outputs;
+  variables_ = shape.variables();
+  max_windows_ = shape.max_windows;
+  const auto rows = static_cast<std::size_t>(max_windows_ * outputs_);
   windows = 0;
-  first_block.assign(windows_max, 0);
-  for (auto* array : {&u, &du_dh, &rho, &drho, &d2rho, &r, &dr}) array->assign(outputs, 0.0);
-  du.assign(outputs * v, 0.0);
+  first_block.assign(static_cast<std::size_t>(max_windows_), 0);
+  for (auto* array : {&u, &du_dh, &rho, &drho, &d2rho, &r, &dr}) array->assign(rows, 0.0);
+  du.assign(rows * static_cast<std::size_t>(variables_), 0.0);
+}
+
+bool TermBlock::Fits(const TermShape& shape) const {
+  return outputs_ == shape.outputs && variables_ == shape.variables() &&
+         max_windows_ == shape.max_windows;
 }
 
 }  // namespace touchdown::solvers

@@ -35,6 +35,11 @@ struct TermShape {
   bool quadratic = false;     ///< u affine in the blocks, rho quadratic, r affine in u: one Hessian
                               ///< and one residual Jacobian for all x
   bool has_residual = true;   ///< its cost is a sum of squares r^2 / 2
+
+  /// Scalars in a window, v = w d.
+  int variables() const { return window * block_size; }
+  /// The row of an output of a window: its place in TermBlock, in multipliers and in row weights.
+  int row(int of_window, int output) const { return of_window * outputs + output; }
 };
 
 /// Where a term is evaluated.
@@ -54,8 +59,7 @@ struct Want {
 };
 
 /// What the rows of one constraint term count for in a Lagrangian: sum of multiplier x u + weight x
-/// u^2 / 2 with the square's curvature weight x du du^T alone. Arrays over [window][output]; null:
-/// zero.
+/// u^2 / 2 with the square's curvature weight x du du^T alone. Arrays over [row]; null: zero.
 struct RowWeights {
   const double* multiplier = nullptr;
   const double* weight = nullptr;
@@ -82,19 +86,30 @@ struct TermSums {
   BorderedBandMatrix* hessian = nullptr;
 };
 
-/// What one term hands to adapters and views: plain arrays over its active windows, sized once.
-/// With v = w d scalars in a window, arrays are row-major over [window][output][v].
+/// What one term hands to adapters and views: plain arrays over the rows of its active windows, sized
+/// once. The rows of a window, one for each output, follow each other (TermShape::row).
 struct TermBlock {
   int windows = 0;                       ///< active now, <= max_windows
   std::vector<int> first_block;          ///< [window]
-  std::vector<double> u;                 ///< [window][output]
-  std::vector<double> du;                ///< [window][output][v]
-  std::vector<double> du_dh;             ///< [window][output], t_k's share included
-  std::vector<double> rho, drho, d2rho;  ///< [window][output], of a cost
-  std::vector<double> r, dr;             ///< [window][output], residual and dr/du of a cost
+  std::vector<double> u;                 ///< [row]
+  std::vector<double> du;                ///< [row][v], see slopes
+  std::vector<double> du_dh;             ///< [row], t_k's share included
+  std::vector<double> rho, drho, d2rho;  ///< [row], of a cost
+  std::vector<double> r, dr;             ///< [row], residual and dr/du of a cost
+
+  int rows() const { return windows * outputs_; }  ///< active now
+  int window_of(int row) const { return row / outputs_; }
+  /// du of a row by the v scalars of its window.
+  double* slopes(int row) { return &du[static_cast<std::size_t>(row * variables_)]; }
+  const double* slopes(int row) const { return &du[static_cast<std::size_t>(row * variables_)]; }
 
   /// Sizes every array for `shape`. The only call that allocates.
   void Resize(const TermShape& shape);
+  /// It was resized for this shape.
+  bool Fits(const TermShape& shape) const;
+
+ private:
+  int outputs_ = 1, variables_ = 1, max_windows_ = 0;  // of the shape
 };
 
 /// The base of every term. Users write an inner map and take WindowTerm (window_term.h), which

@@ -41,13 +41,11 @@ View::View(const Problem& problem, AffineLift lift) : problem_(&problem), lift_(
     }
     last = b;
   }
-  plain_.assign(blocks, true);
-  const int half = problem.half_bandwidth();
-  for (int i = 0; i < static_cast<int>(blocks); ++i) {
-    for (int k = 0; k <= half && i + k < static_cast<int>(blocks); ++k) {
-      plain_[i] = plain_[i] && lift_.block[i] >= 0 && lift_.coefficient[i + k] == 1.0 &&
-                  lift_.block[i + k] == lift_.block[i] + k;
-    }
+  run_.assign(blocks, 0);
+  for (std::size_t i = blocks; i-- > 0;) {
+    if (lift_.block[i] < 0 || lift_.coefficient[i] != 1.0) continue;
+    const bool goes_on = i + 1 < blocks && lift_.block[i + 1] == lift_.block[i] + 1;
+    run_[i] = 1 + (goes_on ? run_[i + 1] : 0);
   }
   if (last + 1 != lift_.reduced_blocks) {
     throw std::invalid_argument("View: the lift uses " + std::to_string(last + 1) + " of " +
@@ -161,7 +159,7 @@ void View::ReduceHessian(const Lagrangian& lagrangian, ViewEvaluation* e) const 
     const int bi = lift_.block[i];
     if (bi < 0) continue;
     const int last = std::min(half, n - 1 - i);
-    if (plain_[i]) {
+    if (run_[i] > last) {  // this block row as it is
       const double* in = H.block(i, 0);
       double* out = e->hessian.block(bi, 0);
       for (int j = 0; j < (last + 1) * d * d; ++j) out[j] += in[j];
@@ -216,12 +214,12 @@ void View::MultiplyRowsTransposed(const double* const* weights, ViewEvaluation* 
     if (problem_->role(i) != Role::kConstraint) continue;
     const TermBlock& block = e->full.terms[i];
     const TermShape& shape = problem_->term(i).shape();
-    const int v = shape.window * d;
+    const int v = shape.variables();
     for (int k = 0; k < block.windows; ++k) {
       double* window = sum + block.first_block[k] * d;
-      for (int j = k * shape.outputs; j < (k + 1) * shape.outputs; ++j) {
+      for (int j = shape.row(k, 0); j < shape.row(k + 1, 0); ++j) {
         const double weight = weights[i][j];
-        const double* du = &block.du[j * v];
+        const double* du = block.slopes(j);
         for (int c = 0; c < v; ++c) window[c] += weight * du[c];
         sum[full] += weight * block.du_dh[j];
       }
@@ -241,11 +239,11 @@ void View::MultiplyRows(const double* dy, ViewEvaluation* e, double* const* out)
     if (problem_->role(i) != Role::kConstraint) continue;
     const TermBlock& block = e->full.terms[i];
     const TermShape& shape = problem_->term(i).shape();
-    const int v = shape.window * d;
+    const int v = shape.variables();
     for (int k = 0; k < block.windows; ++k) {
       const double* window = dx + block.first_block[k] * d;
-      for (int j = k * shape.outputs; j < (k + 1) * shape.outputs; ++j) {
-        const double* du = &block.du[j * v];
+      for (int j = shape.row(k, 0); j < shape.row(k + 1, 0); ++j) {
+        const double* du = block.slopes(j);
         double product = block.du_dh[j] * dh;
         for (int c = 0; c < v; ++c) product += du[c] * window[c];
         out[i][j] = product;

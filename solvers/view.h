@@ -33,7 +33,8 @@ struct ViewEvaluation {
 /// A Problem in the variables that a backend works on: y = the reduced blocks, then h if it is
 /// free. With the identity lift this is the Full view; with the elimination of
 /// planning/boundary_lift the Reduced one. The problem and the lift's offset must outlive the view
-/// and hold still while a solve runs.
+/// and hold still while a solve runs. Terms and bounds that the problem gets later count too: what was sized before
+/// is to be sized again.
 class View {
  public:
   /// Throws std::invalid_argument if the lift does not fit the problem.
@@ -41,6 +42,9 @@ class View {
   /// The problem in its own variables.
   explicit View(const Problem& problem)
       : View(problem, AffineLift::Identity(problem.shape().blocks)) {}
+  /// A view of a temporary would be one of nothing.
+  View(const Problem&&, AffineLift) = delete;
+  explicit View(const Problem&&) = delete;
 
   const Problem& problem() const { return *problem_; }
   const AffineLift& lift() const { return lift_; }
@@ -69,10 +73,10 @@ class View {
                 ViewEvaluation* evaluation) const noexcept;
 
   /// out = J^T w over all constraint rows at the last evaluation (with gradients): what multipliers
-  /// or right-hand sides `weights[term]` ([window][output]) are worth in the view's variables.
+  /// or right-hand sides `weights[term][row]` are worth in the view's variables.
   void MultiplyRowsTransposed(const double* const* weights, ViewEvaluation* evaluation,
                               double* out) const;
-  /// out[term][window][output] = J dy over all constraint rows, at the last evaluation.
+  /// out[term][row] = J dy over all constraint rows, at the last evaluation.
   void MultiplyRows(const double* dy, ViewEvaluation* evaluation, double* const* out) const;
 
   /// The problem's blocks at y, and the interval there.
@@ -100,7 +104,7 @@ class View {
 
   const Problem* problem_;
   AffineLift lift_;
-  std::vector<bool> plain_;  // [block]: it and the band after it map one to one
+  std::vector<int> run_;  // [block]: so many from it on are one to one, and follow each other
 };
 
 }  // namespace touchdown::solvers

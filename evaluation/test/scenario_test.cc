@@ -112,6 +112,9 @@ TEST_F(ScenarioTest, KeysOfTermsAndBackendsAreTheRegistries) {
               HasSubstr("no parameter jork; known: weight, hard, jerk"));
   EXPECT_THAT(Refusal("terms: {smoothness: {jerk: -1}}\n"), HasSubstr("must be in [0, 1000]"));
   EXPECT_THAT(Refusal("terms: {consistency: {hard: true}}\n"), HasSubstr("a cost only"));
+  EXPECT_THAT(
+      Refusal("terms: {moving_obstacle: {weight: 1}}\n"),
+      AllOf(HasSubstr(path_ + ":1"), HasSubstr("moving_obstacle does nothing in a flight")));
   EXPECT_THAT(Refusal("terms: {speed_limit: {hard: 1}}\n"), HasSubstr("true or false"));
   EXPECT_THAT(Refusal("terms: {speed_limit: 1}\n"), HasSubstr("a map of keys"));
   EXPECT_THAT(Refusal("solver: {options: {foo: 1}}\n"),

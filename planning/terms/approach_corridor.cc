@@ -24,7 +24,7 @@ struct OutsideCorridor {
 
   double radius, slope, span;
   bool may_recover;
-  const estimation::PadPrediction* pad = nullptr;
+  const estimation::PadPrediction* pad = &estimation::UnknownPad();
   LastKnots knots;
   double excess = 0.0, relieved_knots = 1.0;
 

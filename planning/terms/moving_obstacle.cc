@@ -46,6 +46,7 @@ TermEntry MovingObstacleTerm() {
   entry.info = {"moving_obstacle", "w sum hinge(s_min (1 - sum ((p - o(t)) / s)^2) / 2)", "m",
                 "docs/formulation.md", false};
   entry.parameters = {HingeWidth(0.3, "m")};
+  entry.use = TermUse::kMovingObstacles;
   entry.make = [info = entry.info](const TermSetup& setup) {
     const int most = setup.max_obstacles * (setup.segments() - 1);
     return MakeLandingTerm(info, InsideEllipsoid{}, setup.Hinge(), most);

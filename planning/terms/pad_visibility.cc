@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Keeps the pad in the cone of the downward camera, which looks against the thrust axis that the
-// flat outputs ask for. At knot k, with d from the vehicle to the predicted pad and f = a + g e_z,
+// flat outputs ask for. At knot k, with d from the vehicle to the predicted pad and f = a + g e_z - pull,
 //   u = sqrt(|d|^2 + eps^2) cos(half angle) + d . f / sqrt(|f|^2 + eps^2),
 // zero on the cone and of the size of the distance. Not convex. D. Mellinger and V. Kumar, ICRA 2011
 // for the axis; docs/formulation.md.
@@ -19,13 +19,15 @@ struct OutOfView {
   static constexpr bool kUsesInterval = true, kLinearInBlocks = false;
 
   double cosine, span;
-  const estimation::PadPrediction* pad = nullptr;
+  const estimation::PadPrediction* pad = &estimation::UnknownPad();
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< [m/s^2]
   LastKnots knots;
 
   int windows() const { return knots.count; }
   int first_block(int k) const { return knots.first + k; }
   void Update(const LandingContext& context) {
     pad = context.pad;
+    pull_W = context.pull_W;
     knots.Update(context, span);
   }
 
@@ -36,6 +38,7 @@ struct OutOfView {
     const Triple<T> d = {on_pad[0] - p[0], on_pad[1] - p[1], on_pad[2] - p[2]};
     Triple<T> f = KnotAcceleration(q, h);
     f[2] += estimation::kGravity;
+    for (int c = 0; c < 3; ++c) f[c] -= pull_W[c];
     constexpr double kSmall = kSmoothing * kSmoothing;
     u[0] = cosine * sqrt(Dot(d, d) + kSmall) + Dot(d, f) / sqrt(Dot(f, f) + kSmall);
   }

@@ -5,9 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "touchdown/planning/certificate.h"
 #include "touchdown/planning/duration_guess.h"
 #include "touchdown/planning/landing_problem.h"
+#include "touchdown/planning/replan_result.h"
 #include "touchdown/planning/test/planning_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/backend_registry.h"
@@ -320,6 +327,7 @@ TEST(LandingProblem, NothingIsAllocatedAfterConstruction) {
   Draw draw(37);
   LandingProblemOptions options = Options(ArrivalMode::kFree);
   options.limits_mode = LimitsMode::kHard;
+  options.max_obstacles = 8;
   for (const TermEntry& entry : options.terms) options.settings.push_back({entry.info.name, 1.0});
   LandingProblem problem(20, options);
   const Landing landing(&draw);
@@ -363,6 +371,75 @@ TEST(LandingProblem, ATermThatIsOffByDefaultHasAMetricAsRows) {
   }
   EXPECT_EQ(found, 1);
 }
+
+template <class Call>
+std::string Refused(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LandingProblem, BeforeItsBoundaryItSaysSo) {
+  for (const EndpointMode endpoint : {EndpointMode::kEliminated, EndpointMode::kExplicit}) {
+    LandingProblemOptions options = Options(ArrivalMode::kFree);
+    options.endpoint = endpoint;
+    for (const TermEntry& entry : options.terms) options.settings.push_back({entry.info.name, 1.0});
+    LandingProblem problem(12, options);
+    problem.SetDuration(3.0);
+    problem.SetPairs(std::vector<ObstaclePair>(3));
+    Eigen::VectorXd y = Eigen::VectorXd::Ones(problem.view().num_variables());
+    UniformBspline curve;
+    EXPECT_THAT(Refused([&] { problem.Guess(); }),
+                testing::HasSubstr("Guess() before SetBoundary"));
+    EXPECT_NE(Refused([&] { problem.Guess(&y); }), "");
+    EXPECT_NE(Refused([&] { problem.WarmGuess(curve, &y); }), "");
+    EXPECT_THAT(Refused([&] { problem.boundary_facts(); }), testing::HasSubstr("boundary_facts()"));
+    EXPECT_THAT(Refused([&] { problem.Curve(y); }), testing::HasSubstr("Curve()"));
+    EXPECT_NE(Refused([&] { problem.Curve(y, &curve); }), "");
+    // Whoever solves it all the same is told that it has no value.
+    auto backend = solvers::MakeBackend(solvers::StandardBackends(), "ipopt");
+    backend->Prepare(problem.view());
+    solvers::SolverResult result;
+    backend->Solve(problem.view(), y, {}, &result);
+    EXPECT_EQ(result.status, solvers::SolveStatus::kEvaluationFailed);
+  }
+}
+
+TEST(LandingProblem, RefusesDurationsAndStartsThatAreNone) {
+  LandingProblem problem(12, Options(ArrivalMode::kFree));
+  for (const double T : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THAT(Refused([&] { problem.SetDuration(T); }), testing::HasSubstr("duration is"));
+  }
+  const ArcPad pad({3.0, 0.0, 0.3}, 0.8, 0.0, 0.0);
+  SplineState start;
+  start.v.y() = std::nan("");
+  EXPECT_NE(Refused([&] { problem.SetBoundary(start, 0.0, pad, {}); }), "");
+  EXPECT_NE(Refused([&] { problem.SetBoundary({}, std::nan(""), pad, {}); }), "");
+  EXPECT_EQ(Refused([&] { problem.SetBoundary({}, 0.0, pad, {}); }), "");
+}
+
+template <class Pad>
+concept CanBound = requires(LandingProblem problem, Pad&& pad) {
+  problem.SetBoundary({}, 0.0, std::forward<Pad>(pad), {});
+};
+static_assert(CanBound<const ArcPad&>);
+static_assert(!CanBound<ArcPad>, "the prediction of a temporary");
+
+// What the replanner decides cannot be set where it would be overwritten.
+template <class Options>
+concept HasArrival = requires(Options options) {
+  options.arrival;
+};
+template <class Options>
+concept HasLimits = requires(Options options) {
+  options.limits;
+};
+static_assert(HasArrival<LandingProblemOptions> && HasLimits<LandingProblemOptions>);
+static_assert(!HasArrival<decltype(ReplannerOptions::problem)>);
+static_assert(!HasLimits<decltype(ReplannerOptions::problem)>);
 
 TEST(LandingProblem, RefusesATermThatIsRegisteredTwice) {
   LandingProblemOptions options;

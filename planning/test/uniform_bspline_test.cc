@@ -127,5 +127,22 @@ TEST(UniformBspline, RefusesWhatIsNoSpline) {
   EXPECT_THROW(UniformBspline(bad, 0.1, 0.0), std::invalid_argument);
 }
 
+TEST(UniformBspline, HasNoKnotBeyondItsEndsAndNoPlaceAtNoTime) {
+  const UniformBspline curve(ControlPoints::Random(3, 9), 0.2, 1.0);
+  EXPECT_THROW(curve.AtKnot(-1), std::invalid_argument);
+  EXPECT_NO_THROW(curve.AtKnot(curve.segments()));
+  EXPECT_THROW(curve.AtKnot(curve.segments() + 1), std::invalid_argument);
+  const double nan = std::nan("");
+  EXPECT_TRUE(curve.Position(nan).array().isNaN().all());
+  for (const FlatState& state : {curve.Evaluate(nan), curve.EvaluateOnward(nan)}) {
+    for (const Eigen::Vector3d& part : {state.p_WB, state.v_WB, state.a_WB}) {
+      EXPECT_TRUE(part.array().isNaN().all());
+    }
+  }
+  const double endless = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(curve.Position(-endless), curve.Position(1.0));
+  EXPECT_EQ(curve.Position(endless), curve.Position(curve.t_end()));
+}
+
 }  // namespace
 }  // namespace touchdown::planning

@@ -3,7 +3,10 @@
 
 #include "touchdown/solvers/problem.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <vector>
 
 #include "touchdown/solvers/test/test_terms.h"
 
@@ -72,6 +75,31 @@ TEST(Problem, ConstraintRowsReportTheirViolationAndCurvature) {
   EXPECT_DOUBLE_EQ(e.terms[0].du[0], 6.0);
   EXPECT_DOUBLE_EQ(e.hessian.At(0, 0), 6.0);
   EXPECT_EQ(e.gradient[0], 0.0);
+}
+
+TEST(Problem, AnEvaluationThatWasSizedBeforeATermSaysSo) {
+  Problem problem({.blocks = 9, .block_size = 2});
+  const auto wavy = [](int windows) {
+    return std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
+        TermInfo{"wavy", "", "", "", false}, WavyMap(windows), SquareLoss(1.0), windows);
+  };
+  const std::vector<double> x(18, 0.1);
+  Evaluation e;
+  EXPECT_FALSE(problem.Evaluate(x.data(), 1.0, {}, {}, &e)) << "never sized";
+  EXPECT_THAT(e.failure, testing::HasSubstr("not resized"));
+  problem.Resize(&e);
+  EXPECT_TRUE(problem.Evaluate(x.data(), 1.0, {}, {}, &e));
+  problem.AddTerm(wavy(7), Role::kCost);
+  EXPECT_FALSE(problem.Fits(e));
+  EXPECT_FALSE(problem.Evaluate(x.data(), 1.0, {.gradient = true, .hessian = true}, {}, &e));
+  EXPECT_THAT(e.failure, testing::HasSubstr("not resized"));
+  problem.Resize(&e);
+  EXPECT_TRUE(problem.Evaluate(x.data(), 1.0, {.gradient = true, .hessian = true}, {}, &e));
+  // As many terms, but larger ones.
+  Problem other({.blocks = 9, .block_size = 2});
+  other.AddTerm(wavy(5), Role::kCost);
+  other.Resize(&e);
+  EXPECT_FALSE(problem.Evaluate(x.data(), 1.0, {}, {}, &e));
 }
 
 }  // namespace

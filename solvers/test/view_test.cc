@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <type_traits>
 
 #include "touchdown/solvers/derivative_check.h"
 #include "touchdown/solvers/test/test_terms.h"
@@ -136,6 +137,37 @@ TEST(View, RestrictInvertsLift) {
   EXPECT_EQ(h, y[y.size() - 1]);
   EXPECT_LT((view.Restrict(x.data(), h) - y).cwiseAbs().maxCoeff(), 1e-12);
 }
+
+struct Product {
+  static constexpr int kBlockSize = 2, kWindow = 1, kOutputs = 1;
+  static constexpr bool kUsesInterval = false, kLinearInBlocks = false;
+  int windows() const { return 9; }
+  int first_block(int k) const { return k; }
+  template <class T>
+  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    u[0] = q[0] * q[1];
+  }
+};
+
+// The view was made when the band was narrow.
+TEST(View, ATermThatIsAddedLaterCounts) {
+  Problem problem({.blocks = 9, .block_size = 2});
+  problem.AddTerm(std::make_shared<WindowTerm<Product, SquareLoss>>(
+                      TermInfo{"product", "", "", "", false}, Product(), SquareLoss(0.8), 9),
+                  Role::kCost);
+  const View view = FoldedView(problem);
+  problem.AddTerm(std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
+                      TermInfo{"wavy", "", "", "", false}, WavyMap(7), SquareLoss(1.3), 7),
+                  Role::kCost);
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  Eigen::VectorXd y(view.num_variables());
+  for (int i = 0; i < y.size(); ++i) y[i] = 0.7 * normal(random);
+  EXPECT_LT(CheckDerivatives(view, y).worst(), 1e-5);
+}
+
+static_assert(!std::is_constructible_v<View, Problem>, "a view of a temporary");
+static_assert(!std::is_constructible_v<View, Problem, AffineLift>);
 
 TEST(View, RefusesALiftThatDoesNotFit) {
   Problem problem({.blocks = 4, .block_size = 1});
