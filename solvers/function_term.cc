@@ -68,7 +68,7 @@ void FunctionTerm::Evaluate(const TermInput& input, const TermRequest& request, 
   const int m = shape_.outputs;
   for (int k = 0; k < block->windows; ++k) {
     const double* q = input.x + block->first_block[k] * shape_.block_size;
-    EvaluateFunction(q, derivatives, &block->u[k * m], &block->du[k * m * variables_]);
+    EvaluateFunction(k, q, derivatives, &block->u[k * m], &block->du[k * m * variables_]);
     if (derivatives) std::fill_n(&block->du_dh[k * m], m, 0.0);
     if (request.role == Role::kCost) EvaluateLoss(k, request, block);
     if (request.want.gradient) AddGradient(k, request, *block, sums);
@@ -78,19 +78,19 @@ void FunctionTerm::Evaluate(const TermInput& input, const TermRequest& request, 
   }
 }
 
-void FunctionTerm::EvaluateFunction(const double* q, bool derivatives, double* u,
+void FunctionTerm::EvaluateFunction(int window, const double* q, bool derivatives, double* u,
                                     double* du) const {
   // An output that the function forgets must not count as 0.
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!derivatives) {
     std::fill_n(u, shape_.outputs, kNone);
-    return functions_.value(q, u);
+    return functions_.value(window, q, u);
   }
   std::array<First, kMostVariables> in;
   std::array<First, kMostOutputs> out;
   for (int i = 0; i < variables_; ++i) in[i] = First(q[i], i);
   for (int c = 0; c < shape_.outputs; ++c) out[c] = First(kNone);
-  functions_.first(in.data(), out.data());
+  functions_.first(window, in.data(), out.data());
   for (int c = 0; c < shape_.outputs; ++c) {
     u[c] = out[c].v;
     std::copy_n(out[c].d.begin(), variables_, du + c * variables_);
@@ -156,7 +156,7 @@ void FunctionTerm::AddHessian(int window, const double* q, const TermRequest& re
   if (bends) {
     std::array<Second, kMostVariables> in;
     for (int i = 0; i < n; ++i) in[i] = Second(q[i], i);
-    functions_.second(in.data(), out.data());
+    functions_.second(window, in.data(), out.data());
   }
   for (int i = 0; i < n; ++i) {
     for (int j = i / d * d; j < n; ++j) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -25,8 +26,8 @@ struct FunctionShape {
 ///
 ///   [](const auto* q, auto* u) { u[0] = q[0] * q[1] - 1.0; }
 ///
-/// on the w d scalars of a window, and is differentiated twice, exactly. It does not see the
-/// interval. Some ten times slower than a WindowTerm of the same size.
+/// on the w d scalars of a window, and is differentiated twice, exactly. One that begins with `int window` is told
+/// which window it sees, from 0. It does not see the interval. Some ten times slower than a WindowTerm of the same size.
 class FunctionTerm : public Term {
  public:
   static constexpr int kMostVariables = 32;  ///< w d
@@ -36,8 +37,9 @@ class FunctionTerm : public Term {
   /// Throws std::invalid_argument on a size out of range.
   template <class Function>
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Function function)
-      : FunctionTerm(std::move(info), shape, std::move(loss),
-                     Functions{function, function, function}) {}
+      : FunctionTerm(
+            std::move(info), shape, std::move(loss),
+            Functions{Told<double>(function), Told<First>(function), Told<Second>(function)}) {}
 
   const TermInfo& info() const override { return info_; }
   const TermShape& shape() const override { return shape_; }
@@ -50,14 +52,25 @@ class FunctionTerm : public Term {
  private:
   using First = Dual<kMostVariables>;
   using Second = SecondDual<kMostVariables>;
+  template <class T>
+  using Of = std::function<void(int, const T*, T*)>;
   struct Functions {
-    std::function<void(const double*, double*)> value;
-    std::function<void(const First*, First*)> first;
-    std::function<void(const Second*, Second*)> second;
+    Of<double> value;
+    Of<First> first;
+    Of<Second> second;
   };
+  /// A function that does not ask which window it sees is not told.
+  template <class T, class Function>
+  static Of<T> Told(const Function& function) {
+    if constexpr (std::is_invocable_v<const Function&, int, const T*, T*>) {
+      return function;
+    } else {
+      return [function](int /*window*/, const T* x, T* u) { function(x, u); };
+    }
+  }
 
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Functions functions);
-  void EvaluateFunction(const double* q, bool derivatives, double* u, double* du) const;
+  void EvaluateFunction(int window, const double* q, bool derivatives, double* u, double* du) const;
   void EvaluateLoss(int window, const TermRequest& request, TermBlock* block) const;
   void AddGradient(int window, const TermRequest& request, const TermBlock& block,
                    const TermSums& sums) const;

@@ -11,9 +11,9 @@
 namespace touchdown::solvers {
 namespace {
 
-constexpr auto kFunction = [](const auto* q, auto* u) {
+constexpr auto kFunction = [](int window, const auto* q, auto* u) {
   using std::exp, std::sin;
-  u[0] = sin(q[0] * q[3]) + q[2] * q[2] * q[1];
+  u[0] = sin(q[0] * q[3]) + (1.0 + window) * q[2] * q[2] * q[1];
   u[1] = exp(0.3 * q[1]) - q[0] * q[2];
 };
 
@@ -23,8 +23,8 @@ struct Map {
   int windows() const { return 3; }
   int first_block(int k) const { return k + 1; }
   template <class T>
-  void operator()(int /*k*/, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
-    kFunction(q, u);
+  void operator()(int k, const T* q, const T& /*h*/, const T& /*t*/, T* u) const {
+    kFunction(k, q, u);
   }
 };
 
