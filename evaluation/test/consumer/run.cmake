@@ -85,6 +85,17 @@ run(0 "${WORK_DIR}/own_problem/swing_up")
 if(NOT output MATCHES "^converged after [0-9]+ iterations, effort 67.7")
   message(FATAL_ERROR "swing_up: ${output}")
 endif()
+run(0 "${WORK_DIR}/own_problem/smoothing")
+if(NOT output MATCHES "^converged, cost 0.50")
+  message(FATAL_ERROR "smoothing: ${output}")
+endif()
+
+# The planner, to a point in a map of one's own.
+build("${EXAMPLES}/go_to_goal" go_to_goal)
+run(0 "${WORK_DIR}/go_to_goal/go_to_goal")
+if(NOT output MATCHES "^there after 5")
+  message(FATAL_ERROR "go_to_goal: ${output}")
+endif()
 
 # `compare` judges the example backend: by the best cost that any backend found.
 build("${EXAMPLES}/own_backend" own_backend)
