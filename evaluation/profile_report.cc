@@ -98,9 +98,7 @@ std::string ProfileText(const Profile& profile) {
                       summary.deadline_misses, steps, profile.deadline_ms);
   text += SlowestText(profile, summary);
   if (!profile.allocations_counted) {
-    text +=
-        "  allocations are counted under LD_PRELOAD=libtouchdown_allocations.so "
-        "(docs/profile.md)\n";
+    text += "  allocations are not counted; docs/profile.md says how\n";
   }
   if (profile.compared > 0) {
     text += fmt::format("  {} of {} answers are the recorded ones bit for bit\n", profile.same,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where to fly to without a pad. A goal is handed to a planner as its ReplanInput::pad; with the height of the endpoint at
-// its default of EndpointTarget{.height = 0}, the body's origin ends there.
+// Where to fly to without a pad. A goal is handed to a planner as its ReplanInput::pad. The body's origin ends at
+// `ReplanInput::endpoint.height` above it, which is 1.5 m if it is not set: 0 ends in the goal.
 #pragma once
 
 #include <array>
@@ -32,10 +32,11 @@ class MovingGoal final : public estimation::PadPrediction {
   using Position = std::array<Taylor, 3>;
 
   /// `position` takes the time as a Taylor series and gives x, y and z in W [m]. Velocity, acceleration and jerk follow
-  /// from it exactly. With `using std::sin` and the like:
+  /// from it exactly. There are + - * /, sqrt, exp, sin and cos (taylor.h):
   ///
-  ///     MovingGoal goal([](auto t) { return MovingGoal::Position{2.0 + 0.5 * t, sin(t), 1.5}; });
+  ///     MovingGoal goal([](const Taylor& t) { return MovingGoal::Position{2.0 + 0.5 * t, sin(t), 1.5}; });
   ///
+  /// It is called at every question, from any thread, and should not allocate.
   /// Throws std::invalid_argument if there is no function. Where it throws or is not finite, the goal is unknown.
   explicit MovingGoal(std::function<Position(const Taylor& t)> position);
 

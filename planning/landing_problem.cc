@@ -21,6 +21,10 @@ void Require(bool ok, const char* name, double value, const char* range) {
                               std::to_string(value) + ", it must be " + range);
 }
 
+void RequireFinite(const char* name, const Eigen::Vector3d& numbers) {
+  for (const double number : numbers) Require(std::isfinite(number), name, number, "finite");
+}
+
 solvers::ProblemShape Shape(int segments, const LandingProblemOptions& options) {
   Require(segments >= 6, "number of segments", segments, ">= 6");
   Require(options.limits.speed > 0.0, "limits.speed", options.limits.speed, "> 0 m/s");
@@ -80,7 +84,6 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
   const bool explicit_end = options.endpoint == EndpointMode::kExplicit;
   if (entry.use == TermUse::kFreeArrival && options.arrival != ArrivalMode::kFree) return;
   if (entry.use == TermUse::kExplicitEndpoint && !explicit_end) return;
-  if (entry.use == TermUse::kMovingObstacles && options.max_obstacles == 0) return;
   setup.hard = entry.use == TermUse::kExplicitEndpoint ||
                (entry.is_limit && options.limits_mode == LimitsMode::kHard);
   bool asked_for = setup.weight > 0.0;
@@ -90,6 +93,10 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
     asked_for = setup.weight > 0.0 || settings.hard.value_or(false);
   }
   if (!asked_for) return;
+  if (entry.use == TermUse::kMovingObstacles && options.max_obstacles == 0) {
+    throw std::invalid_argument("LandingProblem: term " + entry.info.name +
+                                " is asked for, and max_obstacles is 0: there is no room for any");
+  }
   // A row's weight counts in the whitening's metric alone, which must not lose it.
   if (setup.hard && !(setup.weight > 0.0)) setup.weight = 1.0;
   const std::shared_ptr<solvers::Term> term = entry.make(setup);
@@ -109,8 +116,12 @@ void LandingProblem::Update() {
 void LandingProblem::SetBoundary(const SplineState& start, double t0,
                                  const estimation::PadPrediction& pad, const EndpointTarget& target,
                                  const Eigen::Vector3d& pull_W) {
-  Require(start.p.allFinite() && start.v.allFinite() && start.a.allFinite() && std::isfinite(t0),
-          "time of the start", t0, "finite, and the start too");
+  Require(std::isfinite(t0), "time of the start", t0, "finite");
+  Require(std::isfinite(target.height), "height of the end", target.height, "finite");
+  RequireFinite("position of the start", start.p);
+  RequireFinite("velocity of the start", start.v);
+  RequireFinite("acceleration of the start", start.a);
+  RequireFinite("pull", pull_W);
   has_boundary_ = true;
   context_.limits = LimitsUnder(limits_, vehicle_, pull_W);
   context_.pull_W = pull_W;

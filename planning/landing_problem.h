@@ -65,7 +65,7 @@ class LandingProblem {
 
   /// Start state at the absolute time t0 and the moving end; until then every evaluation of the problem fails. The
   /// prediction must outlive the solve. The limits are what a steady pull leaves of the options' [m/s^2]
-  /// (LimitsUnder). Throws std::invalid_argument if the start is not finite.
+  /// (LimitsUnder). Throws std::invalid_argument if a number is not finite.
   void SetBoundary(const SplineState& start, double t0, const estimation::PadPrediction& pad,
                    const EndpointTarget& target,
                    const Eigen::Vector3d& pull_W = Eigen::Vector3d::Zero());

@@ -22,7 +22,7 @@ class PairBinder {
  public:
   static constexpr int kMostControlPoints = 67;  ///< of a curve
 
-  /// Throws std::invalid_argument unless options.max_pairs_per_point >= 2: floor and ceiling need them.
+  /// Throws std::invalid_argument unless formulation.max_pairs_per_point >= 2: floor and ceiling need them.
   explicit PairBinder(const Formulation& formulation, const StepConstants& constants = {});
 
   /// Nothing is bound any more. Throws std::invalid_argument for more than kMostControlPoints.

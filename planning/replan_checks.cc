@@ -12,6 +12,7 @@ namespace {
 // Beyond these a number is taken for a fault; within them lattice indices cannot overflow.
 constexpr double kFarthest = 1e6;  // [m]
 constexpr double kFastest = 1e3;   // [m/s]
+constexpr int kMostPairs = 1000;   // of a control point: each has its storage
 
 bool Plausible(const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
   return p.cwiseAbs().maxCoeff() < kFarthest && v.cwiseAbs().maxCoeff() < kFastest;
@@ -64,6 +65,25 @@ void Validate(const ReplannerOptions& o) {
   Require(o.limits.speed > 0.0, "limits.speed", o.limits.speed, "> 0 m/s");
   Require(o.limits.acceleration > 0.0, "limits.acceleration", o.limits.acceleration, "> 0 m/s^2");
   Require(o.limits.body_rate > 0.0, "limits.body_rate", o.limits.body_rate, "> 0 rad/s");
+  Require(o.limits.braking_factor > 0.0, "limits.braking_factor", o.limits.braking_factor, "> 0");
+  for (const double pull : o.limits.pull_W) {
+    Require(std::isfinite(pull), "limits.pull_W", pull, "finite");
+  }
+  const VehicleFacts& vehicle = o.problem.vehicle;
+  Require(vehicle.thrust_min >= 0.0, "vehicle.thrust_min", vehicle.thrust_min, ">= 0 m/s^2");
+  Require(vehicle.thrust_max > vehicle.thrust_min, "vehicle.thrust_max", vehicle.thrust_max,
+          "above thrust_min");
+  Require(vehicle.tilt_max > 0.0, "vehicle.tilt_max", vehicle.tilt_max, "> 0 rad");
+  Require(vehicle.stop_tilt_max > 0.0, "vehicle.stop_tilt_max", vehicle.stop_tilt_max, "> 0 rad");
+  // The proof is of a hull of this size, 0 of a point.
+  Require(o.hull_radius >= 0.0 && std::isfinite(o.hull_radius), "hull_radius", o.hull_radius,
+          ">= 0 m and finite");
+  Require(std::isfinite(o.contact_height), "contact_height", o.contact_height, "finite");
+  Require(o.pad_radius >= 0.0, "pad_radius", o.pad_radius, ">= 0 m");
+  Require(o.deck_half_size >= 0.0, "deck_half_size", o.deck_half_size, ">= 0 m");
+  Require(o.vertical_cost >= 1.0, "vertical_cost", o.vertical_cost, ">= 1");
+  Require(o.problem.max_pairs_per_point <= kMostPairs, "problem.max_pairs_per_point",
+          o.problem.max_pairs_per_point, "<= 1000");
   Require(o.ceiling_height > o.floor_height, "ceiling_height", o.ceiling_height,
           "above floor_height");
   Require(o.min_duration > 0.0, "min_duration", o.min_duration, "> 0 s");

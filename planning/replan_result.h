@@ -29,7 +29,7 @@ struct ReplannerOptions {
   std::vector<std::pair<std::string, double>> solver_options;  ///< of the backend, by name
   ArrivalMode arrival = ArrivalMode::kFixed;
   Limits limits;
-  Formulation problem;
+  Formulation problem;           ///< terms, their settings, how limits and ends are kept
   double floor_height = 0.45;    ///< body origin stays above this away from the pad [m]
   double ceiling_height = 10.0;  ///< and below this everywhere [m]
   double pad_radius = 1.2;  ///< half width of the strip over the pad [m], which has as its floor

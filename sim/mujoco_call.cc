@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MuJoCo 2.2.2 calls mju_user_error on a fatal error, which must not return; without one it prints and ends the
-// process. Ours jumps to the scope that is open on this thread. Nobody's scope: as without us.
+// MuJoCo 2.2.2 calls mju_user_error on a fatal error. Ours jumps to the scope that is open on this thread. Where none is,
+// the handler that was there is asked, as without us; if there was none the error is printed and ends the process, as it
+// does in MuJoCo, which writes a log file and waits for a key besides. Warnings within a scope are counted in mjData
+// and else ignored; beyond they go to their handler.
 
 #include "touchdown/sim/mujoco_call.h"
 
@@ -16,19 +18,26 @@ namespace touchdown::sim {
 namespace {
 
 thread_local MujocoErrorScope* innermost = nullptr;
-void (*handler_before)(const char*) = nullptr;
+void (*errors_before)(const char*) = nullptr;
+void (*warnings_before)(const char*) = nullptr;
 
-void IgnoreWarning(const char* /*message*/) {}  // counted in mjData; MuJoCo would write a file
+void HearWarning(const char* message) {
+  if (innermost == nullptr && warnings_before != nullptr) warnings_before(message);
+}
 
 }  // namespace
 
 void MujocoErrorScope::Install() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    handler_before = mju_user_error;
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  if (mju_user_error != Escape) {
+    errors_before = mju_user_error;
     mju_user_error = Escape;
-    mju_user_warning = IgnoreWarning;
-  });
+  }
+  if (mju_user_warning != HearWarning) {
+    warnings_before = mju_user_warning;
+    mju_user_warning = HearWarning;
+  }
 }
 
 MujocoErrorScope::MujocoErrorScope() : outer_(innermost) {
@@ -40,7 +49,7 @@ MujocoErrorScope::~MujocoErrorScope() { innermost = outer_; }
 
 void MujocoErrorScope::Escape(const char* message) {
   if (innermost == nullptr) {
-    if (handler_before != nullptr) handler_before(message);
+    if (errors_before != nullptr) return errors_before(message);
     std::fprintf(stderr, "ERROR: %s\n", message);
     std::exit(EXIT_FAILURE);
   }

@@ -19,7 +19,7 @@ class MujocoErrorScope {
   [[noreturn]] void Throw() const;
 
  private:
-  [[noreturn]] static void Escape(const char* message);
+  static void Escape(const char* message);
   static void Install();
 
   std::jmp_buf escape_{};

@@ -62,10 +62,10 @@ class FunctionTerm : public Term {
   /// A function that does not ask which window it sees is not told.
   template <class T, class Function>
   static Of<T> Told(const Function& function) {
-    if constexpr (std::is_invocable_v<const Function&, int, const T*, T*>) {
+    if constexpr (std::is_invocable_v<Function&, int, const T*, T*>) {
       return function;
     } else {
-      return [function](int /*window*/, const T* x, T* u) { function(x, u); };
+      return [f = function](int /*window*/, const T* x, T* u) mutable { f(x, u); };
     }
   }
 

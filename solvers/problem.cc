@@ -17,6 +17,8 @@ namespace touchdown::solvers {
 
 namespace {
 
+constexpr int kMostScalars = 100000000;  // indices into a band are int
+
 /// The first block of a window that is not inside `blocks`.
 std::optional<int> StrayWindow(const TermBlock& block, int window, int blocks) {
   for (int k = 0; k < block.windows; ++k) {
@@ -32,6 +34,11 @@ Problem::Problem(const ProblemShape& shape) : shape_(shape) {
   if (shape.blocks < 1 || shape.block_size < 1) {
     throw std::invalid_argument("Problem: " + std::to_string(shape.blocks) + " blocks of " +
                                 std::to_string(shape.block_size) + " scalars, both must be >= 1");
+  }
+  if (shape.block_size > kMostScalars / shape.blocks) {
+    throw std::invalid_argument("Problem: " + std::to_string(shape.blocks) + " blocks of " +
+                                std::to_string(shape.block_size) +
+                                " scalars, together they must be at most 1e8");
   }
   if (!(shape.interval_min > 0.0 && shape.interval_max >= shape.interval_min &&
         std::isfinite(shape.interval_max))) {

@@ -97,7 +97,7 @@ class Problem {
 
   /// Allocates everything that Evaluate needs.
   void Resize(Evaluation* evaluation) const;
-  /// Resize has been called since the last AddTerm.
+  /// It has the sizes of this problem: Resize has been called since the last AddTerm.
   bool Fits(const Evaluation& evaluation) const;
 
   /// Evaluates everything wanted at the blocks `x` and interval `h` in one pass. Does not allocate.

@@ -99,10 +99,16 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
         ": this view does not have the structure it was prepared for: sizes, "
         "terms, their rows' bounds, and which variables have bounds");
   }
-  if (warm.y.size() != n || !warm.y.allFinite()) {
+  if (result == nullptr) throw std::invalid_argument("backend " + name_ + ": no result to fill");
+  if (warm.y.size() != n) {
     throw std::invalid_argument("backend " + name_ + ": the warm start has " +
                                 std::to_string(warm.y.size()) + " numbers, it needs " +
-                                std::to_string(n) + " finite ones");
+                                std::to_string(n));
+  }
+  for (int i = 0; i < n; ++i) {
+    if (std::isfinite(warm.y[i])) continue;
+    throw std::invalid_argument("backend " + name_ + ": number " + std::to_string(i) +
+                                " of the warm start is not finite");
   }
   for (const std::vector<double>& rows : warm.multipliers) {
     if (!std::all_of(rows.begin(), rows.end(), [](double m) { return std::isfinite(m); })) {

@@ -123,8 +123,20 @@ void View::ComputeOffset(Want want, ViewEvaluation* e) const {
   }
 }
 
+bool View::Fits(const ViewEvaluation& e) const {
+  const auto n = static_cast<std::size_t>(problem_->shape().blocks * block_size());
+  return e.x.size() == n && e.dl.size() == n && e.hessian.blocks() == blocks() &&
+         e.hessian.half_bandwidth() == problem_->half_bandwidth() &&
+         e.gradient.size() == static_cast<std::size_t>(num_variables());
+}
+
 bool View::Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                     ViewEvaluation* e) const noexcept {
+  if (!Fits(*e)) {
+    e->full.ok = false;
+    e->full.failure = "the evaluation was not resized for this view as it is now";
+    return false;
+  }
   e->h = free_interval() ? y[num_variables() - 1] : problem_->interval();
   ComputeOffset(want, e);
   AddReducedBlocks(y, e->x.data());

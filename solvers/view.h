@@ -68,7 +68,8 @@ class View {
   /// Allocates what Evaluate needs.
   void Resize(ViewEvaluation* evaluation) const;
 
-  /// Evaluates at y; see Problem::Evaluate. Does not allocate.
+  /// Evaluates at y; see Problem::Evaluate. Does not allocate. False, and says why in `full.failure`, where the
+  /// evaluation has not the sizes of this view and its problem.
   bool Evaluate(const double* y, Want want, const Lagrangian& lagrangian,
                 ViewEvaluation* evaluation) const noexcept;
 
@@ -97,6 +98,7 @@ class View {
                             const ViewEvaluation& evaluation) const;
 
  private:
+  bool Fits(const ViewEvaluation& evaluation) const;
   void ComputeOffset(Want want, ViewEvaluation* evaluation) const;
   void AddReducedBlocks(const double* y, double* x) const;
   void ReduceVector(const double* full, const ViewEvaluation& evaluation, double* out) const;

@@ -386,6 +386,7 @@ TEST(LandingProblem, BeforeItsBoundaryItSaysSo) {
   for (const EndpointMode endpoint : {EndpointMode::kEliminated, EndpointMode::kExplicit}) {
     LandingProblemOptions options = Options(ArrivalMode::kFree);
     options.endpoint = endpoint;
+    options.max_obstacles = 2;
     for (const TermEntry& entry : options.terms) options.settings.push_back({entry.info.name, 1.0});
     LandingProblem problem(12, options);
     problem.SetDuration(3.0);
@@ -416,9 +417,59 @@ TEST(LandingProblem, RefusesDurationsAndStartsThatAreNone) {
   const ArcPad pad({3.0, 0.0, 0.3}, 0.8, 0.0, 0.0);
   SplineState start;
   start.v.y() = std::nan("");
-  EXPECT_NE(Refused([&] { problem.SetBoundary(start, 0.0, pad, {}); }), "");
-  EXPECT_NE(Refused([&] { problem.SetBoundary({}, std::nan(""), pad, {}); }), "");
+  const auto bounded = [&](double t0, const EndpointTarget& target, const Eigen::Vector3d& pull) {
+    return Refused([&] { problem.SetBoundary({}, t0, pad, target, pull); });
+  };
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  EXPECT_THAT(Refused([&] { problem.SetBoundary(start, 0.0, pad, {}); }),
+              testing::HasSubstr("velocity of the start is nan"));
+  EXPECT_THAT(bounded(std::nan(""), {}, none), testing::HasSubstr("time of the start is nan"));
+  EXPECT_THAT(bounded(0.0, {.height = std::nan("")}, none),
+              testing::HasSubstr("height of the end"));
+  EXPECT_THAT(bounded(0.0, {}, {0.0, std::nan(""), 0.0}), testing::HasSubstr("pull is nan"));
   EXPECT_EQ(Refused([&] { problem.SetBoundary({}, 0.0, pad, {}); }), "");
+}
+
+TEST(LandingProblem, RefusesATermThatNothingFeeds) {
+  LandingProblemOptions options = Options(ArrivalMode::kFixed);
+  options.settings = {{"moving_obstacle", 5.0, {}, {}}};
+  EXPECT_THAT(Refused([&] { LandingProblem(12, options); }), testing::HasSubstr("moving_obstacle"));
+  options.max_obstacles = 1;
+  EXPECT_EQ(Refused([&] { LandingProblem(12, options); }), "");
+}
+
+// A wind from the side leans the vehicle, and its camera with it: the pad that it leans over is seen farther out.
+TEST(LandingProblem, TheCameraLeansAgainstThePull) {
+  const TermRegistry terms = StandardTerms();
+  const TermEntry& entry = FindTerm(terms, "pad_visibility");
+  const ArcPad pad({1.2, 0.0, 0.0}, 0.0, 0.0, 0.0);
+  const auto out_of_view = [&](const Eigen::Vector3d& pull_W) {
+    const int segments = 8;
+    TermSetup setup = DefaultSetup(entry, segments + 3);
+    const std::shared_ptr<solvers::Term> term = entry.make(setup);
+    LandingContext context;
+    context.segments = segments;
+    context.interval = 0.1;
+    context.pad = &pad;
+    context.pull_W = pull_W;
+    dynamic_cast<ContextUser&>(*term).Update(context);
+    solvers::Problem problem({.blocks = segments + 3});
+    problem.set_interval(0.1);
+    problem.AddTerm(term, solvers::Role::kCost);
+    solvers::Evaluation at;
+    problem.Resize(&at);
+    const ControlPoints hover = Eigen::Vector3d(0.0, 0.0, 1.5).replicate(1, segments + 3);
+    EXPECT_TRUE(problem.Evaluate(hover.data(), 0.1, {}, {}, &at));
+    return at.terms[0].u[0];
+  };
+  const auto expected = [](const Eigen::Vector3d& pull_W) {
+    const Eigen::Vector3d d(1.2, 0.0, -1.5), f = Eigen::Vector3d(0.0, 0.0, 9.81) - pull_W;
+    return d.norm() * std::cos(0.25 * 3.14159265358979) + d.dot(f) / f.norm();
+  };
+  for (const double side : {0.0, 2.0, -2.0}) {
+    EXPECT_NEAR(out_of_view({side, 0.0, 0.0}), expected({side, 0.0, 0.0}), 5e-3) << side;
+  }
+  EXPECT_GT(std::abs(expected({2.0, 0.0, 0.0}) - expected({-2.0, 0.0, 0.0})), 0.2);
 }
 
 template <class Pad>

@@ -166,6 +166,27 @@ TEST(View, ATermThatIsAddedLaterCounts) {
   EXPECT_LT(CheckDerivatives(view, y).worst(), 1e-5);
 }
 
+TEST(View, AnEvaluationOfOtherSizesSaysSo) {
+  Problem problem({.blocks = 9, .block_size = 2});
+  problem.AddTerm(std::make_shared<WindowTerm<Product, SquareLoss>>(
+                      TermInfo{"product", "", "", "", false}, Product(), SquareLoss(0.8), 9),
+                  Role::kCost);
+  const View view(problem), folded = FoldedView(problem);
+  const std::vector<double> y(18, 0.3);
+  const Want want{.gradient = true, .hessian = true};
+  ViewEvaluation e;
+  EXPECT_FALSE(view.Evaluate(y.data(), want, {}, &e)) << "never sized";
+  EXPECT_NE(e.full.failure, "");
+  folded.Resize(&e);
+  EXPECT_FALSE(view.Evaluate(y.data(), want, {}, &e)) << "of another view";
+  view.Resize(&e);
+  EXPECT_TRUE(view.Evaluate(y.data(), want, {}, &e));
+  problem.AddTerm(std::make_shared<WindowTerm<WavyMap, SquareLoss>>(
+                      TermInfo{"wavy", "", "", "", false}, WavyMap(7), SquareLoss(1.3), 7),
+                  Role::kCost);
+  EXPECT_FALSE(view.Evaluate(y.data(), want, {}, &e)) << "before a term";
+}
+
 static_assert(!std::is_constructible_v<View, Problem>, "a view of a temporary");
 static_assert(!std::is_constructible_v<View, Problem, AffineLift>);
 

@@ -7,7 +7,7 @@
 using namespace touchdown::planning;
 
 int main() {
-  const Eigen::Vector3d start(-4.0, 0.0, 1.5), there(4.0, 0.5, 1.5);
+  const Eigen::Vector3d start(-4.0, 0.0, 1.5), there(4.0, 0.5, 1.2);
 
   OccupancyMap map{OccupancyMapOptions{}};  // rolling, 25.6 x 25.6 x 6.4 m of cells of 0.1 m
   map.Recentre(start);
@@ -16,7 +16,9 @@ int main() {
   }
   map.MarkRestFree();  // a plan may only rely on what was seen to be free
 
-  Replanner planner(ReplannerOptions{}, touchdown::solvers::StandardBackends());
+  ReplannerOptions options;
+  options.contact_height = -0.05;  // a goal has no deck that must not be flown into
+  Replanner planner(options, touchdown::solvers::StandardBackends());
   planner.CommitHover(start, 0.0);
   const GoalAt goal(there);
   for (double t = 0.0; t < 20.0; t += 0.1) {
@@ -31,7 +33,7 @@ int main() {
     input.vehicle.p_WB = now.p_WB;
     input.vehicle.v_WB = now.v_WB;
     input.pad = &goal;
-    input.endpoint.height = 0.0;  // above the goal
+    input.endpoint.height = 0.0;  // the end is in the goal, not above it
     const ReplanResult& plan = planner.Replan(input, map);
     if (plan.status != ReplanStatus::kPlanned) std::cout << t << " s: " << Explain(plan.reason) << "\n";
   }
