@@ -153,10 +153,6 @@ Json TrialJson(const SweepRow& row) {
   return json;
 }
 
-}  // namespace
-
-namespace {
-
 struct FlownCell {
   std::vector<std::pair<std::string, std::string>> values;
   CellFigures figures;

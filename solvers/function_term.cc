@@ -68,8 +68,9 @@ void FunctionTerm::Evaluate(const TermInput& input, const TermRequest& request, 
   const int m = shape_.outputs;
   for (int k = 0; k < block->windows; ++k) {
     const double* q = input.x + block->first_block[k] * shape_.block_size;
-    EvaluateFunction(k, q, derivatives, &block->u[k * m], &block->du[k * m * variables_]);
-    if (derivatives) std::fill_n(&block->du_dh[k * m], m, 0.0);
+    const int first = shape_.row(k, 0);
+    EvaluateFunction(k, q, derivatives, &block->u[first], block->slopes(first));
+    if (derivatives) std::fill_n(&block->du_dh[first], m, 0.0);
     if (request.role == Role::kCost) EvaluateLoss(k, request, block);
     if (request.want.gradient) AddGradient(k, request, *block, sums);
     if (request.want.hessian && !request.hessian_known) {
