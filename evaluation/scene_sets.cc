@@ -98,8 +98,8 @@ SceneSketch DrawSlits(const SceneOptions& options, RandomStream& stream) {
   const double heading = stream.Uniform(-std::numbers::pi, std::numbers::pi);
   const Vector3d ahead = Level(heading), left = Level(heading + 0.5 * std::numbers::pi);
   sketch.start.p = {stream.Uniform(-1.0, 1.0), stream.Uniform(-1.0, 1.0), kStartHeight};
-  sketch.start.v = stream.Uniform(0.0, 0.8 * options.kind.limits.speed) *
-                   Level(heading + stream.Uniform(-0.4, 0.4));
+  const Vector3d course = Level(heading + stream.Uniform(-0.4, 0.4));
+  sketch.start.v = stream.Uniform(0.0, 0.8 * options.kind.limits.speed) * course;
   std::vector<sim::Obstacle> walls;
   const int count = stream.Uniform(0.0, 1.0) < 0.5 ? 1 : 2;
   double distance = stream.Uniform(2.5, 4.0);
@@ -144,7 +144,8 @@ SceneSketch DrawDeadEnd(const SceneOptions& options, RandomStream& stream) {
   }
   sketch.field = sim::ObstacleField(std::move(walls));
   const double room = 1.0;  // from the middle of a wall [m]
-  sketch.start.p = at(stream.Uniform(-x + room, x - room), stream.Uniform(-y + room, y - room));
+  const double aside = stream.Uniform(-y + room, y - room);
+  sketch.start.p = at(stream.Uniform(-x + room, x - room), aside);
   sketch.start.p.z() = kStartHeight;
   sketch.target = at(options.horizon, 0.0);
   sketch.target.z() = kStartHeight;
@@ -157,8 +158,8 @@ SceneSketch DrawYard(const SceneOptions& options, RandomStream& stream) {
   SceneSketch sketch;
   const double heading = stream.Uniform(-std::numbers::pi, std::numbers::pi);
   sketch.start.p = {stream.Uniform(-1.0, 1.0), stream.Uniform(-1.0, 1.0), stream.Uniform(0.6, 2.0)};
-  sketch.start.v = stream.Uniform(0.0, 0.9 * options.kind.limits.speed) *
-                   Level(heading + stream.Uniform(-0.5, 0.5));
+  const Vector3d course = Level(heading + stream.Uniform(-0.5, 0.5));
+  sketch.start.v = stream.Uniform(0.0, 0.9 * options.kind.limits.speed) * course;
   sketch.target = sketch.start.p + options.horizon * Level(heading);
   sketch.target.z() = stream.Uniform(0.6, 2.0);
   const double speed = stream.Uniform(0.0, kFastest * options.kind.limits.speed);
@@ -168,7 +169,9 @@ SceneSketch DrawYard(const SceneOptions& options, RandomStream& stream) {
   std::vector<sim::Obstacle> obstacles;
   for (int i = 0; i < things; ++i) {
     const double sort = stream.Uniform(0.0, 1.0);
-    Vector3d p(stream.Uniform(-reach, reach), stream.Uniform(-reach, reach), 0.0);
+    Vector3d p = Vector3d::Zero();
+    p.y() = stream.Uniform(-reach, reach);
+    p.x() = stream.Uniform(-reach, reach);
     const double yaw = stream.Uniform(-std::numbers::pi, std::numbers::pi);
     const double height = stream.Uniform(0.0, 1.0) < 0.4 ? stream.Uniform(0.4, 1.8) : kWallHeight;
     p.z() = 0.5 * height;
@@ -176,10 +179,12 @@ SceneSketch DrawYard(const SceneOptions& options, RandomStream& stream) {
     if (sort < 0.4) {
       obstacle = sim::Cylinder{p, stream.Uniform(0.05, 0.8), height};
     } else if (sort < 0.8) {
-      const Vector3d half(stream.Uniform(0.1, 0.9), stream.Uniform(0.1, 0.9), 0.5 * height);
+      const double across = stream.Uniform(0.1, 0.9);
+      const Vector3d half(stream.Uniform(0.1, 0.9), across, 0.5 * height);
       obstacle = sim::Box{p, half, yaw};
     } else {
-      const Vector3d half(stream.Uniform(1.0, 3.0), stream.Uniform(0.05, 0.15), 0.5 * height);
+      const double across = stream.Uniform(0.05, 0.15);
+      const Vector3d half(stream.Uniform(1.0, 3.0), across, 0.5 * height);
       obstacle = sim::Box{p, half, yaw};
     }
     constexpr double kKeepOut = 1.2;  // around start and end [m]

@@ -45,7 +45,8 @@ View DrawView(const TagStudyOptions& options, const estimation::CameraIntrinsics
   const double v = camera.height * random->Uniform(0.0, 1.0);
   const double course = random->Uniform(-kPi, kPi);
   const double sigma = options.attitude_sigma_deg / kRadian;
-  const Eigen::Vector3d error(random->Normal(sigma), random->Normal(sigma), random->Normal(sigma));
+  Eigen::Vector3d error;
+  for (const int axis : {2, 1, 0}) error[axis] = random->Normal(sigma);
 
   const Eigen::Vector3d axis(std::cos(direction), std::sin(direction), 0.0);
   view.vehicle.q_WB = Eigen::AngleAxisd(view.tilt_deg / kRadian, axis) *

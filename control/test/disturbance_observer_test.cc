@@ -262,7 +262,7 @@ TEST(DisturbanceObserver, NoisyVelocityHardlyShakesTheEstimate) {
   double squares = 0.0;
   int count = 0;
   for (int i = 0; i < 10000; ++i) {
-    if (i % 50 == 0) error = Eigen::Vector3d(normal(random), normal(random), normal(random));
+    if (i % 50 == 0) error = Eigen::Vector3d{normal(random), normal(random), normal(random)};
     estimation::VehicleState noisy = body.state;
     noisy.v_WB += error;
     const Disturbance& d = observer.Update(noisy, false);

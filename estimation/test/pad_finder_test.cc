@@ -54,9 +54,10 @@ TEST(PadFinder, AlignmentMakesFarPosesSharperAndStaysHonest) {
   int aligned = 0;
   constexpr int kRuns = 25;
   for (int run = 0; run < kRuns; ++run) {
+    const double distance = 6.0 + 1.5 * unit(random), tilt = 0.2 + 0.2 * unit(random);
+    const double direction = 3.0 * unit(random), yaw = 3.0 * unit(random);
     const PoseCP truth =
-        PadAhead(6.0 + 1.5 * unit(random), 0.2 + 0.2 * unit(random), 3.0 * unit(random),
-                 3.0 * unit(random), {0.3 * unit(random), 0.2 * unit(random)});
+        PadAhead(distance, tilt, direction, yaw, {0.3 * unit(random), 0.2 * unit(random)});
     GrayImage image = PadImage(truth, TestCamera());
     AddNoise(2.0, &random, &image);
     const PadNormal normal{truth.R.col(2), 0.02};

@@ -88,8 +88,8 @@ Figures MonteCarlo(const std::vector<int>& ids, double least, double most, doubl
     const PoseCP truth = RandomPose(&random, least, most);
     std::optional<PadNormal> normal;
     if (normal_sigma > 0.0) {
-      const Eigen::Vector3d turn(normal_sigma * gauss(random), normal_sigma * gauss(random),
-                                 normal_sigma * gauss(random));
+      const Eigen::Vector3d turn{normal_sigma * gauss(random), normal_sigma * gauss(random),
+                                 normal_sigma * gauss(random)};
       normal = PadNormal{Eigen::AngleAxisd(turn.norm(), turn.normalized()) * truth.R.col(2),
                          normal_sigma};
     }

@@ -24,7 +24,7 @@ double Uniform(std::mt19937_64* random, double lo, double hi) {
 
 Eigen::Vector3d OnSphere(std::mt19937_64* random) {
   std::normal_distribution<double> normal;
-  return Eigen::Vector3d(normal(*random), normal(*random), normal(*random)).normalized();
+  return Eigen::Vector3d{normal(*random), normal(*random), normal(*random)}.normalized();
 }
 
 /// A pad on a line along x through the origin's height.

@@ -23,8 +23,9 @@ TEST(BlockedBits, SayWhatTheSpaceAndTheBarriersSay) {
     const Eigen::Vector3d extent = map.size().cast<double>() * map.resolution();
     const auto anywhere = [&] {
       return Eigen::Vector3d(
-          low + Eigen::Vector3d(draw.Uniform(0, 1), draw.Uniform(0, 1), draw.Uniform(0, 1))
-                    .cwiseProduct(extent));
+          low +
+          Eigen::Vector3d{draw.Uniform(0, 1), draw.Uniform(0, 1), draw.Uniform(0, 1)}.cwiseProduct(
+              extent));
     };
     for (int i = 0; i < 40; ++i) map.SetOccupied(anywhere());
     FreeSpace space = SpaceOf(map);
@@ -37,7 +38,7 @@ TEST(BlockedBits, SayWhatTheSpaceAndTheBarriersSay) {
     std::vector<Barrier> barriers(2);
     for (Barrier& barrier : barriers) {
       barrier.p = anywhere();
-      barrier.normal = Eigen::Vector3d(draw.Uniform(-1, 1), draw.Uniform(-1, 1), 0).normalized();
+      barrier.normal = Eigen::Vector3d{draw.Uniform(-1, 1), draw.Uniform(-1, 1), 0}.normalized();
       barrier.side = barrier.normal.cross(Eigen::Vector3d::UnitZ());
     }
     if (trial < 2) barriers.clear();

@@ -22,9 +22,10 @@ TEST(ColumnSpans, SayWhatTheCellsOfAColumnSay) {
     const Eigen::Vector3d low = map.CentreOf(map.origin());
     const Eigen::Vector3d extent = map.size().cast<double>() * map.resolution();
     for (int i = 0; i < 60; ++i) {
-      map.SetOccupied(low +
-                      Eigen::Vector3d(draw.Uniform(0, 1), draw.Uniform(0, 1), draw.Uniform(0, 1))
-                          .cwiseProduct(extent));
+      map.SetOccupied(
+          low +
+          Eigen::Vector3d{draw.Uniform(0, 1), draw.Uniform(0, 1), draw.Uniform(0, 1)}.cwiseProduct(
+              extent));
     }
     FreeSpace space = SpaceOf(map);
     if (trial < 4) space.floor = low.z() + 0.3;

@@ -28,8 +28,8 @@ TEST(Corridor, HoldsThePointAndHardlyABlockedCell) {
       map.SetOccupied({draw.Uniform(-1.0, 1.0), draw.Uniform(-1.0, 1.0), draw.Uniform(-1.0, 1.0)});
     }
     FreeSpace space = SpaceOf(map);
-    const Eigen::Vector3d point(draw.Uniform(-0.3, 0.3), draw.Uniform(-0.3, 0.3),
-                                draw.Uniform(-0.3, 0.3));
+    const Eigen::Vector3d point{draw.Uniform(-0.3, 0.3), draw.Uniform(-0.3, 0.3),
+                                draw.Uniform(-0.3, 0.3)};
     if (space.Blocked(point)) continue;
     std::vector<ObstaclePair> pairs;
     corridor.Bind(5, point, space, 12, &pairs);

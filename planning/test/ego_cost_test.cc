@@ -17,7 +17,7 @@ class Cost : public ::testing::Test {
   ControlPoints Points(int n, double spread) {
     std::uniform_real_distribution<double> u(-spread, spread);
     ControlPoints q(3, n);
-    for (int i = 0; i < n; ++i) q.col(i) = Vector3d(0.4 * i + u(engine_), u(engine_), u(engine_));
+    for (int i = 0; i < n; ++i) q.col(i) = Vector3d{0.4 * i + u(engine_), u(engine_), u(engine_)};
     return q;
   }
 
@@ -52,7 +52,7 @@ TEST_F(Cost, CollisionHasItsGradientInBothBranches) {
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (int i = 0; i < 12; ++i) {
     for (int k = 0; k < 2; ++k) {
-      const Vector3d v = Vector3d(u(engine_), u(engine_), u(engine_)).normalized();
+      const Vector3d v = Vector3d{u(engine_), u(engine_), u(engine_)}.normalized();
       // From free by more than the clearance to a metre inside.
       pairs[i].push_back({q.col(i) - u(engine_) * v, v});
     }

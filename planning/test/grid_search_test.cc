@@ -56,9 +56,9 @@ TEST(GridSearch, TheNearestFreeCellIsThatOfALookAtEveryCell) {
     OccupancyMap map(options);
     const Eigen::Vector3d half = 0.5 * options.resolution * map.size().cast<double>();
     const auto somewhere = [&](double share) {
-      return Eigen::Vector3d(draw.Uniform(-1.0, 1.0) * share * half.x(),
+      return Eigen::Vector3d{draw.Uniform(-1.0, 1.0) * share * half.x(),
                              draw.Uniform(-1.0, 1.0) * share * half.y(),
-                             draw.Uniform(-1.0, 1.0) * share * half.z());
+                             draw.Uniform(-1.0, 1.0) * share * half.z()};
     };
     const int obstacles = fine ? 3000 : trial % 3 == 0 ? 400 : 40;
     for (int i = 0; i < obstacles; ++i) map.SetOccupied(somewhere(1.0));

@@ -226,9 +226,9 @@ TEST(OccupancyMap, RollingKeepsWhatStaysAndForgetsWhatLeaves) {
   Draw draw(11);
   for (int step = 0; step < 8; ++step) {
     for (int i = 0; i < 6; ++i) {
-      map.SetOccupied(map.CentreOf(map.origin()) + Eigen::Vector3d(draw.Uniform(0, 6.3),
+      map.SetOccupied(map.CentreOf(map.origin()) + Eigen::Vector3d{draw.Uniform(0, 6.3),
                                                                    draw.Uniform(0, 6.3),
-                                                                   draw.Uniform(0, 1.5)));
+                                                                   draw.Uniform(0, 1.5)});
     }
     std::set<std::array<int, 3>> kept;
     CellIndex c;
@@ -311,9 +311,9 @@ TEST(OccupancyMap, InflationLeavesNothingBehind) {
     Draw draw(5);
     for (int step = 0; step < 6; ++step) {
       for (int i = 0; i < 5; ++i) {
-        map.SetOccupied(map.CentreOf(map.origin()) + Eigen::Vector3d(draw.Uniform(0, 1.5),
+        map.SetOccupied(map.CentreOf(map.origin()) + Eigen::Vector3d{draw.Uniform(0, 1.5),
                                                                      draw.Uniform(0, 1.5),
-                                                                     draw.Uniform(0, 1.5)));
+                                                                     draw.Uniform(0, 1.5)});
       }
       ExpectInflationIsConsistent(map);
       map.Recentre(map.CentreOf(map.origin() + map.size() / 2) + draw.Vector(0.5));
@@ -331,7 +331,7 @@ estimation::DepthFrame AnyFrame(Draw* draw, const Eigen::Vector3d& about) {
   estimation::DepthFrame frame;
   frame.p_WC = about + draw->Vector(0.6);
   frame.R_WC =
-      Eigen::AngleAxisd(draw->Uniform(0.0, 3.0), draw->Vector(1.0).normalized()).toRotationMatrix();
+      Eigen::AngleAxisd{draw->Uniform(0.0, 3.0), draw->Vector(1.0).normalized()}.toRotationMatrix();
   frame.max_range = 4.0;
   for (int i = 0; i < 80 * 60; ++i) {
     const double kind = draw->Uniform(0.0, 1.0);
@@ -388,7 +388,7 @@ TEST(OccupancyMap, UpdatesWhatATraversalOfEveryRayVisits) {
   int hits = 0, misses = 0;
   for (int round = 0; round < 12; ++round) {
     OccupancyMap map(SmallMap());
-    const Eigen::Vector3d about(draw.Uniform(-20, 20), draw.Uniform(-20, 20), draw.Uniform(0, 2));
+    const Eigen::Vector3d about{draw.Uniform(-20, 20), draw.Uniform(-20, 20), draw.Uniform(0, 2)};
     map.Recentre(about);
     const estimation::DepthFrame frame = AnyFrame(&draw, about);
     const auto seen = SeenCells(map, frame, pad);

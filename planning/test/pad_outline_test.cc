@@ -40,8 +40,8 @@ TEST(PadOutline, AKnownPadExplainsWhatItFillsAndNoMore) {
     const PadOutline pad = Deck(draw.Uniform(0.0, 0.05));
     ASSERT_TRUE(pad.Known());
     const double tolerance = draw.Uniform(0.0, 0.2);
-    const Eigen::Vector3d at(draw.Uniform(-1.5, 1.5), draw.Uniform(-1.5, 1.5),
-                             draw.Uniform(-0.5, 0.5));
+    const Eigen::Vector3d at{draw.Uniform(-1.5, 1.5), draw.Uniform(-1.5, 1.5),
+                             draw.Uniform(-0.5, 0.5)};
     const double beside = Eigen::Array2d(at.head<2>().array().abs() - 0.5).max(0.0).matrix().norm();
     const bool pad_may_be_there = at.z() <= tolerance && beside <= 3.0 * pad.sigma + tolerance;
     EXPECT_EQ(pad.Classify(Place(pad, at.x(), at.y(), at.z()), tolerance),

@@ -42,7 +42,8 @@ class ArcPad : public estimation::PadPrediction {
   double speed_, yaw_, rate_;
 };
 
-/// Seeded draws for property tests.
+/// Seeded draws for property tests. Several in one expression stand in braces: between parentheses the
+/// compiler chooses which comes first.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(seed) {}
@@ -54,7 +55,7 @@ class Draw {
   }
   SplineState State(double p, double v, double a) { return {Vector(p), Vector(v), Vector(a)}; }
   ArcPad Pad() {
-    const Eigen::Vector3d p(Uniform(-8.0, 8.0), Uniform(-8.0, 8.0), Uniform(0.0, 1.0));
+    const Eigen::Vector3d p{Uniform(-8.0, 8.0), Uniform(-8.0, 8.0), Uniform(0.0, 1.0)};
     const double speed = Uniform(0.0, 2.0), yaw = Uniform(-3.0, 3.0);
     return {p, speed, yaw, Uniform(0.0, 1.0) < 0.3 ? 0.0 : Uniform(-0.5, 0.5)};
   }

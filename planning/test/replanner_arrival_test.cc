@@ -83,7 +83,7 @@ TEST(ReplannerArrival, APadThatPassesAnObstacleIsMetBehindIt) {
         Guess(options, input, {start, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
     OccupancyMap map = ObservedMap();
     const Eigen::Vector3d blocked = pad.At(input.t_start + guess).p_WP;
-    AddPillar(blocked.x(), blocked.y(), &map);
+    AddPillar({blocked.x(), blocked.y()}, &map);
     Replanner replanner(options, solvers::StandardBackends());
     replanner.CommitHover(start, 0.0);
     ReplanLog log;
@@ -105,7 +105,7 @@ TEST(ReplannerArrival, AnEndThatStaysBlockedCostsNoSolve) {
     const Eigen::Vector3d start(-4.0, 0.0, 1.6);
     const ArcPad pad({1.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
     OccupancyMap map = ObservedMap();
-    AddPillar(1.0, 0.0, &map);
+    AddPillar({1.0, 0.0}, &map);
     Replanner replanner(Options(arrival), solvers::StandardBackends());
     replanner.CommitHover(start, 0.0);
     const ReplanResult& result = replanner.Replan(Input(start, pad, 0.0), map);

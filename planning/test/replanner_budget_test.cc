@@ -65,7 +65,7 @@ TEST(ReplannerBudget, IsNeverExceeded) {
   int spent = 0, searched = 0;
   for (int trial = 0; trial < 40; ++trial) {
     const OccupancyMap map = WallsWithDoors(&draw);
-    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    const ArcPad pad{{5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0};
     const ReplannerOptions options = Within(static_cast<int>(draw.Uniform(100, 4000)));
     Replanner replanner(options, solvers::StandardBackends());
     const Eigen::Vector3d start(-5.0, 0.0, 1.6), v_WB(1.5, 0.0, 0.0);

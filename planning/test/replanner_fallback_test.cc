@@ -149,7 +149,7 @@ TEST(ReplannerFallback, APadThatBecomesNanBringsItToRest) {
 
 TEST(ReplannerFallback, AStartInTheInflatedZoneIsLedOut) {
   OccupancyMap map = ObservedMap(0.4);
-  AddPillar(-3.4, 0.0, &map);  // its face is 0.3 m ahead of the start
+  AddPillar({-3.4, 0.0}, &map);  // its face is 0.3 m ahead of the start
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   const Eigen::Vector3d start(-4.0, 0.1, 1.5);
   ASSERT_TRUE(map.IsBlocked(start));
@@ -296,7 +296,7 @@ TEST(ReplannerFallback, AStopThatIsProvenNeedsNoMore) {
 TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {
   // Too near to the wall, and too fast: no arrival time changes that.
   OccupancyMap map = ObservedMap();
-  for (double y = -6.0; y <= 6.0; y += 0.5) AddPillar(1.5, y, &map);
+  for (double y = -6.0; y <= 6.0; y += 0.5) AddPillar({1.5, y}, &map);
   ReplannerOptions options = Options(ArrivalMode::kFixed);
   options.max_work = 200000;  // a way round is found, and leads nowhere in time
   Replanner replanner(options, solvers::StandardBackends());

@@ -18,10 +18,10 @@ inline OccupancyMap ObservedMap(double inflation = 0.35) {
   return map;
 }
 
-inline void AddPillar(double x, double y, OccupancyMap* map) {
+inline void AddPillar(const Eigen::Vector2d& at, OccupancyMap* map) {
   for (double dx = -0.25; dx <= 0.3; dx += 0.1) {
     for (double dy = -0.25; dy <= 0.3; dy += 0.1) {
-      for (double z = 0.05; z < 3.1; z += 0.1) map->SetOccupied({x + dx, y + dy, z});
+      for (double z = 0.05; z < 3.1; z += 0.1) map->SetOccupied({at.x() + dx, at.y() + dy, z});
     }
   }
 }

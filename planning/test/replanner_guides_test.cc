@@ -32,10 +32,10 @@ TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
   for (int trial = 0; trial < 30; ++trial) {
     OccupancyMap map = ObservedMap();
     const double y = draw.Uniform(-0.3, 0.3);
-    for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar(0.0, y + dy, &map);
+    for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar({0.0, y + dy}, &map);
     // Others stand beside the ways around these.
-    for (int i = 0; i < 6; ++i) AddPillar(draw.Uniform(-2, 2), draw.Uniform(-3, 3), &map);
-    const ArcPad pad({4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    for (int i = 0; i < 6; ++i) AddPillar({draw.Uniform(-2, 2), draw.Uniform(-3, 3)}, &map);
+    const ArcPad pad{{4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0};
     const Eigen::Vector3d start(-4.0, 0.0, 1.6);
     // The shortest way around is not always the cheapest for a vehicle that drifts sideways.
     const Eigen::Vector3d drift(1.0, draw.Uniform(-1.5, 1.5), 0.0);
@@ -70,7 +70,7 @@ TEST(ReplannerGuides, BothSidesOfAnObstacleAreTriedAndTheCheaperWins) {
 TEST(ReplannerGuides, ASideOnceFlownIsKept) {
   // The pad weaves, so that now this side, now that one, is a little cheaper.
   OccupancyMap map = ObservedMap();
-  for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar(0.0, dy, &map);
+  for (double dy = -0.4; dy <= 0.4; dy += 0.4) AddPillar({0.0, dy}, &map);
   Replanner replanner(WithGuides(2), solvers::StandardBackends());
   Eigen::Vector3d p(-5.0, 0.0, 1.6);
   replanner.CommitHover(p, 0.0);
@@ -98,9 +98,9 @@ TEST(ReplannerGuides, APlanThatHoldsCostsOneSolve) {
   for (int trial = 0; trial < 10; ++trial) {
     OccupancyMap map = ObservedMap();
     for (double dy = -0.4; dy <= 0.4; dy += 0.4) {
-      AddPillar(0.0, draw.Uniform(-0.3, 0.3) + dy, &map);
+      AddPillar({0.0, draw.Uniform(-0.3, 0.3) + dy}, &map);
     }
-    const ArcPad pad({4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    const ArcPad pad{{4.0, draw.Uniform(-0.5, 0.5), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0};
     ReplannerOptions options = WithGuides(2);
     options.arrival = ArrivalMode::kFree;
     Replanner replanner(options, solvers::StandardBackends());
@@ -165,8 +165,8 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
   int followed = 0, held_back = 0, planned = 0;
   for (int trial = 0; trial < 40; ++trial) {
     OccupancyMap map = ObservedMap();
-    for (int i = 0; i < 34; ++i) AddPillar(draw.Uniform(-3, 3), draw.Uniform(-2, 2), &map);
-    const ArcPad pad({5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0);
+    for (int i = 0; i < 34; ++i) AddPillar({draw.Uniform(-3, 3), draw.Uniform(-2, 2)}, &map);
+    const ArcPad pad{{5.0, draw.Uniform(-1, 1), 0.3}, 0.3, draw.Uniform(-3, 3), 0.0};
     Replanner replanner(WithGuides(1), solvers::StandardBackends());
     ReplanLog log;
     replanner.set_log(&log);
@@ -187,8 +187,10 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
       EXPECT_TRUE(attempt.rounds.front().pairs.empty()) << "everything is decided anew, " << trial;
       const UniformBspline& curve = attempt.rounds.front().curve;
       const double counted = std::min(curve.duration(), 1.2 * before.duration());
-      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments)) << trial;
-      held_back += curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments);
+      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments))
+          << trial;
+      held_back +=
+          curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments);
     }
     planned += status == ReplanStatus::kPlanned;
   }
@@ -211,7 +213,7 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
        {Case{true, ArrivalMode::kFixed, true}, Case{true, ArrivalMode::kFree, false},
         Case{false, ArrivalMode::kFixed, false}, Case{false, ArrivalMode::kFree, false}}) {
     OccupancyMap map = ObservedMap();
-    AddPillar(c.near ? -4.0 : 0.0, 0.05, &map);
+    AddPillar({c.near ? -4.0 : 0.0, 0.05}, &map);
     ReplannerOptions options = Options(c.arrival);
     // With the hull that it has, the vehicle is too near to the pillar to stop, so that no plan is
     // proven: here it is the segments that count.
@@ -237,8 +239,8 @@ TEST(ReplannerGuides, ANearObstacleGetsFineSegmentsAtOnce) {
 TEST(ReplannerGuides, AStepDoesNotAllocateOnceWarm) {
   if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
   OccupancyMap map = ObservedMap();
-  AddPillar(-1.0, 0.2, &map);
-  AddPillar(1.5, -0.3, &map);
+  AddPillar({-1.0, 0.2}, &map);
+  AddPillar({1.5, -0.3}, &map);
   const ArcPad pad({5.0, 1.0, 0.3}, 0.5, 0.4, 0.1);
   Replanner replanner(WithGuides(2), solvers::StandardBackends());
   // The same flight twice: the first grows the buffers.

@@ -32,10 +32,12 @@ TEST_P(BothArrivals, EveryAcceptedPlanEndsOnThePadAndIsCertified) {
   constexpr int kTrials = 60;
   for (int trial = 0; trial < kTrials; ++trial) {
     OccupancyMap map = ObservedMap();
-    const Eigen::Vector3d start(draw.Uniform(-6, -4), draw.Uniform(-3, 3), draw.Uniform(1.2, 2.5));
-    for (int i = 0; i < 4; ++i) AddPillar(draw.Uniform(-2.5, 1.5), draw.Uniform(-4, 4), &map);
-    const ArcPad pad({draw.Uniform(3, 7), draw.Uniform(-4, 4), 0.3}, draw.Uniform(0, 1.2),
-                     draw.Uniform(-3, 3), draw.Uniform(-0.3, 0.3));
+    const Eigen::Vector3d start{draw.Uniform(-6, -4), draw.Uniform(-3, 3), draw.Uniform(1.2, 2.5)};
+    for (int i = 0; i < 4; ++i) AddPillar({draw.Uniform(-2.5, 1.5), draw.Uniform(-4, 4)}, &map);
+    const ArcPad pad{{draw.Uniform(3, 7), draw.Uniform(-4, 4), 0.3},
+                     draw.Uniform(0, 1.2),
+                     draw.Uniform(-3, 3),
+                     draw.Uniform(-0.3, 0.3)};
     Replanner replanner(Options(GetParam()), solvers::StandardBackends());
     ReplanLog log;
     replanner.set_log(&log);
@@ -78,7 +80,7 @@ TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
   // One replan every 0.1 s until well after arrival; the reference is flown exactly.
   const ArcPad pad({5.0, 2.0, 0.3}, 1.0, 0.4, 0.1);
   OccupancyMap map = ObservedMap();
-  AddPillar(0.5, 1.0, &map);
+  AddPillar({0.5, 1.0}, &map);
   Replanner replanner(Options(GetParam()), solvers::StandardBackends());
   Eigen::Vector3d p(-4.0, 0.0, 1.6);
   replanner.CommitHover(p, 0.0);
@@ -105,7 +107,7 @@ TEST_P(BothArrivals, FollowsAMovingPadWithPerfectTracking) {
 TEST(Replanner, TheSameQuestionTwiceGivesTheSameBits) {
   const auto run = []() -> ControlPoints {
     OccupancyMap map = ObservedMap();
-    AddPillar(0.0, 0.2, &map);
+    AddPillar({0.0, 0.2}, &map);
     const ArcPad pad({5.0, 0.0, 0.3}, 0.8, 0.3, 0.1);
     Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
     replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
@@ -118,7 +120,7 @@ TEST(Replanner, TheSameQuestionTwiceGivesTheSameBits) {
 TEST(Replanner, AStepIsRepeatedFromItsState) {
   const ArcPad pad({5.0, 2.0, 0.3}, 1.0, 0.4, 0.1);
   OccupancyMap map = ObservedMap();
-  AddPillar(0.5, 1.0, &map);
+  AddPillar({0.5, 1.0}, &map);
   Replanner flown(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   Replanner other(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   ReplanLog log;
@@ -128,7 +130,7 @@ TEST(Replanner, AStepIsRepeatedFromItsState) {
   for (int step = 0; step < 50; ++step) {
     ReplanInput input = Input(p, pad, 0.1 * step);
     input.vehicle.v_WB = flown.Reference(input.t_now).v_WB;
-    if (step == 12) AddPillar(p.x() + 1.5, p.y(), &map);
+    if (step == 12) AddPillar({p.x() + 1.5, p.y()}, &map);
     const bool rests = step > 20 && step < 25;
     if (step > 30 && step < 34) input.pad = nullptr;
     const ReplannerState before = flown.state();
@@ -161,7 +163,7 @@ TEST(Replanner, AStepIsRepeatedFromItsState) {
 
 TEST(Replanner, SpansAreLoggedWhereSomebodyListens) {
   OccupancyMap map = ObservedMap();
-  AddPillar(0.0, 0.2, &map);
+  AddPillar({0.0, 0.2}, &map);
   const ArcPad pad({5.0, 0.0, 0.3}, 0.8, 0.3, 0.1);
   Replanner replanner(Options(ArrivalMode::kFixed), solvers::StandardBackends());
   replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
@@ -227,7 +229,7 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
 
   // A pad that stands inside a pillar.
   OccupancyMap on_pad = ObservedMap();
-  AddPillar(5.0, 0.0, &on_pad);
+  AddPillar({5.0, 0.0}, &on_pad);
   const ArcPad standing({5.0, 0.0, 0.3}, 0.0, 0.0, 0.0);
   const ReplanResult goal = ask(on_pad, Input(start, standing, 0.0));
   EXPECT_EQ(goal.reason, ReplanReason::kGoalBlocked);
@@ -348,7 +350,7 @@ TEST(Replanner, APlanThatEndsInACreepIsNotFlownPastItsEnd) {
   for (int step = 0; step < 400; ++step) {
     const double t = 0.1 * step;
     // The pad drives on into pillars, and is not behind them at any arrival.
-    for (double x = 0.9; step == 60 && x < 3.0; x += 0.7) AddPillar(x, 0.0, &map);
+    for (double x = 0.9; step == 60 && x < 3.0; x += 0.7) AddPillar({x, 0.0}, &map);
     const FlatState at = replanner.Reference(t);
     ReplanInput input = Input(at.p_WB, creeping, t);
     input.vehicle.v_WB = at.v_WB;

@@ -44,15 +44,15 @@ TEST(SpanSearch, FindsAWayWhereThereIsOneAndHardlyLongerThanTheShortest) {
     OccupancyMap map(SmallMap(0.2));
     const int boxes = trial < 30 ? 12 : 40;
     for (int i = 0; i < boxes; ++i) {
-      const Eigen::Vector3d low(draw.Uniform(-2.2, 2.0), draw.Uniform(-2.8, 2.5),
-                                draw.Uniform(-1.6, 1.0));
+      const Eigen::Vector3d low{draw.Uniform(-2.2, 2.0), draw.Uniform(-2.8, 2.5),
+                                draw.Uniform(-1.6, 1.0)};
       Fill(&map, low,
-           low + Eigen::Vector3d(draw.Uniform(0.1, 0.7), draw.Uniform(0.1, 1.5),
-                                 draw.Uniform(0.2, 2.5)));
+           low + Eigen::Vector3d{draw.Uniform(0.1, 0.7), draw.Uniform(0.1, 1.5),
+                                 draw.Uniform(0.2, 2.5)});
     }
     const FreeSpace space = SpaceOf(map);
-    const Eigen::Vector3d from(-2.95, draw.Uniform(-2.0, 2.0), draw.Uniform(-1.0, 1.0));
-    const Eigen::Vector3d to(2.95, draw.Uniform(-2.0, 2.0), draw.Uniform(-1.0, 1.0));
+    const Eigen::Vector3d from{-2.95, draw.Uniform(-2.0, 2.0), draw.Uniform(-1.0, 1.0)};
+    const Eigen::Vector3d to{2.95, draw.Uniform(-2.0, 2.0), draw.Uniform(-1.0, 1.0)};
     GuidePath path, shortest;
     const SearchStatus status = search.Search(space, from, to, kEnough, &path);
     ASSERT_EQ(status, exact.Search(space, from, to, kEnough, &shortest)) << "trial " << trial;

@@ -158,8 +158,8 @@ TEST(SweptHull, LeavesOnlyWhatItReachedAlready) {
   for (int trial = 0; trial < 400; ++trial) {
     const OccupancyMap map = RandomMap(&draw, 60, 0.25);
     const FreeSpace space = SpaceOf(map);
-    const UniformBspline curve =
-        Between({}, {draw.Vector(0.5), {0, 0, 0}, {0, 0, 0}}, draw.Uniform(0.8, 2.0));
+    const Eigen::Vector3d to = draw.Vector(0.5);
+    const UniformBspline curve = Between({}, {to, {0, 0, 0}, {0, 0, 0}}, draw.Uniform(0.8, 2.0));
     const Sweep sweep = Look(curve, HullOf(space));
     if (!sweep.proven) {
       ++refused;

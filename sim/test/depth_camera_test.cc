@@ -73,8 +73,8 @@ TEST(DepthCamera, AgreesWithMujocoOnRandomScenes) {
   for (int scene = 0; scene < 12; ++scene) {
     WorldConfig config = test::OpenSky();
     config.obstacles = test::RandomField(14, 5.0, &random);
-    const estimation::PadState pad =
-        PadAt(random.Uniform(-4, 4), random.Uniform(-4, 4), random.Uniform(-3, 3));
+    const double x = random.Uniform(-4, 4), y = random.Uniform(-4, 4);
+    const estimation::PadState pad = PadAt(x, y, random.Uniform(-3, 3));
     const MujocoScene mujoco(config, pad);
     DepthCamera camera(camera_config, config.obstacles, config.pad, 1);
     estimation::DepthFrame frame;
