@@ -30,6 +30,9 @@ class PadPrediction {
   /// The same but for cov_p, which is not to be looked at. A step asks this a thousand times, and of a belief the covariance
   /// is what costs.
   virtual PadState MeanAt(double t) const noexcept { return At(t); }
+
+  /// There is a deck, to be landed on and not to be flown into. A goal has none.
+  virtual bool has_deck() const noexcept { return true; }
 };
 
 /// Of a pad of which nothing has been said yet: NaN at all times, so that what is computed from it is no number.

@@ -58,7 +58,7 @@ CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, co
 CREATE TABLE bound_part(plan INTEGER, i INTEGER, t_from REAL, t_to REAL);
 CREATE TABLE unfinished(plan INTEGER PRIMARY KEY, attempt INTEGER, duration REAL, arrival_free INTEGER,
   unseen_reach REAL);
-CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, looked_t REAL, look_x REAL,
+CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_unseen INTEGER, looked_t REAL, asked_t REAL, look_x REAL,
   look_y REAL, look_z REAL, climb REAL, strip_t REAL,
   strip_from_x REAL, strip_from_y REAL, strip_to_x REAL, strip_to_y REAL, strip_floor REAL,
   current_t0 REAL, current_h REAL, current_stop_t0 REAL, current_stop_h REAL, next_t0 REAL,
@@ -178,7 +178,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   SqliteStatement belief = db.Prepare("INSERT INTO belief VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement state = db.Prepare(
       "INSERT INTO replanner_state VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement bound = db.Prepare("INSERT INTO bound_part VALUES(?, ?, ?, ?)");
   SqliteStatement unfinished = db.Prepare("INSERT INTO unfinished VALUES(?, ?, ?, ?, ?)");
   SqliteStatement point = db.Prepare("INSERT INTO state_point VALUES(?, ?, ?, ?, ?, ?)");
@@ -205,13 +205,13 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
                      s.unfinished->arrival == planning::ArrivalMode::kFree,
                      s.unfinished->unseen_reach);
     }
-    state.Run(id, s.planned, s.around_unseen, s.looked_t, look(0), look(1), look(2), s.climb,
-              s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(), s.strip_to.y(),
-              s.strip_floor, s.current.curve.t0(), s.current.curve.interval(), s.current.stop.t0(),
-              s.current.stop.interval(), s.next.curve.t0(), s.next.curve.interval(),
-              s.next.stop.t0(), s.next.stop.interval(), FiniteOrNone(s.current.t_stop),
-              s.current.proven, s.current.from_unknown, FiniteOrNone(s.next.t_stop), s.next.proven,
-              s.next.from_unknown);
+    state.Run(id, s.planned, s.around_unseen, s.looked_t, s.asked_t, look(0), look(1), look(2),
+              s.climb, s.strip_t, s.strip_from.x(), s.strip_from.y(), s.strip_to.x(),
+              s.strip_to.y(), s.strip_floor, s.current.curve.t0(), s.current.curve.interval(),
+              s.current.stop.t0(), s.current.stop.interval(), s.next.curve.t0(),
+              s.next.curve.interval(), s.next.stop.t0(), s.next.stop.interval(),
+              FiniteOrNone(s.current.t_stop), s.current.proven, s.current.from_unknown,
+              FiniteOrNone(s.next.t_stop), s.next.proven, s.next.from_unknown);
     WritePoints(point, id, "current", s.current.curve.control_points());
     WritePoints(point, id, "current_stop", s.current.stop.control_points());
     WritePoints(point, id, "next", s.next.curve.control_points());

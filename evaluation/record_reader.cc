@@ -200,7 +200,7 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   std::vector<std::map<std::string, Knots>> knots(plans->size());
   ReadEach(
       TableRows(db, "replanner_state",
-                "plan, planned, around_unseen, looked_t, look_x, look_y, look_z, climb, "
+                "plan, planned, around_unseen, looked_t, asked_t, look_x, look_y, look_z, climb, "
                 "strip_t, strip_from_x, "
                 "strip_from_y, strip_to_x, strip_to_y, strip_floor, current_t0, current_h, "
                 "current_stop_t0, "
@@ -213,6 +213,7 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
         s.planned = row.Flag();
         s.around_unseen = row.Flag();
         s.looked_t = row.Number();
+        s.asked_t = row.Optional();
         const std::optional<double> x = row.Optional(), y = row.Optional(), z = row.Optional();
         if (x && y && z) s.looks_at_W = Eigen::Vector3d(*x, *y, *z);
         s.climb = row.Optional();

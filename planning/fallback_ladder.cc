@@ -18,7 +18,8 @@ constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
 
 bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& endpoint,
                const HullSpace& hull) {
-  return endpoint.leads_to_contact() && endpoint.may_touch(hull.foot_depth) && committed.Lands() &&
+  return hull.pad != nullptr && endpoint.leads_to_contact() &&
+         endpoint.may_touch(hull.foot_depth) && committed.Lands() &&
          ContactTime(committed.curve, t0, hull) - t0 < kLastStretch;
 }
 
@@ -86,7 +87,8 @@ Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResu
 }
 
 bool FallbackLadder::GoesOn(const FallbackFacts& facts, ReplanResult* result) {
-  return fallback_.GoesOn(*facts.committed, facts.t0, facts.t0 + reaction_, *facts.hull, result);
+  return fallback_.GoesOn(*facts.committed, facts.t0, facts.t0 + facts.reaction, *facts.hull,
+                          result);
 }
 
 bool FallbackLadder::StillLooks(const OccupancyMap& map, bool from_odometry) {

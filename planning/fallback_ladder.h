@@ -19,7 +19,8 @@ struct FallbackFacts {
   const FlightPair* committed = nullptr;
   bool planned = false;  ///< the committed curve is a plan to the pad
   SplineState start;
-  double t0 = 0.0;  ///< of the start [s]
+  double t0 = 0.0;        ///< of the start [s]
+  double reaction = 0.0;  ///< after which a newer stop begins [s]
   const HullSpace* hull = nullptr;
   EndpointTarget endpoint;
   Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
@@ -41,8 +42,7 @@ bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& end
 /// where that was a landing that misses, up, proven or not. It remembers what a rest was for. Does not allocate.
 class FallbackLadder {
  public:
-  /// @param reaction after which a newer stop begins [s].
-  FallbackLadder(const Limits& limits, double reaction) : fallback_(limits), reaction_(reaction) {}
+  explicit FallbackLadder(const Limits& limits) : fallback_(limits) {}
 
   /// What the pull of this step leaves of the limits.
   void SetLimits(const Limits& limits) { fallback_.SetLimits(limits); }
@@ -81,7 +81,6 @@ class FallbackLadder {
   bool StepsAside(const FallbackFacts& facts, ReplanResult* result);
 
   Fallback fallback_;
-  double reaction_;
   Memory memory_;
 };
 

@@ -21,6 +21,7 @@ class GoalAt final : public estimation::PadPrediction {
   explicit GoalAt(const Eigen::Vector3d& p_W);
 
   estimation::PadState At(double t) const noexcept override;
+  bool has_deck() const noexcept override { return false; }
 
  private:
   Eigen::Vector3d p_W_;
@@ -41,6 +42,7 @@ class MovingGoal final : public estimation::PadPrediction {
   explicit MovingGoal(std::function<Position(const Taylor& t)> position);
 
   estimation::PadState At(double t) const noexcept override;
+  bool has_deck() const noexcept override { return false; }
 
  private:
   std::function<Position(const Taylor&)> position_;

@@ -25,8 +25,6 @@ std::int8_t Quantise(double probability) {
 }
 
 constexpr double kFarthestFree = 1e4;  // [m]
-constexpr double kFarthestCell =
-    1e6;  // what is farther off lies in no window, and its index in no int [m]
 
 void Require(bool ok, const std::string& sentence) {
   if (!ok) throw std::invalid_argument("OccupancyMap: " + sentence);
@@ -285,7 +283,7 @@ void OccupancyMap::MakeCertain(const CellIndex& cell, bool explained) {
 
 void OccupancyMap::SetOccupied(const Eigen::Vector3d& p_W) {
   Require(p_W.allFinite(), "SetOccupied at a point that is not finite");
-  if (p_W.cwiseAbs().maxCoeff() > kFarthestCell) return;
+  if (!HasIndex(p_W)) return;
   SetState(CellOf(p_W), CellState::kOccupied);
 }
 
@@ -301,7 +299,7 @@ void OccupancyMap::MarkFree(const Eigen::Vector3d& p_W, double radius) {
   Require(p_W.allFinite(), "MarkFree at a point that is not finite");
   Require(radius >= 0.0 && radius <= kFarthestFree,
           "MarkFree with radius " + std::to_string(radius) + " m, it must be in [0, 1e4]");
-  if (p_W.cwiseAbs().maxCoeff() > kFarthestCell) return;
+  if (!HasIndex(p_W)) return;
   const CellIndex low = CellOf(p_W.array() - radius).cwiseMax(origin_);
   const CellIndex high =
       (CellOf(p_W.array() + radius) + CellIndex::Ones()).cwiseMin(origin_ + size_);

@@ -115,6 +115,12 @@ class OccupancyMap {
   /// beforehand.
   void MarkRestFree();
 
+  /// A place so near that its cell has an index; farther off, or not finite, it is in no window.
+  static bool HasIndex(const Eigen::Vector3d& p_W) {
+    constexpr double kFarthestPlace = 1e6;  // [m]
+    return (p_W.array().abs() < kFarthestPlace).all();
+  }
+  /// @pre HasIndex(p_W).
   CellIndex CellOf(const Eigen::Vector3d& p_W) const {
     return (p_W / options_.resolution).array().floor().matrix().cast<int>();
   }
@@ -127,7 +133,10 @@ class OccupancyMap {
 
   /// Blocked after inflation. Out of the window: free (unknown).
   bool IsBlocked(const CellIndex& cell) const { return InWindow(cell) && BlockedRow(cell, 1) != 0; }
-  bool IsBlocked(const Eigen::Vector3d& p_W) const { return IsBlocked(CellOf(p_W)); }
+  /// A place that is none, for want of a finite number, is blocked.
+  bool IsBlocked(const Eigen::Vector3d& p_W) const {
+    return HasIndex(p_W) ? IsBlocked(CellOf(p_W)) : !p_W.allFinite();
+  }
   /// Bit i: the cell i beyond `first` along x is blocked. `count` (at most 64) cells, all in the window.
   std::uint64_t BlockedRow(const CellIndex& first, int count) const {
     return Row(blocked_, first, count);

@@ -14,13 +14,12 @@ namespace {
 
 constexpr int kSlice = 4;  // so far off its centre the window moves, along one axis [cells] ...
 constexpr int kJump = 16;  // ... and so far off along all
-constexpr double kFarthestPlace = 1e6;  // what is farther off has no index [m]
 
 }  // namespace
 
 void OccupancyMap::Recentre(const Eigen::Vector3d& p_W, CellBlocks* memory) {
   entered_.clear();
-  if (!(p_W.array().abs() < kFarthestPlace).all()) return;  // nowhere: the window stays
+  if (!HasIndex(p_W)) return;  // nowhere: the window stays
   const CellIndex target = CellOf(p_W) - size_ / 2;
   const CellIndex offset = (target - origin_).cwiseAbs();
   const CellIndex far = (size_ / 8).cwiseMin(kJump);

@@ -152,9 +152,9 @@ ReplanReason PlanAttempt::Pose(const AttemptRequest& request, int segments, Pose
   const bool hard = options_.problem.limits_mode == LimitsMode::kHard;
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
   const double t_end = request.t0 + request.duration;
-  if (request.space->Blocked(EndStateAt(*request.pad, request.target, t_end).state.p)) {
-    return ReplanReason::kGoalBlocked;
-  }
+  const Eigen::Vector3d end = EndStateAt(*request.pad, request.target, t_end).state.p;
+  if (!end.allFinite()) return ReplanReason::kPadUnreachable;  // nobody knows where it is then
+  if (request.space->Blocked(end)) return ReplanReason::kGoalBlocked;
   return ReplanReason::kNone;
 }
 
@@ -442,7 +442,7 @@ ReplanReason PlanAttempt::Finish(const AttemptRequest& request, Candidate* candi
   Certificate& certificate = candidate->certificate.emplace(
       Certify(curve, request.t0, &request.start, &wanted, request.limits, *request.space));
   if (certificate.limits_kept && (certificate.clear || certificate.escaping)) {
-    const PairProof proof = ProvePair(request.t0, request.t0 + options_.reaction, request.pair_end,
+    const PairProof proof = ProvePair(request.t0, request.t0 + request.reaction, request.pair_end,
                                       request.limits, *request.hull, &candidate->pair);
     Enter(proof, &certificate);
     if (!proof.proven && !result->unseen_W) result->unseen_W = proof.unseen_W;

@@ -23,6 +23,7 @@ namespace touchdown::planning {
 struct AttemptRequest {
   SplineState start;
   double t0 = 0.0;
+  double reaction = 0.0;  ///< after which the plan's stop begins [s]
   const estimation::PadPrediction* pad = nullptr;
   EndpointTarget target;
   Limits limits;  ///< what the pull leaves of the options' (LimitsUnder)

@@ -9,14 +9,10 @@ namespace touchdown::planning {
 
 namespace {
 
-// Beyond these a number is taken for a fault; within them lattice indices cannot overflow.
-constexpr double kFarthest = 1e6;  // [m]
-constexpr double kFastest = 1e3;   // [m/s]
-constexpr int kMostPairs = 1000;   // of a control point: each has its storage
+constexpr double kFastest = 1e3;  // beyond this a number is taken for a fault [m/s]
+constexpr int kMostPairs = 1000;  // of a control point: each has its storage
 
-bool Plausible(const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
-  return p.cwiseAbs().maxCoeff() < kFarthest && v.cwiseAbs().maxCoeff() < kFastest;
-}
+bool Slow(const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff() < kFastest; }
 
 void Require(bool ok, const char* name, double value, const char* range) {
   if (ok) return;
@@ -31,26 +27,41 @@ bool Plausible(const Margins& margins) {
 
 }  // namespace
 
-bool StateValid(const ReplanInput& input) {
-  return std::isfinite(input.t_now) && std::isfinite(input.t_start) &&
-         input.t_start >= input.t_now && input.vehicle.p_WB.allFinite() &&
-         input.vehicle.v_WB.allFinite() && input.pull_W.allFinite() && Plausible(input.margins) &&
-         Plausible(input.vehicle.p_WB, input.vehicle.v_WB);
+const char* WrongInState(const ReplanInput& input) {
+  const estimation::VehicleState& vehicle = input.vehicle;
+  if (!std::isfinite(input.t_now)) return "t_now is not finite";
+  if (!std::isfinite(input.t_start)) return "t_start is not finite";
+  if (input.t_start < input.t_now) return "t_start is before t_now";
+  if (!vehicle.p_WB.allFinite()) return "vehicle.p_WB is not finite";
+  if (!vehicle.v_WB.allFinite()) return "vehicle.v_WB is not finite";
+  if (!OccupancyMap::HasIndex(vehicle.p_WB))
+    return "vehicle.p_WB is a million metres away or farther";
+  if (!Slow(vehicle.v_WB)) return "vehicle.v_WB is 1000 m/s or faster";
+  if (!input.pull_W.allFinite()) return "pull_W is not finite";
+  return Plausible(input.margins) ? nullptr : "a margin is not finite, or below 0";
 }
 
-bool TargetValid(const ReplanInput& input) {
-  const EndpointTarget& end = input.endpoint;
-  return std::isfinite(end.height) && std::isfinite(end.sink_rate) &&
-         std::isfinite(end.height_floor) && std::isfinite(end.t_reference) &&
-         std::isfinite(end.arrival_sink) && end.arrival_sink >= 0.0 && end.passing_W.allFinite() &&
-         PadValid(input);
-}
-
-bool PadValid(const ReplanInput& input) {
-  if (input.pad == nullptr) return false;
+const char* WrongInPad(const ReplanInput& input) {
+  if (input.pad == nullptr) return "there is no pad and no goal";
   const estimation::PadState pad = input.pad->At(input.t_start);
-  return pad.p_WP.allFinite() && pad.v_WP.allFinite() && std::isfinite(pad.yaw) &&
-         pad.cov_p.allFinite() && Plausible(pad.p_WP, pad.v_WP);
+  if (!pad.p_WP.allFinite() || !pad.v_WP.allFinite())
+    return "the pad or goal is not finite at t_start";
+  if (!std::isfinite(pad.yaw)) return "the pad's yaw is not finite";
+  if (!pad.cov_p.allFinite()) return "the pad's covariance is not finite";
+  if (!OccupancyMap::HasIndex(pad.p_WP))
+    return "the pad or goal is a million metres away or farther";
+  return Slow(pad.v_WP) ? nullptr : "the pad or goal moves with 1000 m/s or faster";
+}
+
+const char* WrongInTarget(const ReplanInput& input) {
+  const EndpointTarget& end = input.endpoint;
+  for (const double number : {end.t_reference, end.height, end.sink_rate, end.height_floor}) {
+    if (!std::isfinite(number)) return "a number of the endpoint is not finite";
+  }
+  if (!(end.arrival_sink >= 0.0) || !std::isfinite(end.arrival_sink)) {
+    return "endpoint.arrival_sink is not finite, or below 0";
+  }
+  return end.passing_W.allFinite() ? WrongInPad(input) : "endpoint.passing_W is not finite";
 }
 
 void Validate(const ReplannerOptions& o) {

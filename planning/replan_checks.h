@@ -9,14 +9,16 @@ namespace touchdown::planning {
 /// Throws std::invalid_argument naming the first option out of its range, its value and the range.
 void Validate(const ReplannerOptions& options);
 
+// Each of these says in some words what is wrong, nullptr: nothing. They do not allocate.
+
 /// The times and the vehicle's state can be used: finite, ordered, and no farther or faster than a vehicle
 /// gets.
-bool StateValid(const ReplanInput& input);
+const char* WrongInState(const ReplanInput& input);
 
 /// The pad is known, and its state at the start can be used.
-bool PadValid(const ReplanInput& input);
+const char* WrongInPad(const ReplanInput& input);
 
-/// PadValid, and the endpoint can be used.
-bool TargetValid(const ReplanInput& input);
+/// The pad and the endpoint can be used.
+const char* WrongInTarget(const ReplanInput& input);
 
 }  // namespace touchdown::planning

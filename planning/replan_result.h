@@ -38,7 +38,9 @@ struct ReplannerOptions {
   double min_duration = 0.8;     ///< shortest plan: a vehicle above the pad keeps following [s]
   double min_contact_duration = 0.3;  ///< ... and one that is to end in contact [s]
   double odometry_threshold = 0.5;  ///< tracking error beyond which plans start at the vehicle [m]
-  double reaction = 0.15;  ///< a plan is flown this long before its stop, if no newer one comes [s]
+  /// A plan is flown at least this long before its stop, if no newer one comes [s]; longer by a caller whose last two
+  /// answers took over farther apart.
+  double reaction = 0.15;
   double hull_radius = 0.324;   ///< of the body at every tilt, about its origin [m]
   double deck_half_size = 0.0;  ///< of the pad's deck [m]; 0: there is none to land on
   double vertical_cost = 2.0;   ///< of ways: a metre up or down costs as much as this many ahead
@@ -150,7 +152,8 @@ class PathList {
 struct ReplanResult : FlightPair {
   ReplanStatus status = ReplanStatus::kHolding;
   ReplanReason reason = ReplanReason::kNone;
-  /// How the EGO-Planner baseline calls the outcome of its plan call; empty with the others.
+  /// With kInvalidInput what of the input is not valid. How the EGO-Planner baseline calls the outcome of its plan
+  /// call. Else empty.
   std::string_view detail;
   bool ends_in_contact = false;  ///< what is asked for is a plan that does
   bool idle = false;             ///< the planner had nothing to do: there is no answer

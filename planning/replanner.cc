@@ -27,6 +27,7 @@ namespace touchdown::planning {
 
 namespace {
 
+constexpr double kLongAgo = -std::numeric_limits<double>::infinity();
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
@@ -41,14 +42,17 @@ double DetourOf(const UniformBspline& curve, double from) {
 
 SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
 
+/// The deck that there is, below a pad that is known; nullptr: none.
+const estimation::PadPrediction* DeckOf(const ReplanInput& input) {
+  return input.pad != nullptr && input.pad->has_deck() ? input.pad : nullptr;
+}
+
 }  // namespace
 
 class Replanner::Impl {
  public:
   Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
-      : options_(options),
-        attempt_(options, backends),
-        fallback_(options.limits, options.reaction) {
+      : options_(options), attempt_(options, backends), fallback_(options.limits) {
     for (UniformBspline* curve : {&current_.curve, &current_.stop, &next_.curve, &next_.stop,
                                   &result_.curve, &result_.stop}) {
       curve->Reserve(PlanAttempt::kMostControlPoints);
@@ -103,9 +107,10 @@ class Replanner::Impl {
   FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
                          const OccupancyMap& map) const;
   void Begin(const ReplanInput& input);
-  const ReplanResult& RefuseState(const ReplanInput& input);
+  const char* WrongInState(const ReplanInput& input) const;
+  const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
+  void NoteAsked(double t_start);
   SplineState Start(const ReplanInput& input);
-  bool InTime(const ReplanInput& input) const;
   double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
   Rung FirstRung(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
                  LadderFacts* facts);
@@ -120,8 +125,11 @@ class Replanner::Impl {
 
   PlanAttempt attempt_;
   FallbackLadder fallback_;
-  Limits limits_;        // what the pull of this step leaves
-  double margin_ = 0.0;  // around the hull in this step [m]
+  Limits limits_;                  // what the pull of this step leaves
+  double margin_ = 0.0;            // around the hull in this step [m]
+  double reaction_ = 0.0;          // after which a stop of this step begins [s]
+  std::optional<double> asked_t_;  // the last answer took over then [s]
+  bool stands_ = false;            // something is committed
   ReplanResult result_;
   UnseenZone unseen_;
   bool planned_before_ = false;     // the committed curve is a plan to the pad: its arrival is kept
@@ -131,7 +139,7 @@ class Replanner::Impl {
   std::optional<Rung> unfinished_;  // at which this step will have run out of its budget, ...
   std::optional<Rung> resumes_;     // ... and the last one did
   FreeSpace strip_;                 // over the last known pad ...
-  double strip_t_ = -std::numeric_limits<double>::infinity();  // ... at this time
+  double strip_t_ = kLongAgo;       // ... at this time
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -171,6 +179,7 @@ ReplannerState Replanner::Impl::State() const {
   state.around_unseen = around_unseen_;
   state.bound = bound_;
   state.looked_t = looked_t_;
+  state.asked_t = asked_t_;
   state.unfinished = unfinished_;
   state.looks_at_W = fallback_.memory().looks_at_W;
   state.climb = fallback_.memory().climb;
@@ -182,6 +191,7 @@ ReplannerState Replanner::Impl::State() const {
 }
 
 void Replanner::Impl::Restore(const ReplannerState& state) {
+  stands_ = true;
   current_ = state.current;
   next_ = state.next;
   takes_over_ = next_.curve.t0();
@@ -189,9 +199,10 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   around_unseen_ = state.around_unseen;
   bound_ = state.bound;
   looked_t_ = state.looked_t;
+  asked_t_ = state.asked_t;
   unfinished_ = state.unfinished;
   fallback_.Restore({state.looks_at_W, state.climb});
-  strip_t_ = state.strip_t.value_or(-std::numeric_limits<double>::infinity());
+  strip_t_ = state.strip_t.value_or(kLongAgo);
   strip_.floor = options_.floor_height;
   strip_.ceiling = options_.ceiling_height;
   strip_.pad_from = state.strip_from;
@@ -203,6 +214,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
 void Replanner::Impl::Begin(const ReplanInput& input) {
   resumes_ = std::exchange(unfinished_, std::nullopt);
   margin_ = input.margins.Sum();
+  reaction_ = options_.reaction;
   limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
   fallback_.SetLimits(limits_);
   if (log_) log_->attempts.clear();
@@ -211,9 +223,10 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
   result_.pairs = result_.solves = result_.rebinds = result_.work = 0;
   result_.from_odometry = result_.map_error = result_.committed = false;
   result_.proven = true;
-  result_.ends_in_contact = input.endpoint.may_touch(options_.contact_height);
+  result_.ends_in_contact = DeckOf(input) && input.endpoint.may_touch(options_.contact_height);
   result_.unseen_W.reset();
   result_.reason = ReplanReason::kNone;
+  result_.detail = {};
   result_.certificate = {};
   result_.solver.status = solvers::SolveStatus::kNumericalFailure;
   result_.solver.iterations = result_.solver.evaluations = 0;
@@ -222,11 +235,19 @@ void Replanner::Impl::Begin(const ReplanInput& input) {
 }
 
 /// Without a usable state of the vehicle nothing can be decided: what is committed goes on, to its stop.
-const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input) {
+const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const char* wrong) {
   const double t0 = std::isfinite(input.t_start) ? input.t_start : next_.curve.t0();
   Fallback::FlyStop(next_, t0, HullSpace{}, &result_);
   result_.reason = ReplanReason::kInvalidInput;
+  result_.detail = wrong;
   return result_;
+}
+
+/// Who asks less often than options_.reaction says is taken to go on like that: else each plan would be flown
+/// into its stop.
+void Replanner::Impl::NoteAsked(double t_start) {
+  if (asked_t_) reaction_ = std::max(reaction_, t_start - *asked_t_);
+  asked_t_ = t_start;
 }
 
 /// The committed state when the answer takes over, or the vehicle's own where tracking is lost.
@@ -241,8 +262,11 @@ SplineState Replanner::Impl::Start(const ReplanInput& input) {
 }
 
 /// The last answer must have taken over before the next is asked for: only one is ever pending.
-bool Replanner::Impl::InTime(const ReplanInput& input) const {
-  return input.t_now >= takes_over_ - kClockRounding;
+const char* Replanner::Impl::WrongInState(const ReplanInput& input) const {
+  if (!stands_) throw std::invalid_argument("Replanner: a step is asked for before CommitHover");
+  if (const char* wrong = planning::WrongInState(input)) return wrong;
+  const bool in_time = input.t_now >= takes_over_ - kClockRounding;
+  return in_time ? nullptr : "an earlier answer has not taken over yet at t_now";
 }
 
 HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
@@ -261,10 +285,13 @@ HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
 const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
   Begin(input);
   StageTimer total(&result_.times.total);
-  if (!StateValid(input) || !InTime(input)) return RefuseState(input);
+  if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
+  NoteAsked(input.t_start);
   const SplineState start = Start(input);
   fallback_.ForgetClimb();
-  const bool target_valid = TargetValid(input);
+  const char* wrong = WrongInTarget(input);
+  const bool target_valid = wrong == nullptr;
+  if (wrong) result_.detail = wrong;
   const bool looks = target_valid && fallback_.StillLooks(map, result_.from_odometry);
   if (looks) result_.unseen_W = fallback_.memory().looks_at_W;
   result_.reason = !target_valid ? ReplanReason::kInvalidInput
@@ -272,18 +299,18 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
                                  : Plan(input, start, map);
   if (target_valid) {
     strip_ = SpaceOverPad(input, start, WatchedUntil(input), map);
-    strip_t_ = input.t_start;
+    strip_t_ = strip_.pad_radius > 0.0 ? input.t_start : kLongAgo;
   }
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
     bound_ = result_.bound;
     Commit(input.t_start);
-    result_.unseen_W = NeededNext(input, HullIn(strip_, input.pad));
+    result_.unseen_W = NeededNext(input, HullIn(strip_, DeckOf(input)));
     return result_;
   }
   const FreeSpace space = target_valid ? strip_ : SpaceWithoutPad(input, map);
-  const HullSpace hull = HullIn(space, target_valid ? input.pad : nullptr);
+  const HullSpace hull = HullIn(space, target_valid ? DeckOf(input) : nullptr);
   return Finish(fallback_.StepDown(FactsFor(input, start, hull), &result_), input.t_start);
 }
 
@@ -294,6 +321,7 @@ FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineSt
   facts.committed = &next_;
   facts.start = start;
   facts.t0 = input.t_start;
+  facts.reaction = reaction_;
   facts.hull = &hull;
   facts.endpoint = input.endpoint;
   facts.pull_W = input.pull_W;
@@ -312,7 +340,7 @@ const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
 std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& input,
                                                            const HullSpace& hull) const {
   const UniformBspline& curve = next_.curve;
-  const double t_from = input.t_start + options_.reaction;
+  const double t_from = input.t_start + reaction_;
   const double t_to = std::min(t_from + kLookAhead, curve.t_end());
   if (t_to <= t_from) return std::nullopt;
   return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
@@ -322,12 +350,13 @@ const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb
                                           const OccupancyMap& map) {
   Begin(input);
   StageTimer total(&result_.times.total);
-  if (!StateValid(input) || !InTime(input)) return RefuseState(input);
+  if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
+  NoteAsked(input.t_start);
   const SplineState start = Start(input);
-  const bool remembered = input.t_start - strip_t_ <= kStripMemory || !TargetValid(input);
+  const bool remembered = input.t_start - strip_t_ <= kStripMemory || WrongInTarget(input);
   const FreeSpace space = remembered ? SpaceWithoutPad(input, map)
                                      : SpaceOverPad(input, start, WatchedUntil(input), map);
-  const HullSpace hull = HullIn(space, PadValid(input) ? input.pad : nullptr);
+  const HullSpace hull = HullIn(space, WrongInPad(input) ? nullptr : DeckOf(input));
   return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
 }
 
@@ -354,7 +383,7 @@ Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& sta
   };
   facts->fresh = guess(1.0);
   facts->lands_soon = !result_.from_odometry &&
-                      LandsSoon(next_, input.t_start, input.endpoint, HullIn(plain, input.pad));
+                      LandsSoon(next_, input.t_start, input.endpoint, HullIn(plain, DeckOf(input)));
   facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
   facts->arrival = options_.arrival;
   facts->min_duration = options_.min_duration;
@@ -393,7 +422,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
   for (int tried = 1;; ++tried) {
     if (!facts.lands_soon) rung.duration = FirstFreeArrival(input, rung.duration, map);
     FreeSpace space = SpaceOverPad(input, start, input.t_start + rung.duration, map);
-    const HullSpace hull = HullIn(space, input.pad);
+    const HullSpace hull = HullIn(space, DeckOf(input));
     if (rung.unseen_reach > 0.0) {
       unseen_.Build(hull, start.p, rung.unseen_reach);
       space.unseen = &unseen_;
@@ -433,6 +462,7 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
+  request.reaction = reaction_;
   request.pad = input.pad;
   request.target = input.endpoint;
   request.limits = limits_;
@@ -467,8 +497,6 @@ Replanner::Replanner(const ReplannerOptions& options, const solvers::BackendRegi
   impl_ = std::make_unique<Impl>(options, backends);
 }
 Replanner::~Replanner() = default;
-Replanner::Replanner(Replanner&&) noexcept = default;
-Replanner& Replanner::operator=(Replanner&&) noexcept = default;
 
 void Replanner::Prepare(const OccupancyMap& map) { impl_->Prepare(map); }
 

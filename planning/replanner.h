@@ -17,13 +17,15 @@ namespace touchdown::planning {
 /// All that a replanner remembers from one step to the next. Plain data: with the same options, map
 /// and input the next step gives the same bits.
 struct ReplannerState {
-  FlightPair current;          ///< flown before `next` takes over
-  FlightPair next;             ///< committed
-  bool planned = false;        ///< `next` is a plan to the pad: its arrival is kept ...
-  bool around_unseen = false;  ///< ... and it led around cells that were not seen
-  BoundParts bound;            ///< what of it is bound to free space
-  double looked_t = 0.0;       ///< when other ways were last looked for [s]
-  std::optional<Rung> unfinished;  ///< at which the last step, without a plan, ran out of its budget
+  FlightPair current;             ///< flown before `next` takes over
+  FlightPair next;                ///< committed
+  bool planned = false;           ///< `next` is a plan to the pad: its arrival is kept ...
+  bool around_unseen = false;     ///< ... and it led around cells that were not seen
+  BoundParts bound;               ///< what of it is bound to free space
+  double looked_t = 0.0;          ///< when other ways were last looked for [s]
+  std::optional<double> asked_t;  ///< when the last answer took over [s]
+  std::optional<Rung>
+      unfinished;  ///< at which the last step, without a plan, ran out of its budget
   std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
   std::optional<double> climb;                ///< `next` is the caller's rest with this climb [m]
   std::optional<double>
@@ -41,15 +43,16 @@ class Replanner : public Planner {
   /// cannot do what the options ask (the sentence says which).
   Replanner(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
   ~Replanner() override;
-  Replanner(Replanner&&) noexcept;
-  Replanner& operator=(Replanner&&) noexcept;
+  Replanner(const Replanner&) = delete;
+  Replanner& operator=(const Replanner&) = delete;
 
   void Prepare(const OccupancyMap& map) override;
 
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   void CommitHover(const Eigen::Vector3d& p_W, double t) override;
 
-  /// One replanning step against the map. The result stays valid until the next call. Whatever comes
+  /// One replanning step against the map. The result stays valid until the next call. Throws std::invalid_argument
+  /// before the first CommitHover. Whatever comes
   /// out is a proven pair, or says that it is not (docs/safety.md). Nothing can be proven in what the map has not observed: a
   /// map that was filled by hand needs MarkFree, one of a sensor at least around the start.
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;

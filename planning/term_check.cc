@@ -48,7 +48,8 @@ class Bench {
     Add(entry, kind.hard, control_points);
     // The metric of a term alone may be singular, and what is singular whitens badly.
     if (kind.view == CheckedView::kWhitened) {
-      Add(FindTerm(StandardTerms(), "smoothness"), false, control_points);
+      const TermRegistry terms = StandardTerms();
+      Add(FindTerm(terms, "smoothness"), false, control_points);
     }
     solvers::AffineLift structure = solvers::AffineLift::Identity(control_points);
     if (kind.view != CheckedView::kFull) {

@@ -20,6 +20,8 @@ void RequireDistinct(const TermRegistry& registry);
 
 /// The entry of that name. Throws std::invalid_argument naming the known ones.
 const TermEntry& FindTerm(const TermRegistry& registry, std::string_view name);
+const TermEntry& FindTerm(TermRegistry&& registry,
+                          std::string_view name) = delete;  // it would dangle
 
 /// A setup with the entry's defaults; a weight of 1 where the entry is off by default.
 TermSetup DefaultSetup(const TermEntry& entry, int control_points);

@@ -130,13 +130,29 @@ bool ConstraintRows::Gather(const std::vector<std::vector<double>>& by_term, dou
   return true;
 }
 
+namespace {
+
+std::size_t RowsOf(const Problem& problem, int term) {
+  const TermShape& shape = problem.term(term).shape();
+  const int rows = problem.role(term) == Role::kConstraint ? shape.max_windows * shape.outputs : 0;
+  return static_cast<std::size_t>(rows);
+}
+
+}  // namespace
+
 void ConstraintRows::Size(const View& view, std::vector<std::vector<double>>* by_term) {
-  by_term->assign(static_cast<std::size_t>(view.problem().num_terms()), {});
-  for (int i = 0; i < view.problem().num_terms(); ++i) {
-    const TermShape& shape = view.problem().term(i).shape();
-    if (view.problem().role(i) != Role::kConstraint) continue;
-    (*by_term)[i].assign(static_cast<std::size_t>(shape.max_windows * shape.outputs), 0.0);
+  const Problem& problem = view.problem();
+  by_term->resize(static_cast<std::size_t>(problem.num_terms()));
+  for (int i = 0; i < problem.num_terms(); ++i) (*by_term)[i].assign(RowsOf(problem, i), 0.0);
+}
+
+bool ConstraintRows::Fit(const View& view, const std::vector<std::vector<double>>& by_term) {
+  const Problem& problem = view.problem();
+  if (static_cast<int>(by_term.size()) != problem.num_terms()) return false;
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    if (by_term[i].size() != RowsOf(problem, i)) return false;
   }
+  return true;
 }
 
 }  // namespace touchdown::solvers

@@ -49,6 +49,8 @@ class ConstraintRows {
   bool Gather(const std::vector<std::vector<double>>& by_term, double* flat) const;
   /// Sizes [term][row] for the most rows.
   static void Size(const View& view, std::vector<std::vector<double>>* by_term);
+  /// Whether they have that size.
+  static bool Fit(const View& view, const std::vector<std::vector<double>>& by_term);
 
  private:
   /// One window with all its outputs, which share their columns.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -79,20 +80,32 @@ void FunctionTerm::Evaluate(const TermInput& input, const TermRequest& request, 
   }
 }
 
+void FunctionTerm::RefuseOutput() const {
+  const std::string m = std::to_string(shape_.outputs);
+  throw std::invalid_argument("FunctionTerm " + info_.name + ": the function writes u[" + m +
+                              "], and FunctionShape::outputs is " + m);
+}
+
 void FunctionTerm::EvaluateFunction(int window, const double* q, bool derivatives, double* u,
                                     double* du) const {
-  // An output that the function forgets must not count as 0.
+  // An output that the function forgets must not count as 0; one that it invents is written behind the others.
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const int m = shape_.outputs;
   if (!derivatives) {
-    std::fill_n(u, shape_.outputs, kNone);
-    return functions_.value(window, q, u);
+    std::array<double, kMostOutputs + 1> out;
+    std::fill_n(out.begin(), m + 1, kNone);
+    functions_.value(window, q, out.data());
+    if (!std::isnan(out[m])) RefuseOutput();
+    std::copy_n(out.begin(), m, u);
+    return;
   }
   std::array<First, kMostVariables> in;
-  std::array<First, kMostOutputs> out;
+  std::array<First, kMostOutputs + 1> out;
   for (int i = 0; i < variables_; ++i) in[i] = First(q[i], i);
-  for (int c = 0; c < shape_.outputs; ++c) out[c] = First(kNone);
+  for (int c = 0; c <= m; ++c) out[c] = First(kNone);
   functions_.first(window, in.data(), out.data());
-  for (int c = 0; c < shape_.outputs; ++c) {
+  if (!std::isnan(out[m].v)) RefuseOutput();
+  for (int c = 0; c < m; ++c) {
     u[c] = out[c].v;
     std::copy_n(out[c].d.begin(), variables_, du + c * variables_);
   }

@@ -34,7 +34,8 @@ class FunctionTerm : public Term {
   static constexpr int kMostOutputs = 32;    ///< m
   using Loss = std::variant<SquareLoss, HingeLoss, RangeLoss, LinearLoss>;
 
-  /// Throws std::invalid_argument on a size out of range.
+  /// Throws std::invalid_argument on a size out of range. A function that writes more outputs than there are cannot be
+  /// evaluated: the solve says so.
   template <class Function>
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Function function)
       : FunctionTerm(
@@ -70,6 +71,7 @@ class FunctionTerm : public Term {
   }
 
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Functions functions);
+  [[noreturn]] void RefuseOutput() const;
   void EvaluateFunction(int window, const double* q, bool derivatives, double* u, double* du) const;
   void EvaluateLoss(int window, const TermRequest& request, TermBlock* block) const;
   void AddGradient(int window, const TermRequest& request, const TermBlock& block,

@@ -93,6 +93,9 @@ std::string WhatFailed(const Problem& problem, const Evaluation& at) {
 void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,
                           SolverResult* result) {
   const int n = view.num_variables();
+  if (prepared_.empty()) {
+    throw std::invalid_argument("backend " + name_ + ": Solve before Prepare");
+  }
   if (!prepared_.IsOf(view)) {
     throw std::invalid_argument(
         "backend " + name_ +
@@ -110,6 +113,11 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
     throw std::invalid_argument("backend " + name_ + ": number " + std::to_string(i) +
                                 " of the warm start is not finite");
   }
+  if (!warm.multipliers.empty() && !ConstraintRows::Fit(view, warm.multipliers)) {
+    throw std::invalid_argument("backend " + name_ +
+                                ": the warm start's multipliers are not those of this problem: "
+                                "[term][row], none for a cost");
+  }
   for (const std::vector<double>& rows : warm.multipliers) {
     if (!std::all_of(rows.begin(), rows.end(), [](double m) { return std::isfinite(m); })) {
       throw std::invalid_argument("backend " + name_ +
@@ -119,6 +127,17 @@ void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& s
   if (!(stop.gap >= 0.0 && stop.gap < 1.0)) {
     throw std::invalid_argument("backend " + name_ + ": stop.gap is " + std::to_string(stop.gap) +
                                 ", it must be in [0, 1)");
+  }
+  if (stop.max_iterations < 0 || stop.max_evaluations < 0) {
+    const bool iterations = stop.max_iterations < 0;
+    throw std::invalid_argument(
+        "backend " + name_ + ": stop." + (iterations ? "max_iterations" : "max_evaluations") +
+        " is " + std::to_string(iterations ? stop.max_iterations : stop.max_evaluations) +
+        ", it must be >= 0");
+  }
+  if (!(stop.wall_limit_s >= 0.0)) {
+    throw std::invalid_argument("backend " + name_ + ": stop.wall_limit_s is " +
+                                std::to_string(stop.wall_limit_s) + ", it must be >= 0 s");
   }
   inside_.y = warm.y;
   view.MoveIntoBounds(inside_.y.data());

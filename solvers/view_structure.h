@@ -15,6 +15,8 @@ class ViewStructure {
   ViewStructure() = default;
   explicit ViewStructure(const View& view);
 
+  bool empty() const { return numbers_.empty(); }
+
   /// Does not allocate.
   bool IsOf(const View& view) const;
 

@@ -102,7 +102,20 @@ const std::vector<Misuse>& Misuses() {
        [] { Solve(Line(), VectorXd::Zero(4), "newton"); }},
       {"a gap that is no share", "gap",
        [] { Solve(Line(), VectorXd::Zero(4), "banded", {.gap = 2.0}); }},
-      {"a solve before Prepare", "prepared",
+      {"a stop after less than no iterations", "max_iterations",
+       [] { Solve(Line(), VectorXd::Zero(4), "banded", {.max_iterations = -1}); }},
+      {"a stop after no time that there is", "wall_limit_s",
+       [] { Solve(Line(), VectorXd::Zero(4), "banded", {.wall_limit_s = kNan}); }},
+      {"multipliers of another problem", "multipliers",
+       [] {
+         const Problem line = Line();
+         const View view(line);
+         const auto backend = MakeBackend(StandardBackends(), "banded");
+         backend->Prepare(view);
+         SolverResult result;
+         backend->Solve(view, {VectorXd::Zero(4), {{1.0}, {2.0}}}, {}, &result);
+       }},
+      {"a solve before Prepare", "before Prepare",
        [] {
          const Problem line = Line();
          SolverResult result;

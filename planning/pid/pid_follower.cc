@@ -71,7 +71,7 @@ bool PidFollower::Begin(const ReplanInput& input) {
   result_.from_odometry = false;
   result_.times = {};
   result_.idle = std::isfinite(input.t_now) && input.t_now < takes_over_ - kClockSlack;
-  if (result_.idle || StateValid(input)) return !result_.idle;
+  if (result_.idle || !WrongInState(input)) return !result_.idle;
   result_.reason = ReplanReason::kInvalidInput;
   return false;
 }
@@ -98,7 +98,7 @@ void PidFollower::Commit(const SplineState& start, const Eigen::Vector3d& a, dou
 const ReplanResult& PidFollower::Replan(const ReplanInput& input, const OccupancyMap& /*map*/) {
   if (!Begin(input)) return result_;
   StageTimer total(&result_.times.total);
-  if (!TargetValid(input)) {
+  if (WrongInTarget(input)) {
     result_.reason = ReplanReason::kInvalidInput;
     return result_;
   }

@@ -215,15 +215,44 @@ TEST(Replanner, NamesWhyThereIsNoPlan) {
   };
   const OccupancyMap free = ObservedMap();
 
-  ReplanInput nan = Input(start, pad, 0.0);
-  nan.vehicle.p_WB.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(ask(free, nan).reason, ReplanReason::kInvalidInput);
-  ReplanInput past = Input(start, pad, 0.0);
-  past.t_start = -1.0;
-  EXPECT_EQ(ask(free, past).reason, ReplanReason::kInvalidInput);
-  ReplanInput no_pad = Input(start, pad, 0.0);
-  no_pad.pad = nullptr;
-  EXPECT_EQ(ask(free, no_pad).reason, ReplanReason::kInvalidInput);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const ArcPad nowhere({nan, 0.0, 0.3}, 0.0, 0.0, 0.0), away({5e6, 0.0, 0.3}, 0.0, 0.0, 0.0);
+  const struct {
+    const char* what;
+    void (*spoil)(ReplanInput* input, double nan);
+    const ArcPad* pad;
+  } mistakes[] = {
+      {"t_now", [](ReplanInput* input, double none) { input->t_now = none; }, &pad},
+      {"t_start is not finite", [](ReplanInput* input, double none) { input->t_start = none; },
+       &pad},
+      {"before t_now", [](ReplanInput* input, double) { input->t_start = -1.0; }, &pad},
+      {"p_WB is not", [](ReplanInput* input, double none) { input->vehicle.p_WB.x() = none; },
+       &pad},
+      {"p_WB is a million", [](ReplanInput* input, double) { input->vehicle.p_WB.x() = 1e7; },
+       &pad},
+      {"v_WB is not", [](ReplanInput* input, double none) { input->vehicle.v_WB.x() = none; },
+       &pad},
+      {"v_WB is 1000", [](ReplanInput* input, double) { input->vehicle.v_WB.x() = 2e3; }, &pad},
+      {"pull_W", [](ReplanInput* input, double none) { input->pull_W.x() = none; }, &pad},
+      {"margin", [](ReplanInput* input, double) { input->margins.tracking = -1.0; }, &pad},
+      {"no pad", [](ReplanInput* input, double) { input->pad = nullptr; }, &pad},
+      {"goal is not finite", [](ReplanInput*, double) {}, &nowhere},
+      {"goal is a million", [](ReplanInput*, double) {}, &away},
+      {"endpoint", [](ReplanInput* input, double none) { input->endpoint.height = none; }, &pad},
+      {"arrival_sink", [](ReplanInput* input, double) { input->endpoint.arrival_sink = -1.0; },
+       &pad},
+      {"passing_W", [](ReplanInput* input, double none) { input->endpoint.passing_W.x() = none; },
+       &pad},
+  };
+  for (const auto& mistake : mistakes) {
+    ReplanInput input = Input(start, *mistake.pad, 0.0);
+    mistake.spoil(&input, nan);
+    const ReplanResult result = ask(free, input);
+    EXPECT_EQ(result.reason, ReplanReason::kInvalidInput) << mistake.what;
+    EXPECT_NE(std::string(result.detail).find(mistake.what), std::string::npos)
+        << mistake.what << ": " << result.detail;
+  }
+  EXPECT_EQ(ask(free, Input(start, pad, 0.0)).detail, "");
 
   EXPECT_EQ(ask(free, Input(start, racing, 0.0)).reason, ReplanReason::kPadUnreachable);
 

@@ -31,11 +31,13 @@ int Lines(const std::string& path) {
 TEST(TermExample, IsShortAndRegisteredByOneLine) {
   EXPECT_LE(Lines("docs/examples/in_tree_term/lowest_height.cc"), 40);
   EXPECT_LE(Lines("docs/examples/own_program/main.cc"), 40);
-  EXPECT_EQ(FindTerm(StandardTerms(), kName).default_weight, 0.0);
+  const TermRegistry terms = StandardTerms();
+  EXPECT_EQ(FindTerm(terms, kName).default_weight, 0.0);
 }
 
 TEST(TermExample, HasTheRightDerivatives) {
-  EXPECT_TRUE(Passed(CheckTerm(FindTerm(StandardTerms(), kName), {})));
+  const TermRegistry terms = StandardTerms();
+  EXPECT_TRUE(Passed(CheckTerm(FindTerm(terms, kName), {})));
 }
 
 /// Lowest free control point of the solved landing; the term is off where `settings` is empty.

@@ -118,7 +118,7 @@ TEST(BandedEqualities, MultipliersOfOneOfTwoOppositesAreNone) {
   const auto solver = MakeBandedSolver();
   solver->Prepare(view);
   for (const auto& multipliers : std::vector<std::vector<std::vector<double>>>{
-           {{}, {-1.0}}, {{}, {-1.0}, {}}, {{}, {}, {1.0}}, {{}, {-1.0}, {0.0}}}) {
+           {{}, {-1.0}, {0.0}}, {{}, {0.0}, {1.0}}, {{}, {-1.0}, {1.0}}}) {
     SolverResult result;
     solver->Solve(view, WarmStart(Eigen::Vector2d(4.0, -7.0), multipliers), {}, &result);
     EXPECT_EQ(result.status, SolveStatus::kConverged);

@@ -75,5 +75,28 @@ TEST(FunctionTerm, RefusesSizesOutOfRange) {
   EXPECT_THROW(make({.block_size = 4, .outputs = 2, .first = -1}), std::invalid_argument);
 }
 
+// One output more than there are: behind a sum that holds few, and behind the most there can be.
+TEST(FunctionTerm, AFunctionThatWritesMoreThanItsOutputsIsRefused) {
+  for (const int outputs : {1, FunctionTerm::kMostOutputs}) {
+    Problem problem({.blocks = 2, .block_size = 1});
+    problem.AddTerm(std::make_shared<FunctionTerm>(TermInfo{"wide"},
+                                                   FunctionShape{.outputs = outputs, .windows = 2},
+                                                   SquareLoss(1.0),
+                                                   [=](const auto* q, auto* u) {
+                                                     for (int c = 0; c <= outputs; ++c) u[c] = q[0];
+                                                   }),
+                    Role::kCost);
+    Evaluation at;
+    problem.Resize(&at);
+    const double x[] = {0.1, 0.2};
+    for (const bool gradient : {false, true}) {
+      EXPECT_FALSE(problem.Evaluate(x, 1.0, {.gradient = gradient}, {}, &at));
+      const std::string m = std::to_string(outputs);
+      EXPECT_EQ(at.failure, "FunctionTerm wide: the function writes u[" + m +
+                                "], and FunctionShape::outputs is " + m);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::solvers

@@ -16,9 +16,7 @@ int main() {
   }
   map.MarkRestFree();  // a plan may only rely on what was seen to be free
 
-  ReplannerOptions options;
-  options.contact_height = -0.05;  // a goal has no deck that must not be flown into
-  Replanner planner(options, touchdown::solvers::StandardBackends());
+  Replanner planner(ReplannerOptions{}, touchdown::solvers::StandardBackends());
   planner.CommitHover(start, 0.0);
   const GoalAt goal(there);
   for (double t = 0.0; t < 20.0; t += 0.1) {

@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "15"
+SUPPORTED_VERSION = "16"
 
 
 class RecordError(Exception):
