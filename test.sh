@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what is missing, builds everything and runs the whole test suite: C++ and Python.
 #   ./test.sh           the suite
-#   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two
+#   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two; parts by name: address, tidy, threads
 #   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
 set -euo pipefail
 
@@ -12,7 +12,7 @@ cd "$TOUCHDOWN_ROOT"
 
 case ${1:-} in
   '') ;;
-  deep) exec .ci/deep ;;
+  deep) exec .ci/deep "${@:2}" ;;
   mutants)
     install_tiers build test
     exec .ci/mutants.py "${@:2}"
