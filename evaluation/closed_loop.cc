@@ -50,7 +50,7 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
   task.horizontal_speed = rule.horizontal_speed;
   task.vertical_speed = rule.vertical_speed;
   task.horizon = scenario.timeout;
-  task.pad_rates = world.pad_motion().bounds();
+  task.pad_rates = world.pad_course()->bounds();
   const sim::World::PadLag lag = world.MaxPadLag();
   task.pad_position_error = lag.position;
   task.pad_velocity_error = lag.velocity;
@@ -59,8 +59,8 @@ LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& wo
   return task;
 }
 
-std::optional<SafetyWatch> SafetyWatchOf(const Scenario& scenario, const sim::World& world) {
-  if (scenario.planner != PlannerKind::kLanding) return std::nullopt;
+std::optional<SafetyWatch> SafetyWatchOf(const PlannerEntry& planner, const sim::World& world) {
+  if (!planner.proves) return std::nullopt;
   return SafetyWatch(world.config().obstacles);
 }
 
@@ -68,7 +68,8 @@ class Trial {
  public:
   Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
         TrialRecord* record, TrialSamples* samples)
-      : Trial(scenario, seed, DrawTrial(scenario, seed), registries, record, samples) {}
+      : Trial(scenario, seed, DrawTrial(scenario, seed), PlannerOf(scenario, registries),
+              registries, record, samples) {}
 
   TrialResult Run() {
     try {
@@ -85,11 +86,12 @@ class Trial {
 
  private:
   Trial(const Scenario& scenario, std::uint64_t seed, const TrialDraw& draw,
-        const Registries& registries, TrialRecord* record, TrialSamples* samples)
-      : world_(WorldOf(scenario, draw)),
+        const PlannerEntry& planner, const Registries& registries, TrialRecord* record,
+        TrialSamples* samples)
+      : world_(WorldOf(scenario, draw, registries)),
         air_(scenario, draw, seed),
-        perception_(scenario, world_, seed),
-        pilot_(scenario, world_.model(), world_.pad_motion(), registries, perception_.own().now(),
+        perception_(scenario, world_, registries, seed),
+        pilot_(scenario, world_.model(), world_.pad_course(), registries, perception_.own().now(),
                Eigen::Vector4d(world_.rotor_commands().data()), perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
         follow_(scenario.descent == DescentKind::kNone),
@@ -97,15 +99,16 @@ class Trial {
         landing_time_(LandingTimeTaskOf(scenario, world_)),
         judge_(LandingRule{}, scenario.timeout, follow_),
         stand_watch_(scenario.stand_limit),
-        safety_watch_(SafetyWatchOf(scenario, world_)),
+        safety_watch_(SafetyWatchOf(planner, world_)),
         map_look_clock_(kMapLookRate),
         mission_clock_(kMissionRate),
-        replan_clock_(PlannerRate(scenario)),
-        close_clock_(ClosePlannerRate(scenario)),
+        replan_clock_(PlannerRate(scenario, planner)),
+        close_clock_(ClosePlannerRate(scenario, planner)),
         sample_clock_(kSampleRate),
         record_(record),
         samples_(samples) {
     result_.seed = seed;
+    result_.backend = BackendName(scenario, planner);
     if (samples_ != nullptr) perception_.LogPadTo(&samples_->pad.arrivals);
     if (record_ != nullptr) {
       record_->map_resolution = perception_.map().resolution();
@@ -344,7 +347,7 @@ class Trial {
   }
 
   void BoundLandingTime() {
-    const sim::OraclePadPrediction pad(world_.pad_motion());
+    const sim::OraclePadPrediction pad(world_.pad_course());
     result_.t_star_s = LandingTimeLowerBound(landing_time_, pad);
     if (const auto flight = LandingTimeUpperBound(landing_time_, pad, *result_.t_star_s)) {
       result_.t_star_upper_s = flight->time;

@@ -145,7 +145,9 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
                               "record --set changes ") +
                       kReplayKeys,
                   "FILE");
-  command.Add("--problems", options.problems, "Most problems that are taken; default: all of a record, else 20")
+  command
+      .Add("--problems", options.problems,
+           "Most problems that are taken; default: all of a record, else 20")
       .Check(Range(1, 100000));
   command
       .Add("--every", options.every,

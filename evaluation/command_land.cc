@@ -32,11 +32,11 @@ struct LandArguments {
   bool json = false;
 };
 
-double ClearanceOf(const Scenario& scenario) {
-  return PlanClearance(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)));
+double ClearanceOf(const Scenario& scenario, const Registries& registries) {
+  return PlanClearance(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)), registries);
 }
 
-std::string Summary(const Scenario& scenario, const TrialResult& r) {
+std::string Summary(const Scenario& scenario, const TrialResult& r, const Registries& registries) {
   std::string text;
   if (r.landed()) {
     const Touchdown& t = *r.touchdown;
@@ -80,7 +80,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r) {
         safety.uncertified_steps, safety.stops_flown, safety.map_errors,
         safety.tracking_events + safety.drift_events);
   }
-  if (const double kept = ClearanceOf(scenario); kept > scenario.planning.clearance) {
+  if (const double kept = ClearanceOf(scenario, registries); kept > scenario.planning.clearance) {
     text += fmt::format(
         "  planning.clearance     raised from {:g} to {:.3f} m, the hull at every tilt and its "
         "margins\n",
@@ -134,7 +134,7 @@ int Land(const LandArguments& arguments, const Registries& registries) {
   if (arguments.json) {
     std::cout << LandJson(scenario, result).dump(2) << std::endl;
   } else {
-    std::cout << Summary(scenario, result) << std::flush;
+    std::cout << Summary(scenario, result, registries) << std::flush;
   }
   const auto write = [&](const std::string& path) { WriteRecord(path, scenario, result, record); };
   if (!arguments.record.empty()) write(arguments.record);

@@ -97,22 +97,34 @@ void PrintBackends(const Json& list) {
   }
 }
 
-Json ListPlanners() {
-  const std::pair<PlannerKind, const char*> planners[] = {
-      {PlannerKind::kLanding, "moving-endpoint B-spline landing planner"},
-      {PlannerKind::kEgo,
-       "EGO-Planner baseline as published; the pad's position as a goal at rest"},
-      {PlannerKind::kEgoVelocity, "the same with the pad's velocity at the goal"},
-      {PlannerKind::kPid, "PID law that tracks the pad, then descends; knows no obstacles"},
-  };
+template <class Entry>
+Json ListParts(const std::vector<Entry>& registry) {
   Json list = Json::array();
-  Scenario scenario;
-  for (const auto& [kind, description] : planners) {
-    scenario.planner = kind;
+  for (const Part& part : registry) {
+    Json parameters = Json::array();
+    for (const Parameter& parameter : part.parameters) {
+      parameters.push_back({{"key", parameter.key},
+                            {"default", parameter.value},
+                            {"allowed", parameter.range.ToString()},
+                            {"help", parameter.doc}});
+    }
     list.push_back(
-        {{"name", FindScenarioKey("planner")->get(scenario)}, {"description", description}});
+        {{"name", part.name}, {"description", part.summary}, {"parameters", parameters}});
   }
   return list;
+}
+
+void PrintParts(const Json& list) {
+  for (const Json& entry : list) {
+    std::cout << fmt::format("{}  {}\n", entry["name"].get<std::string>(),
+                             entry["description"].get<std::string>());
+    for (const Json& parameter : entry["parameters"]) {
+      std::cout << fmt::format("  {} = {:g} in {}  {}\n", parameter["key"].get<std::string>(),
+                               parameter["default"].get<double>(),
+                               parameter["allowed"].get<std::string>(),
+                               parameter["help"].get<std::string>());
+    }
+  }
 }
 
 Json ListTerms(const Registries& registries) {
@@ -184,13 +196,14 @@ void PrintNames(const Json& list) {
 void Print(const std::string& what, const Json& list) {
   if (what == "backends") return PrintBackends(list);
   if (what == "terms") return PrintTerms(list);
-  PrintNames(list);
+  if (what == "scenarios") return PrintNames(list);
+  PrintParts(list);
 }
 
 }  // namespace
 
 void AddListCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("list", "List backends, planners, terms or scenarios");
+  const Command command = app.AddCommand("list", "List what a scenario can name");
   struct Arguments {
     std::string what;
     bool json = false;
@@ -198,13 +211,17 @@ void AddListCommand(Command app, const Registries& registries, CommandRun* run) 
   const auto arguments = std::make_shared<Arguments>();
   command.Add("WHAT", arguments->what, "What to list")
       .Required()
-      .Check(OneOf({"backends", "planners", "terms", "scenarios"}));
+      .Check(OneOf(
+          {"backends", "planners", "motions", "controllers", "predictors", "terms", "scenarios"}));
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
   command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] {
       Json list;
       if (arguments->what == "backends") list = ListBackends(registries);
-      if (arguments->what == "planners") list = ListPlanners();
+      if (arguments->what == "planners") list = ListParts(registries.planners);
+      if (arguments->what == "motions") list = ListParts(registries.pad_motions);
+      if (arguments->what == "controllers") list = ListParts(registries.controllers);
+      if (arguments->what == "predictors") list = ListParts(registries.predictors);
       if (arguments->what == "terms") list = ListTerms(registries);
       if (arguments->what == "scenarios") list = ListShippedScenarios();
       if (arguments->json) {

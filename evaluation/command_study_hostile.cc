@@ -47,9 +47,11 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
         throw BadInput(fmt::format("{} does not go with {}.", other, alone));
     }
   }
-  const std::pair<const char*, const char*> apart[] = {
-      {"--only", "--show"}, {"--ways", "--only"}, {"--ways", "--show"}, {"--ways", "--json"},
-      {"--show", "--json"}};
+  const std::pair<const char*, const char*> apart[] = {{"--only", "--show"},
+                                                       {"--ways", "--only"},
+                                                       {"--ways", "--show"},
+                                                       {"--ways", "--json"},
+                                                       {"--show", "--json"}};
   for (const auto& [one, other] : apart) {
     if (command.Given(one) && command.Given(other)) {
       throw BadInput(fmt::format("{} and {} do not go together.", one, other));
@@ -113,7 +115,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
   if (result.interrupted_by != 0) return Interrupted(result, arguments.db);
   if (arguments.only) result.rows.front().trial.index = *arguments.only;
   if (!arguments.html.empty())
-    WritePage(arguments.html, HostilePage(arguments.options, result.rows));
+    WritePage(arguments.html, HostilePage(arguments.options, result.rows, registries));
   if (arguments.json) {
     std::cout << HostileJson(arguments.options, result.rows).dump(2) << std::endl;
   } else {

@@ -66,7 +66,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   options.scenario_path = FindScenario(arguments.scenario.scenario);
   options.overrides = arguments.scenario.Overrides();
   for (const std::string& text : arguments.vary)
-    options.variations.push_back(Variation::Parse(text));
+    options.variations.push_back(Variation::Parse(text, registries));
   CheckPicture(arguments.picture, options.variations);
   options.trials = arguments.trials;
   options.seed = arguments.seed;

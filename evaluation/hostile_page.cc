@@ -14,7 +14,6 @@
 #include "touchdown/evaluation/hostile_report.h"
 #include "touchdown/evaluation/hostile_tally.h"
 #include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/sim/pad_motion.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -55,12 +54,12 @@ const char* Fill(double base, double top) {
 }
 
 // From above: obstacles grey, what hangs blue, the lane green, start and heading red. y points up.
-std::string TopView(const Scenario& s) {
-  const sim::PadMotion motion(PadMotionOf(s, s.pad.phase, 0));
+std::string TopView(const Scenario& s, const Registries& registries) {
+  const auto course = PadCourseOf(s, registries, s.pad.phase, 0);
   Eigen::AlignedBox2d view(Eigen::Vector2d(s.start.position.head<2>()));
   std::string lane;
   for (double t = 0.0; t <= kLaneTime; t += kLaneStep) {
-    const Eigen::Vector2d p = motion.At(t).p_WP.head<2>();
+    const Eigen::Vector2d p = course->At(t).p_WP.head<2>();
     view.extend(p);
     lane += fmt::format("{:.2f},{:.2f} ", p.x(), -p.y());
   }
@@ -83,7 +82,7 @@ std::string TopView(const Scenario& s) {
   const Eigen::Vector2d size = view.sizes() + Eigen::Vector2d::Constant(2.0 * kBorder);
   const double yaw = s.start.yaw_deg * 3.14159265358979323846 / 180.0;
   const Eigen::Vector2d start = s.start.position.head<2>();
-  const Eigen::Vector2d pad = motion.At(0.0).p_WP.head<2>();
+  const Eigen::Vector2d pad = course->At(0.0).p_WP.head<2>();
   const double deck = s.pad.deck_size;
   return fmt::format(
       "<svg width='{:.0f}' height='{:.0f}' viewBox='{:.2f} {:.2f} {:.2f} {:.2f}'>"
@@ -166,7 +165,7 @@ std::string Safety(const HostileTally& within, const HostileTally& beyond) {
   return html + "</table>\n";
 }
 
-std::string Worlds(const std::vector<SweepRow>& rows) {
+std::string Worlds(const std::vector<SweepRow>& rows, const Registries& registries) {
   std::string html =
       "<h2>The worlds</h2>\n<p>The first flight of each family from above. Dark: walls; light: "
       "lower "
@@ -179,8 +178,8 @@ std::string Worlds(const std::vector<SweepRow>& rows) {
     if (first == rows.end()) continue;
     html +=
         fmt::format("<figure>{}<figcaption><b>{}</b>, flight {}: {}. {}.</figcaption></figure>\n",
-                    TopView(first->trial.scenario), family.name, first->trial.index, family.what,
-                    family.ranges);
+                    TopView(first->trial.scenario, registries), family.name, first->trial.index,
+                    family.what, family.ranges);
   }
   return html;
 }
@@ -198,7 +197,8 @@ std::string Conditions() {
 
 }  // namespace
 
-std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows) {
+std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows,
+                        const Registries& registries) {
   const HostileTally within = TallyOf(rows, "", true), beyond = TallyOf(rows, "", false);
   std::string build;
   for (const auto& [key, value] : BuildManifest()) {
@@ -219,7 +219,7 @@ std::string HostilePage(const HostileOptions& options, const std::vector<SweepRo
   html += CountTable("Why flights stood", within.stood, beyond.stood);
   html += List("Stood, or out of time", rows, CameToNothing);
   html += List("Ended otherwise", rows, EndedOtherwise);
-  return html + Worlds(rows) + Conditions() + "</body></html>\n";
+  return html + Worlds(rows, registries) + Conditions() + "</body></html>\n";
 }
 
 }  // namespace touchdown::evaluation

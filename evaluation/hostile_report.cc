@@ -137,9 +137,7 @@ std::string RateText(int count, int of) {
 
 SafetyLines SafetyFacts(const HostileTally& tally) {
   const SafetyFigures& s = tally.safety;
-  const auto margin = [&](double share) {
-    return Quantile(tally.margins_m, share).value_or(0.0);
-  };
+  const auto margin = [&](double share) { return Quantile(tally.margins_m, share).value_or(0.0); };
   return {
       {"steps without a proven pair", fmt::format("{}", s.uncertified_steps)},
       {"flights that escaped",
@@ -149,8 +147,9 @@ SafetyLines SafetyFacts(const HostileTally& tally) {
       {"stops flown", fmt::format("{}", s.stops_flown)},
       {"map errors", fmt::format("{}", s.map_errors)},
       {"steps with less than the margins", fmt::format("{}", s.narrow_steps)},
-      {"margin of a flight", fmt::format("median {:.2f} m, p95 {:.2f} m, largest at any step {:.2f} m",
-                                         margin(0.5), margin(0.95), s.margin_max_m)},
+      {"margin of a flight",
+       fmt::format("median {:.2f} m, p95 {:.2f} m, largest at any step {:.2f} m", margin(0.5),
+                   margin(0.95), s.margin_max_m)},
       {"tracking beyond its share",
        fmt::format("{} times, at most {:.2f} m", s.tracking_events, s.tracking_max_m)},
       {"own state beyond its share",

@@ -24,7 +24,8 @@ nlohmann::ordered_json HostileJson(const HostileOptions& options,
                                    const std::vector<SweepRow>& rows);
 
 /// The same as one HTML page, with a top view of one world of each family.
-std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows);
+std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows,
+                        const Registries& registries);
 
 /// Where a way exists, by family, of flights that are not flown.
 std::string HostileWaysText(const std::vector<HostileFlight>& flights);

@@ -39,15 +39,16 @@ bool Sets(const HostileOptions& options, const std::string& key) {
 }
 
 // Single keys alone: what is fixed has to be known by its name. Seeds and obstacles are the study's.
-void ApplySet(const HostileOptions& options, Scenario* scenario) {
+void ApplySet(const HostileOptions& options, const Registries& registries, Scenario* scenario) {
   for (const std::string& text : options.set) {
-    ApplyOverride(text, scenario);  // says what is wrong with the name or the value
+    ApplyOverride(text, registries, scenario);  // says what is wrong with the name or the value
     const std::string name = text.substr(0, text.find('='));
     if (name == "seed" || name.rfind("obstacles", 0) == 0) {
       throw BadInput(fmt::format("--set {}: this study draws it for each flight.", text));
     }
-    if (!FindScenarioKey(name)) {
-      throw BadInput(fmt::format("--set {}: {} is a group of keys; set them one by one.", text, name));
+    if (!FindScenarioKey(name, registries)) {
+      throw BadInput(
+          fmt::format("--set {}: {} is a group of keys; set them one by one.", text, name));
     }
   }
 }
@@ -68,7 +69,8 @@ void SuitConditions(const HostileOptions& options, Scenario* s) {
 
 // The part of a scenario that its world is made of; everything else stays.
 void DrawWorld(const HostileFamily& family, const std::vector<std::string>& beyond,
-               const HostileOptions& options, std::uint64_t seed, Scenario* scenario) {
+               const HostileOptions& options, const Registries& registries, std::uint64_t seed,
+               Scenario* scenario) {
   const auto holds = [&](const char* name) {
     return std::find(beyond.begin(), beyond.end(), name) != beyond.end();
   };
@@ -81,9 +83,9 @@ void DrawWorld(const HostileFamily& family, const std::vector<std::string>& beyo
     const bool free = StartRoom(world) >= kTakeOffRoom - 1e-9;
     if (holds(kNearObstacle)) AddNearPost(draw, &world);
     TurnWorld(draw, &world);
-    ApplySet(options, &world);
-    if (!free || !LaneIsClear(world, std::min(world.timeout, kLaneHorizon))) continue;
-    if (world.timeout > kLaneHorizon && !LaneIsClear(world, world.timeout)) continue;
+    ApplySet(options, registries, &world);
+    if (!free || !LaneIsClear(world, registries, std::min(world.timeout, kLaneHorizon))) continue;
+    if (world.timeout > kLaneHorizon && !LaneIsClear(world, registries, world.timeout)) continue;
     *scenario = std::move(world);
     return;
   }
@@ -133,13 +135,14 @@ HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
     flight.beyond = ChooseBeyond(beyond, flight.family, options.set);
     DrawBeyond(flight.beyond, beyond, &scenario);
   }
-  ApplySet(options, &scenario);
+  ApplySet(options, registries, &scenario);
   try {
     SuitConditions(options, &scenario);
-    DrawWorld(HostileFamilyNamed(flight.family), flight.beyond, options, seed, &scenario);
+    DrawWorld(HostileFamilyNamed(flight.family), flight.beyond, options, registries, seed,
+              &scenario);
     flight.trial.scenario = ParseScenario(DumpScenario(scenario), scenario.name,
                                           fmt::format("flight {}", index), {}, registries);
-    flight.way = FindWay(flight.trial.scenario, kCatchTime);
+    flight.way = FindWay(flight.trial.scenario, registries, kCatchTime);
   } catch (const std::exception& error) {
     if (options.set.empty()) throw;
     throw BadInput(fmt::format("--set {} does not go with what is drawn for flight {} ({}): {}",

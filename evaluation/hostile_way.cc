@@ -15,7 +15,6 @@
 
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/sim/obstacle_field.h"
-#include "touchdown/sim/pad_motion.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -52,7 +51,7 @@ struct LanePoint {
 
 class WayFinder {
  public:
-  WayFinder(const Scenario& scenario, double horizon)
+  WayFinder(const Scenario& scenario, const Registries& registries, double horizon)
       : scenario_(scenario), clearance_(WayClearance(scenario)), start_(scenario.start.position) {
     for (const NamedObstacle& named : ObstaclesOf(scenario)) {
       obstacles_.push_back(named.obstacle);
@@ -60,7 +59,7 @@ class WayFinder {
       space_.extend(Eigen::AlignedBox2d(bounds.min.head<2>(), bounds.max.head<2>()));
     }
     start_room_ = Room(start_);
-    SampleLane(horizon - kTouchDown);
+    SampleLane(registries, horizon - kTouchDown);
     space_.extend(Eigen::Vector2d(start_.head<2>()));
     space_.extend(lane_box_);
     low_ = space_.min() - Eigen::Vector2d::Constant(kBorder);
@@ -108,10 +107,10 @@ class WayFinder {
 
   static std::size_t Index(int cell) { return static_cast<std::size_t>(cell); }
 
-  void SampleLane(double until) {
-    const sim::PadMotion motion(PadMotionOf(scenario_, scenario_.pad.phase, 0));
+  void SampleLane(const Registries& registries, double until) {
+    const auto course = PadCourseOf(scenario_, registries, scenario_.pad.phase, 0);
     for (int i = 0; i * kLaneStep <= until; ++i) {
-      const Eigen::Vector2d p = motion.At(i * kLaneStep).p_WP.head<2>();
+      const Eigen::Vector2d p = course->At(i * kLaneStep).p_WP.head<2>();
       lane_.push_back({p, i * kLaneStep});
       lane_box_.extend(p);
     }
@@ -226,8 +225,8 @@ double WayClearance(const Scenario& scenario) {
   return 0.55 + 0.15 * (static_cast<int>(estimated) + static_cast<int>(windy));
 }
 
-HostileWay FindWay(const Scenario& scenario, double horizon) {
-  return WayFinder(scenario, horizon).Find();
+HostileWay FindWay(const Scenario& scenario, const Registries& registries, double horizon) {
+  return WayFinder(scenario, registries, horizon).Find();
 }
 
 }  // namespace touchdown::evaluation

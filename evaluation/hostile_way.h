@@ -19,6 +19,6 @@ struct HostileWay {
 double WayClearance(const Scenario& scenario);
 
 /// The pad must be caught within `horizon` [s].
-HostileWay FindWay(const Scenario& scenario, double horizon);
+HostileWay FindWay(const Scenario& scenario, const Registries& registries, double horizon);
 
 }  // namespace touchdown::evaluation

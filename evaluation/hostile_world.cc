@@ -8,7 +8,6 @@
 
 #include "touchdown/evaluation/scenario_world.h"
 #include "touchdown/sim/obstacle_field.h"
-#include "touchdown/sim/pad_motion.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -36,7 +35,7 @@ double PadSpeed(double radius, sim::RandomStream& draw, const Scenario& scenario
 
 // Across to the left of +x, then back.
 void EightLane(double x, double radius, sim::RandomStream& draw, Scenario* s) {
-  s->pad.motion = PadMotionKind::kFigureEight;
+  s->pad.motion = "figure_eight";
   s->pad.speed = PadSpeed(radius, draw, *s);
   s->pad.turn_rate = s->pad.speed / radius;
   s->pad.start << x + kEightWidth * radius, -0.5 * kEightReach * radius + DrawIn(draw, {-2.0, 2.0});
@@ -44,7 +43,7 @@ void EightLane(double x, double radius, sim::RandomStream& draw, Scenario* s) {
 }
 
 void CircleLane(double x, double radius, sim::RandomStream& draw, Scenario* s) {
-  s->pad.motion = PadMotionKind::kCircle;
+  s->pad.motion = "circle";
   s->pad.speed = PadSpeed(radius, draw, *s);
   s->pad.turn_rate = s->pad.speed / radius;
   s->pad.start << x + radius, -radius + DrawIn(draw, {-2.0, 2.0});
@@ -117,7 +116,7 @@ void LaneBeyond(double x, sim::RandomStream& draw, Scenario* scenario) {
 
 void StraightLane(double x, double length, sim::RandomStream& draw, Scenario* scenario) {
   Scenario::Pad& pad = scenario->pad;
-  pad.motion = PadMotionKind::kReversing;
+  pad.motion = "reversing";
   // Both changes of speed must fit into the length.
   pad.speed = PadSpeed(length / (2.0 * kReversalTime), draw, *scenario);
   pad.acceleration = std::max(0.1, 2.1 * kReversalTime * pad.speed * pad.speed / length);
@@ -155,7 +154,7 @@ double StartRoom(const Scenario& scenario) {
   return room;
 }
 
-bool LaneIsClear(const Scenario& scenario, double horizon) {
+bool LaneIsClear(const Scenario& scenario, const Registries& registries, double horizon) {
   constexpr double kStep = 0.1;  // [s]
   const double needed = scenario.pad.deck_size * std::sqrt(0.5) + kDeckRoom;
   // What begins above the deck's headroom does not count.
@@ -164,9 +163,9 @@ bool LaneIsClear(const Scenario& scenario, double horizon) {
   for (const NamedObstacle& named : ObstaclesOf(scenario)) {
     if (sim::BoundsOf(named.obstacle).min.z() < top) low.push_back(named.obstacle);
   }
-  const sim::PadMotion motion(PadMotionOf(scenario, scenario.pad.phase, 0));
+  const auto course = PadCourseOf(scenario, registries, scenario.pad.phase, 0);
   for (int i = 0; i * kStep <= horizon; ++i) {
-    const Eigen::Vector3d p_WP = motion.At(i * kStep).p_WP;
+    const Eigen::Vector3d p_WP = course->At(i * kStep).p_WP;
     for (const sim::Obstacle& obstacle : low) {
       const sim::Bounds bounds = sim::BoundsOf(obstacle);
       const double z = std::clamp(0.5 * top, bounds.min.z(), bounds.max.z());

@@ -53,6 +53,6 @@ void TurnWorld(sim::RandomStream& draw, Scenario* scenario);
 /// Distance from the vehicle's start to the nearest obstacle [m]; infinite without any.
 double StartRoom(const Scenario& scenario);
 /// No obstacle is in the deck's way, at any time until `horizon` [s], by the rule of the scenario check.
-bool LaneIsClear(const Scenario& scenario, double horizon);
+bool LaneIsClear(const Scenario& scenario, const Registries& registries, double horizon);
 
 }  // namespace touchdown::evaluation

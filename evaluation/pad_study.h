@@ -60,7 +60,7 @@ struct PadStudyRow {
 };
 
 struct PadStudy {
-  std::vector<PadMotionKind> motions;   ///< how the pad drives, by scenario
+  std::vector<std::string> motions;     ///< how the pad drives, by scenario
   std::vector<PadStudyFlight> flights;  ///< every one that was flown
   std::vector<PadStudyRow> rows;
 };

@@ -118,7 +118,7 @@ std::vector<PadDemand> PadDemands(const PadStudyOptions& options, const PadStudy
       const auto nees = [](const PadStudyCell& cell) { return cell.turn_rate.nees_state; };
       const auto ratio = [](const PadStudyCell& cell) { return cell.ratio; };
       PadStudyCell on = all;
-      if (study.motions[s] == PadMotionKind::kCircle) {
+      if (study.motions[s] == "circle") {
         on.course = PadCourse::kTurn;
         ask(on, "prediction on the circle, turn_rate over paper", ratio,
             options.sigmas[g] <= kPadGoodGps ? 1.0 / 3.0 : 0.7);

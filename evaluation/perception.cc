@@ -61,21 +61,23 @@ estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
 }
 
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario,
-                                         const estimation::VehicleModel& model) {
+                                         const estimation::VehicleModel& model,
+                                         const Registries& registries) {
   planning::OccupancyMapOptions options;
-  options.inflation_radius = PlanClearance(scenario, model);
+  options.inflation_radius = PlanClearance(scenario, model, registries);
   options.range_noise = scenario.depth.noise;
   options.thinnest_obstacle = scenario.map_thinnest_obstacle;
   return options;
 }
 
-Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed)
+Perception::Perception(const Scenario& scenario, const sim::World& world,
+                       const Registries& registries, std::uint64_t seed)
     : own_(scenario, world.vehicle(), world.timestep(), seed),
       gps_(GpsConfig(scenario), seed),
       pad_eye_(MakePadEye(scenario, world.config(), seed)),
       depth_eye_(MakeDepthEye(scenario, world.config(), seed)),
       pad_filter_(PadFilterOptionsOf(scenario)),
-      map_(MapOptions(scenario, world.model())),
+      map_(MapOptions(scenario, world.model(), registries)),
       persistent_map_(map_.options()),
       deck_half_size_(0.5 * scenario.pad.deck_size) {
   const bool prior = scenario.map_prior != "none";

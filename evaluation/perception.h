@@ -25,7 +25,8 @@ estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario);
 
 /// The map that a scenario's planner asks.
 planning::OccupancyMapOptions MapOptions(const Scenario& scenario,
-                                         const estimation::VehicleModel& model);
+                                         const estimation::VehicleModel& model,
+                                         const Registries& registries);
 
 /// What one depth image cost, from the simulated camera to the map.
 struct FrameTimes {
@@ -41,7 +42,8 @@ class Perception {
   /// `world` only gives the configuration and the start. Every sensor has its own stream of `seed`.
   /// @throws std::invalid_argument naming the file if map.prior cannot be used,
   /// std::runtime_error if there is no off-screen rendering for `sensing: rendered`.
-  Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed);
+  Perception(const Scenario& scenario, const sim::World& world, const Registries& registries,
+             std::uint64_t seed);
 
   /// Keeps a copy of whatever comes to the pad filter from now on.
   void LogPadTo(std::vector<PadArrival>* log) { pad_log_ = log; }

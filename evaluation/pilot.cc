@@ -16,8 +16,8 @@
 
 #include "touchdown/control/lean.h"
 #include "touchdown/control/tracking_law.h"
-#include "touchdown/estimation/pad_predictor.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/scenario_world.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -50,23 +50,9 @@ control::DescentStyle StyleOf(DescentKind kind) {
                                        : control::DescentStyle::kVertical;
 }
 
-// The paper extrapolates along the heading: a turn that the filter knows of is left out.
-PredictionData PredictionOf(const Scenario& scenario, const estimation::PadFilter& filter) {
-  PredictionData data;
-  if (!filter.initialized()) return data;
-  data.source = scenario.pad.prediction == PadPredictionKind::kOracle ? PredictionSource::kOracle
-                                                                      : PredictionSource::kBelief;
-  data.belief = filter.belief();
-  data.height = filter.options().pad_height;
-  data.noise = filter.options().noise;
-  const bool paper = scenario.pad.prediction == PadPredictionKind::kPaper;
-  if (paper && data.belief.motion == estimation::PadMotion::kTurn) {
-    data.belief.motion = estimation::PadMotion::kHeading;
-    data.belief.mean[4] = 0.0;
-    data.belief.cov.row(4).setZero();
-    data.belief.cov.col(4).setZero();
-  }
-  return data;
+std::optional<PadKnowledge> KnowledgeOf(const estimation::PadFilter& filter) {
+  if (!filter.initialized()) return std::nullopt;
+  return PadKnowledge{filter.belief(), filter.options().pad_height, filter.options().noise};
 }
 
 control::ControllerOptions TrackingOptions(const Scenario& scenario) {
@@ -75,10 +61,14 @@ control::ControllerOptions TrackingOptions(const Scenario& scenario) {
   return options;
 }
 
+const ControllerEntry& LawOf(const Scenario& scenario, const Registries& registries) {
+  return PartNamed(registries.controllers, scenario.controller, "controller");
+}
+
 std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
-                                             const estimation::VehicleModel& model) {
-  const bool paper = scenario.controller == ControllerKind::kPaper;
-  return control::MakeController(paper ? "paper" : "geometric", model, TrackingOptions(scenario));
+                                             const estimation::VehicleModel& model,
+                                             const ControllerEntry& entry) {
+  return entry.make({{scenario, entry.parameters}, model, TrackingOptions(scenario)});
 }
 
 }  // namespace
@@ -92,16 +82,17 @@ planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, do
 }
 
 Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
-             const sim::PadMotion& truth, const Registries& registries,
+             std::shared_ptr<const sim::PadCourse> truth, const Registries& registries,
              const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
              const planning::OccupancyMap& map)
     : scenario_(scenario),
       model_(model),
       shortest_contact_plan_(
           PlannerOptions(scenario, model, registries.terms).min_contact_duration),
-      oracle_(truth),
+      predictor_(PredictorOf(scenario, registries, std::move(truth))),
+      planner_entry_(PlannerOf(scenario, registries)),
       planner_(MakePlanner(scenario, model, registries)),
-      controller_(MakeLaw(scenario, model)),
+      controller_(MakeLaw(scenario, model, LawOf(scenario, registries))),
       mixer_(model) {
   parameters_.foothold = 0.5 * scenario.pad.deck_size - model.foot_radius;
   if (!(parameters_.foothold > 0.0)) {
@@ -122,10 +113,11 @@ Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
   // A plan that turns away from the deck is made at the next step, flown a latency later and followed when
   // the attitude is there.
   const double latency = scenario.planning.latency.measured ? LongestLatency(scenario) : Latency();
-  parameters_.turn_time = 1.0 / PlannerRate(scenario) + latency + kAttitudeLag;
-  parameters_.climb_time = 1.0 / ClosePlannerRate(scenario) + latency + kAttitudeLag;
+  parameters_.turn_time = 1.0 / PlannerRate(scenario, planner_entry_) + latency + kAttitudeLag;
+  parameters_.climb_time =
+      1.0 / ClosePlannerRate(scenario, planner_entry_) + latency + kAttitudeLag;
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
-  if (scenario.controller == ControllerKind::kGeometric) {
+  if (LawOf(scenario, registries).compensates) {
     lead_.emplace(model).Hover(start_thrusts);
     if (scenario.control.disturbance) observer_.emplace(model).Hover(start, start_thrusts);
   }
@@ -236,12 +228,11 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   replan_.late = DeliverLate(vehicle.t) && result.committed;
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
-  lands_ = scenario_.planner == PlannerKind::kLanding && result.Lands();
+  lands_ = planner_entry_.lands && result.Lands();
   const bool lands_as_wanted = wants_plan && input.endpoint.leads_to_contact() && kept && lands_ &&
                                result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
-  last_planned_ =
-      result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
+  last_planned_ = result.status == planning::ReplanStatus::kPlanned || at_goal_ || lands_as_wanted;
   has_plan_ = last_planned_ || kept;
   if (last_planned_) planned_t_ = vehicle.t;
   if (!kept && !Levelled(vehicle.t)) {
@@ -296,15 +287,13 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   ReplanRequest& request = replan_.request;
   request.rest_climb.reset();
   if (!for_plan) request.rest_climb = RestClimb();
-  request.prediction = PredictionOf(scenario_, filter);
-  const estimation::BeliefPrediction belief = request.prediction.Belief();
+  request.pad = KnowledgeOf(filter);
   planning::ReplanInput& input = request.input;
-  if (request.prediction.source == PredictionSource::kOracle) input.pad = &oracle_;
-  if (request.prediction.source == PredictionSource::kBelief) input.pad = &belief;
+  if (request.pad) input.pad = &predictor_->Predict(*request.pad);
   if (input.pad != nullptr) replan_.pad = input.pad->At(input.t_now);
   const planning::ReplanResult& result =
       for_plan ? planner_->Replan(input, map) : planner_->Rest(input, *request.rest_climb, map);
-  input.pad = nullptr;  // the prediction ends with this call
+  input.pad = nullptr;  // the prediction is the predictor's own
   return result;
 }
 
@@ -318,13 +307,14 @@ control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
   // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
   // errors of position are what holds the vehicle against it.
   if (landing && observer_) {
-    const double share = (kFlareBegins - foot_height_) / (kFlareBegins - parameters_.contact_height);
+    const double share =
+        (kFlareBegins - foot_height_) / (kFlareBegins - parameters_.contact_height);
     control::SoftenHorizontally(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told,
                                 &reference);
   }
   settling_.Apply(&told, &reference, &compensated);
-  control::MixerOutput mix = mixer_.Mix(
-      controller_->Update(told, reference, compensated, TiltMost(vehicle)).wrench);
+  control::MixerOutput mix =
+      mixer_.Mix(controller_->Update(told, reference, compensated, TiltMost(vehicle)).wrench);
   if (lead_) mix.thrusts = lead_->Command(mix.thrusts, vehicle.t);
   if (observer_) observer_->Command(mix.thrusts);
   return mix;

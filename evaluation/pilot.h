@@ -19,7 +19,7 @@
 #include "touchdown/evaluation/replan_request.h"
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/planning/planner.h"
-#include "touchdown/sim/pad_motion.h"
+#include "touchdown/sim/pad_course.h"
 
 namespace touchdown::evaluation {
 
@@ -37,14 +37,14 @@ planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, do
 /// Between a plan's end and contact in still air, in which the tilt dies away [s].
 inline constexpr double kLevelTime = 0.15;
 
-/// The vehicle's own software: mission, replanning, heading, tracking. Knows only estimates; the
+/// The vehicle's own software: mission, replanning, heading, tracking. Knows only estimates; an
 /// oracle prediction is the one exception, on request of the scenario.
 class Pilot {
  public:
   /// The flight begins with a hover at `start`, for which the rotors are told `start_thrusts` [N].
   /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
   Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
-        const sim::PadMotion& truth, const Registries& registries,
+        std::shared_ptr<const sim::PadCourse> truth, const Registries& registries,
         const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
         const planning::OccupancyMap& map);
 
@@ -100,7 +100,8 @@ class Pilot {
   Scenario scenario_;
   estimation::VehicleModel model_;
   double shortest_contact_plan_;  ///< that the replanner makes [s]
-  sim::OraclePadPrediction oracle_;
+  std::unique_ptr<PadPredictor> predictor_;
+  PlannerEntry planner_entry_;
   std::unique_ptr<planning::Planner> planner_;
   std::unique_ptr<control::Controller> controller_;
   control::Mixer mixer_;
@@ -123,7 +124,7 @@ class Pilot {
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
-  bool at_goal_ = false;                  ///< the last step made no plan: the goal is near
+  bool at_goal_ = false;                           ///< the last step made no plan: the goal is near
   const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
   bool lands_ = false;                             // what is flown ends in contact
   double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;

@@ -36,8 +36,8 @@ planning::EndpointTarget FirstTarget(const Scenario& scenario,
 }
 
 MapChange KnownObstacles(const Scenario& scenario, const estimation::VehicleModel& model,
-                         const TrialDraw& draw) {
-  planning::OccupancyMap map(MapOptions(scenario, model));
+                         const TrialDraw& draw, const Registries& registries) {
+  planning::OccupancyMap map(MapOptions(scenario, model, registries));
   map.Recentre(draw.p_WB);
   std::vector<sim::Obstacle> obstacles;
   for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
@@ -91,16 +91,17 @@ RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registr
     RecordedFlight flight;
     flight.path = scenario.name;
     flight.scenario = scenario;
+    flight.scenario.pad.prediction = "oracle";
     RecordPlan& plan = flight.plans.emplace_back();
     plan.before = replanner.state();
-    plan.map_change = KnownObstacles(scenario, model, draw);
+    plan.map_change = KnownObstacles(scenario, model, draw, registries);
     planning::ReplanInput& input = plan.request.input;
     input.t_start = scenario.planning.latency.measured ? LongestLatency(scenario)
                                                        : 1e-3 * scenario.planning.latency.ms;
     input.vehicle.p_WB = draw.p_WB;
     input.vehicle.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
     input.endpoint = FirstTarget(scenario, model);
-    plan.request.prediction.source = PredictionSource::kOracle;
+    plan.request.pad.emplace();
     return flight;
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: no plan can be asked for: {}.", scenario.name, error.what()));
@@ -114,7 +115,11 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   solved.scenario = flight.scenario;
   solved.step = step;
   solved.recorded = replay.recorded();
-  const planning::ReplannerOptions& options = replay.replanner().options();
+  if (replay.replanner() == nullptr) {
+    throw BadInput(fmt::format("{}: only plans of the planner landing are drawn, not those of {}.",
+                               flight.path, flight.scenario.planner));
+  }
+  const planning::ReplannerOptions& options = replay.replanner()->options();
   solved.limits = planning::LimitsUnder(options.limits, options.problem.vehicle,
                                         solved.recorded.request.input.pull_W);
   replay.Solve();  // the first time finds cold caches
@@ -123,7 +128,7 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
     const planning::SpanLog::Listening listening(&unkept);
     solved.times = replay.Solve().times;
   }
-  replay.replanner().set_log(&solved.log);
+  replay.replanner()->set_log(&solved.log);
   const planning::ReplanResult& result = replay.Solve();
   solved.outcome = OutcomeOf(result);
   solved.unseen_W = result.unseen_W;

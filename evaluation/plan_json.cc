@@ -115,7 +115,7 @@ Json InputJson(const SolvedStep& solved) {
                {"p_WB", VectorJson(input.vehicle.p_WB)},
                {"v_WB", VectorJson(input.vehicle.v_WB)},
                {"rest_climb_m", request.rest_climb ? Json(*request.rest_climb) : Json()},
-               {"prediction", ToString(request.prediction.source)}};
+               {"prediction", request.pad ? solved.scenario.pad.prediction : "none"}};
   json["endpoint"] = {{"height_m", input.endpoint.height},
                       {"sink_rate_mps", input.endpoint.sink_rate},
                       {"height_floor_m", input.endpoint.height_floor},
@@ -138,7 +138,7 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   Json json;
   json["source"] = solved.source;
   json["scenario"] = solved.scenario.name;
-  json["planner"] = FindScenarioKey("planner")->get(solved.scenario);
+  json["planner"] = solved.scenario.planner;
   json["backend"] = solved.scenario.solver.backend;
   json["replan"] = solved.step;
   json["input"] = InputJson(solved);

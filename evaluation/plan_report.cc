@@ -23,10 +23,8 @@ std::string QuestionText(const SolvedStep& solved) {
     text += fmt::format("  wanted     rest, {:.2f} m higher\n", *asked.request.rest_climb);
   } else {
     const estimation::PadState& pad = solved.pad.front();
-    text += fmt::format(
-        "  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP), Vector(pad.v_WP),
-        asked.request.prediction.source == PredictionSource::kOracle ? "its true motion"
-                                                                     : "the filter's belief");
+    text += fmt::format("  pad        p {} m, v {} m/s, predicted by {}\n", Vector(pad.p_WP),
+                        Vector(pad.v_WP), solved.scenario.pad.prediction);
     const planning::EndpointTarget& end = input.endpoint;
     text +=
         end.touches()

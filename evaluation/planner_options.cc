@@ -67,8 +67,9 @@ double TrackingTilt(const Scenario& scenario) {
   return TiltBeyondPlans(scenario, kTiltReserve_deg + kGustReserve_deg);
 }
 
-double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model) {
-  if (scenario.planner != PlannerKind::kLanding) return scenario.planning.clearance;
+double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model,
+                     const Registries& registries) {
+  if (!PlannerOf(scenario, registries).proves) return scenario.planning.clearance;
   const planning::Margins calm = planning::MarginsOf(0.0, 0.0, 0.0, Eigen::Vector3d::Zero());
   const double kept = HullAtEveryTilt(model) + calm.Sum() + planning::kSweepRoom;
   return std::max(scenario.planning.clearance, kept);
@@ -126,61 +127,32 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   return options;
 }
 
-planning::EgoPlannerOptions EgoPlannerOptionsOf(const Scenario& scenario,
-                                                const estimation::VehicleModel& model) {
-  planning::EgoPlannerOptions options;
-  const planning::Limits limits = LimitsOf(scenario);
-  options.plan.max_speed = limits.speed;
-  options.plan.max_acceleration = limits.acceleration;
-  options.plan.horizon = scenario.ego.horizon;
-  options.plan.control_point_distance = scenario.ego.control_point_distance;
-  options.plan.clearance = scenario.ego.clearance;
-  options.plan.replan_distance = scenario.ego.replan_distance;
-  options.plan.no_replan_distance = scenario.ego.no_replan_distance;
-  options.plan.emergency_time = scenario.ego.emergency_time;
-  options.goal_rate = scenario.ego.goal_rate;
-  options.goal_velocity = scenario.planner == PlannerKind::kEgoVelocity;
-  options.floor_height = LowestPlan(model);
-  options.ceiling_height = scenario.planning.ceiling;
-  return options;
-}
-
 std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                const estimation::VehicleModel& model,
                                                const Registries& registries) {
-  switch (scenario.planner) {
-    case PlannerKind::kLanding:
-      break;
-    case PlannerKind::kEgo:
-    case PlannerKind::kEgoVelocity:
-      return std::make_unique<planning::EgoPlanner>(EgoPlannerOptionsOf(scenario, model));
-    case PlannerKind::kPid:
-      return std::make_unique<planning::PidFollower>(scenario.pid, LimitsOf(scenario));
-  }
-  return std::make_unique<planning::Replanner>(PlannerOptions(scenario, model, registries.terms),
-                                               registries.backends);
+  const PlannerEntry& entry = PlannerOf(scenario, registries);
+  return entry.make({{scenario, entry.parameters},
+                     model,
+                     registries,
+                     LimitsOf(scenario),
+                     LowestPlan(model),
+                     scenario.planning.ceiling});
 }
 
-std::string BackendName(const Scenario& scenario) {
-  if (scenario.planner == PlannerKind::kLanding) return scenario.solver.backend;
-  return scenario.planner == PlannerKind::kPid ? "none" : "lbfgs";
+const PlannerEntry& PlannerOf(const Scenario& scenario, const Registries& registries) {
+  return PartNamed(registries.planners, scenario.planner, "planner");
 }
 
-double PlannerRate(const Scenario& scenario) {
-  switch (scenario.planner) {
-    case PlannerKind::kLanding:
-      break;
-    case PlannerKind::kEgo:
-    case PlannerKind::kEgoVelocity:
-      return planning::EgoPlanner::kRate;
-    case PlannerKind::kPid:
-      return planning::PidFollower::kRate;
-  }
-  return scenario.planning.rate;
+std::string BackendName(const Scenario& scenario, const PlannerEntry& planner) {
+  return planner.solver.empty() ? scenario.solver.backend : planner.solver;
 }
 
-double ClosePlannerRate(const Scenario& scenario) {
-  const double usual = PlannerRate(scenario);
+double PlannerRate(const Scenario& scenario, const PlannerEntry& planner) {
+  return planner.rate > 0.0 ? planner.rate : scenario.planning.rate;
+}
+
+double ClosePlannerRate(const Scenario& scenario, const PlannerEntry& planner) {
+  const double usual = PlannerRate(scenario, planner);
   if (scenario.planning.latency.measured) return usual;
   // A plan takes over before the next is asked for, on the simulation's clock.
   const double step = sim::WorldConfig{}.timestep;

@@ -9,6 +9,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/replay.h"
 #include "touchdown/evaluation/statistics.h"
 #include "touchdown/solvers/allocation_count.h"
@@ -23,9 +24,11 @@ constexpr int kWarmUp = 20;
 // A flight of a minute has about 2 spans a depth image and 8 a replanning step; more are dropped.
 constexpr std::size_t kSpansOfARun = 1 << 16;
 
-Profile Begin(const Scenario& scenario, const ProfileOptions& options) {
+Profile Begin(const Scenario& scenario, const ProfileOptions& options,
+              const Registries& registries) {
   Profile profile;
   profile.scenario = scenario;
+  profile.backend = BackendName(scenario, PlannerOf(scenario, registries));
   profile.deadline_ms = options.deadline_ms.value_or(DefaultDeadlineMs(scenario));
   profile.allocations_counted = solvers::AllocationCount() >= 0;
   return profile;
@@ -111,7 +114,7 @@ double DefaultDeadlineMs(const Scenario& scenario) {
 
 Profile ProfileFlights(const Scenario& scenario, const ProfileOptions& options,
                        const Registries& registries, const ProfileProgress& progress) {
-  Profile profile = Begin(scenario, options);
+  Profile profile = Begin(scenario, options, registries);
   for (int i = 0; i < options.trials; ++i) {
     ProfileRun run;
     run.seed = scenario.seed + static_cast<std::uint64_t>(i);
@@ -132,7 +135,7 @@ Profile ProfileRecord(const RecordedFlight& flight, const ProfileOptions& option
   if (flight.plans.empty()) {
     throw BadInput(fmt::format("{}: it holds no replanning step.", flight.path));
   }
-  Profile profile = Begin(flight.scenario, options);
+  Profile profile = Begin(flight.scenario, options, registries);
   profile.record = flight.path;
   Replay replay(flight, registries);
   for (int step = 0; step < replay.steps(); ++step) {

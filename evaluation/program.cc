@@ -19,6 +19,7 @@
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/machine.h"
 #include "touchdown/evaluation/output_path.h"
+#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
 
@@ -49,11 +50,9 @@ std::vector<std::string> ScenarioArguments::Overrides() const {
 
 Scenario ScenarioArguments::Load(const Registries& registries) const {
   Scenario loaded = LoadScenario(FindScenario(scenario), Overrides(), registries);
-  if (!backend.empty() && loaded.planner != PlannerKind::kLanding) {
-    throw BadInput(
-        fmt::format("--backend {}: the planner {} has no choice of solvers; backends are of the "
-                    "planner landing.",
-                    backend, FindScenarioKey("planner")->get(loaded)));
+  if (!backend.empty() && !PlannerOf(loaded, registries).solver.empty()) {
+    throw BadInput(fmt::format("--backend {}: the planner {} has no choice of solvers.", backend,
+                               loaded.planner));
   }
   return loaded;
 }
@@ -134,7 +133,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   app.require_subcommand(1);
   CommandRun run;
   try {
-    planning::RequireDistinct(registries.terms);
+    RequireDistinct(registries);
   } catch (const std::invalid_argument& error) {
     spdlog::error("{}.", error.what());
     return kBadInput;

@@ -50,7 +50,7 @@ CREATE TABLE replan_input(plan INTEGER PRIMARY KEY, t_now REAL, t_start REAL, re
   endpoint_height_floor REAL, endpoint_arrival_sink REAL, endpoint_at_rest INTEGER,
   pull_x REAL, pull_y REAL, pull_z REAL,
   margin_own_state REAL, margin_attitude REAL, margin_tracking REAL);
-CREATE TABLE prediction(plan INTEGER PRIMARY KEY, source TEXT, motion TEXT, t REAL, height REAL,
+CREATE TABLE prediction(plan INTEGER PRIMARY KEY, known INTEGER, motion TEXT, t REAL, height REAL,
   noise_position REAL, noise_velocity REAL, noise_acceleration REAL, noise_heading REAL,
   noise_turn REAL);
 CREATE TABLE belief(plan INTEGER, i INTEGER, mean REAL, cov0 REAL, cov1 REAL, cov2 REAL, cov3 REAL,
@@ -185,12 +185,13 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   int id = 0;
   for (const RecordPlan& row : plans) {
     WriteInput(input, id, row);
-    const PredictionData& p = row.request.prediction;
+    const bool known = row.request.pad.has_value();
+    const PadKnowledge p = row.request.pad.value_or(PadKnowledge());
     const estimation::PadNoise& n = p.noise;
-    prediction.Run(id, ToString(p.source), ToString(p.belief.motion), p.belief.t, p.height,
-                   n.position, n.velocity, n.acceleration, n.heading, n.turn);
+    prediction.Run(id, known, ToString(p.belief.motion), p.belief.t, p.height, n.position,
+                   n.velocity, n.acceleration, n.heading, n.turn);
     const estimation::PadMatrix& c = p.belief.cov;
-    for (int i = 0; i < c.rows() && p.source == PredictionSource::kBelief; ++i) {
+    for (int i = 0; known && i < c.rows(); ++i) {
       belief.Run(id, i, p.belief.mean(i), c(i, 0), c(i, 1), c(i, 2), c(i, 3), c(i, 4));
     }
     const planning::ReplannerState& s = row.before;

@@ -172,24 +172,26 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
                 "plan"),
       plans, read_input);
   const auto read_prediction = [](TableRows& row, RecordPlan* plan) {
-    PredictionData& p = plan->request.prediction;
-    p.source = row.Named(PredictionSource::kOracle, ToString);
+    const bool known = row.Flag();
+    PadKnowledge p;
     p.belief.motion = row.Named(estimation::PadMotion::kTurn, ToString);
     p.belief.t = row.Number();
     p.height = row.Number();
     p.noise = {row.Number(), row.Number(), row.Number(), row.Number(), row.Number()};
-    if (!plan->request.rest_climb && p.source == PredictionSource::kNone) {
+    if (!plan->request.rest_climb && !known) {
       row.Refuse("does not agree with the table replan_input");
     }
+    if (known) plan->request.pad = p;
   };
   ReadEach(TableRows(db, "prediction",
-                     "plan, source, motion, t, height, noise_position, noise_velocity, "
+                     "plan, known, motion, t, height, noise_position, noise_velocity, "
                      "noise_acceleration, noise_heading, noise_turn",
                      "plan"),
            plans, read_prediction);
   ReadMany(TableRows(db, "belief", "plan, i, mean, cov0, cov1, cov2, cov3, cov4", "plan, i"), plans,
            [](TableRows& row, RecordPlan* plan) {
-             estimation::PadBelief& belief = plan->request.prediction.belief;
+             if (!plan->request.pad) row.Refuse("does not agree with the table prediction");
+             estimation::PadBelief& belief = plan->request.pad->belief;
              const int i = row.Integer(0, 4);
              belief.mean(i) = row.Number();
              for (int k = 0; k < 5; ++k) belief.cov(i, k) = row.Number();
@@ -302,9 +304,9 @@ Meta ReadMeta(SqliteDb& db) {
 }
 
 // Nor may the grid that this build makes for the scenario differ from the one that was recorded.
-void CheckMap(const Meta& meta, const Scenario& scenario) {
+void CheckMap(const Meta& meta, const Scenario& scenario, const Registries& registries) {
   const planning::OccupancyMap map(
-      MapOptions(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario))));
+      MapOptions(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)), registries));
   const std::string resolution = fmt::format("{}", map.resolution());
   const std::string size = fmt::format("{} {} {}", map.size().x(), map.size().y(), map.size().z());
   if (meta.at("map_resolution") != resolution || meta.at("map_size") != size) {
@@ -375,7 +377,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),
                                   path + " (scenario_yaml)", all, registries);
   CheckOutsideFiles(meta, flight.scenario);
-  CheckMap(meta, flight.scenario);
+  CheckMap(meta, flight.scenario, registries);
   flight.build_hash = meta.at("build_hash");
   flight.revision = meta.at("revision");
   ReadResults(db, &flight.plans);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "touchdown/evaluation/controller_entry.h"
+#include "touchdown/evaluation/pad_motion_entry.h"
+#include "touchdown/evaluation/planner_entry.h"
+#include "touchdown/evaluation/predictor_entry.h"
 #include "touchdown/planning/term_registry.h"
 #include "touchdown/solvers/backend_registry.h"
 
@@ -10,11 +14,20 @@ namespace touchdown::evaluation {
 struct Registries {
   solvers::BackendRegistry backends;
   planning::TermRegistry terms;
+  std::vector<PlannerEntry> planners;
+  std::vector<PadMotionEntry> pad_motions;
+  std::vector<ControllerEntry> controllers;
+  std::vector<PredictorEntry> predictors;
 };
 
 /// What the library ships.
-inline Registries StandardRegistries() {
-  return {solvers::StandardBackends(), planning::StandardTerms()};
-}
+Registries StandardRegistries();
+
+/// The parameters of all parts, each once.
+std::vector<Parameter> ParametersOf(const Registries& registries);
+
+/// Throws std::invalid_argument naming what stands twice, a part that nothing can be made from, and a parameter whose key
+/// is one of the program's or is not the same in two parts.
+void RequireDistinct(const Registries& registries);
 
 }  // namespace touchdown::evaluation

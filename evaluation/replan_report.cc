@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/build_info.h"
-#include "touchdown/evaluation/statistics.h"
 #include "touchdown/evaluation/replan_growth.h"
 #include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/sqlite_db.h"
+#include "touchdown/evaluation/statistics.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -3,18 +3,6 @@
 
 namespace touchdown::evaluation {
 
-const char* ToString(PredictionSource source) {
-  switch (source) {
-    case PredictionSource::kNone:
-      return "none";
-    case PredictionSource::kBelief:
-      return "belief";
-    case PredictionSource::kOracle:
-      return "oracle";
-  }
-  return "unknown";
-}
-
 const char* ToString(estimation::PadMotion motion) {
   switch (motion) {
     case estimation::PadMotion::kVelocity:

@@ -179,7 +179,7 @@ class SceneAsker {
     row->status = result.status;
     row->reason = result.reason;
     row->solves = result.solves;
-  row->work = result.work;
+    row->work = result.work;
     row->pairs = result.pairs;
     row->guides = static_cast<int>(result.guide_paths.size());
     if (!row->planned()) return;

@@ -14,64 +14,92 @@
 namespace touchdown::evaluation {
 namespace {
 
-sim::PadMotion TruthOf(const Scenario& scenario) {
-  const TrialDraw draw = DrawTrial(scenario, scenario.seed);
-  return sim::PadMotion(PadMotionOf(scenario, draw.phase, draw.seed));
-}
-
-estimation::VehicleModel ModelOf(const RecordedFlight& flight) {
-  return sim::LoadVehicleModel(VehicleMjcf(flight.scenario));
-}
-
 // What a backend or the vehicle's file refuses is the user's to mend.
-planning::Replanner MakeReplanner(const RecordedFlight& flight, const Registries& registries) {
-  if (flight.scenario.planner != PlannerKind::kLanding) {
-    throw BadInput(
-        fmt::format("{}: only steps of the planner landing can be asked again.", flight.path));
-  }
+template <class Make>
+auto Made(const RecordedFlight& flight, Make&& make) {
   try {
-    return {PlannerOptions(flight.scenario, ModelOf(flight), registries.terms), registries.backends};
+    return make();
   } catch (const std::invalid_argument& error) {
     throw BadInput(fmt::format("{}: its planner cannot be set up: {}.", flight.path, error.what()));
   }
+}
+
+// Between the answers of a planner with a rate of its own it is asked without one; a measured answer that came late
+// took over later. Neither is recorded.
+void RequireAllSteps(const RecordedFlight& flight, const Registries& registries) {
+  const Scenario& scenario = flight.scenario;
+  const PlannerEntry& entry = PlannerOf(scenario, registries);
+  if (entry.rate <= 0.0 && !scenario.planning.latency.measured) return;
+  throw BadInput(fmt::format(
+      "{}: the steps of the planner {} cannot be asked again: {}.", flight.path, entry.name,
+      entry.rate > 0.0
+          ? "it has a rate of its own, and not all of its steps are recorded"
+          : "planning.latency was measured, which only the planner landing remembers"));
 }
 
 }  // namespace
 
 Replay::Replay(const RecordedFlight& flight, const Registries& registries)
     : flight_(flight),
-      oracle_(TruthOf(flight.scenario)),
-      replanner_(MakeReplanner(flight, registries)),
-      map_(MapOptions(flight.scenario, ModelOf(flight))) {
-  replanner_.Prepare(map_);
+      registries_(registries),
+      model_(Made(flight, [&] { return sim::LoadVehicleModel(VehicleMjcf(flight.scenario)); })),
+      predictor_(Made(flight,
+                      [&] {
+                        const TrialDraw draw = DrawTrial(flight.scenario, flight.scenario.seed);
+                        return PredictorOf(
+                            flight.scenario, registries,
+                            PadCourseOf(flight.scenario, registries, draw.phase, draw.seed));
+                      })),
+      planner_(Made(flight, [&] { return MakePlanner(flight.scenario, model_, registries); })),
+      replanner_(dynamic_cast<planning::Replanner*>(planner_.get())),
+      map_(MapOptions(flight.scenario, model_, registries)) {
+  if (replanner_ == nullptr) RequireAllSteps(flight, registries);
+  Rewind();
+}
+
+// To before the first step.
+void Replay::Rewind() {
+  map_ = planning::OccupancyMap(map_.options());
+  step_ = -1;
+  asked_ = true;
+  if (replanner_ == nullptr) {
+    planner_ = MakePlanner(flight_.scenario, model_, registries_);
+    planner_->CommitHover(DrawTrial(flight_.scenario, flight_.scenario.seed).p_WB, 0.0);
+  }
+  planner_->Prepare(map_);
 }
 
 void Replay::Seek(int step) {
-  if (step < step_) {
-    map_ = planning::OccupancyMap(map_.options());
-    step_ = -1;
-  }
+  if (step < step_ || (step == step_ && asked_ && replanner_ == nullptr)) Rewind();
   while (step_ < step) {
+    if (replanner_ == nullptr && !asked_) Ask();
     ++step_;
+    asked_ = false;
     Apply(recorded().map_change, &map_);
   }
-  const PredictionData& prediction = recorded().request.prediction;
-  belief_.reset();
-  if (prediction.source == PredictionSource::kBelief) belief_ = prediction.Belief();
 }
 
-const estimation::PadPrediction* Replay::prediction() const {
-  if (belief_) return &*belief_;
-  return recorded().request.prediction.source == PredictionSource::kOracle ? &oracle_ : nullptr;
+const estimation::PadPrediction* Replay::prediction() {
+  const std::optional<PadKnowledge>& known = recorded().request.pad;
+  return known ? &predictor_->Predict(*known) : nullptr;
 }
 
 const planning::ReplanResult& Replay::Solve() {
+  if (replanner_ != nullptr) {
+    replanner_->Restore(recorded().before);
+  } else {
+    Seek(step_);
+  }
+  return Ask();
+}
+
+const planning::ReplanResult& Replay::Ask() {
   const RecordPlan& row = recorded();
-  replanner_.Restore(row.before);
+  asked_ = true;
   planning::ReplanInput input = row.request.input;
   input.pad = prediction();
-  return row.request.rest_climb ? replanner_.Rest(input, *row.request.rest_climb, map_)
-                                : replanner_.Replan(input, map_);
+  return row.request.rest_climb ? planner_->Rest(input, *row.request.rest_climb, map_)
+                                : planner_->Replan(input, map_);
 }
 
 }  // namespace touchdown::evaluation

@@ -2,46 +2,53 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
+#include "touchdown/evaluation/predictor_entry.h"
 #include "touchdown/evaluation/record_reader.h"
 #include "touchdown/planning/replanner.h"
-#include "touchdown/sim/pad_motion.h"
 
 namespace touchdown::evaluation {
 
 /// Asks the replanning steps of a record again: the same options, the map as it was, what the
-/// replanner remembered, the same input. With the recorded scenario and the recording build the
-/// answers are the recorded ones bit for bit.
+/// planner remembered, the same input. With the recorded scenario and the recording build the
+/// answers are the recorded ones bit for bit. The landing planner is told what it remembered; any other is asked
+/// all steps before, from the first hover on.
 class Replay {
  public:
   /// `flight` must outlive it. @throws BadInput if the scenario cannot be set up, or was flown by a
-  /// planner whose steps are not recorded.
+  /// planner not all of whose steps are recorded.
   Replay(const RecordedFlight& flight, const Registries& registries);
 
   int steps() const { return static_cast<int>(flight_.plans.size()); }
 
-  /// Brings the map to a step in [0, steps()).
+  /// Brings the map, and the planner, to a step in [0, steps()).
   void Seek(int step);
 
   /// Asks the step that was sought. May be called again: every call starts from the recorded state.
   /// The result stays valid until the next call.
   const planning::ReplanResult& Solve();
 
-  /// The prediction that the step was planned with; nullptr for a rest. Valid until the next Seek.
-  const estimation::PadPrediction* prediction() const;
+  /// The prediction that the step was planned with; nullptr if the pad was not known. Valid until the next Seek.
+  const estimation::PadPrediction* prediction();
 
   const RecordPlan& recorded() const { return flight_.plans[static_cast<std::size_t>(step_)]; }
   const planning::OccupancyMap& map() const { return map_; }
-  planning::Replanner& replanner() { return replanner_; }
+  /// The landing planner; nullptr: it is another one.
+  planning::Replanner* replanner() { return replanner_; }
 
  private:
+  void Rewind();
+  const planning::ReplanResult& Ask();
+
   const RecordedFlight& flight_;
-  sim::OraclePadPrediction oracle_;
-  planning::Replanner replanner_;
+  const Registries& registries_;
+  estimation::VehicleModel model_;
+  std::unique_ptr<PadPredictor> predictor_;
+  std::unique_ptr<planning::Planner> planner_;
+  planning::Replanner* replanner_;
   planning::OccupancyMap map_;
-  std::optional<estimation::BeliefPrediction> belief_;
   int step_ = -1;
+  bool asked_ = false;  // the step, of a planner that cannot be told what it remembered
 };
 
 }  // namespace touchdown::evaluation

@@ -23,8 +23,12 @@ constexpr char kObstacles[] = "obstacles";
 class Reader {
  public:
   /// `file` stands in every sentence; `lines`: with the line.
-  Reader(ScenarioSource* source, std::string file, bool lines)
-      : source_(source), file_(std::move(file)), lines_(lines) {}
+  Reader(ScenarioSource* source, std::string file, bool lines, const Registries& registries)
+      : source_(source),
+        file_(std::move(file)),
+        lines_(lines),
+        registries_(registries),
+        keys_(ScenarioKeys(registries)) {}
 
   void Read(const YAML::Node& root) { ReadMap(root, "", WhereIs(root)); }
 
@@ -47,7 +51,7 @@ class Reader {
   }
 
   void ReadEntry(const std::string& name, const YAML::Node& value, const Where& where) {
-    if (const auto key = FindScenarioKey(name)) {
+    if (const auto key = FindScenarioKey(name, registries_)) {
       key->set(source_->scenario, value, where);
       source_->where[name] = where;
     } else if (name == "obstacles.boxes") {
@@ -72,21 +76,21 @@ class Reader {
     return key.Scalar();
   }
 
-  static bool IsGroup(const std::string& name) {
+  bool IsGroup(const std::string& name) const {
     if (name == kObstacles || IsOpenGroup(name)) return true;
-    return std::any_of(ScenarioKeys().begin(), ScenarioKeys().end(),
+    return std::any_of(keys_.begin(), keys_.end(),
                        [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
   }
 
   // The keys of the same group, or the groups: what may stand here instead.
-  static std::string Suggest(const std::string& name) {
+  std::string Suggest(const std::string& name) const {
     const std::size_t dot = name.rfind('.');
     const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
     std::vector<std::string> words;
-    for (const auto& key : ScenarioKeys()) {
+    for (const auto& key : keys_) {
       if (key.name.rfind(group, 0) != 0) continue;
       const std::string word = key.name.substr(0, key.name.find('.', group.size()));
-      if (words.empty() || words.back() != word) words.push_back(word);
+      if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
     }
     if (group.empty()) words.insert(words.end(), {"terms", kObstacles});
     if (group == std::string(kObstacles) + ".") words = {"obstacles.boxes", "obstacles.cylinders"};
@@ -137,6 +141,8 @@ class Reader {
   ScenarioSource* source_;
   std::string file_;
   bool lines_;
+  const Registries& registries_;
+  std::vector<SchemaKey<Scenario>> keys_;
 };
 
 // `load` gives the YAML documents of what sentences call `path`.
@@ -159,7 +165,7 @@ YAML::Node OneDocument(const std::string& path, const Load& load) {
   }
 }
 
-void ApplyOverride(const std::string& text, ScenarioSource* source) {
+void ApplyOverride(const std::string& text, const Registries& registries, ScenarioSource* source) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw BadInput(fmt::format("--set {}: write KEY=VALUE.", text));
@@ -174,18 +180,22 @@ void ApplyOverride(const std::string& text, ScenarioSource* source) {
   }
   Where where;
   where.file = file;
-  Reader(source, file, false).ReadEntry(name, value, where);
+  Reader(source, file, false, registries).ReadEntry(name, value, where);
 }
 
-// What the keys that were given ask of those that were not: the baselines' plans do not lead to contact, one
+// What the keys that were given ask of those that were not: some planners' plans do not lead to contact, one
 // that does ends when it is best, and a wind's direction that is given is meant, not one that is drawn.
-void SuitDefaults(ScenarioSource* source) {
+void SuitDefaults(const Registries& registries, ScenarioSource* source) {
   Scenario& s = source->scenario;
   const auto given = [source](const char* key) { return source->where.count(key) != 0; };
-  if (!given("descent") && s.planner != PlannerKind::kLanding) s.descent = DescentKind::kVertical;
+  const PlannerEntry* planner = FindPart(registries.planners, s.planner);
+  if (!given("descent") && planner && !planner->lands) s.descent = DescentKind::kVertical;
   if (!given("solver.arrival")) {
     s.solver.arrival =
         s.descent == DescentKind::kPlanned ? ArrivalKind::kFree : ArrivalKind::kFixed;
+  }
+  for (const Parameter& parameter : ParametersOf(registries)) {
+    s.parameters.emplace(parameter.key, parameter.value);
   }
   if (given("wind.direction_deg") && !given("wind.direction_random")) {
     s.wind.direction_random = false;
@@ -197,23 +207,28 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
   ScenarioSource source;
   source.scenario.name = name;
   source.file = file;
-  Reader(&source, file, true).Read(root);
-  for (const std::string& text : overrides) ApplyOverride(text, &source);
-  SuitDefaults(&source);
+  Reader(&source, file, true, registries).Read(root);
+  for (const std::string& text : overrides) ApplyOverride(text, registries, &source);
+  SuitDefaults(registries, &source);
   CheckScenario(source, registries);
   return source.scenario;
 }
 
 }  // namespace
 
-void ApplyOverride(const std::string& text, Scenario* scenario) {
+void ApplyOverride(const std::string& text, const Registries& registries, Scenario* scenario) {
   ScenarioSource source;
   source.scenario = *scenario;
-  ApplyOverride(text, &source);
+  ApplyOverride(text, registries, &source);
   *scenario = std::move(source.scenario);
 }
 
 Scenario::Scenario() = default;
+
+const char* ToString(DescentKind kind) {
+  if (kind == DescentKind::kNone) return "none";
+  return kind == DescentKind::kVertical ? "vertical" : "planned";
+}
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
                       const Registries& registries) {

@@ -10,19 +10,14 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/registries.h"
-#include "touchdown/planning/pid/pid_law.h"
-#include "touchdown/sim/pad_motion.h"
 #include "touchdown/sim/plant.h"
 
 namespace touchdown::evaluation {
 
-/// By the names of pad.motion, in this order.
-using PadMotionKind = sim::PadMotionConfig::Kind;
-enum class PadPredictionKind { kPaper, kTurnRate, kOracle };
 enum class PadEstimatorKind { kPaper, kTurnRate };
-enum class ControllerKind { kGeometric, kPaper };
 enum class DescentKind { kNone, kVertical, kPlanned };
-enum class PlannerKind { kLanding, kEgo, kEgoVelocity, kPid };
+/// The word of the key.
+const char* ToString(DescentKind kind);
 enum class SensingKind { kFast, kRendered };
 enum class OwnStateKind { kTrue, kEstimated };
 enum class ObservedFreeKind { kSensed, kTruth };
@@ -59,7 +54,7 @@ struct Scenario {
   std::string name;  ///< stem of the file it came from; not a key
 
   struct Pad {
-    PadMotionKind motion = PadMotionKind::kStraightTurn;
+    std::string motion = "straight_turn";               ///< of Registries::pad_motions
     double speed = 0.8;                                 ///< [m/s]
     Eigen::Vector2d start = Eigen::Vector2d(7.0, 6.5);  ///< pad centre at t = 0, phase 0, in W [m]
     double heading_deg = 0.0;                           ///< of the first leg [deg]
@@ -75,7 +70,7 @@ struct Scenario {
     double phase_spread = 0.0;                          ///< drawn per trial: uniform in +- this [m]
     double deck_size = 1.5;                             ///< edge of the square deck [m]
     double deck_height = 0.5;                           ///< upper face above the ground [m]
-    PadPredictionKind prediction = PadPredictionKind::kTurnRate;
+    std::string prediction = "turn_rate";               ///< of Registries::predictors
   } pad;
 
   struct Start {
@@ -170,7 +165,7 @@ struct Scenario {
   } air;
   sim::PlantFactors plant;  ///< how the vehicle differs from what its pilot knows
 
-  ControllerKind controller = ControllerKind::kGeometric;
+  std::string controller = "geometric";  ///< of Registries::controllers
   struct Control {
     bool disturbance = true;  ///< the controller geometric compensates what it estimates
   } control;
@@ -178,7 +173,7 @@ struct Scenario {
   struct Mission {
     double corridor_radius = 0.12;  ///< horizontal error at the deck with which it sinks [m]
   } mission;
-  PlannerKind planner = PlannerKind::kLanding;
+  std::string planner = "landing";  ///< of Registries::planners
   struct Planning {
     double rate = 10.0;  ///< [Hz]
     PlanningLatency latency;
@@ -190,18 +185,8 @@ struct Scenario {
     bool warm_start = true;  ///< solves begin at the committed plan
   } planning;
 
-  /// Of the EGO-Planner baseline; defaults as published.
-  struct Ego {
-    double goal_rate = 5.0;               ///< the pad's position is sent as a goal so often [Hz]
-    double horizon = 7.5;                 ///< [m]
-    double control_point_distance = 0.4;  ///< [m]
-    double clearance = 0.5;               ///< beyond the inflated surface [m]
-    double replan_distance = 1.5;         ///< [m]
-    double no_replan_distance = 2.0;      ///< [m]
-    double emergency_time = 1.0;          ///< [s]
-  } ego;
-
-  planning::PidGains pid;  ///< of the PID baseline
+  /// Of planners, pad motions, controllers and predictors, by key; what is not here has the part's default.
+  std::map<std::string, double> parameters;
 
   struct Solver {
     std::string backend = "banded";
@@ -260,7 +245,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
 /// One override ("pad.speed=1.2") of a scenario that is there already. Checks the value alone,
 /// and suits no other key to it.
 /// @throws BadInput.
-void ApplyOverride(const std::string& text, Scenario* scenario);
+void ApplyOverride(const std::string& text, const Registries& registries, Scenario* scenario);
 
 /// The effective scenario as YAML that LoadScenario reads back to the same values.
 std::string DumpScenario(const Scenario& scenario);

@@ -78,7 +78,8 @@ void CheckCeiling(const ScenarioSource& source, const estimation::VehicleModel& 
   }
 }
 
-void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel& model) {
+void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel& model,
+                   const Registries& registries) {
   const Scenario& s = source.scenario;
   const PlanningLatency& latency = s.planning.latency;
   const double longest = 1e3 * LongestLatency(s);
@@ -91,16 +92,16 @@ void CheckPlanning(const ScenarioSource& source, const estimation::VehicleModel&
         source.WhereOf(chosen ? "planning.latency" : "planning.rate").ToString(), longest,
         s.planning.rate, latency.ms));
   }
-  if (s.planner != PlannerKind::kLanding && s.planner != PlannerKind::kPid &&
-      s.planning.clearance < model.hull_radius) {
+  const PlannerEntry& planner = PlannerOf(s, registries);
+  if (planner.avoids && !planner.proves && s.planning.clearance < model.hull_radius) {
     throw BadInput(fmt::format(
         "{}: planning.clearance must be in [{:.4g}, 1] m, from the radius of the vehicle's hull "
         "on, with planner {}, not '{}'.",
-        source.WhereOf("planning.clearance").ToString(), model.hull_radius,
-        FindScenarioKey("planner")->get(s), s.planning.clearance));
+        source.WhereOf("planning.clearance").ToString(), model.hull_radius, s.planner,
+        s.planning.clearance));
   }
   const double most = 10.0 * planning::OccupancyMapOptions{}.resolution;
-  if (const double kept = PlanClearance(s, model); kept > most) {
+  if (const double kept = PlanClearance(s, model, registries); kept > most) {
     throw BadInput(
         fmt::format("{}: vehicle {}: its hull at every tilt and the margins of the landing planner "
                     "are {:.2f} m, "
@@ -217,13 +218,13 @@ void CheckSensors(const ScenarioSource& source) {
   }
 }
 
-void CheckDescent(const ScenarioSource& source) {
+void CheckDescent(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
-  if (s.descent != DescentKind::kPlanned || s.planner == PlannerKind::kLanding) return;
+  if (s.descent != DescentKind::kPlanned || PlannerOf(s, registries).lands) return;
   throw BadInput(
       fmt::format("{}: descent must be none or vertical with planner {}, whose "
                   "plans do not lead to contact, not 'planned'.",
-                  source.WhereOf("descent").ToString(), FindScenarioKey("planner")->get(s)));
+                  source.WhereOf("descent").ToString(), s.planner));
 }
 
 void CheckPriorMap(const ScenarioSource& source) {
@@ -288,16 +289,14 @@ void CheckAir(const ScenarioSource& source, const estimation::VehicleModel& mode
 }
 
 // The motion's own limits, at the key they come from.
-void CheckMotionItself(const ScenarioSource& source) {
+void CheckMotionItself(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
   try {
-    sim::PadMotion(PadMotionOf(s, s.pad.phase, s.seed));
+    PadCourseOf(s, registries, s.pad.phase, s.seed);
   } catch (const std::invalid_argument& error) {
     const std::string text = error.what();
-    if (s.pad.motion == PadMotionKind::kWaypoints && text.find("pad.") != 0) {
-      throw BadInput(fmt::format("{}: pad.waypoints {}: {}.",
-                                 source.WhereOf("pad.waypoints").ToString(), s.pad.waypoints,
-                                 text));
+    if (text.starts_with("pad.waypoints")) {
+      throw BadInput(fmt::format("{}: {}.", source.WhereOf("pad.waypoints").ToString(), text));
     }
     std::string key = "pad.motion";
     for (const char* other : {"pad.speed", "pad.turn_rate", "pad.acceleration", "pad.jerk",
@@ -310,23 +309,24 @@ void CheckMotionItself(const ScenarioSource& source) {
   }
 }
 
-void CheckPadMotion(const ScenarioSource& source) {
+void CheckPadMotion(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
-  CheckMotionItself(source);
-  const bool drawn = s.pad.motion == PadMotionKind::kRandom;
-  if ((drawn || s.pad.motion == PadMotionKind::kWaypoints) && s.pad.phase_spread > 0.0) {
+  CheckMotionItself(source, registries);
+  const PadMotionEntry& motion = PartNamed(registries.pad_motions, s.pad.motion, "pad motion");
+  if (!motion.has_phase && s.pad.phase_spread > 0.0) {
     throw BadInput(fmt::format("{}: pad.phase_spread must be 0 with this pad.motion, not '{}'.",
                                source.WhereOf("pad.phase_spread").ToString(), s.pad.phase_spread));
   }
   // Where it will drive is known for one seed only.
-  if (drawn && (!s.boxes.empty() || !s.cylinders.empty())) {
-    throw BadInput(fmt::format("{}: pad.motion: random is for scenarios without obstacles.",
-                               source.WhereOf("pad.motion").ToString()));
+  if (motion.drawn && (!s.boxes.empty() || !s.cylinders.empty())) {
+    throw BadInput(fmt::format("{}: pad.motion: {} is for scenarios without obstacles.",
+                               source.WhereOf("pad.motion").ToString(), motion.name));
   }
 }
 
 // The pad may begin anywhere in the drawn phase: its path there is sampled like its way later on.
-void CheckStartBesidePad(const ScenarioSource& source, const estimation::VehicleModel& model) {
+void CheckStartBesidePad(const ScenarioSource& source, const estimation::VehicleModel& model,
+                         const Registries& registries) {
   const Scenario& s = source.scenario;
   const Eigen::Vector3d& p = s.start.position;
   const Eigen::Vector3d& spread = s.start.position_spread;
@@ -335,8 +335,8 @@ void CheckStartBesidePad(const ScenarioSource& source, const estimation::Vehicle
   const int steps = static_cast<int>(std::ceil(2.0 * s.pad.phase_spread / kPathStep));
   for (int i = 0; i <= steps; ++i) {
     const double shift = std::min(i * kPathStep, 2.0 * s.pad.phase_spread) - s.pad.phase_spread;
-    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift, s.seed));
-    const Eigen::Vector2d offset = motion.At(0.0).p_WP.head<2>() - p.head<2>();
+    const auto course = PadCourseOf(s, registries, s.pad.phase + shift, s.seed);
+    const Eigen::Vector2d offset = course->At(0.0).p_WP.head<2>() - p.head<2>();
     const double gap = (offset.cwiseAbs() - spread.head<2>()).cwiseMax(0.0).norm();
     if (gap <= needed) {
       throw BadInput(fmt::format(
@@ -347,14 +347,15 @@ void CheckStartBesidePad(const ScenarioSource& source, const estimation::Vehicle
   }
 }
 
-void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles) {
+void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles,
+                  const Registries& registries) {
   const Scenario& s = source.scenario;
   const double half_diagonal = s.pad.deck_size * std::sqrt(0.5);
   for (const double shift : {-s.pad.phase_spread, s.pad.phase_spread}) {
-    const sim::PadMotion motion(PadMotionOf(s, s.pad.phase + shift, s.seed));
+    const auto course = PadCourseOf(s, registries, s.pad.phase + shift, s.seed);
     for (int i = 0; i * kPathStep <= s.timeout; ++i) {
       const double t = i * kPathStep;
-      const Eigen::Vector2d p_WP = motion.At(t).p_WP.head<2>();
+      const Eigen::Vector2d p_WP = course->At(t).p_WP.head<2>();
       for (const NamedObstacle& named : obstacles) {
         const double gap = HorizontalGap(named.obstacle, p_WP, Eigen::Vector2d::Zero(), 0.0,
                                          s.pad.deck_height + kHeadroom);
@@ -381,20 +382,20 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
 
 void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
-  CheckPadMotion(source);
+  CheckPadMotion(source, registries);
   CheckSensors(source);
   const estimation::VehicleModel model = ReadVehicle(source);
   const ObstacleList obstacles = ObstaclesOf(s);
   CheckAirframe(source);
-  CheckPlanning(source, model);
-  CheckDescent(source);
+  CheckPlanning(source, model, registries);
+  CheckDescent(source, registries);
   CheckAir(source, model);
   CheckTerms(source, registries.terms);
   CheckSolver(source, model, registries);
   CheckPriorMap(source);
   CheckStart(source, obstacles, model);
-  CheckStartBesidePad(source, model);
-  CheckPadPath(source, obstacles);
+  CheckStartBesidePad(source, model, registries);
+  CheckPadPath(source, obstacles, registries);
 }
 
 }  // namespace touchdown::evaluation

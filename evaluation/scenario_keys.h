@@ -20,8 +20,6 @@ void AddAirKeys(KeyList& keys);
 void AddSensorKeys(KeyList& keys);
 void AddOwnStateKeys(KeyList& keys);
 void AddPlanningKeys(KeyList& keys);
-void AddEgoKeys(KeyList& keys);
-void AddPidKeys(KeyList& keys);
 void AddTrialKeys(KeyList& keys);
 
 // Each maker takes an accessor `at`: Owner& -> member&, so that nested members need no pointers.
@@ -101,6 +99,18 @@ SchemaKey<Scenario> Text(std::string name, std::string range, std::string doc, A
           [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadText(n, w, name); },
           // Double-quoted YAML is JSON's notation for what paths hold.
           [=](const Scenario& s) { return std::string("\"").append(at(s)).append("\""); }};
+}
+
+/// The name of an entry of a registry, which scenario_check asks.
+template <typename At>
+SchemaKey<Scenario> Word(std::string name, const std::string& list, std::string doc, At at) {
+  return {name,
+          "name",
+          "",
+          "as `touchdown list " + list + "` says",
+          std::move(doc),
+          [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadText(n, w, name); },
+          [=](const Scenario& s) { return at(s); }};
 }
 
 inline ValueRange In(double lo, double hi, std::string unit) {

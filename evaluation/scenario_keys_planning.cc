@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of tracking, planning, solving and limits, and of the baselines.
+// Keys of tracking, planning, solving and limits.
 #include <cctype>
 
 #include "touchdown/evaluation/scenario_keys.h"
@@ -7,16 +7,15 @@
 namespace touchdown::evaluation::schema {
 
 void AddPlanningKeys(KeyList& keys) {
-  keys.push_back(
-      Choice("controller", {"geometric", "paper"}, "tracking law", TOUCHDOWN_AT(controller)));
+  keys.push_back(Word("controller", "controllers", "tracking law", TOUCHDOWN_AT(controller)));
   keys.push_back(Bool("control.disturbance",
                       "the controller geometric compensates the force and the moment that it "
                       "estimates, and plans leave room for the force; paper has no such estimate",
                       TOUCHDOWN_AT(control.disturbance)));
   keys.push_back(Choice("descent", {"none", "vertical", "planned"},
                         "none follows above the pad, vertical approaches and then sinks over it, "
-                        "planned flies one plan to contact; the baselines, which make none, "
-                        "have vertical unless it is given",
+                        "planned flies one plan to contact; planners that make none, as the "
+                        "baselines, have vertical unless it is given",
                         TOUCHDOWN_AT(descent)));
   keys.push_back(Number<Scenario>(
       "mission.corridor_radius", In(0.01, 0.5, "m"),
@@ -24,12 +23,7 @@ void AddPlanningKeys(KeyList& keys) {
       "m more for each "
       "metre above it: 0.24 m from where contact is committed to, with every planner",
       TOUCHDOWN_AT(mission.corridor_radius)));
-  keys.push_back(Choice(
-      "planner", {"landing", "ego", "ego-velocity", "pid"},
-      "landing: this project's; ego: the EGO-Planner baseline, at rest at the pad; "
-      "ego-velocity: the same with the pad's velocity at the end; pid: a PID law that tracks "
-      "the pad, then descends, and knows no obstacles",
-      TOUCHDOWN_AT(planner)));
+  keys.push_back(Word("planner", "planners", "what plans", TOUCHDOWN_AT(planner)));
   keys.push_back(Number<Scenario>("planning.rate", Above(0, 100, "Hz"), "rate of replanning",
                                   TOUCHDOWN_AT(planning.rate)));
   const ValueRange latency = In(0, 1000, "ms");
@@ -104,54 +98,6 @@ void AddPlanningKeys(KeyList& keys) {
                                   "plans accelerate no more than this tilt gives in level flight; "
                                   "the controller may tilt 10 deg more",
                                   TOUCHDOWN_AT(limits.tilt_deg)));
-}
-
-void AddEgoKeys(KeyList& keys) {
-  keys.push_back(Number<Scenario>("ego.goal_rate", In(0.1, 100, "Hz"),
-                                  "planner ego: the pad's position is sent as a new goal so often",
-                                  TOUCHDOWN_AT(ego.goal_rate)));
-  keys.push_back(Number<Scenario>("ego.horizon", In(1, 50, "m"),
-                                  "planner ego: distance of the local target",
-                                  TOUCHDOWN_AT(ego.horizon)));
-  keys.push_back(Number<Scenario>("ego.control_point_distance", In(0.05, 2, "m"),
-                                  "planner ego: nominal spacing of control points",
-                                  TOUCHDOWN_AT(ego.control_point_distance)));
-  keys.push_back(Number<Scenario>("ego.clearance", In(0, 3, "m"),
-                                  "planner ego: wanted beyond the grown obstacles",
-                                  TOUCHDOWN_AT(ego.clearance)));
-  keys.push_back(Number<Scenario>("ego.replan_distance", In(0, 50, "m"),
-                                  "planner ego: flown before it replans for no other reason",
-                                  TOUCHDOWN_AT(ego.replan_distance)));
-  keys.push_back(Number<Scenario>("ego.no_replan_distance", In(0, 50, "m"),
-                                  "planner ego: to the goal, nearer it replans for none",
-                                  TOUCHDOWN_AT(ego.no_replan_distance)));
-  keys.push_back(Number<Scenario>("ego.emergency_time", In(0, 10, "s"),
-                                  "planner ego: a collision sooner than this stops the vehicle",
-                                  TOUCHDOWN_AT(ego.emergency_time)));
-}
-
-void AddPidKeys(KeyList& keys) {
-  keys.push_back(Number<Scenario>("pid.proportional", Above(0, 10, "1/s"),
-                                  "planner pid: velocity per horizontal position error",
-                                  TOUCHDOWN_AT(pid.proportional)));
-  keys.push_back(Number<Scenario>("pid.integral", In(0, 10, "1/s^2"),
-                                  "planner pid: velocity per integral of that error",
-                                  TOUCHDOWN_AT(pid.integral)));
-  keys.push_back(Number<Scenario>("pid.derivative", In(0, 10, ""),
-                                  "planner pid: velocity per velocity relative to the pad",
-                                  TOUCHDOWN_AT(pid.derivative)));
-  keys.push_back(Number<Scenario>("pid.integral_limit", In(0, 10, "m/s"),
-                                  "planner pid: most that the integral adds",
-                                  TOUCHDOWN_AT(pid.integral_limit)));
-  keys.push_back(Number<Scenario>("pid.integral_zone", In(0, 100, "m"),
-                                  "planner pid: farther from the pad the integral stands still",
-                                  TOUCHDOWN_AT(pid.integral_zone)));
-  keys.push_back(Number<Scenario>("pid.height", Above(0, 10, "1/s"),
-                                  "planner pid: vertical velocity per error of the height",
-                                  TOUCHDOWN_AT(pid.height)));
-  keys.push_back(Number<Scenario>("pid.response", In(0.05, 10, "s"),
-                                  "planner pid: time constant with which a velocity is taken up",
-                                  TOUCHDOWN_AT(pid.response)));
 }
 
 }  // namespace touchdown::evaluation::schema

@@ -5,11 +5,9 @@
 namespace touchdown::evaluation::schema {
 
 void AddPadKeys(KeyList& keys) {
-  keys.push_back(Choice("pad.motion",
-                        {"straight_turn", "circle", "line", "static", "figure_eight", "stop_and_go",
-                         "reversing", "random", "waypoints"},
-                        "how the pad vehicle drives; docs/pad_motions.md shows each",
-                        TOUCHDOWN_AT(pad.motion)));
+  keys.push_back(Word("pad.motion", "motions",
+                      "how the pad vehicle drives; docs/pad_motions.md shows each",
+                      TOUCHDOWN_AT(pad.motion)));
   keys.push_back(Number<Scenario>(
       "pad.speed", In(0.01, 10, "m/s"),
       "speed along the path, of a changing one the greatest; a pad that is faster than about 0.85 "
@@ -60,11 +58,8 @@ void AddPadKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("pad.deck_height", In(0.1, 3, "m"),
                                   "upper face of the deck above the ground",
                                   TOUCHDOWN_AT(pad.deck_height)));
-  keys.push_back(
-      Choice("pad.prediction", {"paper", "turn_rate", "oracle"},
-             "extrapolation of the pad: straight, along an arc (straight if estimator.pad "
-             "is paper), or the true future",
-             TOUCHDOWN_AT(pad.prediction)));
+  keys.push_back(Word("pad.prediction", "predictors", "extrapolation of the pad",
+                      TOUCHDOWN_AT(pad.prediction)));
 }
 
 namespace {

@@ -19,11 +19,51 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
     schema::AddSensorKeys(list);
     schema::AddOwnStateKeys(list);
     schema::AddPlanningKeys(list);
-    schema::AddEgoKeys(list);
-    schema::AddPidKeys(list);
     schema::AddTrialKeys(list);
     return list;
   }();
+  return keys;
+}
+
+namespace {
+
+/// The names of a registry are what the key may be.
+template <class Entry>
+void Offer(const std::string& name, const std::vector<Entry>& registry,
+           std::vector<SchemaKey<Scenario>>* keys) {
+  const std::vector<std::string> names = NamesOf(registry);
+  for (SchemaKey<Scenario>& key : *keys) {
+    if (key.name != name) continue;
+    key.type = "choice";
+    key.range = Enumerate(names);
+    for (const Part& part : registry) key.doc += fmt::format("; {}: {}", part.name, part.summary);
+    key.set = [name, names, take = key.set](Scenario& s, const YAML::Node& n, const Where& w) {
+      ReadChoice(n, w, name, names);
+      take(s, n, w);
+    };
+  }
+}
+
+}  // namespace
+
+std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries) {
+  std::vector<SchemaKey<Scenario>> keys = ScenarioKeys();
+  Offer("planner", registries.planners, &keys);
+  Offer("pad.motion", registries.pad_motions, &keys);
+  Offer("controller", registries.controllers, &keys);
+  Offer("pad.prediction", registries.predictors, &keys);
+  for (const Parameter& parameter : ParametersOf(registries)) {
+    keys.push_back(
+        {parameter.key, "number", parameter.range.unit, parameter.range.ToString(), parameter.doc,
+         [parameter](Scenario& s, const YAML::Node& n, const Where& w) {
+           s.parameters[parameter.key] = ReadNumber(n, w, parameter.key, parameter.range);
+         },
+         [parameter](const Scenario& s) {
+           const auto given = s.parameters.find(parameter.key);
+           const bool is_given = given != s.parameters.end();
+           return WriteNumber(is_given ? given->second : parameter.value);
+         }});
+  }
   return keys;
 }
 
@@ -89,8 +129,9 @@ std::optional<SchemaKey<Scenario>> FindOpenKey(const std::string& name) {
 
 }  // namespace
 
-std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name) {
-  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
+std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
+                                                   const Registries& registries) {
+  for (const SchemaKey<Scenario>& key : ScenarioKeys(registries)) {
     if (key.name == name) return key;
   }
   return FindOpenKey(name);
@@ -102,6 +143,9 @@ bool IsOpenGroup(const std::string& name) {
 
 std::string DumpOpenKeys(const Scenario& scenario) {
   std::string text;
+  for (const auto& [key, value] : scenario.parameters) {
+    text += key + ": " + WriteNumber(value) + "\n";
+  }
   for (const auto& [name, value] : scenario.solver.options) {
     text += "solver.options." + name + ": " + WriteNumber(value) + "\n";
   }
@@ -115,11 +159,11 @@ std::string DumpOpenKeys(const Scenario& scenario) {
   return text;
 }
 
-std::string ScenarioKeysMarkdown() {
+std::string ScenarioKeysMarkdown(const Registries& registries) {
   const Scenario defaults;
   std::string text =
       "| key | type | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
-  for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
+  for (const SchemaKey<Scenario>& key : ScenarioKeys(registries)) {
     text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", key.name, key.type, key.unit,
                         key.range, key.get(defaults), key.doc);
   }

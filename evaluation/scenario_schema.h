@@ -26,22 +26,25 @@ struct SchemaKey {
   bool optional = false;  ///< in an element of a list
 };
 
-/// Every scalar and vector key, in the order of documentation and of a dump.
+/// Every scalar and vector key of the program itself, in the order of documentation and of a dump.
 const std::vector<SchemaKey<Scenario>>& ScenarioKeys();
+/// These, and behind them those of the parts' parameters.
+std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries);
 /// Keys of one element of obstacles.boxes and obstacles.cylinders.
 const std::vector<SchemaKey<BoxObstacle>>& BoxKeys();
 const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys();
 
-/// The key called `name`: of the list above, or open: solver.options.<name> and terms.<term>.<key>,
-/// whose names and ranges the registries know (CheckScenario asks them). Open keys have no `get`.
-std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name);
+/// The key called `name`: of the lists above, or open: solver.options.<name> and terms.<term>.<key>,
+/// whose names and ranges backends and terms know (CheckScenario asks them). Open keys have no `get`.
+std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
+                                                   const Registries& registries);
 
 /// `name` groups open keys.
 bool IsOpenGroup(const std::string& name);
-/// The open keys that are set, as lines of YAML.
+/// The parameters and the open keys that are set, as lines of YAML.
 std::string DumpOpenKeys(const Scenario& scenario);
 
 /// The schema as a Markdown table: docs/scenario.md is this text, a test compares.
-std::string ScenarioKeysMarkdown();
+std::string ScenarioKeysMarkdown(const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -9,21 +9,14 @@
 #include <yaml-cpp/yaml.h>
 #include <Eigen/Core>
 
+#include "touchdown/evaluation/value_range.h"
+
 namespace touchdown::evaluation {
 
 /// Where a value stands: "file.yaml:12" or "--set".
 struct Where {
   std::string file;
   int line = 0;  ///< from 1; 0: not in a file
-  std::string ToString() const;
-};
-
-/// What a key may hold, for messages and documentation.
-struct ValueRange {
-  double lo = 0.0;
-  double hi = 0.0;
-  bool above_lo = false;  ///< lo itself is not allowed
-  std::string unit;       ///< "m/s"; empty: none
   std::string ToString() const;
 };
 

@@ -44,27 +44,19 @@ ObstacleList ObstaclesOf(const Scenario& scenario) {
   return list;
 }
 
-sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase, std::uint64_t seed) {
-  const Scenario::Pad& pad = scenario.pad;
-  sim::PadMotionConfig config;
-  config.kind = pad.motion;
-  config.p_start << pad.start, pad.deck_height;
-  config.heading = pad.heading_deg * kRadPerDeg;
-  config.speed = pad.motion == PadMotionKind::kStatic ? 0.0 : pad.speed;
-  // A straight_turn has its sense from the angle, a random drive draws it.
-  const bool signed_rate =
-      pad.motion == PadMotionKind::kCircle || pad.motion == PadMotionKind::kFigureEight;
-  config.turn_rate = signed_rate ? pad.turn_rate : std::abs(pad.turn_rate);
-  config.turn_start = pad.turn_start;
-  config.turn_angle = pad.turn_deg * kRadPerDeg;
-  config.go_time = pad.go_time;
-  config.stop_time = pad.stop_time;
-  config.acceleration = pad.acceleration;
-  config.jerk = pad.jerk;
-  config.seed = seed;
-  if (pad.motion == PadMotionKind::kWaypoints) config.waypoints = ReadWaypointFile(pad.waypoints);
-  config.phase = phase;
-  return config;
+std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
+                                                  const Registries& registries, double phase,
+                                                  std::uint64_t seed) {
+  const PadMotionEntry& entry =
+      PartNamed(registries.pad_motions, scenario.pad.motion, "pad motion");
+  return entry.make({{scenario, entry.parameters}, phase, seed});
+}
+
+std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
+                                          std::shared_ptr<const sim::PadCourse> truth) {
+  const PredictorEntry& entry =
+      PartNamed(registries.predictors, scenario.pad.prediction, "pad predictor");
+  return entry.make({{scenario, entry.parameters}, std::move(truth)});
 }
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario) {
@@ -82,7 +74,7 @@ std::string VehicleMjcf(const Scenario& scenario) {
 
 OutsideFiles OutsideFilesOf(const Scenario& scenario) {
   OutsideFiles files;
-  if (scenario.pad.motion == PadMotionKind::kWaypoints) {
+  if (scenario.pad.waypoints != "none") {
     files.pad_waypoints = WaypointText(ReadWaypointFile(scenario.pad.waypoints));
   }
   if (scenario.vehicle != "default") files.vehicle_hash = HashOf(VehicleMjcf(scenario));
@@ -107,13 +99,15 @@ TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
   return draw;
 }
 
-sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw) {
+sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw,
+                         const Registries& registries) {
   sim::WorldConfig config;
   std::vector<sim::Obstacle> obstacles;
   for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
   config.obstacles = sim::ObstacleField(std::move(obstacles));
   config.pad = PadGeometryOf(scenario);
-  config.pad_motion = PadMotionOf(scenario, draw.phase, draw.seed);
+  config.pad_motion.p_start.z() = scenario.pad.deck_height;
+  config.pad_course = PadCourseOf(scenario, registries, draw.phase, draw.seed);
   config.vehicle_mjcf = VehicleMjcf(scenario);
   config.plant = scenario.plant;
   config.ground_effect = scenario.air.ground_effect;

@@ -8,8 +8,8 @@
 
 #include "touchdown/evaluation/scenario.h"
 #include "touchdown/sim/obstacle.h"
+#include "touchdown/sim/pad_course.h"
 #include "touchdown/sim/pad_geometry.h"
-#include "touchdown/sim/pad_motion.h"
 #include "touchdown/sim/world.h"
 
 namespace touchdown::evaluation {
@@ -24,9 +24,16 @@ using ObstacleList = std::vector<NamedObstacle>;
 /// Boxes first, then cylinders: the order of the obstacle field.
 ObstacleList ObstaclesOf(const Scenario& scenario);
 
-/// The pad's motion in the trial of `seed` with `phase` metres driven before t = 0.
-/// @throws std::invalid_argument if its waypoint file cannot be read, the line first.
-sim::PadMotionConfig PadMotionOf(const Scenario& scenario, double phase, std::uint64_t seed);
+/// What drives the pad in the trial of `seed` with `phase` metres driven before t = 0.
+/// @throws std::invalid_argument if the motion cannot be made or is unknown; if its waypoint file cannot be read, the line
+/// first.
+std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
+                                                  const Registries& registries, double phase,
+                                                  std::uint64_t seed);
+
+/// What foretells the pad, whose future is `truth`. @throws std::invalid_argument if the predictor is unknown.
+std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
+                                          std::shared_ptr<const sim::PadCourse> truth);
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 
@@ -35,7 +42,7 @@ std::string VehicleMjcf(const Scenario& scenario);
 
 /// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
 /// points of the waypoint file, the hash of the vehicle's MJCF text; each `none` without such a file.
-/// @throws std::invalid_argument as PadMotionOf and VehicleMjcf do.
+/// @throws std::invalid_argument as PadCourseOf and VehicleMjcf do.
 struct OutsideFiles {
   std::string pad_waypoints = "none";
   std::string vehicle_hash = "none";
@@ -55,6 +62,7 @@ struct TrialDraw {
 TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed);
 
 /// The simulator's world at t = 0.
-sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw);
+sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw,
+                         const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -189,7 +189,7 @@ nlohmann::ordered_json StudyJson(const StudyPlan& plan) {
       const Scenario& scenario =
           plan.campaign.trials.at(static_cast<std::size_t>(part.first)).scenario;
       entry["timeout_s"] = scenario.timeout;
-      entry["descent"] = FindScenarioKey("descent")->get(scenario);
+      entry["descent"] = ToString(scenario.descent);
     } else {
       entry["refusal"] = part.refusal;
     }

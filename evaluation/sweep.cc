@@ -31,8 +31,8 @@ double RangeEnd(const std::string& text, const std::string& variation) {
 
 // Every value that a variation can take must be allowed, whatever a seed draws: the ends of a range
 // stand for all of it. @throws BadInput
-void CheckValues(const Variation& variation) {
-  const auto key = FindScenarioKey(variation.key);
+void CheckValues(const Variation& variation, const Registries& registries) {
+  const auto key = FindScenarioKey(variation.key, registries);
   std::vector<std::string> values = variation.values;
   if (values.empty()) values = {WriteNumber(variation.lo), WriteNumber(variation.hi)};
   for (const std::string& value : values) {
@@ -79,7 +79,7 @@ SweepTrial MakeVaried(const SweepOptions& options, const std::vector<std::string
 
 }  // namespace
 
-Variation Variation::Parse(const std::string& text) {
+Variation Variation::Parse(const std::string& text, const Registries& registries) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
     throw BadInput(fmt::format("--vary {}: write KEY=LO..HI or KEY=a,b,c.", text));
@@ -88,7 +88,7 @@ Variation Variation::Parse(const std::string& text) {
   variation.text = text;
   variation.key = text.substr(0, equals);
   const std::string rest = text.substr(equals + 1);
-  if (!FindScenarioKey(variation.key) || variation.key == "seed") {
+  if (!FindScenarioKey(variation.key, registries) || variation.key == "seed") {
     throw BadInput(fmt::format("--vary {}: {} is no key that can be varied.", text, variation.key));
   }
   if (const std::size_t dots = rest.find(".."); dots != std::string::npos) {
@@ -97,7 +97,7 @@ Variation Variation::Parse(const std::string& text) {
     if (variation.lo > variation.hi) {
       throw BadInput(fmt::format("--vary {}: LO must not be above HI.", text));
     }
-    CheckValues(variation);
+    CheckValues(variation, registries);
     return variation;
   }
   for (const std::string& value : Split(rest, ',')) {
@@ -107,7 +107,7 @@ Variation Variation::Parse(const std::string& text) {
     }
     values.push_back(value);
   }
-  CheckValues(variation);
+  CheckValues(variation, registries);
   return variation;
 }
 
@@ -162,8 +162,8 @@ Campaign SweepCampaign(const SweepOptions& options, const Registries& registries
   nlohmann::json vary = nlohmann::json::array();
   for (const Variation& variation : options.variations) {
     vary.push_back(variation.text);
-    campaign.keys.push_back(
-        {variation.key, FindScenarioKey(variation.key)->unit, variation.values.empty()});
+    campaign.keys.push_back({variation.key, FindScenarioKey(variation.key, registries)->unit,
+                             variation.values.empty()});
   }
   campaign.facts = {{"set", nlohmann::json(options.overrides).dump()}, {"vary", vary.dump()}};
   campaign.trials = PlanSweep(options, registries);

@@ -18,7 +18,7 @@ struct Variation {
   double hi = 0.0;
 
   /// "KEY=LO..HI" or "KEY=a,b,c". @throws BadInput
-  static Variation Parse(const std::string& text);
+  static Variation Parse(const std::string& text, const Registries& registries);
 };
 
 struct SweepOptions {

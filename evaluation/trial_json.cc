@@ -140,8 +140,8 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["estimator"] = EstimatorJson(result.estimator);
   json["own_state"] = OwnStateJson(result.own_state);
   json["safety"] = SafetyJson(result.safety);
-  json["planner"] = FindScenarioKey("planner")->get(scenario);
-  json["backend"] = BackendName(scenario);
+  json["planner"] = scenario.planner;
+  json["backend"] = result.backend;
   json["scenario"] = scenario.name;
   json["seed"] = result.seed;
   json["wall_clock"] = WallClockJson(result.timing);

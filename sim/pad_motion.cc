@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A path in arc length, s, and the way driven along it over time, s(t). With the curvature k and its
-// slope k' by s, the direction d of the path and the normal n to its left:
-//   v = s. d,  a = s.. d + s.^2 k n,  j = (s... - s.^3 k^2) d + (s.^3 k' + 3 s. s.. k) n.
+// From the numbers of a motion to its path and pace.
 
 #include "touchdown/sim/pad_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -101,74 +100,46 @@ CurvatureChain ChainOf(const PadMotionConfig& config) {
   return chain;
 }
 
-}  // namespace
-
-PadMotion::PadMotion(const PadMotionConfig& config)
-    : config_(config), path_(CurvatureChain(Eigen::Vector2d::Zero(), 0.0)) {
+PathCourse CourseOf(const PadMotionConfig& config) {
   ValidateConfig(config);
   const Eigen::Vector2d start = config.p_start.head<2>();
-  if (config.kind == Kind::kFigureEight) {
-    path_ = FigureEight(start, config.heading, config.turn_rate / config.speed);
-  } else if (config.kind == Kind::kRandom) {
-    PathDrive drive = RandomDrive(
-        start, config.heading, {config.speed, config.turn_rate, config.acceleration, config.jerk},
-        config.seed, std::max(0.0, config.phase / config.speed) + kRandomHorizon);
-    path_ = std::move(drive.path);
-    pace_ = std::move(drive.pace);
-  } else if (config.kind == Kind::kWaypoints) {
-    PathDrive drive = WaypointDrive(config.waypoints, config.acceleration, config.jerk);
-    path_ = std::move(drive.path);
-    pace_ = std::move(drive.pace);
-  } else {
-    path_ = ChainOf(config);
+  const double height = config.p_start.z();
+  const auto driven = [&](PathCourse::Path path, Pace pace) -> PathCourse {
+    const double t_phase = config.phase == 0.0 ? 0.0 : config.phase / config.speed;
+    return {std::move(path), height, std::move(pace), t_phase};
+  };
+  switch (config.kind) {
+    case Kind::kStatic:
+      return {ChainOf(config), height, 0.0, 0.0};
+    case Kind::kStraightTurn:
+    case Kind::kCircle:
+    case Kind::kLine:
+      return {ChainOf(config), height, config.speed, config.phase};
+    case Kind::kFigureEight:
+      return {FigureEight(start, config.heading, config.turn_rate / config.speed), height,
+              config.speed, config.phase};
+    case Kind::kStopAndGo:
+      return driven(ChainOf(config), StopAndGoPace(config.speed, config.go_time, config.stop_time,
+                                                   config.acceleration));
+    case Kind::kReversing:
+      return driven(ChainOf(config),
+                    ReversingPace(config.speed, config.go_time, config.acceleration));
+    case Kind::kRandom: {
+      PathDrive drive = RandomDrive(
+          start, config.heading, {config.speed, config.turn_rate, config.acceleration, config.jerk},
+          config.seed, std::max(0.0, config.phase / config.speed) + kRandomHorizon);
+      return driven(std::move(drive.path), std::move(drive.pace));
+    }
+    case Kind::kWaypoints: {
+      PathDrive drive = WaypointDrive(config.waypoints, config.acceleration, config.jerk);
+      return driven(std::move(drive.path), std::move(drive.pace));
+    }
   }
-  if (config.kind == Kind::kStopAndGo) {
-    pace_ = StopAndGoPace(config.speed, config.go_time, config.stop_time, config.acceleration);
-  } else if (config.kind == Kind::kReversing) {
-    pace_ = ReversingPace(config.speed, config.go_time, config.acceleration);
-  }
+  throw std::invalid_argument("pad.motion: there is no such motion");
 }
 
-PathPoint PadMotion::PathAt(double s) const noexcept {
-  if (const auto* chain = std::get_if<CurvatureChain>(&path_)) return chain->At(s);
-  return std::get_if<FigureEight>(&path_)->At(s);
-}
+}  // namespace
 
-PacePoint PadMotion::PaceAt(double t) const noexcept {
-  if (config_.kind == Kind::kStatic) return {};
-  if (!pace_) return {config_.speed * t + config_.phase, config_.speed, 0.0, 0.0};
-  return pace_->At(config_.phase == 0.0 ? t : t + config_.phase / config_.speed);
-}
-
-PadMotionBounds PadMotion::bounds() const {
-  PadMotionBounds bounds;
-  if (config_.kind == Kind::kStatic) return bounds;
-  const PathBounds path = std::visit([](const auto& p) { return p.bounds(); }, path_);
-  const double v = pace_ ? std::max(std::abs(pace_->LeastSpeed()), std::abs(pace_->GreatestSpeed()))
-                         : config_.speed;
-  const double along = pace_ ? pace_->MaxAcceleration() : 0.0;
-  bounds.speed = v;
-  bounds.acceleration = std::hypot(along, v * v * path.curvature);
-  bounds.yaw_acceleration = v * v * path.curvature_slope + along * path.curvature;
-  return bounds;
-}
-
-estimation::PadState PadMotion::At(double t) const noexcept {
-  const PacePoint pace = PaceAt(t);
-  const PathPoint point = PathAt(pace.s);
-  const double v = pace.speed;
-  const Eigen::Vector2d along(std::cos(point.yaw), std::sin(point.yaw));
-  const Eigen::Vector2d left(-along.y(), along.x());
-  estimation::PadState pad;
-  pad.p_WP << point.p, config_.p_start.z();
-  pad.v_WP.head<2>() = v * along;
-  pad.a_WP.head<2>() = v * v * point.curvature * left + pace.acceleration * along;
-  pad.j_WP.head<2>() =
-      v * v * v * (point.curvature_slope * left - point.curvature * point.curvature * along) +
-      (pace.jerk * along + 3.0 * v * pace.acceleration * point.curvature * left);
-  pad.yaw = point.yaw;
-  pad.yaw_rate = v * point.curvature;
-  return pad;
-}
+PadMotion::PadMotion(const PadMotionConfig& config) : PathCourse(CourseOf(config)) {}
 
 }  // namespace touchdown::sim

@@ -2,16 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "touchdown/estimation/pad_prediction.h"
-#include "touchdown/sim/curvature_chain.h"
-#include "touchdown/sim/figure_eight.h"
-#include "touchdown/sim/pace.h"
+#include "touchdown/sim/pad_course.h"
 #include "touchdown/sim/waypoint_drive.h"
 
 namespace touchdown::sim {
@@ -50,45 +45,11 @@ struct PadMotionConfig {
   double phase = 0.0;
 };
 
-/// Never exceeded by a motion, at any time.
-struct PadMotionBounds {
-  double speed = 0.0;             ///< [m/s]
-  double acceleration = 0.0;      ///< [m/s^2]
-  double yaw_acceleration = 0.0;  ///< [rad/s^2]
-};
-
-/// Where the pad's drive is commanded to be: a pure function of time.
-class PadMotion {
+/// The motions of the library.
+class PadMotion final : public PathCourse {
  public:
   /// Throws std::invalid_argument naming the key, its value and the allowed range.
   explicit PadMotion(const PadMotionConfig& config);
-
-  /// State at time t [s], any finite t, also negative. v, a, j are the exact derivatives of p; all
-  /// of them are continuous. The yaw is not wrapped, so that it is continuous too; a pad that drives
-  /// backwards keeps it. cov_p is zero. Does not allocate.
-  estimation::PadState At(double t) const noexcept;
-
-  PadMotionBounds bounds() const;
-
-  const PadMotionConfig& config() const { return config_; }
-
- private:
-  PathPoint PathAt(double s) const noexcept;
-  PacePoint PaceAt(double t) const noexcept;
-
-  PadMotionConfig config_;
-  std::variant<CurvatureChain, FigureEight> path_;
-  std::optional<Pace> pace_;  ///< none: at constant speed
-};
-
-/// The pad's future known exactly: the oracle of tests and studies.
-class OraclePadPrediction final : public estimation::PadPrediction {
- public:
-  explicit OraclePadPrediction(const PadMotion& motion) : motion_(motion) {}
-  estimation::PadState At(double t) const noexcept override { return motion_.At(t); }
-
- private:
-  PadMotion motion_;
 };
 
 }  // namespace touchdown::sim

@@ -25,7 +25,7 @@ void CheckState(const estimation::VehicleState& start) {
 }  // namespace
 
 void CheckStart(const WorldConfig& config, const estimation::VehicleModel& model) {
-  const estimation::PadState pad = PadMotion(config.pad_motion).At(0.0);
+  const estimation::PadState pad = CourseOf(config)->At(0.0);
   Validate(config.pad, pad.p_WP.z());
   CheckState(config.start);
   const Clearance obstacle = TrueClearance(config.obstacles, model).Nearest(config.start);

@@ -108,7 +108,7 @@ class World::Impl {
   WorldConfig config_;
   estimation::VehicleModel model_;  // as the file says
   estimation::VehicleModel plant_;  // as it is simulated
-  PadMotion motion_;
+  std::shared_ptr<const PadCourse> course_;
   Eigen::Vector3d drag_ = Eigen::Vector3d::Zero();
   std::vector<Contact> contacts_;
   double foot_force_ = 0.0;
@@ -139,7 +139,7 @@ class World::Impl {
   std::array<int, 4> rotor_activation_{};
 };
 
-World::Impl::Impl(const WorldConfig& config) : config_(config), motion_(config.pad_motion) {
+World::Impl::Impl(const WorldConfig& config) : config_(config), course_(CourseOf(config)) {
   CheckWithin("timestep [s]", config.timestep, 1.0e-4, 0.005);
   if (config_.vehicle_mjcf.empty()) config_.vehicle_mjcf = DefaultVehicleMjcf();
   model_ = LoadVehicleModel(config_.vehicle_mjcf);
@@ -219,7 +219,7 @@ void World::Impl::AlterPlant() {
 
 void World::Impl::SetInitialState(double thrust) {
   mjData* d = data_.get();
-  const estimation::PadState pad = motion_.At(0.0);
+  const estimation::PadState pad = course_->At(0.0);
   const std::array<double, 3> position = {pad.p_WP.x(), pad.p_WP.y(), pad.yaw};
   const std::array<double, 3> velocity = {pad.v_WP.x(), pad.v_WP.y(), pad.yaw_rate};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -241,7 +241,7 @@ void World::Impl::SetInitialState(double thrust) {
 
 void World::Impl::DrivePad() {
   mjData* d = data_.get();
-  const estimation::PadState ref = motion_.At(Time());
+  const estimation::PadState ref = course_->At(Time());
   const std::array<double, 3> position = {ref.p_WP.x(), ref.p_WP.y(), ref.yaw};
   const std::array<double, 3> velocity = {ref.v_WP.x(), ref.v_WP.y(), ref.yaw_rate};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -381,12 +381,17 @@ double World::time() const { return impl_->Time(); }
 double World::timestep() const { return impl_->config_.timestep; }
 const estimation::VehicleModel& World::model() const { return impl_->model_; }
 const estimation::VehicleModel& World::plant() const { return impl_->plant_; }
-const PadMotion& World::pad_motion() const { return impl_->motion_; }
+const std::shared_ptr<const PadCourse>& World::pad_course() const { return impl_->course_; }
+
+std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config) {
+  if (config.pad_course) return config.pad_course;
+  return std::make_shared<PadMotion>(config.pad_motion);
+}
 
 // A drive's velocity lags by inertia / gain times the acceleration, and its position by this over the
 // position gain; twice that is allowed, and what a step of the physics leaves.
 World::PadLag World::MaxPadLag() const {
-  const PadMotionBounds motion = impl_->motion_.bounds();
+  const PadMotionBounds motion = impl_->course_->bounds();
   const double velocity = 2.0 * PadDrive::kMass / PadDrive::kVelocityGain * motion.acceleration;
   const double yaw_rate =
       2.0 * PadDrive::YawInertia(impl_->config_.pad) / PadDrive::kYawGain * motion.yaw_acceleration;

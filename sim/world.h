@@ -25,16 +25,21 @@ struct WorldConfig {
   ObstacleField obstacles;
   PadGeometry pad;
   PadMotionConfig pad_motion;
+  /// Drives the pad instead, if there is one, on a deck as high as pad_motion says.
+  std::shared_ptr<const PadCourse> pad_course;
   std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
   estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
   /// Given: the vehicle comes out of a hover in air of this velocity [m/s]. Of the start's attitude
   /// only the yaw counts then, and the rotors have the thrust that balances the wind. Where they
   /// cannot balance it, the start is as it is without.
   std::optional<Eigen::Vector3d> hover_air_W;
-  double timestep = 0.002;         ///< [s], in [1e-4, 0.005]
-  PlantFactors plant;              ///< how the simulated vehicle differs from its file
-  bool ground_effect = false;      ///< of the rotors over the deck and the ground
+  double timestep = 0.002;     ///< [s], in [1e-4, 0.005]
+  PlantFactors plant;          ///< how the simulated vehicle differs from its file
+  bool ground_effect = false;  ///< of the rotors over the deck and the ground
 };
+
+/// What drives the pad of this world. Throws std::invalid_argument as PadMotion does.
+std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config);
 
 /// What touches what.
 enum class ContactKind {
@@ -83,7 +88,7 @@ class World {
   double timestep() const;                        ///< [s]
   const estimation::VehicleModel& model() const;  ///< as its file says: what may be known of it
   const estimation::VehicleModel& plant() const;  ///< as it is simulated
-  const PadMotion& pad_motion() const;
+  const std::shared_ptr<const PadCourse>& pad_course() const;
   /// How far the pad may be off its motion: its drive needs a force, which is a lag. Nothing lands.
   struct PadLag {
     double position = 0.0;  ///< [m]

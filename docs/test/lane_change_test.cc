@@ -1,31 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pad motion of docs/adding_a_pad_motion.md, in a copy of sim/pad_motion extended as it says.
-#include "touchdown/sim/lane_change.h"
+// The pad motion of docs/adding_a_pad_motion.md.
+#include "lane_change.h"
 
 #include <cmath>
 #include <initializer_list>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/pad_motion.h"
+#include "touchdown/sim/pad_course.h"
 
-namespace touchdown::sim {
+namespace own {
 namespace {
 
-PadMotionConfig Config(double angle) {
-  PadMotionConfig config;
-  config.kind = PadMotionConfig::Kind::kLaneChange;
-  config.speed = 1.2;
-  config.turn_start = 3.0;
-  config.turn_angle = angle;
-  config.turn_rate = 0.4;
-  return config;
+touchdown::sim::PathCourse Course(double angle) {
+  const double speed = 1.2, curvature = std::copysign(0.4 / speed, angle);
+  const LaneChangeTurns turns = {
+      .after = 3.0, .angle = angle, .curvature = curvature, .ramp = 0.5 * speed};
+  return {LaneChange({7.0, 0.0}, 0.0, turns), 0.3, speed, 0.0};
 }
 
 TEST(LaneChange, GoesOnInItsOldDirectionBesideItsOldWay) {
   for (const double angle : {0.6, -0.6}) {
-    const PadMotion motion(Config(angle));
-    const estimation::PadState before = motion.At(0.0), after = motion.At(30.0);
+    const auto motion = Course(angle);
+    const touchdown::estimation::PadState before = motion.At(0.0), after = motion.At(30.0);
     EXPECT_NEAR(after.yaw, before.yaw, 1e-9);
     EXPECT_GT(std::copysign(1.0, angle) * after.p_WP.y(), 1.0);
     EXPECT_NEAR(after.v_WP.y(), 0.0, 1e-9);
@@ -34,7 +31,7 @@ TEST(LaneChange, GoesOnInItsOldDirectionBesideItsOldWay) {
 }
 
 TEST(LaneChange, DerivativesAreExactAndWithinTheBounds) {
-  const PadMotion motion(Config(0.6));
+  const auto motion = Course(0.6);
   constexpr double kStep = 1e-5;
   for (double t = 0.05; t < 12.0; t += 0.1) {
     const auto at = motion.At(t), next = motion.At(t + kStep), last = motion.At(t - kStep);
@@ -45,4 +42,4 @@ TEST(LaneChange, DerivativesAreExactAndWithinTheBounds) {
 }
 
 }  // namespace
-}  // namespace touchdown::sim
+}  // namespace own

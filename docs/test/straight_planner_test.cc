@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The planner of docs/adding_a_planner.md, flown by a vehicle that tracks perfectly.
-#include "touchdown/planning/straight_planner.h"
+#include "straight_planner.h"
 
 #include <gtest/gtest.h>
 
 #include "touchdown/planning/certificate.h"
 
-namespace touchdown::planning {
+namespace own {
 namespace {
 
 using Eigen::Vector3d;
 
-class StraightPad : public estimation::PadPrediction {
+class StraightPad : public touchdown::estimation::PadPrediction {
  public:
   explicit StraightPad(double speed) : speed_(speed) {}
-  estimation::PadState At(double t) const noexcept override {
-    estimation::PadState pad;
+  touchdown::estimation::PadState At(double t) const noexcept override {
+    touchdown::estimation::PadState pad;
     pad.p_WP = {6.0 + speed_ * t, 1.0, 0.3};
     pad.v_WP = {speed_, 0.0, 0.0};
     return pad;
@@ -40,7 +40,7 @@ class ExamplePlanner : public testing::Test {
     return input;
   }
 
-  const estimation::PadPrediction* pad = nullptr;
+  const touchdown::estimation::PadPrediction* pad = nullptr;
   StraightPlanner planner;
   OccupancyMap map;
 };
@@ -59,7 +59,7 @@ TEST_F(ExamplePlanner, ComesAboveAMovingPadAndFollows) {
     ASSERT_LT((after.v_WB - before.v_WB).norm(), 1e-9);
   }
   const FlatState at = planner.Reference(t);
-  const estimation::PadState now = moving.At(t);
+  const touchdown::estimation::PadState now = moving.At(t);
   EXPECT_LT((at.p_WB - now.p_WP - Vector3d(0.0, 0.0, 1.5)).norm(), 1e-3);
   EXPECT_LT((at.v_WB - now.v_WP).norm(), 1e-3);
 }
@@ -82,4 +82,4 @@ TEST_F(ExamplePlanner, ClimbsOnceHoweverOftenItIsAsked) {
 }
 
 }  // namespace
-}  // namespace touchdown::planning
+}  // namespace own

@@ -66,7 +66,7 @@ Campaign WithBackends(const std::string& backends, int trials, const Registries&
   SweepOptions options;
   options.scenario_path = FindScenario("open");
   options.overrides = {"timeout=2"};
-  options.variations = {Variation::Parse("solver.backend=" + backends)};
+  options.variations = {Variation::Parse("solver.backend=" + backends, StandardRegistries())};
   options.trials = trials;
   return SweepCampaign(options, registries);
 }

@@ -30,8 +30,8 @@ Campaign Short(int trials, const std::string& timeout = "2") {
   options.scenario_path = FindScenario("straight_turn");
   options.overrides = {"start.position_spread=[1, 1, 0]", "start.yaw_random=true",
                        "timeout=" + timeout};
-  options.variations = {Variation::Parse("controller=geometric,paper"),
-                        Variation::Parse("gps.sigma=0.1..0.5")};
+  options.variations = {Variation::Parse("controller=geometric,paper", StandardRegistries()),
+                        Variation::Parse("gps.sigma=0.1..0.5", StandardRegistries())};
   options.trials = trials;
   options.seed = 7;
   return SweepCampaign(options, kRegistries);

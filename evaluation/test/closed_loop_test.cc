@@ -128,7 +128,7 @@ TEST(ClosedLoop, PlansAccelerateNoMoreThanTheTiltAllows) {
 TEST(ClosedLoop, AClearanceBelowWhatPairsKeepIsRaised) {
   const estimation::VehicleModel model = sim::LoadVehicleModel(sim::DefaultVehicleMjcf());
   const auto clearance = [&](const std::vector<std::string>& sets) {
-    return PlanClearance(Shipped("open", sets), model);
+    return PlanClearance(Shipped("open", sets), model, StandardRegistries());
   };
   const double least =
       std::hypot(model.hull_radius, model.foot_depth) + 0.04 + planning::kSweepRoom;
@@ -136,7 +136,8 @@ TEST(ClosedLoop, AClearanceBelowWhatPairsKeepIsRaised) {
   EXPECT_EQ(clearance({"planning.clearance=0.5"}), 0.5);
   // The baselines prove no pairs.
   EXPECT_EQ(clearance({"planning.clearance=0.35", "planner=ego"}), 0.35);
-  EXPECT_NEAR(MapOptions(Shipped("open", {"planning.clearance=0.2"}), model).inflation_radius,
+  EXPECT_NEAR(MapOptions(Shipped("open", {"planning.clearance=0.2"}), model, StandardRegistries())
+                  .inflation_radius,
               least, 1e-9);
 }
 

@@ -97,7 +97,7 @@ TEST_F(Flights, TheTrialsOfAFileAreFlownAgain) {
   SweepOptions sweep;
   sweep.scenario_path = FindScenario("forest");
   sweep.overrides = kShort;
-  sweep.variations = {Variation::Parse("gps.sigma=0.1,0.4")};
+  sweep.variations = {Variation::Parse("gps.sigma=0.1,0.4", StandardRegistries())};
   sweep.trials = 2;
   const Campaign campaign = SweepCampaign(sweep, registries_);
   CampaignOptions options;

@@ -25,7 +25,7 @@
 #include "touchdown/evaluation/stand_watch.h"
 #include "touchdown/evaluation/trial_store.h"
 #include "touchdown/evaluation/truth_map.h"
-#include "touchdown/sim/pad_motion.h"
+#include "touchdown/sim/pad_course.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -122,7 +122,8 @@ TEST(HostileDraw, TheStartIsFreeUnlessItIsBeyondAndThePadsLaneIsClear) {
     } else {
       EXPECT_GE(room, kTakeOffRoom - 1e-9);
     }
-    EXPECT_TRUE(LaneIsClear(flight.trial.scenario, flight.trial.scenario.timeout));
+    EXPECT_TRUE(
+        LaneIsClear(flight.trial.scenario, StandardRegistries(), flight.trial.scenario.timeout));
   }
 }
 
@@ -193,7 +194,7 @@ Scenario Room(double opening) {
   Scenario s;
   StartAt(0.0, 0.0, 2.0, 0.0, &s);
   s.planning.ceiling = kLowCeiling;
-  s.pad.motion = PadMotionKind::kStatic;
+  s.pad.motion = "static";
   s.pad.start << 8.0, 0.0;
   AddWall({-3.2, 3.2}, {3.0, 3.2}, &s);
   AddWall({-3.2, 3.2}, {-3.2, -3.0}, &s);
@@ -218,45 +219,45 @@ TEST(HostileWayTest, ClearanceGrowsWithWhatTheVehicleDoesNotKnow) {
 
 TEST(HostileWayTest, ADoorIsWideEnoughOrNot) {
   Scenario s = Room(1.4);
-  const HostileWay way = FindWay(s, 45.0);
+  const HostileWay way = FindWay(s, StandardRegistries(), 45.0);
   EXPECT_TRUE(way.exists);
   EXPECT_GT(way.length, 7.5);
   EXPECT_LT(way.length, 10.0);
   s.own_state = OwnStateKind::kEstimated;
-  EXPECT_FALSE(FindWay(s, 45.0).exists);
-  EXPECT_FALSE(FindWay(Room(0.0), 45.0).exists);
-  EXPECT_FALSE(FindWay(Room(0.9), 45.0).exists);
+  EXPECT_FALSE(FindWay(s, StandardRegistries(), 45.0).exists);
+  EXPECT_FALSE(FindWay(Room(0.0), StandardRegistries(), 45.0).exists);
+  EXPECT_FALSE(FindWay(Room(0.9), StandardRegistries(), 45.0).exists);
 }
 
 TEST(HostileWayTest, ARoofMayBeTooLowAndAPadTooFar) {
   Scenario s = Room(3.0);
   AddBox({6.0, 10.0}, {-2.0, 2.0}, 1.4, 1.6, &s);
-  EXPECT_FALSE(FindWay(s, 45.0).exists);
+  EXPECT_FALSE(FindWay(s, StandardRegistries(), 45.0).exists);
   s.boxes.back().base = 2.6;
-  EXPECT_TRUE(FindWay(s, 45.0).exists);
-  EXPECT_FALSE(FindWay(s, 10.0).exists);  // no time to fly there and to land
-  s.pad.motion = PadMotionKind::kLine;
+  EXPECT_TRUE(FindWay(s, StandardRegistries(), 45.0).exists);
+  EXPECT_FALSE(FindWay(s, StandardRegistries(), 10.0).exists);  // no time to fly there and to land
+  s.pad.motion = "line";
   s.pad.speed = 3.0;
-  EXPECT_FALSE(FindWay(s, 45.0).exists);
+  EXPECT_FALSE(FindWay(s, StandardRegistries(), 45.0).exists);
 }
 
 TEST(HostileWorld, TurningItKeepsWhatBelongsTogether) {
   for (int i = 0; i < 16; ++i) {
     Scenario s = Room(1.4);
-    s.pad.motion = PadMotionKind::kFigureEight;
+    s.pad.motion = "figure_eight";
     s.pad.turn_rate = 0.3;
-    const HostileWay before = FindWay(s, 45.0);
+    const HostileWay before = FindWay(s, StandardRegistries(), 45.0);
     const double room = StartRoom(s);
-    const sim::PadMotion lane(PadMotionOf(s, 0.0, 0));
+    const auto lane = PadCourseOf(s, StandardRegistries(), 0.0, 0);
     sim::RandomStream draw(static_cast<std::uint64_t>(i), "turn");
     TurnWorld(draw, &s);
-    const sim::PadMotion turned(PadMotionOf(s, 0.0, 0));
+    const auto turned = PadCourseOf(s, StandardRegistries(), 0.0, 0);
     EXPECT_NEAR(StartRoom(s), room, 1e-9);
-    EXPECT_EQ(FindWay(s, 45.0).exists, before.exists);
-    const auto from_start = [](const sim::PadMotion& motion, const Eigen::Vector3d& start) {
-      return (motion.At(7.0).p_WP - start).head<2>().norm();
+    EXPECT_EQ(FindWay(s, StandardRegistries(), 45.0).exists, before.exists);
+    const auto from_start = [](const sim::PadCourse& course, const Eigen::Vector3d& start) {
+      return (course.At(7.0).p_WP - start).head<2>().norm();
     };
-    EXPECT_NEAR(from_start(turned, s.start.position), from_start(lane, {0.0, 0.0, 0.0}), 1e-9);
+    EXPECT_NEAR(from_start(*turned, s.start.position), from_start(*lane, {0.0, 0.0, 0.0}), 1e-9);
   }
 }
 
@@ -317,7 +318,7 @@ TEST(HostileReport, PageAndDocumentNameWhatWasFlown) {
   row.result.outcome = Outcome::kCollision;
   row.result.cause = "obstacle 0";
   row.result.detail = "It touched <something>.";
-  const std::string page = HostilePage(options, {row});
+  const std::string page = HostilePage(options, {row}, StandardRegistries());
   EXPECT_THAT(page, HasSubstr("<svg"));
   EXPECT_THAT(page, HasSubstr("It touched &lt;something&gt;."));
   EXPECT_THAT(page, HasSubstr("--families roof"));
@@ -337,7 +338,7 @@ TEST(HostileReport, WhatStoodIsListed) {
   row.result.cause = "search_failed";
   row.result.safety.emplace().uncertified_steps = 7;
   for (const std::string& report :
-       {HostileText(options, {row}), HostilePage(options, {row})}) {
+       {HostileText(options, {row}), HostilePage(options, {row}, StandardRegistries())}) {
     EXPECT_THAT(report, HasSubstr("Stood, or out of time"));
     EXPECT_THAT(report, HasSubstr("--show 3"));
     EXPECT_THAT(report, HasSubstr("steps without a proven pair"));

@@ -88,7 +88,7 @@ TEST(OwnEstimate, AnOutageIsToldAndItsDoubtGrows) {
 // A frame that is moved to the believed state is the frame that a camera there would have been at.
 TEST(OwnEstimate, AFrameIsPlacedWhereTheVehicleBelievesItselfToBe) {
   const Scenario scenario = Shipped("open", {});
-  const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1));
+  const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries());
   const estimation::VehicleState truth = Start();
   estimation::VehicleState believed = truth;
   believed.p_WB += Eigen::Vector3d(0.3, -0.2, 0.1);

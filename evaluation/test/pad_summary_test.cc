@@ -24,7 +24,7 @@ PadStudyOptions TwoScenarios() {
 /// A flight of each cell, without any sample.
 PadStudy Unsampled(const PadStudyOptions& options) {
   PadStudy study;
-  study.motions = {PadMotionKind::kStraightTurn, PadMotionKind::kCircle};
+  study.motions = {"straight_turn", "circle"};
   for (int s = 0; s < 2; ++s) {
     for (int g = 0; g < static_cast<int>(options.sigmas.size()); ++g) {
       study.flights.push_back({s, g, 0, 1, s == 0 ? Outcome::kLanded : Outcome::kCollision});
@@ -66,7 +66,7 @@ TEST(PadSummary, RatioAndIntervalAreOfTheFlights) {
   options.scenarios = {"circle"};
   options.sigmas = {0.01};
   PadStudy study;
-  study.motions = {PadMotionKind::kCircle};
+  study.motions = {"circle"};
   for (int trial = 0; trial < 40; ++trial) {
     study.flights.push_back({0, 0, trial, 1, Outcome::kLanded});
     for (const auto model : {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate}) {

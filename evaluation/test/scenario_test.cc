@@ -44,7 +44,11 @@ class ScenarioTest : public ::testing::Test {
 };
 
 TEST_F(ScenarioTest, KeysLeftOutKeepTheirDefaults) {
-  EXPECT_EQ(DumpScenario(Load("seed: 1\n")), DumpScenario(Scenario{}));
+  Scenario plain;
+  for (const Parameter& parameter : ParametersOf(StandardRegistries())) {
+    plain.parameters[parameter.key] = parameter.value;
+  }
+  EXPECT_EQ(DumpScenario(Load("seed: 1\n")), DumpScenario(plain));
 }
 
 TEST_F(ScenarioTest, AFileWithoutAKeyIsRefused) {
@@ -396,7 +400,7 @@ TEST_F(ScenarioTest, AMissingFileNamesTheShippedOnes) {
 
 TEST(ScenarioSchema, EveryKeyIsDocumentedOnce) {
   std::set<std::string> names;
-  for (const auto& key : ScenarioKeys()) {
+  for (const auto& key : ScenarioKeys(StandardRegistries())) {
     EXPECT_TRUE(names.insert(key.name).second) << key.name;
     EXPECT_FALSE(key.doc.empty()) << key.name;
     EXPECT_FALSE(key.range.empty()) << key.name;
@@ -407,7 +411,7 @@ TEST(ScenarioSchema, TheDocumentationIsTheTable) {
   std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/scenario.md");
   std::ostringstream text;
   text << file.rdbuf();
-  EXPECT_THAT(text.str(), HasSubstr(ScenarioKeysMarkdown()));
+  EXPECT_THAT(text.str(), HasSubstr(ScenarioKeysMarkdown(StandardRegistries())));
 }
 
 }  // namespace

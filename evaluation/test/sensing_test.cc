@@ -37,7 +37,7 @@ struct Watch {
 Watch WatchPad(const Overrides& overrides, int images, double height, double aside = 0.0,
                double speed = 0.0, bool thrifty = true) {
   const Scenario scenario = Open(overrides);
-  const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1));
+  const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries());
   const auto eye = MakePadEye(scenario, world, 7, thrifty);
   estimation::PadState pad;
   pad.p_WP = {3.0, 2.0, scenario.pad.deck_height};
@@ -148,7 +148,8 @@ TEST(DepthEye, DropsAndDelaysItsImages) {
   for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
     const Scenario scenario =
         Open({kind, "depth.drop=0.5", "depth.latency_ms=150", "depth.width=40", "depth.height=30"});
-    const auto eye = MakeDepthEye(scenario, WorldOf(scenario, DrawTrial(scenario, 1)), 3);
+    const auto eye =
+        MakeDepthEye(scenario, WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries()), 3);
     SensingTimes times;
     int arrived = 0;
     for (int k = 0; k < 100; ++k) {

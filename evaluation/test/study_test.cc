@@ -107,7 +107,7 @@ TEST(PaperStudy, FliesThePapersConditions) {
   EXPECT_EQ(scenarios.at("case_2_sigma_0.5")->pad.turn_rate, 0.15);
   EXPECT_EQ(scenarios.at("case_1_wind_11")->wind.mean, 11.0);
   EXPECT_EQ(scenarios.at("case_1_wind_11")->wind.max, 15.0);
-  EXPECT_EQ(scenarios.at("figure_4")->pad.motion, PadMotionKind::kLine);
+  EXPECT_EQ(scenarios.at("figure_4")->pad.motion, "line");
 }
 
 TEST(SolversStudy, HasEveryBackendOrSaysWhyNot) {

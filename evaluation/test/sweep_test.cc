@@ -28,22 +28,22 @@ SweepOptions OpenSweep(int trials) {
 }
 
 TEST(Variation, ParsesRangesAndLists) {
-  const Variation range = Variation::Parse("pad.speed=0.5..1.5");
+  const Variation range = Variation::Parse("pad.speed=0.5..1.5", StandardRegistries());
   EXPECT_TRUE(range.values.empty());
   EXPECT_EQ(range.lo, 0.5);
   EXPECT_EQ(range.hi, 1.5);
-  const Variation list = Variation::Parse("controller=geometric,paper");
+  const Variation list = Variation::Parse("controller=geometric,paper", StandardRegistries());
   EXPECT_EQ(list.values, (std::vector<std::string>{"geometric", "paper"}));
 }
 
 TEST(Variation, RefusesNonsense) {
-  EXPECT_THROW(Variation::Parse("pad.speed"), BadInput);
-  EXPECT_THROW(Variation::Parse("pad.speed="), BadInput);
-  EXPECT_THROW(Variation::Parse("pad.sped=1,2"), BadInput);
-  EXPECT_THROW(Variation::Parse("seed=1,2"), BadInput);
-  EXPECT_THROW(Variation::Parse("pad.speed=2..1"), BadInput);
-  EXPECT_THROW(Variation::Parse("pad.speed=a..1"), BadInput);
-  EXPECT_THROW(Variation::Parse("pad.speed=0.2,0.4,0.2"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.sped=1,2", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("seed=1,2", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=2..1", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=a..1", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=0.2,0.4,0.2", StandardRegistries()), BadInput);
 }
 
 TEST(PlanSweep, SeedsAreDistinctAndRepeat) {
@@ -56,8 +56,8 @@ TEST(PlanSweep, SeedsAreDistinctAndRepeat) {
 
 TEST(PlanSweep, ListsAreTakenInAllCombinations) {
   SweepOptions options = OpenSweep(6);
-  options.variations = {Variation::Parse("controller=geometric,paper"),
-                        Variation::Parse("pad.speed=0.2,0.4,0.6")};
+  options.variations = {Variation::Parse("controller=geometric,paper", StandardRegistries()),
+                        Variation::Parse("pad.speed=0.2,0.4,0.6", StandardRegistries())};
   std::set<std::string> seen;
   for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
     seen.insert(trial.varied[0].second + trial.varied[1].second);
@@ -67,19 +67,19 @@ TEST(PlanSweep, ListsAreTakenInAllCombinations) {
 
 TEST(PlanSweep, AKeyIsVariedOnceAndNotSetBeside) {
   SweepOptions options = OpenSweep(2);
-  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6", StandardRegistries())};
   options.overrides.push_back("pad.speed=1");
   EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
   options.overrides.pop_back();
   EXPECT_NO_THROW(PlanSweep(options, kRegistries));
-  options.variations.push_back(Variation::Parse("pad.speed=0.2,0.4"));
+  options.variations.push_back(Variation::Parse("pad.speed=0.2,0.4", StandardRegistries()));
   EXPECT_THROW(PlanSweep(options, kRegistries), BadInput);
 }
 
 TEST(PlanSweep, ARefusalSaysWhatWasVaried) {
   SweepOptions options;
   options.scenario_path = FindScenario("open");
-  options.variations = {Variation::Parse("planning.latency=20,180")};
+  options.variations = {Variation::Parse("planning.latency=20,180", StandardRegistries())};
   try {
     PlanSweep(options, kRegistries);
     ADD_FAILURE() << "180 ms are more than a period";
@@ -91,7 +91,7 @@ TEST(PlanSweep, ARefusalSaysWhatWasVaried) {
 
 TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
   SweepOptions options = OpenSweep(20);
-  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6", StandardRegistries())};
   std::set<double> speeds;
   for (const SweepTrial& trial : PlanSweep(options, kRegistries)) {
     EXPECT_GE(trial.scenario.pad.speed, 0.2);
@@ -100,9 +100,9 @@ TEST(PlanSweep, RangesAreDrawnPerTrialAndChecked) {
   }
   EXPECT_EQ(speeds.size(), 20U);
   // Both ends of a range and every listed value, before any seed is drawn.
-  EXPECT_THROW(Variation::Parse("pad.speed=50..60"), BadInput);
-  EXPECT_THROW(Variation::Parse("pad.speed=0.2..60"), BadInput);
-  EXPECT_THROW(Variation::Parse("controller=geometric,psychic"), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=50..60", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("pad.speed=0.2..60", StandardRegistries()), BadInput);
+  EXPECT_THROW(Variation::Parse("controller=geometric,psychic", StandardRegistries()), BadInput);
 }
 
 TEST(SweepReport, EveryFigureStandsUnderItsOwnName) {
@@ -162,9 +162,9 @@ TrialResult After(std::optional<double> landed_after_s) {
 
 TEST(SweepCells, GatherTrialsByTheirListedValues) {
   SweepOptions options = OpenSweep(7);
-  options.variations = {Variation::Parse("controller=geometric,paper"),
-                        Variation::Parse("gps.sigma=0.1..0.5"),
-                        Variation::Parse("pad.speed=0.2,0.4,0.6")};
+  options.variations = {Variation::Parse("controller=geometric,paper", StandardRegistries()),
+                        Variation::Parse("gps.sigma=0.1..0.5", StandardRegistries()),
+                        Variation::Parse("pad.speed=0.2,0.4,0.6", StandardRegistries())};
   const CellPlan plan = PlanCells(SweepCampaign(options, kRegistries));
   ASSERT_EQ(plan.cells.size(), 6U);
   using Values = std::vector<std::pair<std::string, std::string>>;
@@ -194,7 +194,7 @@ TEST(SweepCells, FiguresAreOfTheFlownAndTimesOfTheLanded) {
 
 TEST(SweepCells, ARangeMakesOneCell) {
   SweepOptions options = OpenSweep(4);
-  options.variations = {Variation::Parse("pad.speed=0.2..0.6")};
+  options.variations = {Variation::Parse("pad.speed=0.2..0.6", StandardRegistries())};
   const CellPlan plan = PlanCells(SweepCampaign(options, kRegistries));
   ASSERT_EQ(plan.cells.size(), 1U);
   EXPECT_TRUE(plan.cells[0].values.empty());

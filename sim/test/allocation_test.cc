@@ -28,7 +28,7 @@ TEST(Allocation, NoneInStepsAndMeasurements) {
   DepthCamera camera({}, config.obstacles, config.pad, 1);
   PadGps gps({}, 1);
   TagSensor tags({}, config.obstacles, 1);
-  const OraclePadPrediction oracle(world.pad_motion());
+  const OraclePadPrediction oracle(world.pad_course());
   estimation::DepthFrame frame;
   camera.Capture(world.vehicle(), world.pad(), &frame);
 

@@ -161,7 +161,7 @@ TEST(WorldFlight, PadLagsItsMotionByNoMoreThanStated) {
       while (world.time() < 30.0) {
         world.Step(All(Hover(world)));
         const estimation::PadState truth = world.pad();
-        const estimation::PadState path = world.pad_motion().At(world.time());
+        const estimation::PadState path = world.pad_course()->At(world.time());
         worst.position = std::max(worst.position, (truth.p_WP - path.p_WP).norm());
         worst.velocity = std::max(worst.velocity, (truth.v_WP - path.v_WP).norm());
         worst.yaw = std::max(worst.yaw, std::abs(truth.yaw - path.yaw));
@@ -187,14 +187,14 @@ TEST(WorldFlight, PadFollowsItsPath) {
     config.pad_motion.heading = 1.0;
     config.pad_motion.phase = 1.5;
     World world(config);
-    EXPECT_LT((world.pad().p_WP - world.pad_motion().At(0.0).p_WP).norm(), 1e-12);
+    EXPECT_LT((world.pad().p_WP - world.pad_course()->At(0.0).p_WP).norm(), 1e-12);
     double worst = 0.0;
     double worst_yaw = 0.0;
     double worst_speed = 0.0;
     while (world.time() < 30.0) {
       world.Step(All(Hover(world)));
       const estimation::PadState truth = world.pad();
-      const estimation::PadState path = world.pad_motion().At(world.time());
+      const estimation::PadState path = world.pad_course()->At(world.time());
       worst = std::max(worst, (truth.p_WP - path.p_WP).norm());
       worst_speed = std::max(worst_speed, (truth.v_WP - path.v_WP).norm());
       worst_yaw = std::max(worst_yaw, std::abs(truth.yaw - path.yaw));

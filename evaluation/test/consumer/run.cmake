@@ -113,3 +113,46 @@ run(2 ${own} land open --backend chord --set solver.limits=hard)
 if(NOT errors MATCHES "backend chord takes no inequality constraints")
   message(FATAL_ERROR "chord refuses rows without a reason: ${errors}")
 endif()
+
+# A planner and a pad motion of one's own: every command takes them, with their own keys.
+build("${EXAMPLES}/own_parts" own_parts)
+set(own "${WORK_DIR}/own_parts/own_parts")
+foreach(list planners motions)
+  run(0 ${own} list ${list})
+  if(NOT output MATCHES "straight.share = 0.9 in|lane.angle_deg = 25 in")
+    message(FATAL_ERROR "own_parts does not list its own ${list}:\n${output}")
+  endif()
+endforeach()
+set(parts --set pad.motion=lane_change --set lane.angle_deg=30 --planner straight --set straight.share=0.8)
+foreach(descent planned vertical none)
+  run(0 ${own} land open ${parts} --set descent=${descent} --set timeout=30 --record "${WORK_DIR}/${descent}.db")
+  # All that it was asked, asked again.
+  run(0 ${own} profile --from "${WORK_DIR}/${descent}.db" --repeats 1 --json --allow-debug)
+  string(JSON compared GET "${output}" same_as_record compared)
+  string(JSON same GET "${output}" same_as_record same)
+  if(NOT same EQUAL compared OR compared LESS 50)
+    message(FATAL_ERROR "descent ${descent}: ${same} of ${compared} answers are the recorded ones")
+  endif()
+endforeach()
+run(0 ${own} sweep open --planner straight --vary pad.motion=lane_change,line --vary straight.share=0.7..0.9
+    --trials 4 --json)
+run(2 ${own} land open --set pad.motion=lane_chnage)
+if(NOT errors MATCHES "waypoints or lane_change")
+  message(FATAL_ERROR "an unknown motion: ${errors}")
+endif()
+run(2 ${own} land open --set lane.angle_deg=200)
+if(NOT errors MATCHES "lane.angle_deg must be a number in .5, 90. deg")
+  message(FATAL_ERROR "a parameter out of its range: ${errors}")
+endif()
+file(WRITE "${WORK_DIR}/own_study.yaml" "title: Own parts
+report: plain
+seed: 1
+reference: landing
+set: {pad.motion: lane_change, timeout: 30}
+cells:
+  - {name: lane, title: A lane change, scenario: open, labels: {angle_deg: 20}, set: {lane.angle_deg: 20}}
+methods:
+  - {name: landing, title: landing, trials: 2}
+  - {name: straight, title: straight, set: {planner: straight}, trials: 2}
+")
+run(0 ${own} study run "${WORK_DIR}/own_study.yaml" --out "${WORK_DIR}/own_study")

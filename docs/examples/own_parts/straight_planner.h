@@ -6,10 +6,12 @@
 #include "touchdown/planning/limits.h"
 #include "touchdown/planning/planner.h"
 
-namespace touchdown::planning {
+namespace own {
+
+using namespace touchdown::planning;  // NOLINT: an example
 
 /// A planner in as little as there can be: the quintic from where the vehicle is to where the pad will
-/// be, whatever stands between. Nothing is certified. An example.
+/// be, or to contact with it, whatever stands between. Nothing is certified.
 class StraightPlanner : public Planner {
  public:
   explicit StraightPlanner(const Limits& limits) : limits_(limits) {}
@@ -29,7 +31,8 @@ class StraightPlanner : public Planner {
   UniformBspline current_, next_;
   double takes_over_ = 0.0;      // next_ does [s]
   std::optional<double> climb_;  // of the rest under way [m]
+  bool touches_ = false;         // the plan under way ends in contact
   ReplanResult result_;
 };
 
-}  // namespace touchdown::planning
+}  // namespace own

@@ -2,15 +2,15 @@
 // The curve is the quintic between both ends as a uniform B-spline; the arrival is put off until it keeps
 // the limits. Source: this example.
 
-#include "touchdown/planning/straight_planner.h"
+#include "straight_planner.h"
 
 #include <utility>
 
 #include "touchdown/planning/boundary_lift.h"
 #include "touchdown/planning/rest_trajectory.h"
+#include "touchdown/planning/stage_timer.h"
 
-namespace touchdown::planning {
-
+namespace own {
 namespace {
 constexpr int kSegments = 12;
 constexpr double kShortest = 0.8;  // of a plan [s]
@@ -25,6 +25,14 @@ void StraightPlanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
 
 const ReplanResult& StraightPlanner::Replan(const ReplanInput& input, const OccupancyMap& map) {
   if (input.pad == nullptr) return Rest(input, 0.0, map);
+  result_.times = {};
+  StageTimer total(&result_.times.total);
+  // Shortly before contact the plan that leads there goes on: a new one would put it off.
+  const bool goes_on = touches_ && next_.t_end() - input.t_start < kShortest;
+  if (goes_on && input.endpoint.leads_to_contact()) {
+    result_.status = ReplanStatus::kKept;
+    return result_;
+  }
   const SplineState start = StartAt(input.t_start);
   for (double T = kShortest; T < kLongest; T *= kGrowth) {
     const EndState end = EndStateAt(*input.pad, input.endpoint, input.t_start + T);
@@ -32,7 +40,9 @@ const ReplanResult& StraightPlanner::Replan(const ReplanInput& input, const Occu
                          input.t_start);
     const DerivativeBounds bounds = BoundDerivatives(curve);
     if (bounds.speed <= limits_.speed && bounds.acceleration <= limits_.acceleration) {
-      return Commit(std::move(curve), ReplanStatus::kPlanned, ReplanReason::kNone);
+      Commit(std::move(curve), ReplanStatus::kPlanned, ReplanReason::kNone);
+      touches_ = input.endpoint.touches();
+      return result_;
     }
   }
   return Commit(MakeRestTrajectory(start, input.t_start, Eigen::Vector3d::Zero(), limits_),
@@ -50,7 +60,7 @@ const ReplanResult& StraightPlanner::Rest(const ReplanInput& input, double climb
 }
 
 FlatState StraightPlanner::Reference(double t) const {
-  return (t < takes_over_ ? current_ : next_).Evaluate(t);
+  return (t < takes_over_ ? current_ : next_).EvaluateOnward(t);
 }
 
 const ReplanResult& StraightPlanner::Commit(UniformBspline curve, ReplanStatus status,
@@ -58,6 +68,7 @@ const ReplanResult& StraightPlanner::Commit(UniformBspline curve, ReplanStatus s
   current_ = std::exchange(next_, std::move(curve));
   takes_over_ = next_.t0();
   climb_.reset();
+  touches_ = false;
   result_ = {};
   result_.status = status;
   result_.reason = reason;
@@ -70,4 +81,4 @@ SplineState StraightPlanner::StartAt(double t) const {
   return {at.p_WB, at.v_WB, at.a_WB};
 }
 
-}  // namespace touchdown::planning
+}  // namespace own

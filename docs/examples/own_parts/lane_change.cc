@@ -2,13 +2,13 @@
 // A chain of stretches whose curvature is linear in the way, so that position, heading and curvature
 // are continuous. Source: this example.
 
-#include "touchdown/sim/lane_change.h"
+#include "lane_change.h"
 
-namespace touchdown::sim {
+namespace own {
 
-CurvatureChain LaneChange(const Eigen::Vector2d& start, double heading,
-                          const LaneChangeTurns& turns) {
-  CurvatureChain chain(start, heading);
+touchdown::sim::CurvatureChain LaneChange(const Eigen::Vector2d& start, double heading,
+                                          const LaneChangeTurns& turns) {
+  touchdown::sim::CurvatureChain chain(start, heading);
   chain.Append(turns.after, 0.0, 0.0);
   const double held = turns.angle / turns.curvature - turns.ramp;
   for (const double curvature : {turns.curvature, -turns.curvature}) {
@@ -20,4 +20,4 @@ CurvatureChain LaneChange(const Eigen::Vector2d& start, double heading,
   return chain;
 }
 
-}  // namespace touchdown::sim
+}  // namespace own

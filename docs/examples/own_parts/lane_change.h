@@ -3,7 +3,7 @@
 
 #include "touchdown/sim/curvature_chain.h"
 
-namespace touchdown::sim {
+namespace own {
 
 /// The turns of a lane change.
 struct LaneChangeTurns {
@@ -14,7 +14,7 @@ struct LaneChangeTurns {
 };
 
 /// Straight on, a turn and the same turn back, straight on for ever.
-CurvatureChain LaneChange(const Eigen::Vector2d& start, double heading,
-                          const LaneChangeTurns& turns);
+touchdown::sim::CurvatureChain LaneChange(const Eigen::Vector2d& start, double heading,
+                                          const LaneChangeTurns& turns);
 
-}  // namespace touchdown::sim
+}  // namespace own
