@@ -31,6 +31,7 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr double kSecond = 1.0;              // [s]
 constexpr double kMissionRate = 100.0;       // [Hz]
 constexpr double kMapLookRate = 1.0;         // of the safety figures [Hz]
 constexpr double kSampleRate = kPadLogRate;  // of metrics, record and pad log [Hz]
@@ -64,6 +65,22 @@ std::optional<SafetyWatch> SafetyWatchOf(const PlannerEntry& planner, const sim:
   return SafetyWatch(world.config().obstacles);
 }
 
+double StayDistance(const Scenario& scenario) {
+  return scenario.task == TaskKind::kGoTo ? scenario.go_to.distance : scenario.follow.distance;
+}
+
+StayTask StayTaskOf(const Scenario& scenario) {
+  switch (scenario.task) {
+    case TaskKind::kLand:
+      break;
+    case TaskKind::kFollow:
+      return {Outcome::kFollowed, scenario.follow.time};
+    case TaskKind::kGoTo:
+      return {Outcome::kArrived, scenario.go_to.time};
+  }
+  return {};
+}
+
 class Trial {
  public:
   Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
@@ -94,10 +111,12 @@ class Trial {
         pilot_(scenario, world_.model(), world_.pad_course(), registries, perception_.own().now(),
                Eigen::Vector4d(world_.rotor_commands().data()), perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
-        follow_(scenario.descent == DescentKind::kNone),
+        task_(scenario.task),
+        stay_distance_(StayDistance(scenario)),
+        goal_(GoalOf(scenario)),
         limits_(scenario.limits),
         landing_time_(LandingTimeTaskOf(scenario, world_)),
-        judge_(LandingRule{}, scenario.timeout, follow_),
+        judge_(LandingRule{}, scenario.timeout, StayTaskOf(scenario)),
         stand_watch_(scenario.stand_limit),
         safety_watch_(SafetyWatchOf(planner, world_)),
         map_look_clock_(kMapLookRate),
@@ -217,15 +236,16 @@ class Trial {
       for (const sim::Contact& contact : world_.contacts()) TakeContact(contact, &sample);
     }
     sample.armed = pilot_.mission().motors_armed;
-    sample.pad_known = perception_.pad_filter().Converged(vehicle.t);
+    sample.pad_known = task_ == TaskKind::kGoTo || perception_.pad_filter().Converged(vehicle.t);
     sample.plan_valid = pilot_.plan_valid(vehicle.t);
+    sample.at_target = AtTarget(vehicle, pad);
     sample.stood = stand_watch_.Stands(vehicle.t, vehicle.p_WB);
 
     const bool in_flight = !judge_.touchdown();
     if (sample_clock_.Due(vehicle.t)) {
       through_air_.Add(vehicle.t, vehicle.v_WB - air_.velocity());
       if (in_flight) {
-        metrics_.Sample(vehicle.t, vehicle, pad);
+        metrics_.Sample(vehicle.t, vehicle, task_ == TaskKind::kGoTo ? goal_.At(vehicle.t) : pad);
         if (perception_.own().estimated()) metrics_.OwnState(perception_.own().now(), vehicle);
       }
       if (record_ != nullptr) RecordState(vehicle, pad);
@@ -246,6 +266,16 @@ class Trial {
     }
     judge_.Observe(sample);
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
+  }
+
+  // Of the tasks that are no landing.
+  bool AtTarget(const estimation::VehicleState& vehicle, const estimation::PadState& pad) const {
+    if (task_ == TaskKind::kFollow) {
+      return (vehicle.p_WB - pad.p_WP).head<2>().norm() <= stay_distance_;
+    }
+    const estimation::PadState goal = goal_.At(vehicle.t);
+    return (vehicle.p_WB - goal.p_WP).norm() <= stay_distance_ &&
+           (vehicle.v_WB - goal.v_WP).norm() <= stay_distance_ / kSecond;
   }
 
   void WatchSafety(const estimation::VehicleState& vehicle) {
@@ -336,8 +366,10 @@ class Trial {
     metrics_.Fill(&result_);
     result_.within_limits = result_.max_speed_mps <= limits_.speed &&
                             result_.max_acceleration_mps2 <= limits_.acceleration;
-    if (!follow_) Timed(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
-    if (follow_) result_.following = metrics_.LastFollowing();
+    if (task_ == TaskKind::kLand) {
+      Timed(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
+    }
+    if (task_ == TaskKind::kFollow) result_.following = metrics_.LastFollowing();
     if (safety_watch_) result_.safety = safety_watch_->figures();
     result_.timing.simulated_s = world_.time();
     result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
@@ -359,7 +391,9 @@ class Trial {
   Perception perception_;
   Pilot pilot_;
   sim::TrueClearance clearance_;
-  bool follow_;  ///< no landing is asked for
+  TaskKind task_;
+  double stay_distance_;       ///< from the target [m]
+  planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
   LandingTimeTask landing_time_;  ///< at the start
   LandingJudge judge_;

@@ -19,7 +19,8 @@ inline constexpr int kBadInput = 2;
 
 /// Adds a sub-command to `app`; when it is chosen, sets `run` to what returns the exit status.
 using CommandRun = std::function<int()>;
-void AddLandCommand(Command app, const Registries& registries, CommandRun* run);
+/// `fly` and `land`.
+void AddFlyCommands(Command app, const Registries& registries, CommandRun* run);
 void AddCompareCommand(Command app, const Registries& registries, CommandRun* run);
 void AddStudyCommand(Command app, const Registries& registries, CommandRun* run);
 void AddSweepCommand(Command app, const Registries& registries, CommandRun* run);

@@ -53,6 +53,7 @@ bool CameToNothing(const TrialResult& result) {
     case Outcome::kLostPad:
     case Outcome::kInfeasible:
     case Outcome::kFollowed:
+    case Outcome::kArrived:
       return true;
     default:
       return false;

@@ -51,6 +51,8 @@ const char* ToString(Outcome outcome) {
       return "infeasible";
     case Outcome::kFollowed:
       return "followed";
+    case Outcome::kArrived:
+      return "arrived";
     case Outcome::kTimeout:
       return "timeout";
     case Outcome::kStood:
@@ -90,9 +92,11 @@ const char* Explain(Outcome outcome) {
     case Outcome::kInfeasible:
       return "Time ran out while no certified plan to the pad was found.";
     case Outcome::kFollowed:
-      return "The vehicle stayed above the pad until the time was up.";
+      return "The vehicle stayed above the pad as long as it was to.";
+    case Outcome::kArrived:
+      return "The vehicle is at the goal.";
     case Outcome::kTimeout:
-      return "Time ran out before the vehicle had landed.";
+      return "Time ran out before it was done.";
     case Outcome::kStood:
       return "The vehicle stood, saw, and found no plan.";
     case Outcome::kUnstable:
@@ -137,8 +141,8 @@ std::string Broken(const LandingRule& rule, const Touchdown& d) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-LandingJudge::LandingJudge(const LandingRule& rule, double timeout, bool follow)
-    : rule_(rule), timeout_(timeout), follow_(follow) {}
+LandingJudge::LandingJudge(const LandingRule& rule, double timeout, const StayTask& task)
+    : rule_(rule), timeout_(timeout), task_(task) {}
 
 std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   if (outcome_) return outcome_;
@@ -157,9 +161,17 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   } else {
     outcome_ = touchdown_ ? OnThePad(sample) : InTheAir(sample);
   }
+  if (!outcome_ && task_.asked() && !touchdown_ && Stayed(sample)) outcome_ = task_.done;
   if (!outcome_ && sample.t >= timeout_) outcome_ = TimeoutClass();
   if (!outcome_ && !touchdown_ && sample.stood) outcome_ = Outcome::kStood;
   return outcome_;
+}
+
+bool LandingJudge::Stayed(const JudgeSample& sample) {
+  if (!sample.at_target) there_since_.reset();
+  if (sample.at_target && !there_since_) there_since_ = sample.t;
+  const bool ends_by_time = task_.time > 0.0 || task_.done == Outcome::kArrived;
+  return ends_by_time && there_since_ && sample.t - *there_since_ >= task_.time - 1e-3;
 }
 
 std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
@@ -172,6 +184,8 @@ std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
     if (!sample.armed) return Outcome::kDisarmedInAir;
     return std::nullopt;
   }
+  if (task_.done == Outcome::kArrived)
+    return Outcome::kCollision;  // the pad is one of the obstacles
   Touchdown touchdown;
   const Eigen::Vector3d axis = sample.vehicle.q_WB * Eigen::Vector3d::UnitZ();
   touchdown.t = sample.t;
@@ -215,7 +229,8 @@ Outcome LandingJudge::TimeoutClass() const {
   if (touchdown_) return Outcome::kTimeout;
   if (without_pad_ > rule_.loss_share) return Outcome::kLostPad;
   if (without_plan_ > rule_.loss_share) return Outcome::kInfeasible;
-  if (follow_ && *distance_ <= rule_.following_distance) return Outcome::kFollowed;
+  const bool near = *distance_ <= rule_.following_distance;
+  if (task_.done == Outcome::kFollowed && task_.time <= 0.0 && near) return Outcome::kFollowed;
   return Outcome::kTimeout;
 }
 

@@ -24,10 +24,11 @@ enum class Outcome {
   kDisarmedInAir,    ///< rotors stopped without contact
   kLostPad,          ///< time ran out while the vehicle did not know where the pad was
   kInfeasible,       ///< time ran out while no certified plan to the pad existed
-  kFollowed,  ///< time ran out as it should: nothing more was asked than to stay above the pad
-  kTimeout,   ///< time ran out otherwise
-  kStood,     ///< it stood for as long as the trial allows, saw, and made no new plan
-  kUnstable,  ///< the simulated physics failed
+  kFollowed,         ///< it stayed above the pad, and no more was asked
+  kArrived,          ///< it is at the goal that was asked for
+  kTimeout,          ///< time ran out otherwise
+  kStood,            ///< it stood for as long as the trial allows, saw, and made no new plan
+  kUnstable,         ///< the simulated physics failed
   // Never set by the judge:
   kError,    ///< the program failed in this trial, and said why
   kCrashed,  ///< the process that flew it died
@@ -80,6 +81,7 @@ struct JudgeSample {
   bool pad_known = true;   ///< the vehicle's own estimate of the pad is valid
   bool plan_valid = true;  ///< a certified plan to the pad is being flown
   bool stood = false;      ///< for longer than the trial allows (stand_watch.h)
+  bool at_target = false;  ///< of the tasks that are no landing: where it is to stay
 };
 
 /// What happened at first contact of a foot with the pad.
@@ -98,13 +100,21 @@ std::string Broken(const LandingRule& rule, const Touchdown& touchdown);
 /// Velocity of the deck's material point below p_WB, in W [m/s].
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB);
 
+/// To stay where the samples say `at_target`, without a break.
+struct StayTask {
+  Outcome done = Outcome::kLanded;  ///< kFollowed or kArrived; kLanded: it is no such task
+  double time = 0.0;                ///< so long [s]; 0, to follow: near it until the time-out
+  bool asked() const { return done != Outcome::kLanded; }
+};
+
 /// Decides a trial step by step. A pure function of the samples. Does not
 /// allocate.
 class LandingJudge {
  public:
-  /// `timeout` in [s]. With `follow` no landing is asked for: a flight that stays above the pad until
-  /// the time-out is `kFollowed`.
-  LandingJudge(const LandingRule& rule, double timeout, bool follow = false);
+  /// A landing is asked for, within `timeout` [s].
+  LandingJudge(const LandingRule& rule, double timeout) : LandingJudge(rule, timeout, {}) {}
+  /// A landing, or to stay at the target.
+  LandingJudge(const LandingRule& rule, double timeout, const StayTask& task);
 
   /// Takes the next sample (t rising). Returns the outcome once it is decided, and from then on.
   std::optional<Outcome> Observe(const JudgeSample& sample);
@@ -114,19 +124,21 @@ class LandingJudge {
   const std::optional<Touchdown>& touchdown() const { return touchdown_; }
 
  private:
+  bool Stayed(const JudgeSample& sample);
   std::optional<Outcome> InTheAir(const JudgeSample& sample);
   std::optional<Outcome> OnThePad(const JudgeSample& sample);
   Outcome TimeoutClass() const;
 
   LandingRule rule_;
   double timeout_;
-  bool follow_;
+  StayTask task_;
   std::optional<Outcome> outcome_;
   std::optional<Touchdown> touchdown_;
   double t_previous_ = 0.0;
   double last_contact_t_ = 0.0;
   std::optional<double> rest_since_;
-  double without_pad_ = 0.0;  // exponentially weighted shares over loss_window
+  std::optional<double> there_since_;  ///< at the target
+  double without_pad_ = 0.0;           // exponentially weighted shares over loss_window
   double without_plan_ = 0.0;
   std::optional<double> distance_;  // averaged with the same weights [m]
 };

@@ -79,7 +79,8 @@ Perception::Perception(const Scenario& scenario, const sim::World& world,
       pad_filter_(PadFilterOptionsOf(scenario)),
       map_(MapOptions(scenario, world.model(), registries)),
       persistent_map_(map_.options()),
-      deck_half_size_(0.5 * scenario.pad.deck_size) {
+      deck_half_size_(0.5 * scenario.pad.deck_size),
+      pad_is_obstacle_(scenario.task == TaskKind::kGoTo) {
   const bool prior = scenario.map_prior != "none";
   if (prior) ReadMapFile(scenario.map_prior, &persistent_map_);
   map_.Recentre(own_.now().p_WB);
@@ -161,7 +162,7 @@ void Perception::UpdateMap(double t, const estimation::DepthFrame& frame) {
 
 // Where the pad was at `stamp`, with the doubt of then and of today.
 planning::PadOutline Perception::Outline(double t, double stamp) const {
-  if (!pad_filter_.initialized()) return {};
+  if (pad_is_obstacle_ || !pad_filter_.initialized()) return {};
   planning::PadOutline outline = planning::OutlineOf(pad_filter_.Estimate(stamp), deck_half_size_);
   outline.sigma = std::max(outline.sigma, pad_filter_.PositionSigma(t));
   return outline;

@@ -86,6 +86,7 @@ class Perception {
   planning::OccupancyMap map_;
   planning::PersistentMap persistent_map_;
   double deck_half_size_;
+  bool pad_is_obstacle_;                     // the task is another than the pad
   std::optional<sim::ObstacleField> truth_;  // stands in for what the depth camera sees free
   std::vector<PadArrival>* pad_log_ = nullptr;
   bool pad_measured_ = false;

@@ -44,13 +44,15 @@ constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with th
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
 
-control::DescentStyle StyleOf(DescentKind kind) {
-  if (kind == DescentKind::kNone) return control::DescentStyle::kNone;
-  return kind == DescentKind::kPlanned ? control::DescentStyle::kPlanned
-                                       : control::DescentStyle::kVertical;
+control::DescentStyle StyleOf(const Scenario& scenario) {
+  if (scenario.task != TaskKind::kLand) return control::DescentStyle::kNone;
+  return PlansContact(scenario) ? control::DescentStyle::kPlanned
+                                : control::DescentStyle::kVertical;
 }
 
-std::optional<PadKnowledge> KnowledgeOf(const estimation::PadFilter& filter) {
+std::optional<PadKnowledge> KnowledgeOf(const Scenario& scenario,
+                                        const estimation::PadFilter& filter) {
+  if (scenario.task == TaskKind::kGoTo) return PadKnowledge();  // a goal needs none
   if (!filter.initialized()) return std::nullopt;
   return PadKnowledge{filter.belief(), filter.options().pad_height, filter.options().noise};
 }
@@ -141,10 +143,10 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   recent_error_.Note(t, (planner_->Reference(t).p_WB - vehicle.p_WB).norm());
   control::MissionInputs inputs;
   inputs.t = t;
-  inputs.pad_available = filter.initialized();
-  inputs.pad_converged = filter.Converged(t);
+  inputs.pad_available = KnowsTarget(filter);
+  inputs.pad_converged = IsSureOfTarget(filter, t);
   if (inputs.pad_available) {
-    const estimation::PadState pad = filter.Estimate(t);
+    const estimation::PadState pad = TargetAt(filter, t);
     inputs.horizontal_distance = (vehicle.p_WB - pad.p_WP).head<2>().norm();
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
     inputs.foot_drop = control::FootDrop(model_, vehicle.q_WB);
@@ -153,9 +155,9 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   }
   foot_height_ = inputs.height;
   inputs.lean = control::LeanUnder(model_.HoverThrust(), disturbance().force_W);
-  inputs.tag_age = filter.TagAge(t);
-  inputs.pad_sigma = filter.PositionSigma(t);
-  inputs.descent = StyleOf(scenario_.descent);
+  inputs.tag_age = to_goal() ? 0.0 : filter.TagAge(t);
+  inputs.pad_sigma = to_goal() ? 0.0 : filter.PositionSigma(t);
+  inputs.descent = StyleOf(scenario_);
   inputs.arrival_in = plan_end_t_ + level_time_ - t;
   const double contact_in = control::ContactIn(mission_state_, inputs, parameters_);
   if (std::isfinite(contact_in)) inputs.contact_sigma = filter.PositionSigma(t + contact_in);
@@ -182,7 +184,8 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
   if (!mission_.plan_requested) requested_t_.reset();
   const bool landing = Landing();
-  at_deck_ = inputs.pad_available && std::abs(foot_height_) <= parameters_.contact_height &&
+  at_deck_ = inputs.pad_available && !to_goal() &&
+             std::abs(foot_height_) <= parameters_.contact_height &&
              inputs.horizontal_distance <= parameters_.contact_distance;
   const double off = (planner_->Reference(t).p_WB - vehicle.p_WB).head<2>().norm();
   blown_off_ = at_deck_ && !landing && (blown_off_ || off > kBlownOff);
@@ -266,15 +269,30 @@ double Pilot::LevelTime(const Eigen::Vector3d& pull_W) const {
                   parameters_.decide_time - 1.3 * shortest_contact_plan_);
 }
 
+// A goal is known from the beginning, and for sure.
+bool Pilot::to_goal() const { return scenario_.task == TaskKind::kGoTo; }
+
+bool Pilot::KnowsTarget(const estimation::PadFilter& filter) const {
+  return to_goal() || filter.initialized();
+}
+
+bool Pilot::IsSureOfTarget(const estimation::PadFilter& filter, double t) const {
+  return to_goal() || filter.Converged(t);
+}
+
+estimation::PadState Pilot::TargetAt(const estimation::PadFilter& filter, double t) const {
+  return to_goal() ? predictor_->Predict({}).At(t) : filter.Estimate(t);
+}
+
 bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
-  if (!filter.initialized()) return false;
+  if (!KnowsTarget(filter)) return false;
   if (mission_.guidance == control::Guidance::kFollowPad ||
       mission_.guidance == control::Guidance::kTouchDown) {
     return true;
   }
   // Holding ends with a plan to a known pad, so one is tried; without the pad, or without knowing
   // where it is itself, the vehicle rests.
-  return mission_.mode == control::MissionMode::kHold && own_usable_ && filter.Converged(t);
+  return mission_.mode == control::MissionMode::kHold && own_usable_ && IsSureOfTarget(filter, t);
 }
 
 double Pilot::RestClimb() const {
@@ -287,7 +305,7 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   ReplanRequest& request = replan_.request;
   request.rest_climb.reset();
   if (!for_plan) request.rest_climb = RestClimb();
-  request.pad = KnowledgeOf(filter);
+  request.pad = KnowledgeOf(scenario_, filter);
   planning::ReplanInput& input = request.input;
   if (request.pad) input.pad = &predictor_->Predict(*request.pad);
   if (input.pad != nullptr) replan_.pad = input.pad->At(input.t_now);
@@ -380,10 +398,10 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
     return Seeing(std::atan2(ahead.y(), ahead.x()), vehicle.p_WB);
   }
   if (look_W_) return Seeing(heading_ahead_, vehicle.p_WB);
-  if (mission_.mode != control::MissionMode::kHovering || !filter.initialized()) {
+  if (mission_.mode != control::MissionMode::kHovering || !KnowsTarget(filter)) {
     return heading_ahead_;
   }
-  const Eigen::Vector3d p_BP = filter.Estimate(vehicle.t).p_WP - vehicle.p_WB;
+  const Eigen::Vector3d p_BP = TargetAt(filter, vehicle.t).p_WP - vehicle.p_WB;
   return p_BP.head<2>().norm() > kLookDistance ? std::atan2(p_BP.y(), p_BP.x()) : heading_ahead_;
 }
 
@@ -421,6 +439,10 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
   planning::EndpointTarget target;
   if (contact) target = ContactTarget(model_, touchdown_rate_, level_time_);
   target.t_reference = t;
+  if (to_goal()) {
+    target.height = 0.0;
+    return target;
+  }
   target.at_rest = scenario_.planning.endpoint_velocity == EndpointVelocityKind::kRest;
   if (contact) {
     if (!Levelled(t)) return target;

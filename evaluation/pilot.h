@@ -92,6 +92,10 @@ class Pilot {
   Eigen::Vector3d WayAt(double t) const;
   double LevelTime(const Eigen::Vector3d& pull_W) const;
   double TouchdownRate(const Eigen::Vector3d& pull_W) const;
+  bool to_goal() const;
+  bool KnowsTarget(const estimation::PadFilter& filter) const;
+  bool IsSureOfTarget(const estimation::PadFilter& filter, double t) const;
+  estimation::PadState TargetAt(const estimation::PadFilter& filter, double t) const;
   bool WantsPlan(const estimation::PadFilter& filter, double t) const;
   double RestClimb() const;
   const planning::ReplanResult& Ask(bool for_plan, const estimation::PadFilter& filter,

@@ -26,8 +26,10 @@ planning::EndpointTarget FirstTarget(const Scenario& scenario,
                                      const estimation::VehicleModel& model) {
   const control::MissionParameters mission;
   planning::EndpointTarget target;
-  if (scenario.descent == DescentKind::kPlanned) {
+  if (PlansContact(scenario)) {
     target = ContactTarget(model, mission.touchdown_rate, kLevelTime);
+  } else if (scenario.task == TaskKind::kGoTo) {
+    target.height = 0.0;
   } else {
     target.height = target.height_floor = mission.follow_height + model.foot_depth;
   }

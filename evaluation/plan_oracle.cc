@@ -194,7 +194,7 @@ bool PlanOracle::Impl::TryMotions() {
 bool PlanOracle::Impl::TryWay(const TimedWay& way, double T, const char* name) {
   int last = 0;
   for (const double share : kSegmentShares) {
-    const int segments = planning::SegmentsFor(T, options_.limits, share);
+    const int segments = planning::SegmentsFor(T, options_.limits, share, options_.segment_length);
     if (segments == last) continue;
     last = segments;
     ++answer_.tries;

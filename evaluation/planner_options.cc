@@ -90,7 +90,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   for (const auto& [name, keys] : scenario.terms) {
     problem.settings.push_back(TermSettingsOf(name, keys));
   }
-  if (scenario.descent == DescentKind::kPlanned) {
+  if (PlansContact(scenario)) {
     // The last metres come from above, and the vehicle stands over the deck as the pad's motion asks.
     problem.free_end_acceleration = false;
     SetWeight(scenario, "approach_corridor", kCorridorWeight, &problem.settings);
@@ -112,6 +112,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   options.limits = LimitsOf(scenario);
   options.ceiling_height = scenario.planning.ceiling;
   options.max_guides = scenario.planning.guides;
+  options.segment_length = scenario.planning.segment_length;
   options.max_work = scenario.planning.max_work;
   options.warm_start = scenario.planning.warm_start;
   options.gap = scenario.solver.gap;

@@ -138,7 +138,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     spdlog::error("{}.", error.what());
     return kBadInput;
   }
-  AddLandCommand(Command(&app), registries, &run);
+  AddFlyCommands(Command(&app), registries, &run);
   AddCompareCommand(Command(&app), registries, &run);
   AddStudyCommand(Command(&app), registries, &run);
   AddSweepCommand(Command(&app), registries, &run);

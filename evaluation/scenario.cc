@@ -191,8 +191,7 @@ void SuitDefaults(const Registries& registries, ScenarioSource* source) {
   const PlannerEntry* planner = FindPart(registries.planners, s.planner);
   if (!given("descent") && planner && !planner->lands) s.descent = DescentKind::kVertical;
   if (!given("solver.arrival")) {
-    s.solver.arrival =
-        s.descent == DescentKind::kPlanned ? ArrivalKind::kFree : ArrivalKind::kFixed;
+    s.solver.arrival = PlansContact(s) ? ArrivalKind::kFree : ArrivalKind::kFixed;
   }
   for (const Parameter& parameter : ParametersOf(registries)) {
     s.parameters.emplace(parameter.key, parameter.value);
@@ -225,8 +224,12 @@ void ApplyOverride(const std::string& text, const Registries& registries, Scenar
 
 Scenario::Scenario() = default;
 
+const char* ToString(TaskKind kind) {
+  if (kind == TaskKind::kGoTo) return "go_to";
+  return kind == TaskKind::kFollow ? "follow" : "land";
+}
+
 const char* ToString(DescentKind kind) {
-  if (kind == DescentKind::kNone) return "none";
   return kind == DescentKind::kVertical ? "vertical" : "planned";
 }
 

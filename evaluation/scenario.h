@@ -15,8 +15,10 @@
 namespace touchdown::evaluation {
 
 enum class PadEstimatorKind { kPaper, kTurnRate };
-enum class DescentKind { kNone, kVertical, kPlanned };
-/// The word of the key.
+enum class TaskKind { kLand, kFollow, kGoTo };
+enum class DescentKind { kVertical, kPlanned };
+/// The words of the keys.
+const char* ToString(TaskKind kind);
 const char* ToString(DescentKind kind);
 enum class SensingKind { kFast, kRendered };
 enum class OwnStateKind { kTrue, kEstimated };
@@ -169,6 +171,20 @@ struct Scenario {
   struct Control {
     bool disturbance = true;  ///< the controller geometric compensates what it estimates
   } control;
+  TaskKind task = TaskKind::kLand;
+  /// Of the task follow: above the pad's centre.
+  struct Follow {
+    double time = 10.0;     ///< without a break, until it is done [s]; 0: when the time is up
+    double distance = 0.5;  ///< horizontal [m]
+  } follow;
+  /// Of the task go_to.
+  struct GoTo {
+    Eigen::Vector3d goal =
+        Eigen::Vector3d(6.0, 0.0, 2.0);  ///< of the body's origin at t = 0, in W [m]
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the goal [m/s]
+    double time = 1.0;       ///< there without a break, until it is done [s]
+    double distance = 0.15;  ///< [m]
+  } go_to;
   DescentKind descent = DescentKind::kPlanned;
   struct Mission {
     double corridor_radius = 0.12;  ///< horizontal error at the deck with which it sinks [m]
@@ -177,10 +193,11 @@ struct Scenario {
   struct Planning {
     double rate = 10.0;  ///< [Hz]
     PlanningLatency latency;
-    double clearance = 0.40;  ///< obstacles are grown by this in the map [m]
-    double ceiling = 10.0;    ///< the body's origin stays below this [m]
-    int guides = 2;           ///< most ways around the first obstacle that a step tries
-    int max_work = 10000;     ///< of a step, in units of planning/work_budget.h
+    double clearance = 0.40;       ///< obstacles are grown by this in the map [m]
+    double ceiling = 10.0;         ///< the body's origin stays below this [m]
+    double segment_length = 0.75;  ///< of a plan's segment at full speed, at most [m]
+    int guides = 2;                ///< most ways around the first obstacle that a step tries
+    int max_work = 10000;          ///< of a step, in units of planning/work_budget.h
     EndpointVelocityKind endpoint_velocity = EndpointVelocityKind::kPad;
     bool warm_start = true;  ///< solves begin at the committed plan
   } planning;
@@ -221,6 +238,11 @@ struct Scenario {
   std::vector<BoxObstacle> boxes;
   std::vector<CylinderObstacle> cylinders;
 };
+
+/// One plan is to lead to contact.
+inline bool PlansContact(const Scenario& scenario) {
+  return scenario.task == TaskKind::kLand && scenario.descent == DescentKind::kPlanned;
+}
 
 /// Where a scenario file is looked up by name, first hit first: in the installation that the
 /// program belongs to, then in the source tree it was built from.

@@ -220,11 +220,33 @@ void CheckSensors(const ScenarioSource& source) {
 
 void CheckDescent(const ScenarioSource& source, const Registries& registries) {
   const Scenario& s = source.scenario;
-  if (s.descent != DescentKind::kPlanned || PlannerOf(s, registries).lands) return;
+  if (!PlansContact(s) || PlannerOf(s, registries).lands) return;
   throw BadInput(
-      fmt::format("{}: descent must be none or vertical with planner {}, whose "
+      fmt::format("{}: descent must be vertical with planner {}, whose "
                   "plans do not lead to contact, not 'planned'.",
                   source.WhereOf("descent").ToString(), s.planner));
+}
+
+// Where no plan can end, in the world as it is.
+void CheckGoal(const ScenarioSource& source, const ObstacleList& obstacles,
+               const estimation::VehicleModel& model, const Registries& registries) {
+  const Scenario& s = source.scenario;
+  if (s.task != TaskKind::kGoTo) return;
+  const std::string where = source.WhereOf("go_to.goal").ToString();
+  const double low = LowestPlan(model), z = s.go_to.goal.z();
+  if (z < low || z > s.planning.ceiling) {
+    throw BadInput(
+        fmt::format("{}: go_to.goal must be in [{:.4g}, {:g}] m in z, from the floor of plans to "
+                    "planning.ceiling, not '{}'.",
+                    where, low, s.planning.ceiling, z));
+  }
+  const double needed = PlanClearance(s, model, registries);
+  for (const NamedObstacle& named : obstacles) {
+    const double gap = sim::SignedDistance(named.obstacle, s.go_to.goal);
+    if (gap >= needed) continue;
+    throw BadInput(fmt::format("{}: go_to.goal must be {:.2f} m from {}, and is at {:.2f} m.",
+                               where, needed, named.key, gap));
+  }
 }
 
 void CheckPriorMap(const ScenarioSource& source) {
@@ -393,6 +415,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries) {
   CheckTerms(source, registries.terms);
   CheckSolver(source, model, registries);
   CheckPriorMap(source);
+  CheckGoal(source, obstacles, model, registries);
   CheckStart(source, obstacles, model);
   CheckStartBesidePad(source, model, registries);
   CheckPadPath(source, obstacles, registries);

@@ -24,7 +24,7 @@ struct ScenarioSource {
 /// that ends before it begins, a deck smaller than the sheet that is to be seen on it, a latency beyond
 /// the replanning period, a clearance below the hull, a ceiling below what is flown, an unreadable vehicle
 /// or map file, an airframe or a wind direction without effect; a backend, one of its options, a term or
-/// one of its parameters that the registries do not know or allow; a formulation that the backend refuses.
+/// a goal in an obstacle or beyond floor and ceiling, one of its parameters that the registries do not know or allow; a formulation that the backend refuses.
 /// A pad faster than the vehicle is none of it: the flight shows what becomes of it. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const Registries& registries);
 

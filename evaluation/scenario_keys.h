@@ -19,6 +19,7 @@ void AddVehicleKeys(KeyList& keys);
 void AddAirKeys(KeyList& keys);
 void AddSensorKeys(KeyList& keys);
 void AddOwnStateKeys(KeyList& keys);
+void AddTaskKeys(KeyList& keys);
 void AddPlanningKeys(KeyList& keys);
 void AddTrialKeys(KeyList& keys);
 

@@ -6,14 +6,44 @@
 
 namespace touchdown::evaluation::schema {
 
+void AddTaskKeys(KeyList& keys) {
+  keys.push_back(
+      Choice("task", {"land", "follow", "go_to"},
+             "land on the pad, stay above it, or fly to a goal; each is judged by its own rule, "
+             "and over when it is done",
+             TOUCHDOWN_AT(task)));
+  keys.push_back(Number<Scenario>(
+      "follow.time", In(0, 600, "s"),
+      "task follow: done when it was above the pad for so long without a break; 0: "
+      "it goes on until the time is up",
+      TOUCHDOWN_AT(follow.time)));
+  keys.push_back(
+      Number<Scenario>("follow.distance", Above(0, 10, "m"),
+                       "task follow: above the pad is up to here from its centre, horizontally",
+                       TOUCHDOWN_AT(follow.distance)));
+  keys.push_back(Vector<3, Scenario>("go_to.goal", In(-100, 100, "m"),
+                                     "task go_to: where the body's origin is to be, in W, at t = 0",
+                                     TOUCHDOWN_AT(go_to.goal)));
+  keys.push_back(Vector<3, Scenario>("go_to.velocity", In(-10, 10, "m/s"),
+                                     "task go_to: of the goal", TOUCHDOWN_AT(go_to.velocity)));
+  keys.push_back(Number<Scenario>("go_to.time", In(0, 600, "s"),
+                                  "task go_to: done when it was there for so long without a break",
+                                  TOUCHDOWN_AT(go_to.time)));
+  keys.push_back(
+      Number<Scenario>("go_to.distance", Above(0, 10, "m"),
+                       "task go_to: there is up to here from the goal, with its velocity to within "
+                       "this per second",
+                       TOUCHDOWN_AT(go_to.distance)));
+}
+
 void AddPlanningKeys(KeyList& keys) {
   keys.push_back(Word("controller", "controllers", "tracking law", TOUCHDOWN_AT(controller)));
   keys.push_back(Bool("control.disturbance",
                       "the controller geometric compensates the force and the moment that it "
                       "estimates, and plans leave room for the force; paper has no such estimate",
                       TOUCHDOWN_AT(control.disturbance)));
-  keys.push_back(Choice("descent", {"none", "vertical", "planned"},
-                        "none follows above the pad, vertical approaches and then sinks over it, "
+  keys.push_back(Choice("descent", {"vertical", "planned"},
+                        "task land: vertical approaches and then sinks over the pad, "
                         "planned flies one plan to contact; planners that make none, as the "
                         "baselines, have vertical unless it is given",
                         TOUCHDOWN_AT(descent)));
@@ -52,6 +82,10 @@ void AddPlanningKeys(KeyList& keys) {
                                   "flight ceiling of the vehicle's centre above the ground; above "
                                   "the start and the height at which the pad is followed",
                                   TOUCHDOWN_AT(planning.ceiling)));
+  keys.push_back(Number<Scenario>("planning.segment_length", In(0.2, 3, "m"),
+                                  "planner landing: a plan's segments are no longer than this at "
+                                  "limits.speed, or than it takes at 2.5 m/s",
+                                  TOUCHDOWN_AT(planning.segment_length)));
   keys.push_back(
       Whole("planning.guides", 1, 8,
             "most ways around the first obstacle that a step of the landing planner tries; "

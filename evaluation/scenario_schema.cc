@@ -18,6 +18,7 @@ const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
     schema::AddAirKeys(list);
     schema::AddSensorKeys(list);
     schema::AddOwnStateKeys(list);
+    schema::AddTaskKeys(list);
     schema::AddPlanningKeys(list);
     schema::AddTrialKeys(list);
     return list;

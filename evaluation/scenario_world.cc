@@ -22,6 +22,16 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadPerDeg = kPi / 180.0;
 
+/// Whatever is known of the pad: it is not where the vehicle is to go.
+class ToGoal final : public PadPredictor {
+ public:
+  explicit ToGoal(const Scenario& scenario) : goal_(GoalOf(scenario)) {}
+  const estimation::PadPrediction& Predict(const PadKnowledge& /*known*/) override { return goal_; }
+
+ private:
+  planning::MovingGoal goal_;
+};
+
 }  // namespace
 
 ObstacleList ObstaclesOf(const Scenario& scenario) {
@@ -52,8 +62,16 @@ std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
   return entry.make({{scenario, entry.parameters}, phase, seed});
 }
 
+planning::MovingGoal GoalOf(const Scenario& scenario) {
+  const Eigen::Vector3d p = scenario.go_to.goal, v = scenario.go_to.velocity;
+  return planning::MovingGoal([p, v](const planning::Taylor& t) {
+    return planning::MovingGoal::Position{p.x() + v.x() * t, p.y() + v.y() * t, p.z() + v.z() * t};
+  });
+}
+
 std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
                                           std::shared_ptr<const sim::PadCourse> truth) {
+  if (scenario.task == TaskKind::kGoTo) return std::make_unique<ToGoal>(scenario);
   const PredictorEntry& entry =
       PartNamed(registries.predictors, scenario.pad.prediction, "pad predictor");
   return entry.make({{scenario, entry.parameters}, std::move(truth)});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "touchdown/evaluation/scenario.h"
+#include "touchdown/planning/goal.h"
 #include "touchdown/sim/obstacle.h"
 #include "touchdown/sim/pad_course.h"
 #include "touchdown/sim/pad_geometry.h"
@@ -31,7 +32,10 @@ std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
                                                   const Registries& registries, double phase,
                                                   std::uint64_t seed);
 
-/// What foretells the pad, whose future is `truth`. @throws std::invalid_argument if the predictor is unknown.
+/// The goal of the task go_to.
+planning::MovingGoal GoalOf(const Scenario& scenario);
+
+/// What foretells the pad, whose future is `truth`, or in the task go_to the goal. @throws std::invalid_argument if the predictor is unknown.
 std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
                                           std::shared_ptr<const sim::PadCourse> truth);
 

@@ -125,13 +125,15 @@ int Count(const std::vector<SweepRow>& rows, bool (TrialResult::*holds)() const)
                                         [&](const SweepRow& r) { return (r.result.*holds)(); }));
 }
 
-/// What success is called: `descent` may differ from trial to trial.
+/// What success is called: the task may differ from trial to trial.
 const char* SuccessWord(const std::vector<SweepRow>& rows) {
-  const auto lands = [](const SweepRow& r) {
-    return r.trial.scenario.descent != DescentKind::kNone;
+  const auto all = [&](TaskKind task) {
+    return std::all_of(rows.begin(), rows.end(),
+                       [&](const SweepRow& r) { return r.trial.scenario.task == task; });
   };
-  if (std::all_of(rows.begin(), rows.end(), lands)) return "landed";
-  return std::any_of(rows.begin(), rows.end(), lands) ? "landed or followed" : "followed";
+  if (all(TaskKind::kLand)) return "landed";
+  if (all(TaskKind::kGoTo)) return "arrived";
+  return all(TaskKind::kFollow) ? "followed" : "done";
 }
 
 std::vector<double> ReplanTimes(const std::vector<SweepRow>& rows) {

@@ -82,7 +82,7 @@ struct TrialResult {
   std::map<std::string, int> replans_by_reason;  ///< of those that made no new plan
   std::optional<EstimatorQuality> estimator;
   std::optional<OwnStateQuality> own_state;  ///< where it is estimated
-  std::optional<Following> following;        ///< of trials without a descent that lasted 10 s
+  std::optional<Following> following;        ///< of the task follow, where it lasted 10 s
   /// Of trials that are to land: bounds on the earliest contact that is possible at all
   /// (evaluation/landing_time.h), the lower one T*, the upper one empty if none was found.
   std::optional<double> t_star_s;
@@ -93,8 +93,10 @@ struct TrialResult {
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }
-  /// It came to what the scenario asks for: a landing, or without a descent to follow the pad.
-  bool succeeded() const { return landed() || outcome == Outcome::kFollowed; }
+  /// It came to what the scenario's task asks for.
+  bool succeeded() const {
+    return landed() || outcome == Outcome::kFollowed || outcome == Outcome::kArrived;
+  }
   /// Time to land over T*, empty unless landed within the limits.
   std::optional<double> time_ratio() const {
     if (!landed() || !within_limits || !t_star_s) return std::nullopt;

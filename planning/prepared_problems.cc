@@ -13,8 +13,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kLongestSegment = 0.75;  // at full speed [m]
-constexpr double kSlowestSegment = 0.30;  // [s]
+constexpr double kSlow = 2.5;  // slower vehicles have no longer segments in time [m/s]
 constexpr int kFewestSegments = 12;
 constexpr int kMostSegments = PairBinder::kMostControlPoints - 3;
 constexpr int kSegmentStep = 4;  // keeps the number of prepared problems small
@@ -36,8 +35,8 @@ PreparedProblem Prepare(const ReplannerOptions& options, const solvers::BackendR
 
 }  // namespace
 
-int SegmentsFor(double duration, const Limits& limits, double share) {
-  const double interval = share * std::min(kSlowestSegment, kLongestSegment / limits.speed);
+int SegmentsFor(double duration, const Limits& limits, double share, double longest) {
+  const double interval = share * (longest / std::max(kSlow, limits.speed));
   const int wanted = static_cast<int>(std::ceil(duration / interval));
   const int rounded = (wanted + kSegmentStep - 1) / kSegmentStep * kSegmentStep;
   return std::clamp(rounded, kFewestSegments, kMostSegments);

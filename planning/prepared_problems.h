@@ -14,9 +14,9 @@ namespace touchdown::planning {
 /// The options of the landing problems that a replanner with these options solves.
 LandingProblemOptions ProblemOptions(const ReplannerOptions& options, ArrivalMode arrival);
 
-/// Number of segments of a plan that takes so long [s] at these limits; each is at most this share of the
-/// longest segment that a plan may have.
-int SegmentsFor(double duration, const Limits& limits, double share);
+/// Number of segments of a plan that takes so long [s] at these limits; each is at most this share of `longest`
+/// [m] at full speed, and of what that takes at 2.5 m/s.
+int SegmentsFor(double duration, const Limits& limits, double share, double longest);
 
 /// A landing problem and its backend, to be solved again and again.
 struct PreparedProblem {

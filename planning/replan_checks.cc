@@ -89,6 +89,8 @@ void Validate(const ReplannerOptions& o) {
   // The proof is of a hull of this size, 0 of a point.
   Require(o.hull_radius >= 0.0 && std::isfinite(o.hull_radius), "hull_radius", o.hull_radius,
           ">= 0 m and finite");
+  Require(o.segment_length > 0.0 && std::isfinite(o.segment_length), "segment_length",
+          o.segment_length, "> 0 m and finite");
   Require(std::isfinite(o.contact_height), "contact_height", o.contact_height, "finite");
   Require(o.pad_radius >= 0.0, "pad_radius", o.pad_radius, ">= 0 m");
   Require(o.deck_half_size >= 0.0, "deck_half_size", o.deck_half_size, ">= 0 m");

@@ -41,13 +41,14 @@ struct ReplannerOptions {
   /// A plan is flown at least this long before its stop, if no newer one comes [s]; longer by a caller whose last two
   /// answers took over farther apart.
   double reaction = 0.15;
-  double hull_radius = 0.324;   ///< of the body at every tilt, about its origin [m]
-  double deck_half_size = 0.0;  ///< of the pad's deck [m]; 0: there is none to land on
-  double vertical_cost = 2.0;   ///< of ways: a metre up or down costs as much as this many ahead
-  int max_guides = 2;           ///< ways around the first obstacle that are tried
-  bool warm_start = true;       ///< a solve begins at the rest of the committed plan
-  int max_rebinds = 3;          ///< solve / check / re-bind rounds per attempt
-  int max_iterations = 50;      ///< solver iterations per solve
+  double segment_length = 0.75;  ///< of a plan's segment at full speed, at most [m]
+  double hull_radius = 0.324;    ///< of the body at every tilt, about its origin [m]
+  double deck_half_size = 0.0;   ///< of the pad's deck [m]; 0: there is none to land on
+  double vertical_cost = 2.0;    ///< of ways: a metre up or down costs as much as this many ahead
+  int max_guides = 2;            ///< ways around the first obstacle that are tried
+  bool warm_start = true;        ///< a solve begins at the rest of the committed plan
+  int max_rebinds = 3;           ///< solve / check / re-bind rounds per attempt
+  int max_iterations = 50;       ///< solver iterations per solve
   /// A solve ends so near to the optimum, as a share of the cost (solvers::Stop::gap): not the last digits of
   /// an optimum make a plan, but its certificate.
   double gap = 5e-3;

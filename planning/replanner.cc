@@ -473,8 +473,10 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.hull = &hull;
   // A stretched plan is slower, not longer: it needs hardly more control points.
   const double longest = std::min(rung.duration, constants.grid_longest * first);
-  request.near_segments = SegmentsFor(longest, limits_, constants.fine_segments);
-  request.segments = is_first ? SegmentsFor(longest, limits_, 1.0) : request.near_segments;
+  request.near_segments =
+      SegmentsFor(longest, limits_, constants.fine_segments, options_.segment_length);
+  request.segments = is_first ? SegmentsFor(longest, limits_, 1.0, options_.segment_length)
+                              : request.near_segments;
   request.pair_end = facts.lands_soon          ? PairEnd::kContact
                      : result_.ends_in_contact ? PairEnd::kRestOrContact
                                                : PairEnd::kRest;

@@ -46,7 +46,7 @@ TEST(BaselineFlight, PidHasNoPlanToContactAndNoBackend) {
     FAIL();
   } catch (const BadInput& error) {
     EXPECT_THAT(error.what(),
-                ::testing::HasSubstr("descent must be none or vertical with planner pid"));
+                ::testing::HasSubstr("descent must be vertical with planner pid"));
   }
   EXPECT_THROW(Shipped("open", {"planner=pid", "pid.response=0"}), BadInput);
   const Scenario scenario = Shipped("open", {"planner=pid", "timeout=1"});
@@ -78,7 +78,8 @@ TEST(BaselineFlight, APidRecordIsReadAndKeepsTheLimitsAndItsStepsAreNotAskedAgai
 TEST(BaselineFlight, Figure4) {
   const Overrides two_goals = {"planner=ego", "ego.goal_rate=2"};
   Overrides following = two_goals;
-  following.push_back("descent=none");
+  following.push_back("task=follow");
+  following.push_back("follow.time=0");
   const TrialResult follows = Fly("figure4", following, 1);
   ASSERT_TRUE(follows.following);
   EXPECT_GT(follows.following->mean_error_m, 0.4);

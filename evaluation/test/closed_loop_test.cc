@@ -54,7 +54,7 @@ TEST(ClosedLoop, NoRatioBeyondTheLimitsAndNoneWithoutALanding) {
   EXPECT_DOUBLE_EQ(*result.time_ratio(), 1.5);
   result.outcome = Outcome::kTimeout;
   EXPECT_FALSE(result.time_ratio().has_value());
-  const Scenario following = Shipped("open", {"descent=none", "timeout=1"});
+  const Scenario following = Shipped("open", {"task=follow", "follow.time=0", "timeout=1"});
   EXPECT_FALSE(RunTrial(following, 1, StandardRegistries()).t_star_s.has_value());
 }
 
@@ -186,7 +186,7 @@ TEST(ClosedLoop, OverASlowPadTheCameraLooksAlongItsWay) {
 }
 
 TEST(ClosedLoop, DescentNoneFollowsAndNeverLands) {
-  const Scenario scenario = Shipped("open", {"descent=none", "timeout=25"});
+  const Scenario scenario = Shipped("open", {"task=follow", "follow.time=0", "timeout=25"});
   TrialRecord record;
   const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
   EXPECT_EQ(result.outcome, Outcome::kFollowed);

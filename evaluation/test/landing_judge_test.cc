@@ -274,20 +274,20 @@ TEST_F(LandingJudgeTest, TimeRunsOutWithoutAPlan) {
 }
 
 TEST_F(LandingJudgeTest, FollowingUntilTheTimeIsUpIsWhatWasAskedFor) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, true);
+  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 0.0});
   Run(30.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kFollowed);
 }
 
 TEST_F(LandingJudgeTest, FollowingFromFarOffIsNone) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, true);
+  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 0.0});
   sample_.vehicle.p_WB.x() = 4.0;
   Run(30.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kTimeout);
 }
 
 TEST_F(LandingJudgeTest, FollowingWithoutAPlanIsInfeasible) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, true);
+  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 0.0});
   sample_.plan_valid = false;
   Run(30.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kInfeasible);
@@ -336,6 +336,38 @@ TEST(OutcomeText, EveryClassHasItsOwnNameAndSentence) {
   EXPECT_FALSE(OutcomeNamed("sunk"));
   EXPECT_EQ(static_cast<int>(names.size()), last + 1);
   EXPECT_EQ(static_cast<int>(sentences.size()), last + 1);
+}
+
+TEST_F(LandingJudgeTest, AStayIsDoneAfterItsTimeWithoutABreak) {
+  for (const Outcome done : {Outcome::kFollowed, Outcome::kArrived}) {
+    judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{done, 3.0});
+    sample_.t = 0.0;
+    sample_.at_target = true;
+    Run(2.9);
+    EXPECT_FALSE(judge_.outcome());
+    sample_.at_target = false;
+    Run(kDt);
+    sample_.at_target = true;
+    const double again = sample_.t;
+    Run(5.0);
+    EXPECT_EQ(judge_.outcome(), done);
+    EXPECT_NEAR(sample_.t - again, 3.0, 0.01);
+  }
+}
+
+TEST_F(LandingJudgeTest, AStayThatIsNeverLongEnoughIsATimeout) {
+  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 3.0});
+  for (int i = 0; i < 20; ++i) {
+    sample_.at_target = i % 2 == 0;
+    Run(1.1);
+  }
+  EXPECT_EQ(judge_.outcome(), Outcome::kTimeout);
+}
+
+TEST_F(LandingJudgeTest, ThePadIsAnObstacleOnTheWayToAGoal) {
+  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kArrived, 1.0});
+  Touch();
+  EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
 }
 
 }  // namespace

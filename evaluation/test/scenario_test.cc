@@ -90,7 +90,7 @@ TEST_F(ScenarioTest, EveryKeyRoundTrips) {
       "start: {position: [0.1, -0.2, 3.3], position_spread: [1, 1, 0.25], yaw_random: true}\n"
       "gps: {sigma: 1e-3}\nown_state: estimated\n"
       "own: {imu.noise: 2, gps: {sigma: 0.3, outage: [1, 2]}}\nestimator: {pad: "
-      "paper}\ncontroller: paper\ndescent: none\n"
+      "paper}\ncontroller: paper\ntask: follow\n"
       "solver: {arrival: free}\nseed: 9007199254740991\n"
       "obstacles:\n  boxes:\n    - {centre: [-8, -3], size: [1, 2, 3]}\n"
       "  cylinders:\n    - {centre: [-5, 0.5], radius: 0.3, height: 4}\n");
@@ -187,7 +187,7 @@ TEST_F(ScenarioTest, AnOutOfRangeValueNamesTheRange) {
 }
 
 TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
-  EXPECT_THAT(Refusal("descent: steep\n"), HasSubstr("descent must be none, vertical or planned"));
+  EXPECT_THAT(Refusal("descent: steep\n"), HasSubstr("descent must be vertical or planned"));
   EXPECT_THAT(Refusal("pad: {motion: figure8}\n"),
               HasSubstr("straight_turn, circle, line, static, figure_eight, "));
   EXPECT_THAT(Refusal("solver: {backend: newton}\n"),

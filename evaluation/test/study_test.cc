@@ -154,7 +154,7 @@ class WrittenStudy : public testing::Test {
 TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
   const StudyFile file =
       Load(std::string(kHead) +
-           "set: {timeout: 9, descent: none}\n"
+           "set: {timeout: 9, task: follow}\n"
            "cells: [{name: c, scenario: open, set: {timeout: 8}}]\n"
            "methods: [{name: a, set: {timeout: 7}, quick: 2, record: [c]}, {name: b}]\n");
   const StudyPlan plan = PlanStudy(file, {.quick = true}, 4, kRegistries);
@@ -164,7 +164,7 @@ TEST_F(WrittenStudy, AMethodsKeyCountsNotTheCells) {
   EXPECT_EQ(plan.parts[0].trials, 2);
   EXPECT_EQ(plan.campaign.trials.at(0).scenario.timeout, 7.0);
   EXPECT_EQ(plan.campaign.trials.at(2).scenario.timeout, 8.0);
-  EXPECT_EQ(plan.campaign.trials.at(2).scenario.descent, DescentKind::kNone);
+  EXPECT_EQ(plan.campaign.trials.at(2).scenario.task, TaskKind::kFollow);
 }
 
 // A part that is flown again is the part of the whole.

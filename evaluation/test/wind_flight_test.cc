@@ -23,7 +23,7 @@ using Overrides = std::vector<std::string>;
 // Steady wind to the north over a pad that stands ahead of the start (what is straight below the camera does
 // not see, and the vehicle does not sink into it), or drives a circle there.
 const Overrides kNorthWind = {"wind.direction_random=false", "wind.direction_deg=90"};
-const Overrides kAbovePad = {"descent=none", "pad.motion=static", "pad.start=[3.0, 0.2]",
+const Overrides kAbovePad = {"task=follow", "follow.time=0", "pad.motion=static", "pad.start=[3.0, 0.2]",
                              "pad.prediction=oracle"};
 
 Overrides Join(Overrides a, const Overrides& b, const Overrides& c = {}) {
@@ -128,7 +128,7 @@ TEST(WindFlight, GustsDoNotBlowALightVehicleOffItsReference) {
 
 TEST(WindFlight, OnACircleTooWithTheEstimatedMomentAndForce) {
   const TrialResult result =
-      Fly(Join({"descent=none", "pad.motion=circle", "pad.speed=1", "pad.turn_rate=0.5",
+      Fly(Join({"task=follow", "follow.time=0", "pad.motion=circle", "pad.speed=1", "pad.turn_rate=0.5",
                 "pad.start=[3.0, 0.2]", "pad.prediction=oracle"},
                kNorthWind, {"wind.mean=11", "timeout=22"}));
   ASSERT_TRUE(result.following);

@@ -178,7 +178,7 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
     if (log.attempts.size() < 2 || log.attempts[0].rounds.size() < 2) continue;
     const Limits& limits = replanner.options().limits;
     const UniformBspline& before = log.attempts[0].rounds.front().curve;
-    EXPECT_EQ(before.segments(), SegmentsFor(before.duration(), limits, 1.0)) << trial;
+    EXPECT_EQ(before.segments(), SegmentsFor(before.duration(), limits, 1.0, ReplannerOptions().segment_length)) << trial;
     for (std::size_t i = 1; i < log.attempts.size(); ++i) {
       const AttemptLog& attempt = log.attempts[i];
       if (attempt.rounds.empty()) continue;  // the pad is blocked then
@@ -187,10 +187,10 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
       EXPECT_TRUE(attempt.rounds.front().pairs.empty()) << "everything is decided anew, " << trial;
       const UniformBspline& curve = attempt.rounds.front().curve;
       const double counted = std::min(curve.duration(), 1.2 * before.duration());
-      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments))
+      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments, ReplannerOptions().segment_length))
           << trial;
       held_back +=
-          curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments);
+          curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments, ReplannerOptions().segment_length);
     }
     planned += status == ReplanStatus::kPlanned;
   }

@@ -207,7 +207,7 @@ def test_land_json_is_one_document_with_every_field(run):
 
 
 def test_following_is_status_0_and_says_how_well(run):
-    follow = ("land", "open", "--set", "descent=none", "--set", "timeout=25", "--set", "pad.motion=line")
+    follow = ("fly", "open", "--set", "task=follow", "--set", "follow.time=0", "--set", "timeout=25", "--set", "pad.motion=line")
     done = run(*follow, "--json")
     assert done.returncode == 0, done.stdout + done.stderr
     document = json.loads(done.stdout)

@@ -77,7 +77,7 @@ class Sweep:
             self.cells[tuple(place[key] for key in self.lists)] = Cell(*figures)
         self._trials = {}
         for key, *trial in db.execute(
-            "SELECT key, value, time_to_land_s, outcome IN ('landed', 'followed') "
+            "SELECT key, value, time_to_land_s, outcome IN ('landed', 'followed', 'arrived') "
             "FROM trial JOIN variation USING(trial) ORDER BY trial"
         ):
             self._trials.setdefault(key, []).append(trial)

@@ -22,8 +22,8 @@ ALL_CELLS = "all"
 
 
 def succeeded(trials):
-    """What counts: landed; where nothing is to land, followed."""
-    return trials["landed"] | (trials["outcome"] == "followed")
+    """What counts: that the task is done."""
+    return trials["outcome"].isin(["landed", "followed", "arrived"])
 
 
 def not_cut_short(trials):

@@ -24,7 +24,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-struct LandArguments {
+struct FlyArguments {
   ScenarioArguments scenario;
   std::string record;
   std::string plot;
@@ -50,11 +50,17 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
       text += fmt::format("  mean |error|, last 5 s {:.3f} m in x, {:.3f} m in y\n", last->x(),
                           last->y());
     }
+  } else if (r.outcome == Outcome::kArrived) {
+    text = fmt::format("arrived at the goal of {} after {:.2f} s (seed {})\n", scenario.name,
+                       r.simulated_s, r.seed);
   } else if (r.succeeded()) {
     text = fmt::format("followed the pad of {} for {:.2f} s (seed {})\n", scenario.name,
                        r.simulated_s, r.seed);
   } else {
-    text = fmt::format("{}: not landed on {} within {:.2f} s (seed {}). {}\n", ToString(r.outcome),
+    const char* missed = scenario.task == TaskKind::kLand     ? "not landed on"
+                         : scenario.task == TaskKind::kFollow ? "did not follow the pad of"
+                                                              : "not at the goal of";
+    text = fmt::format("{}: {} {} within {:.2f} s (seed {}). {}\n", ToString(r.outcome), missed,
                        scenario.name, r.simulated_s, r.seed, r.detail);
   }
   if (r.following) {
@@ -112,7 +118,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   return text;
 }
 
-void CheckOutputs(const LandArguments& arguments) {
+void CheckOutputs(const FlyArguments& arguments) {
   if (!arguments.record.empty() && arguments.record == arguments.plot) {
     throw BadInput(fmt::format("--record and --plot are the same file, {}.", arguments.record));
   }
@@ -122,8 +128,7 @@ void CheckOutputs(const LandArguments& arguments) {
 }
 
 // The result is printed first: a file or picture that fails does not take it along.
-int Land(const LandArguments& arguments, const Registries& registries) {
-  const Scenario scenario = arguments.scenario.Load(registries);
+int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
   CheckOutputs(arguments);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
@@ -143,11 +148,11 @@ int Land(const LandArguments& arguments, const Registries& registries) {
   return result.succeeded() ? kDone : kFellShort;
 }
 
-}  // namespace
-
-void AddLandCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("land", "Fly one closed-loop landing");
-  const auto arguments = std::make_shared<LandArguments>();
+// The command of any task, or, with `lands`, of landings alone.
+void AddFlight(Command app, const char* name, const char* help, bool lands,
+               const Registries& registries, CommandRun* run) {
+  const Command command = app.AddCommand(name, help);
+  const auto arguments = std::make_shared<FlyArguments>();
   arguments->scenario.AddTo(command, false);
   command.Add("--seed", arguments->scenario.seed, "Short for --set seed=").TypeName("S");
   command.AddFile("--record", &arguments->record,
@@ -160,9 +165,24 @@ void AddLandCommand(Command app, const Registries& registries, CommandRun* run) 
       "map.prior",
       "F.bt|F.ot");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
-  command.OnChosen([arguments, &registries, run] {
-    *run = [arguments, &registries] { return Land(*arguments, registries); };
+  command.OnChosen([arguments, lands, &registries, run] {
+    *run = [arguments, lands, &registries] {
+      const Scenario scenario = arguments->scenario.Load(registries);
+      if (lands && scenario.task != TaskKind::kLand) {
+        throw BadInput(fmt::format("land is for task: land; `touchdown fly` flies task: {} too.",
+                                   ToString(scenario.task)));
+      }
+      return Fly(*arguments, scenario, registries);
+    };
   });
+}
+
+}  // namespace
+
+void AddFlyCommands(Command app, const Registries& registries, CommandRun* run) {
+  AddFlight(app, "fly", "Fly one scenario in closed loop, whatever its task", false, registries,
+            run);
+  AddFlight(app, "land", "The same for task: land", true, registries, run);
 }
 
 }  // namespace touchdown::evaluation

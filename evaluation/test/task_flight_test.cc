@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Flights that are to do something else than to land: they end when it is done, and not before.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/scenario_world.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using ::testing::HasSubstr;
+
+Scenario Shipped(const std::string& name, const std::vector<std::string>& overrides) {
+  return LoadScenario(FindScenario(name), overrides, StandardRegistries());
+}
+
+// The baseline is told of a moving goal now and then, and is never near it.
+TEST(TaskFlight, AGoalIsReachedStandingAndMoving) {
+  constexpr const char* kStands = "go_to.velocity=[0,0,0]";
+  for (const char* velocity : {kStands, "go_to.velocity=[0.4,-0.3,0.05]"}) {
+    for (const char* planner : {"planner=landing", "planner=ego"}) {
+      if (planner == std::string("planner=ego") && velocity != std::string(kStands)) continue;
+      const Scenario scenario =
+          Shipped("open", {"task=go_to", "go_to.goal=[5,2,1.2]", velocity, planner});
+      TrialRecord record;
+      const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
+      ASSERT_EQ(result.outcome, Outcome::kArrived) << planner << ": " << result.detail;
+      EXPECT_TRUE(result.succeeded());
+      EXPECT_FALSE(result.t_star_s || result.following || result.touchdown);
+      // It was there for the second that was asked for, and the flight went on no longer.
+      const planning::MovingGoal goal = GoalOf(scenario);
+      for (const RecordSample& sample : record.samples) {
+        const double off = (sample.vehicle.p_WB - goal.At(sample.t).p_WP).norm();
+        const double left = result.simulated_s - sample.t;
+        if (left >= 1.0) continue;
+        EXPECT_LE(off, scenario.go_to.distance + 1e-9) << sample.t;
+      }
+    }
+  }
+}
+
+TEST(TaskFlight, AGoalAmongObstaclesIsReachedWithoutTouchingOne) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const TrialResult result = RunTrial(Shipped("goal", {}), seed, StandardRegistries());
+    EXPECT_EQ(result.outcome, Outcome::kArrived) << seed << ": " << result.detail;
+    EXPECT_EQ(result.safety->uncertified_steps, 0);
+  }
+}
+
+TEST(TaskFlight, AGoalThatFliesAwayIsNotReached) {
+  const Scenario scenario = Shipped("open", {"task=go_to", "go_to.velocity=[6,0,0]", "timeout=8"});
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries());
+  EXPECT_EQ(result.outcome, Outcome::kInfeasible);
+  EXPECT_FALSE(result.succeeded());
+}
+
+TEST(TaskFlight, FollowingEndsWhenItIsDone) {
+  const Scenario scenario = Shipped("open", {"task=follow", "follow.time=4"});
+  TrialRecord record;
+  const TrialResult result = RunTrial(scenario, 1, StandardRegistries(), &record);
+  ASSERT_EQ(result.outcome, Outcome::kFollowed) << result.detail;
+  EXPECT_LT(result.simulated_s, 20.0);
+  for (const RecordSample& sample : record.samples) {
+    if (sample.t < result.simulated_s - 4.0) continue;
+    EXPECT_LE((sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm(), 0.5) << sample.t;
+  }
+}
+
+TEST(TaskFlight, WhoIsNeverNearEnoughDoesNotFollow) {
+  const Scenario scenario = Shipped("open", {"task=follow", "planner=ego", "ego.goal_rate=1",
+                                             "follow.distance=0.2", "timeout=20"});
+  EXPECT_EQ(RunTrial(scenario, 1, StandardRegistries()).outcome, Outcome::kTimeout);
+}
+
+TEST(TaskFlight, AGoalThatCannotBeReachedIsRefused) {
+  const auto refusal = [](const std::string& goal) {
+    try {
+      Shipped("straight_turn", {"task=go_to", "go_to.goal=" + goal});
+    } catch (const BadInput& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(refusal("[8,3,1.2]"), HasSubstr("obstacles.boxes[1], and is at -"));
+  EXPECT_THAT(refusal("[8,0,0.2]"), HasSubstr("from the floor of plans to planning.ceiling"));
+  EXPECT_THAT(refusal("[8,0,12]"), HasSubstr("not '12'"));
+  EXPECT_EQ(refusal("[8,0,1.2]"), "accepted");
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
