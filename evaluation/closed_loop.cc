@@ -127,7 +127,6 @@ class Trial {
         record_(record),
         samples_(samples) {
     result_.seed = seed;
-    result_.backend = BackendName(scenario, planner);
     if (samples_ != nullptr) perception_.LogPadTo(&samples_->pad.arrivals);
     if (record_ != nullptr) {
       record_->map_resolution = perception_.map().resolution();

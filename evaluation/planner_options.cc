@@ -144,10 +144,6 @@ const PlannerEntry& PlannerOf(const Scenario& scenario, const Registries& regist
   return PartNamed(registries.planners, scenario.planner, "planner");
 }
 
-std::string BackendName(const Scenario& scenario, const PlannerEntry& planner) {
-  return planner.solver.empty() ? scenario.solver.backend : planner.solver;
-}
-
 double PlannerRate(const Scenario& scenario, const PlannerEntry& planner) {
   return planner.rate > 0.0 ? planner.rate : scenario.planning.rate;
 }

@@ -22,9 +22,6 @@ std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
 /// Its entry. Throws std::invalid_argument if there is none of that name.
 const PlannerEntry& PlannerOf(const Scenario& scenario, const Registries& registries);
 
-/// The solver of that planner.
-std::string BackendName(const Scenario& scenario, const PlannerEntry& planner);
-
 /// How often it is to be called [Hz]: at its own rate, or at planning.rate.
 double PlannerRate(const Scenario& scenario, const PlannerEntry& planner);
 

@@ -9,7 +9,6 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/replay.h"
 #include "touchdown/evaluation/statistics.h"
 #include "touchdown/solvers/allocation_count.h"
@@ -24,11 +23,9 @@ constexpr int kWarmUp = 20;
 // A flight of a minute has about 2 spans a depth image and 8 a replanning step; more are dropped.
 constexpr std::size_t kSpansOfARun = 1 << 16;
 
-Profile Begin(const Scenario& scenario, const ProfileOptions& options,
-              const Registries& registries) {
+Profile Begin(const Scenario& scenario, const ProfileOptions& options) {
   Profile profile;
   profile.scenario = scenario;
-  profile.backend = BackendName(scenario, PlannerOf(scenario, registries));
   profile.deadline_ms = options.deadline_ms.value_or(DefaultDeadlineMs(scenario));
   profile.allocations_counted = solvers::AllocationCount() >= 0;
   return profile;
@@ -114,7 +111,7 @@ double DefaultDeadlineMs(const Scenario& scenario) {
 
 Profile ProfileFlights(const Scenario& scenario, const ProfileOptions& options,
                        const Registries& registries, const ProfileProgress& progress) {
-  Profile profile = Begin(scenario, options, registries);
+  Profile profile = Begin(scenario, options);
   for (int i = 0; i < options.trials; ++i) {
     ProfileRun run;
     run.seed = scenario.seed + static_cast<std::uint64_t>(i);
@@ -135,7 +132,7 @@ Profile ProfileRecord(const RecordedFlight& flight, const ProfileOptions& option
   if (flight.plans.empty()) {
     throw BadInput(fmt::format("{}: it holds no replanning step.", flight.path));
   }
-  Profile profile = Begin(flight.scenario, options, registries);
+  Profile profile = Begin(flight.scenario, options);
   profile.record = flight.path;
   Replay replay(flight, registries);
   for (int step = 0; step < replay.steps(); ++step) {

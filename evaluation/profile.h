@@ -28,7 +28,6 @@ struct ProfileRun {
 struct Profile {
   Scenario scenario;
   std::string record;  ///< replayed from; empty: flown
-  std::string backend;
   double deadline_ms = 0.0;
   std::vector<ProfileRun> runs;
   planning::SpanLog spans;  ///< of all runs, in their order, if they were asked for

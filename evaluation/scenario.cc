@@ -189,6 +189,7 @@ void SuitDefaults(const Registries& registries, ScenarioSource* source) {
   Scenario& s = source->scenario;
   const auto given = [source](const char* key) { return source->where.count(key) != 0; };
   const PlannerEntry* planner = FindPart(registries.planners, s.planner);
+  if (planner && !planner->solver.empty()) s.solver.backend = planner->solver;
   if (!given("descent") && planner && !planner->lands) s.descent = DescentKind::kVertical;
   if (!given("solver.arrival")) {
     s.solver.arrival = PlansContact(s) ? ArrivalKind::kFree : ArrivalKind::kFixed;

@@ -160,6 +160,7 @@ void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& term
 void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& model,
                  const Registries& registries) {
   const Scenario& s = source.scenario;
+  if (!PlannerOf(s, registries).solver.empty()) return;  // it has no choice
   const auto known = [&](const solvers::BackendEntry& entry) {
     return entry.name == s.solver.backend;
   };

@@ -105,7 +105,7 @@ void AddPlanningKeys(KeyList& keys) {
                       "plan, else at the curve between the ends alone",
                       TOUCHDOWN_AT(planning.warm_start)));
   keys.push_back(Text("solver.backend", "a name of `touchdown list backends`",
-                      "optimiser of planner landing; the baseline has lbfgs",
+                      "optimiser of planner landing; planners without a choice have their own",
                       TOUCHDOWN_AT(solver.backend)));
   keys.push_back(Choice("solver.arrival", {"fixed", "free"},
                         "arrival time chosen before the solve or optimised in it; unless it is "

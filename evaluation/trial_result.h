@@ -67,7 +67,6 @@ struct TrialResult {
   /// What ended it: the last thing touched but by a foot on the deck ("obstacle 3", "hull-deck"), of a
   /// flight that stood the last reason for no new plan, else the mode. Otherwise empty.
   std::string cause;
-  std::string backend;                       ///< of the planner that flew
   std::optional<Touchdown> touchdown;        ///< first contact of a foot with the pad
   std::optional<double> mean_abs_error_x_m;  ///< last 5 s before first contact, world axes
   std::optional<double> mean_abs_error_y_m;

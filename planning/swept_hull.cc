@@ -341,7 +341,9 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
   Sweep sweep;
   Tube tube(hull, start);
   Path path(curve), ahead(curve);
-  Stretch stretch(hull.radius());
+  // Of what is thinner than its room two balls of that room hold as much at least.
+  const double radius = std::max(hull.radius(), 0.5 * kSweepRoom);
+  Stretch stretch(radius);
   Eigen::Vector3d before = start.p_W;
   double t_before = t_from;
   const double below = std::isfinite(t_contact) ? kFaceSlack : 0.0;
@@ -350,7 +352,7 @@ Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const H
            tube.Holds(p, t, &sweep);
   };
   // One step is a stretch that two balls hold.
-  const double longest = std::sqrt(8.0 * hull.radius() * kSweepRoom);
+  const double longest = std::sqrt(8.0 * radius * kSweepRoom);
   const double step = std::min(kStep, 0.9 * longest / std::max(FastestLeg(curve), 1e-9));
   const int steps = std::max(1, static_cast<int>(std::ceil((t_to - t_from) / step)));
   for (int i = 0; i <= steps; ++i) {

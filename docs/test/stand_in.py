@@ -25,7 +25,7 @@ GIVEN = {"sweep": ["--trials"], "compare": ["--problems", "--repeats"],
          "study pad": ["--trials"], "study hostile": ["--flights"], "study tags": ["--poses"]}  # fmt: skip
 # Simulated seconds of each flight: most single ones land in that time, many of a kind need not. `study
 # pad` draws nothing of shorter ones.
-SECONDS = {"land": 15, "profile": 15, "sweep": 2, "study pad": 6, "study hostile": 3}
+SECONDS = {"land": 15, "fly": 15, "profile": 15, "sweep": 2, "study pad": 6, "study hostile": 3}
 # These fly the first trial of their quick form.
 STUDIES = ("study paper", "study solvers", "study ablation", "study run")
 # A command that needs more than this in its short form needs a rule here.

@@ -15,7 +15,7 @@ from documents import ROOT, Document, documents
 
 STAND_IN = Path(__file__).resolve().parent / "stand_in.py"
 CALLED = ["demo.sh", "test.sh", "build/release/bin/touchdown", "build/release/estimation/estimation_test",
-          "build/release/sim/sim_test", "build/own/own_program", "build/own_backend/own_backend",
+          "build/release/sim/sim_test", "build/own/own_program", "build/own_parts/own_parts", "build/own_backend/own_backend",
           "build/go_to_goal/go_to_goal", "bin/cmake"]  # fmt: skip
 # Words that stand for something: NAME, FILE, N, K=V.
 PLACEHOLDER = re.compile(r"\b[A-Z]+\b|\.\.\.|…")
@@ -159,7 +159,7 @@ def test_keys_named_in_prose_exist():
     [
         ("build/release/bin/touchdown land open --no-such-option", "--no-such-option"),
         ("build/release/bin/touchdown sweep open --set pad.sped=1", "pad.sped"),
-        ("build/release/bin/touchdown list terms --json; build/release/bin/touchdown fly", "fly"),
+        ("build/release/bin/touchdown list terms --json; build/release/bin/touchdown flutter", "flutter"),
         ("touchdown list terms", "touchdown: command not found"),
         ("mv out out2", "mv: command not found"),
         ("build/release/bin/no_such_program", "No such file"),

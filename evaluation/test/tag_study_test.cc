@@ -54,7 +54,8 @@ TEST(TagStudy, NothingIsSaidOfHeightsWithoutAView) {
   EXPECT_FALSE(Summarise(none.rows, kLowestView, kHighestView).nees.has_value());
   EXPECT_EQ(TagStudyText({none}).find("nan"), std::string::npos);
   EXPECT_NE(TagStudyText({none}).find("      -      -       -\n"), std::string::npos);
-  for (const auto& bin : TagStudyJson({none})["parts"][0]["heights"]) {
+  const auto json = TagStudyJson({none});
+  for (const auto& bin : json["parts"][0]["heights"]) {
     EXPECT_TRUE(bin["nees_per_dof"].is_null());
   }
 }

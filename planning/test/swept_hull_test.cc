@@ -152,6 +152,21 @@ TEST(SweptHull, WhereAProvenPairHasLedIsNoEscape) {
   EXPECT_TRUE(Look(away, hull).start.occupied);
 }
 
+// A hull of no size, too: it was looked at where it begins and ends.
+TEST(SweptHull, APointDoesNotPassAWallEither) {
+  OccupancyMap map(NoGround());
+  map.MarkRestFree();
+  const FreeSpace space = SpaceOf(map);
+  HullSpace point = HullOf(space);
+  point.hull_radius = point.margin = 0.0;
+  const UniformBspline through = Between({}, {{2.0, 0.0, 0.0}, {0, 0, 0}, {0, 0, 0}}, 2.0);
+  EXPECT_TRUE(Look(through, point).proven);
+  const CellIndex low = map.CellOf({1.0, -1.0, -1.0});
+  ForEachCell({low, low + CellIndex(1, 20, 20)},
+              [&](const CellIndex& cell) { map.SetState(cell, CellState::kOccupied); });
+  EXPECT_FALSE(Look(through, point).proven);
+}
+
 TEST(SweptHull, LeavesOnlyWhatItReachedAlready) {
   Draw draw(3);
   int leaves = 0, refused = 0;

@@ -26,7 +26,7 @@ def test_help_lists_what_is_built(run):
     "arguments, parts",
     [
         ((), ["subcommand"]),
-        (("fly",), ["fly", "land", "sweep", "list"]),
+        (("flutter",), ["flutter", "fly", "land", "sweep", "list"]),
         (("land", "--no-such-option"), ["--no-such-option"]),
         (("land", "no_such_scenario"), ["no_such_scenario", "straight_turn"]),
         (("land", "no/such/file.yaml"), ["no/such/file.yaml"]),
@@ -224,7 +224,7 @@ def test_a_flight_of_the_baseline_cannot_be_asked_again(run, tmp_path):
     for command in (("plan", "--from", "x.db:0"), ("profile", "--from", "x.db")):
         done = run(*command, cwd=tmp_path)
         assert done.returncode == 2
-        assert one_sentence(done.stderr) and "landing" in done.stderr, done.stderr
+        assert one_sentence(done.stderr) and "planner ego cannot be asked again" in done.stderr, done.stderr
 
 
 def test_fidelity_of_the_baseline_is_a_part_of_its_own(run):
