@@ -99,7 +99,7 @@ OwnVector OwnErrorBetween(const OwnState& state, const OwnState& truth) {
 Eigen::Vector3d OwnVelocityInB(const OwnState& state,
                                Eigen::Matrix<double, 3, kOwnErrors>* jacobian) {
   const Eigen::Matrix3d R_BW = state.q_WB.conjugate().toRotationMatrix();
-  const Eigen::Vector3d v_B = R_BW * state.v_WB;
+  Eigen::Vector3d v_B = R_BW * state.v_WB;
   jacobian->setZero();
   jacobian->block<3, 3>(0, kVelocityError) = R_BW;
   jacobian->block<3, 3>(0, kAttitudeError) = Skew(v_B);

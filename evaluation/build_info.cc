@@ -57,7 +57,9 @@ using Pairs = std::vector<std::pair<std::string, std::string>>;
 std::string Hash(const Pairs& facts) {
   std::ifstream file("/proc/self/exe", std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  for (const auto& [key, value] : facts) bytes += key + '\0' + value + '\0';
+  for (const auto& [key, value] : facts) {
+    bytes.append(key).append(1, '\0').append(value).append(1, '\0');
+  }
   return HashOf(bytes);
 }
 

@@ -143,7 +143,8 @@ SweepTrial MakeTrial(const std::string& scenario_path, const std::vector<std::st
   SweepTrial trial;
   trial.scenario = LoadScenario(scenario_path, overrides, registries);
   trial.command =
-      fmt::format("touchdown land {}", Quoted(ScenarioWord(scenario_path, trial.scenario.name)));
+      fmt::format("touchdown {} {}", trial.scenario.task == TaskKind::kLand ? "land" : "fly",
+                  Quoted(ScenarioWord(scenario_path, trial.scenario.name)));
   for (const std::string& text : overrides) {
     if (text.rfind("seed=", 0) != 0) trial.command += " --set " + Quoted(text);
   }

@@ -52,7 +52,9 @@ std::string HashOfPlan(const Campaign& campaign) {
   ScenarioHashes hashes;
   for (const SweepTrial& trial : campaign.trials) {
     text += fmt::format("{} {} ", trial.seed, hashes.Of(trial.scenario));
-    for (const auto& [key, value] : trial.varied) text += key + '\0' + value + '\0';
+    for (const auto& [key, value] : trial.varied) {
+      text.append(key).append(1, '\0').append(value).append(1, '\0');
+    }
   }
   return HashOf(text);
 }

@@ -132,6 +132,10 @@ class Trial {
       record_->map_resolution = perception_.map().resolution();
       record_->map_size = perception_.map().size();
       record_->outside = OutsideFilesOf(scenario);
+      record_->hover_W = perception_.own().now().p_WB;
+      if (planner.solver.empty()) {
+        record_->zones = ZonesOf(scenario, world_.model(), registries.terms);
+      }
     }
   }
 
@@ -196,13 +200,17 @@ class Trial {
     if (record_ != nullptr) before = pilot_.replanner_state();
     Timed(&result_.timing.planning_cpu_s,
           [&] { plan = pilot_.Replan(believed, perception_.pad_filter(), perception_.map()); });
-    if (plan == nullptr) return;
+    if (plan == nullptr) {
+      if (record_ != nullptr && pilot_.idle()) ++record_->idle_steps;
+      return;
+    }
     ++result_.replans;
     ++result_.replans_by_status[planning::ToString(plan->status)];
     no_plan_reason_.clear();
     if (plan->reason != planning::ReplanReason::kNone) {
-      const std::string reason(plan->detail);
-      no_plan_reason_ = reason.empty() ? planning::ToString(plan->reason) : reason;
+      const bool named =
+          !plan->detail.empty() && plan->reason != planning::ReplanReason::kInvalidInput;
+      no_plan_reason_ = named ? std::string(plan->detail) : planning::ToString(plan->reason);
       ++result_.replans_by_reason[no_plan_reason_];
     }
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
@@ -238,7 +246,7 @@ class Trial {
     sample.pad_known = task_ == TaskKind::kGoTo || perception_.pad_filter().Converged(vehicle.t);
     sample.plan_valid = pilot_.plan_valid(vehicle.t);
     sample.at_target = AtTarget(vehicle, pad);
-    sample.stood = stand_watch_.Stands(vehicle.t, vehicle.p_WB);
+    sample.stood = stand_watch_.Stands(vehicle.t, vehicle.p_WB) && !sample.at_target;
 
     const bool in_flight = !judge_.touchdown();
     if (sample_clock_.Due(vehicle.t)) {

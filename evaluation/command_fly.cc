@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown land: one closed-loop landing, its summary, and on request its record and picture.
+// touchdown fly and land: one closed-loop flight, its summary, and on request its record and picture.
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -54,7 +54,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
     text = fmt::format("arrived at the goal of {} after {:.2f} s (seed {})\n", scenario.name,
                        r.simulated_s, r.seed);
   } else if (r.succeeded()) {
-    text = fmt::format("followed the pad of {} for {:.2f} s (seed {})\n", scenario.name,
+    text = fmt::format("followed the pad of {}: done after {:.2f} s (seed {})\n", scenario.name,
                        r.simulated_s, r.seed);
   } else {
     const char* missed = scenario.task == TaskKind::kLand     ? "not landed on"

@@ -38,9 +38,10 @@ void Fill(const sim::ObstacleField& field, const Eigen::Vector2d& centre,
   for (const sim::Obstacle& obstacle : field.obstacles()) {
     if (const auto* columns = std::get_if<sim::VoxelColumns>(&obstacle)) {
       for (int k = 0; k < columns->count_x * columns->count_y; ++k) {
+        const int row = k / columns->count_x;
         Eigen::Vector3d p =
-            columns->corner + columns->cell * Eigen::Vector3d(k % columns->count_x + 0.5,
-                                                              k / columns->count_x + 0.5, 0.0);
+            columns->corner +
+            columns->cell * Eigen::Vector3d(k % columns->count_x + 0.5, row + 0.5, 0.0);
         if (!known(p)) continue;
         for (p.z() = 0.5 * kCell; p.z() < columns->heights[k] + 0.5 * kCell; p.z() += kCell) {
           grid->SetOccupied(p);

@@ -74,7 +74,7 @@ const char* Explain(Outcome outcome) {
     case Outcome::kLanded:
       return "The vehicle rests upright and disarmed on the pad.";
     case Outcome::kCollision:
-      return "The vehicle touched something before it had landed.";
+      return "The vehicle touched something before it was done.";
     case Outcome::kOffPad:
       return "The feet came down beside the pad.";
     case Outcome::kHardTouchdown:
@@ -90,7 +90,7 @@ const char* Explain(Outcome outcome) {
     case Outcome::kLostPad:
       return "Time ran out while the pad's position was not known.";
     case Outcome::kInfeasible:
-      return "Time ran out while no certified plan to the pad was found.";
+      return "Time ran out while no certified plan was found.";
     case Outcome::kFollowed:
       return "The vehicle stayed above the pad as long as it was to.";
     case Outcome::kArrived:
@@ -109,6 +109,11 @@ const char* Explain(Outcome outcome) {
       return "The trial did not end in the time that it was given.";
   }
   return "The program failed in this trial.";
+}
+
+bool IsSuccess(Outcome outcome) {
+  return outcome == Outcome::kLanded || outcome == Outcome::kFollowed ||
+         outcome == Outcome::kArrived;
 }
 
 bool IsLost(Outcome outcome) {
@@ -176,6 +181,9 @@ bool LandingJudge::Stayed(const JudgeSample& sample) {
 
 std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
   if (sample.hull_on_deck) return Outcome::kCollision;
+  // On the way to a goal the pad is one of the obstacles.
+  const bool touches = sample.beside_pad || sample.foot_on_pad;
+  if (touches && task_.done == Outcome::kArrived) return Outcome::kCollision;
   if (sample.beside_pad) {
     const double distance = (sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm();
     return distance <= rule_.off_pad_distance ? Outcome::kOffPad : Outcome::kCollision;

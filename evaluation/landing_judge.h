@@ -41,6 +41,8 @@ const char* ToString(Outcome outcome);
 std::optional<Outcome> OutcomeNamed(std::string_view name);
 /// One sentence for people.
 const char* Explain(Outcome outcome);
+/// The task is done.
+bool IsSuccess(Outcome outcome);
 /// It says nothing of the flight: the program or its process failed. Such a trial may be flown again.
 bool IsLost(Outcome outcome);
 

@@ -62,10 +62,21 @@ const Entry* FindPart(const std::vector<Entry>& registry, std::string_view name)
 
 /// Throws std::invalid_argument if there is none. `what`: a planner, ...
 template <class Entry>
+const Entry& PartNamed(const std::vector<Entry>&& registry, std::string_view name,
+                       const char* what) = delete;  // it would dangle
+template <class Entry>
 const Entry& PartNamed(const std::vector<Entry>& registry, std::string_view name,
                        const char* what) {
   if (const Entry* entry = FindPart(registry, name)) return *entry;
   throw std::invalid_argument(std::string("there is no ") + what + " " + std::string(name));
+}
+
+/// What an entry makes. Throws std::invalid_argument if that is nothing. `what`: a planner, ...
+template <class Entry, class Setup>
+auto MadeBy(const Entry& entry, const Setup& setup, const char* what) {
+  auto made = entry.make(setup);
+  if (made) return made;
+  throw std::invalid_argument(std::string("the ") + what + " " + entry.name + " made nothing");
 }
 
 }  // namespace touchdown::evaluation

@@ -70,7 +70,8 @@ const ControllerEntry& LawOf(const Scenario& scenario, const Registries& registr
 std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
                                              const estimation::VehicleModel& model,
                                              const ControllerEntry& entry) {
-  return entry.make({{scenario, entry.parameters}, model, TrackingOptions(scenario)});
+  const ControllerSetup setup{{scenario, entry.parameters}, model, TrackingOptions(scenario)};
+  return MadeBy(entry, setup, "controller");
 }
 
 }  // namespace
@@ -198,6 +199,7 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
 const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehicle,
                                             const estimation::PadFilter& filter,
                                             const planning::OccupancyMap& map) {
+  idle_ = false;
   if (mission_.mode == control::MissionMode::kHovering || !mission_.motors_armed) {
     has_plan_ = false;
     return nullptr;
@@ -222,7 +224,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   if (!wants_plan && requested_t_) requested_t_ = vehicle.t;
   const auto begin = std::chrono::steady_clock::now();
   const planning::ReplanResult& result = Ask(wants_plan, filter, map);
-  if (result.idle) return nullptr;
+  idle_ = result.idle;
+  if (idle_) return nullptr;
   look_W_ = result.unseen_W;
   way_ = &result.curve;
   if (result.from_odometry) meets_vehicle_at_ = input.t_start;

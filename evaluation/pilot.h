@@ -71,9 +71,11 @@ class Pilot {
 
   const control::MissionOutputs& mission() const { return mission_; }
   const PilotReplan& last_replan() const { return replan_; }
-  /// What the landing planner remembers before its next step; empty with the baseline. Allocates.
+  /// What the landing planner remembers before its next step; empty with any other. Allocates.
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;
+  /// The planner was asked in the last Replan, and had nothing to do.
+  bool idle() const { return idle_; }
   /// To contact, or away from a deck that is near: Replan is to be called at ClosePlannerRate.
   bool plans_often() const;
 
@@ -128,6 +130,7 @@ class Pilot {
   PilotReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
+  bool idle_ = false;
   bool at_goal_ = false;                           ///< the last step made no plan: the goal is near
   const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
   bool lands_ = false;                             // what is flown ends in contact

@@ -87,6 +87,11 @@ RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registr
   try {
     const TrialDraw draw = DrawTrial(scenario, scenario.seed);
     const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(scenario));
+    if (!PlannerOf(scenario, registries).solver.empty()) {
+      throw BadInput(
+          fmt::format("{}: only plans of the planner landing are drawn, not those of {}.",
+                      scenario.name, scenario.planner));
+    }
     planning::Replanner replanner(PlannerOptions(scenario, model, registries.terms),
                                   registries.backends);
     replanner.CommitHover(draw.p_WB, 0.0);
@@ -136,6 +141,8 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   solved.unseen_W = result.unseen_W;
   for (const solvers::TermCost& term : result.solver.cost_by_term)
     solved.terms.push_back(term.name);
+  solved.zones = ZonesOf(flight.scenario, sim::LoadVehicleModel(VehicleMjcf(flight.scenario)),
+                         registries.terms);
   solved.resolution = replay.map().resolution();
   if (const estimation::PadPrediction* prediction = replay.prediction()) {
     solved.t_pad = solved.recorded.request.input.t_now;

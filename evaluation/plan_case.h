@@ -30,6 +30,7 @@ struct SolvedStep {
   planning::ReplanLog log;
   planning::Limits limits;
   std::vector<std::string> terms;             ///< of the objective, in the order of the log's costs
+  std::vector<planning::NamedZone> zones;     ///< where terms act
   std::vector<estimation::PadState> pad;      ///< predicted over the curve, every kPadStep
   std::vector<planning::CellIndex> occupied;  ///< cells of the map near what was planned
   double resolution = 0.1;                    ///< of the map [m]

@@ -162,6 +162,13 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   };
   for (const planning::StageTimes::Span* stage : solved.times.Stages()) add(*stage);
   add(solved.times.total);
+  Json& zones = json["zones"] = Json::array();
+  for (const planning::NamedZone& named : solved.zones) {
+    zones.push_back({{"term", named.term},
+                     {"shape", planning::ToString(named.zone.shape)},
+                     {"centre_W", VectorJson(named.zone.centre_W)},
+                     {"size_m", VectorJson(named.zone.size)}});
+  }
   if (!drawn) return json;
   Json& cells = json["occupied"] = Json::array();
   for (const planning::CellIndex& cell : solved.occupied) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "touchdown/planning/margins.h"
+#include "touchdown/planning/prepared_problems.h"
 #include "touchdown/planning/swept_hull.h"
 #include "touchdown/sim/world.h"
 
@@ -128,16 +129,23 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   return options;
 }
 
+std::vector<planning::NamedZone> ZonesOf(const Scenario& scenario,
+                                         const estimation::VehicleModel& model,
+                                         const planning::TermRegistry& terms) {
+  constexpr int kSegments = 12;  // any number will do
+  const planning::ReplannerOptions options = PlannerOptions(scenario, model, terms);
+  return planning::LandingProblem(kSegments, planning::ProblemOptions(options, options.arrival))
+      .zones();
+}
+
 std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                const estimation::VehicleModel& model,
                                                const Registries& registries) {
   const PlannerEntry& entry = PlannerOf(scenario, registries);
-  return entry.make({{scenario, entry.parameters},
-                     model,
-                     registries,
-                     LimitsOf(scenario),
-                     LowestPlan(model),
-                     scenario.planning.ceiling});
+  const PlannerSetup setup{
+      {scenario, entry.parameters}, model, registries, LimitsOf(scenario), LowestPlan(model),
+      scenario.planning.ceiling};
+  return MadeBy(entry, setup, "planner");
 }
 
 const PlannerEntry& PlannerOf(const Scenario& scenario, const Registries& registries) {
@@ -150,7 +158,7 @@ double PlannerRate(const Scenario& scenario, const PlannerEntry& planner) {
 
 double ClosePlannerRate(const Scenario& scenario, const PlannerEntry& planner) {
   const double usual = PlannerRate(scenario, planner);
-  if (scenario.planning.latency.measured) return usual;
+  if (planner.rate > 0.0 || scenario.planning.latency.measured) return usual;
   // A plan takes over before the next is asked for, on the simulation's clock.
   const double step = sim::WorldConfig{}.timestep;
   const double shortest = step * std::ceil(1e-3 * scenario.planning.latency.ms / step - 1e-6);

@@ -14,6 +14,11 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                                           const estimation::VehicleModel& model,
                                           const planning::TermRegistry& terms);
 
+/// Where terms of the landing planner act, of those that say so.
+std::vector<planning::NamedZone> ZonesOf(const Scenario& scenario,
+                                         const estimation::VehicleModel& model,
+                                         const planning::TermRegistry& terms);
+
 /// The planner that the scenario asks for.
 std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
                                                const estimation::VehicleModel& model,

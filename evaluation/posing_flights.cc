@@ -111,7 +111,7 @@ std::vector<FlownTrial> FlownTrials(SqliteDb& db) {
 PosingFlight Again(const FlownTrial& trial, const std::vector<std::string>& overrides,
                    const std::string& path, const Registries& registries) {
   const std::vector<std::string> words = Words(trial.replay);
-  if (words.size() < 3 || words[1] != "land") {
+  if (words.size() < 3 || (words[1] != "land" && words[1] != "fly")) {
     throw BadInput(fmt::format("{}: trial {} cannot be flown again from `{}`.", path, trial.trial,
                                trial.replay));
   }

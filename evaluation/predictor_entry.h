@@ -23,7 +23,8 @@ class PadPredictor {
  public:
   virtual ~PadPredictor() = default;
 
-  /// Valid until the next call. Does not allocate.
+  /// Valid until the next call. The same for the same knowledge, whatever was asked before: a replay asks other
+  /// questions in between. Does not allocate.
   virtual const estimation::PadPrediction& Predict(const PadKnowledge& known) = 0;
 };
 

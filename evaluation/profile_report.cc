@@ -82,8 +82,9 @@ Json StageJson(const StageSummary& s) {
 
 std::string ProfileText(const Profile& profile) {
   const ProfileSummary summary = Summarise(profile);
-  std::string text = fmt::format("{}, planner {}, backend {}: {}\n", profile.scenario.name,
-                                 profile.scenario.planner, profile.scenario.solver.backend, Source(profile));
+  std::string text =
+      fmt::format("{}, planner {}, backend {}: {}\n", profile.scenario.name,
+                  profile.scenario.planner, profile.scenario.solver_name(), Source(profile));
   text += fmt::format("  {}\n", BuildLine());
   text += fmt::format("  {:<12}{:>8}{:>36}   {:>36}   {:>15}\n", "", "", "thread CPU time [ms]",
                       "wall time [ms]", "allocations");
@@ -114,7 +115,7 @@ Json ProfileJson(const Profile& profile, const MachineState& machine) {
   Json json;
   json["scenario"] = profile.scenario.name;
   json["planner"] = profile.scenario.planner;
-  json["backend"] = profile.scenario.solver.backend;
+  json["backend"] = profile.scenario.solver_name();
   json["record"] = profile.record.empty() ? Json() : Json(profile.record);
   Json seeds = Json::array();
   for (const ProfileRun& run : profile.runs) seeds.push_back(run.seed);

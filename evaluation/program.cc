@@ -165,6 +165,9 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return kFellShort;
+  } catch (...) {
+    spdlog::error("something that is no std::exception was thrown");
+    return kFellShort;
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "touchdown/evaluation/registries.h"
 
 namespace touchdown::evaluation {
@@ -14,5 +16,12 @@ namespace touchdown::evaluation {
 /// 2 bad usage or bad input; nothing was run and nothing written
 /// 128 + N a sweep was interrupted by signal N (SIGINT, SIGTERM)
 int RunProgram(int argc, const char* const* argv, const Registries& registries);
+
+/// Where scenarios, studies and the report's package are installed, for a program that is not installed beside them:
+/// find_package(touchdown) says so to those that it links.
+bool UseShare(const std::string& directory);
+#ifdef TOUCHDOWN_SHARE_DIRECTORY
+inline const bool kShareIsKnown = UseShare(TOUCHDOWN_SHARE_DIRECTORY);
+#endif
 
 }  // namespace touchdown::evaluation

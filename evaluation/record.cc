@@ -68,6 +68,8 @@ CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_u
 CREATE TABLE state_point(plan INTEGER, curve TEXT, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL, radius REAL);
+CREATE TABLE zone(id INTEGER PRIMARY KEY, term TEXT, shape TEXT, cx REAL, cy REAL, cz REAL,
+  size_x REAL, size_y REAL, size_z REAL);
 CREATE TABLE timing(stage TEXT PRIMARY KEY, cpu_s REAL);
 )sql";
 
@@ -83,6 +85,9 @@ void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result
   const planning::CellIndex& cells = record.map_size;
   insert.Run("map_size", fmt::format("{} {} {}", cells.x(), cells.y(), cells.z()));
   insert.Run("pad_waypoints", record.outside.pad_waypoints);
+  insert.Run("hover",
+             fmt::format("{} {} {}", record.hover_W.x(), record.hover_W.y(), record.hover_W.z()));
+  insert.Run("idle_steps", std::to_string(record.idle_steps));
   insert.Run("vehicle_hash", record.outside.vehicle_hash);
   nlohmann::ordered_json json = LandJson(scenario, result);
   json.erase("wall_clock");  // wall-clock figures stand only in the table timing
@@ -270,6 +275,16 @@ void WriteObstacles(SqliteDb& db, const Scenario& scenario) {
   }
 }
 
+void WriteZones(SqliteDb& db, const std::vector<planning::NamedZone>& zones) {
+  SqliteStatement insert = db.Prepare("INSERT INTO zone VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  int id = 0;
+  for (const planning::NamedZone& named : zones) {
+    const Eigen::Vector3d &c = named.zone.centre_W, &size = named.zone.size;
+    insert.Run(id++, named.term, planning::ToString(named.zone.shape), c.x(), c.y(), c.z(),
+               size.x(), size.y(), size.z());
+  }
+}
+
 void WriteTiming(SqliteDb& db, const TrialTiming& timing) {
   SqliteStatement insert = db.Prepare("INSERT INTO timing VALUES(?, ?)");
   insert.Run("physics", timing.physics_cpu_s);
@@ -306,6 +321,7 @@ void WriteRecord(const std::string& path, const Scenario& scenario, const TrialR
     WritePlans(db, record.plans);
     WriteRequests(db, record.plans);
     WriteObstacles(db, scenario);
+    WriteZones(db, record.zones);
     WriteTiming(db, result.timing);
     transaction.Commit();
   }

@@ -7,6 +7,8 @@
 #include <map>
 #include <stdexcept>
 
+#include <sstream>
+
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
@@ -346,8 +348,9 @@ void CheckFormat(const Meta& meta) {
     throw std::invalid_argument(fmt::format("it is a record of version {}, this build reads {}",
                                             value("version"), Version()));
   }
-  for (const char* key : {"scenario", "scenario_yaml", "seed", "build_hash", "revision",
-                          "map_resolution", "map_size", "pad_waypoints", "vehicle_hash"}) {
+  for (const char* key :
+       {"scenario", "scenario_yaml", "seed", "build_hash", "revision", "map_resolution", "map_size",
+        "pad_waypoints", "vehicle_hash", "hover", "idle_steps"}) {
     value(key);
   }
 }
@@ -378,6 +381,12 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
                                   path + " (scenario_yaml)", all, registries);
   CheckOutsideFiles(meta, flight.scenario);
   CheckMap(meta, flight.scenario, registries);
+  std::istringstream hover(meta.at("hover"));
+  for (double& axis : flight.hover_W) hover >> axis;
+  std::istringstream idle(meta.at("idle_steps"));
+  if (!hover || !(idle >> flight.idle_steps)) {
+    throw std::invalid_argument("its table meta has no usable hover, or idle_steps");
+  }
   flight.build_hash = meta.at("build_hash");
   flight.revision = meta.at("revision");
   ReadResults(db, &flight.plans);

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/evaluation/registries.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/split.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -19,9 +23,15 @@ void ForEachPart(const Registries& registries, See&& see) {
   for (const PredictorEntry& part : registries.predictors) see("pad predictor", part, !part.make);
 }
 
+bool IsWord(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+}
+
 bool Same(const Parameter& a, const Parameter& b) {
   return a.value == b.value && a.range.lo == b.range.lo && a.range.hi == b.range.hi &&
-         a.range.above_lo == b.range.above_lo;
+         a.range.above_lo == b.range.above_lo && a.range.unit == b.range.unit;
 }
 
 void RequireKey(const char* what, const std::string& part, const Parameter& parameter,
@@ -30,20 +40,33 @@ void RequireKey(const char* what, const std::string& part, const Parameter& para
     throw std::invalid_argument(
         fmt::format("{} {}: parameter {} {}", what, part, parameter.key, why));
   };
-  const std::size_t dot = parameter.key.find('.');
-  if (dot == 0 || dot == std::string::npos || dot + 1 == parameter.key.size()) {
-    refuse("must be written GROUP.NAME");
+  const auto is_word = [](const std::string& word) { return IsWord(word); };
+  const std::vector<std::string> words = Split(parameter.key, '.');
+  if (words.size() < 2 || !std::all_of(words.begin(), words.end(), is_word)) {
+    refuse("must be written GROUP.NAME, of letters, digits, _ and -");
   }
   for (const SchemaKey<Scenario>& key : ScenarioKeys()) {
     const bool below =
         key.name.starts_with(parameter.key + ".") || parameter.key.starts_with(key.name + ".");
     if (key.name == parameter.key || below) refuse("has the name of a key that there is already");
   }
-  if (IsOpenGroup(parameter.key.substr(0, dot))) refuse("is in a group of others");
+  for (std::size_t end = parameter.key.find('.'); end != std::string::npos;
+       end = parameter.key.find('.', end + 1)) {
+    const std::string group = parameter.key.substr(0, end);
+    if (group == "obstacles" || IsOpenGroup(group)) refuse("is in a group of others");
+  }
+  const ValueRange& range = parameter.range;
+  const double value = parameter.value;
+  const bool in_range =
+      (range.above_lo ? value > range.lo : value >= range.lo) && value <= range.hi;
+  if (!in_range || !std::isfinite(value)) {
+    refuse(fmt::format("has the default {}, which is not in {}", value, range.ToString()));
+  }
   for (const Parameter& other : others) {
     if (other.key == parameter.key && !Same(other, parameter)) {
-      refuse("has another default or range in another part");
+      refuse("stands twice, with another default or range");
     }
+    if (other.key.starts_with(parameter.key + ".")) refuse("is the group of " + other.key);
   }
 }
 
@@ -70,10 +93,19 @@ std::vector<Parameter> ParametersOf(const Registries& registries) {
 void RequireDistinct(const Registries& registries) {
   planning::RequireDistinct(registries.terms);
   const std::vector<Parameter> all = ParametersOf(registries);
+  for (const PlannerEntry& entry : registries.planners) {
+    if (entry.rate >= 0.0 && std::isfinite(entry.rate)) continue;
+    throw std::invalid_argument(
+        fmt::format("planner {}: its rate is {}, it must be >= 0 Hz", entry.name, entry.rate));
+  }
   std::set<std::string> seen;
   ForEachPart(registries, [&](const char* what, const Part& part, bool nothing_to_make) {
     if (!seen.insert(what + (" " + part.name)).second) {
       throw std::invalid_argument(fmt::format("there are two of the {} {}", what, part.name));
+    }
+    if (!IsWord(part.name)) {
+      throw std::invalid_argument(
+          fmt::format("{} '{}': its name must be of letters, digits, _ and -", what, part.name));
     }
     if (nothing_to_make) {
       throw std::invalid_argument(fmt::format("{} {}: it has no function `make`", what, part.name));

@@ -24,16 +24,15 @@ auto Made(const RecordedFlight& flight, Make&& make) {
   }
 }
 
-// Between the answers of a planner with a rate of its own it is asked without one; a measured answer that came late
-// took over later. Neither is recorded.
+// Steps in which a planner has nothing to do are not recorded, nor when a measured answer that came late took over.
 void RequireAllSteps(const RecordedFlight& flight, const Registries& registries) {
   const Scenario& scenario = flight.scenario;
   const PlannerEntry& entry = PlannerOf(scenario, registries);
-  if (entry.rate <= 0.0 && !scenario.planning.latency.measured) return;
+  if (flight.idle_steps == 0 && !scenario.planning.latency.measured) return;
   throw BadInput(fmt::format(
       "{}: the steps of the planner {} cannot be asked again: {}.", flight.path, entry.name,
-      entry.rate > 0.0
-          ? "it has a rate of its own, and not all of its steps are recorded"
+      flight.idle_steps > 0
+          ? "in some it had nothing to do, and these are not recorded"
           : "planning.latency was measured, which only the planner landing remembers"));
 }
 
@@ -64,9 +63,9 @@ void Replay::Rewind() {
   asked_ = true;
   if (replanner_ == nullptr) {
     planner_ = MakePlanner(flight_.scenario, model_, registries_);
-    planner_->CommitHover(DrawTrial(flight_.scenario, flight_.scenario.seed).p_WB, 0.0);
   }
   planner_->Prepare(map_);
+  if (replanner_ == nullptr) planner_->CommitHover(flight_.hover_W, 0.0);
 }
 
 void Replay::Seek(int step) {

@@ -15,7 +15,7 @@ namespace touchdown::evaluation {
 /// all steps before, from the first hover on.
 class Replay {
  public:
-  /// `flight` must outlive it. @throws BadInput if the scenario cannot be set up, or was flown by a
+  /// `flight` and `registries` must outlive it. @throws BadInput if the scenario cannot be set up, or was flown by a
   /// planner not all of whose steps are recorded.
   Replay(const RecordedFlight& flight, const Registries& registries);
 
@@ -28,7 +28,8 @@ class Replay {
   /// The result stays valid until the next call.
   const planning::ReplanResult& Solve();
 
-  /// The prediction that the step was planned with; nullptr if the pad was not known. Valid until the next Seek.
+  /// The prediction that the step was planned with; nullptr if the pad was not known. Valid until the next call of
+  /// Seek, Solve or this.
   const estimation::PadPrediction* prediction();
 
   const RecordPlan& recorded() const { return flight_.plans[static_cast<std::size_t>(step_)]; }

@@ -189,14 +189,22 @@ void SuitDefaults(const Registries& registries, ScenarioSource* source) {
   Scenario& s = source->scenario;
   const auto given = [source](const char* key) { return source->where.count(key) != 0; };
   const PlannerEntry* planner = FindPart(registries.planners, s.planner);
-  if (planner && !planner->solver.empty()) s.solver.backend = planner->solver;
+  s.own_solver = planner ? planner->solver : "";
   if (!given("descent") && planner && !planner->lands) s.descent = DescentKind::kVertical;
   if (!given("solver.arrival")) {
     s.solver.arrival = PlansContact(s) ? ArrivalKind::kFree : ArrivalKind::kFixed;
   }
-  for (const Parameter& parameter : ParametersOf(registries)) {
-    s.parameters.emplace(parameter.key, parameter.value);
-  }
+  const auto fill = [&s](const auto& registry, const std::string& name) {
+    const Part* part = FindPart(registry, name);
+    if (part == nullptr) return;
+    for (const Parameter& parameter : part->parameters) {
+      s.parameters.emplace(parameter.key, parameter.value);
+    }
+  };
+  fill(registries.planners, s.planner);
+  fill(registries.pad_motions, s.pad.motion);
+  fill(registries.controllers, s.controller);
+  fill(registries.predictors, s.pad.prediction);
   if (given("wind.direction_deg") && !given("wind.direction_random")) {
     s.wind.direction_random = false;
   }

@@ -205,6 +205,12 @@ struct Scenario {
   /// Of planners, pad motions, controllers and predictors, by key; what is not here has the part's default.
   std::map<std::string, double> parameters;
 
+  std::string own_solver;  ///< of a planner that has no choice; not a key
+  /// What solves.
+  const std::string& solver_name() const {
+    return own_solver.empty() ? solver.backend : own_solver;
+  }
+
   struct Solver {
     std::string backend = "banded";
     ArrivalKind arrival = ArrivalKind::kFree;

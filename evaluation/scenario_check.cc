@@ -241,7 +241,9 @@ void CheckGoal(const ScenarioSource& source, const ObstacleList& obstacles,
                     "planning.ceiling, not '{}'.",
                     where, low, s.planning.ceiling, z));
   }
-  const double needed = PlanClearance(s, model, registries);
+  // An obstacle fills the cells that it reaches into, and a goal lies in one.
+  const double needed =
+      PlanClearance(s, model, registries) + 2.0 * planning::OccupancyMapOptions{}.resolution;
   for (const NamedObstacle& named : obstacles) {
     const double gap = sim::SignedDistance(named.obstacle, s.go_to.goal);
     if (gap >= needed) continue;

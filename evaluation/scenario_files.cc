@@ -27,16 +27,26 @@ std::vector<std::string> ExistingDirectories(const std::vector<fs::path>& candid
   return found;
 }
 
+std::string& ShareDirectory() {
+  static std::string directory;
+  return directory;
+}
+
 fs::path ProgramDirectory() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return error ? fs::path(".") : program.parent_path();
 }
 
-std::vector<std::string> StudyDirectories() {
-  return ExistingDirectories({ProgramDirectory() / "../share/touchdown/studies",
-                              fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "studies"});
+// Of the installation that the program belongs to, of the one that it was built against, of the source tree.
+std::vector<std::string> Shipped(const char* folder) {
+  std::vector<fs::path> candidates = {ProgramDirectory() / "../share/touchdown" / folder};
+  if (!ShareDirectory().empty()) candidates.push_back(fs::path(ShareDirectory()) / folder);
+  candidates.push_back(fs::path(TOUCHDOWN_EVALUATION_SOURCE) / folder);
+  return ExistingDirectories(candidates);
 }
+
+std::vector<std::string> StudyDirectories() { return Shipped("studies"); }
 
 // Names of the YAML files in the first of these directories, sorted.
 std::vector<std::string> NamesIn(const std::vector<std::string>& directories) {
@@ -71,20 +81,17 @@ std::string FindYaml(const std::string& name_or_path, const std::vector<std::str
 
 }  // namespace
 
-std::vector<std::string> ScenarioDirectories() {
-  return ExistingDirectories({ProgramDirectory() / "../share/touchdown/scenarios",
-                              fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "scenarios"});
+bool UseShare(const std::string& directory) {
+  ShareDirectory() = directory;
+  return true;
 }
 
-std::vector<std::string> PythonDirectories() {
-  return ExistingDirectories({ProgramDirectory() / "../share/touchdown/python",
-                              fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "python"});
-}
+std::vector<std::string> ScenarioDirectories() { return Shipped("scenarios"); }
+
+std::vector<std::string> PythonDirectories() { return Shipped("python"); }
 
 std::string DataPath(const std::string& file) {
-  for (const std::string& directory :
-       ExistingDirectories({ProgramDirectory() / "../share/touchdown/data",
-                            fs::path(TOUCHDOWN_EVALUATION_SOURCE) / "data"})) {
+  for (const std::string& directory : Shipped("data")) {
     std::error_code ignored;
     const fs::path path = fs::path(directory) / file;
     if (fs::is_regular_file(path, ignored)) return path.string();

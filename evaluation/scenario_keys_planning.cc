@@ -15,15 +15,17 @@ void AddTaskKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>(
       "follow.time", In(0, 600, "s"),
       "task follow: done when it was above the pad for so long without a break; 0: "
-      "it goes on until the time is up",
+      "when the time is up, if it was then 2 m from its centre in the mean",
       TOUCHDOWN_AT(follow.time)));
   keys.push_back(
       Number<Scenario>("follow.distance", Above(0, 10, "m"),
                        "task follow: above the pad is up to here from its centre, horizontally",
                        TOUCHDOWN_AT(follow.distance)));
-  keys.push_back(Vector<3, Scenario>("go_to.goal", In(-100, 100, "m"),
-                                     "task go_to: where the body's origin is to be, in W, at t = 0",
-                                     TOUCHDOWN_AT(go_to.goal)));
+  keys.push_back(Vector<3, Scenario>(
+      "go_to.goal", In(-100, 100, "m"),
+      "task go_to: where the body's origin is to be, in W, at t = 0; planning.clearance and two "
+      "cells from all obstacles, and no lower than plans are",
+      TOUCHDOWN_AT(go_to.goal)));
   keys.push_back(Vector<3, Scenario>("go_to.velocity", In(-10, 10, "m/s"),
                                      "task go_to: of the goal", TOUCHDOWN_AT(go_to.velocity)));
   keys.push_back(Number<Scenario>("go_to.time", In(0, 600, "s"),

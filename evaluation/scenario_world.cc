@@ -59,7 +59,7 @@ std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
                                                   std::uint64_t seed) {
   const PadMotionEntry& entry =
       PartNamed(registries.pad_motions, scenario.pad.motion, "pad motion");
-  return entry.make({{scenario, entry.parameters}, phase, seed});
+  return MadeBy(entry, PadMotionSetup{{scenario, entry.parameters}, phase, seed}, "pad motion");
 }
 
 planning::MovingGoal GoalOf(const Scenario& scenario) {
@@ -74,7 +74,8 @@ std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Regist
   if (scenario.task == TaskKind::kGoTo) return std::make_unique<ToGoal>(scenario);
   const PredictorEntry& entry =
       PartNamed(registries.predictors, scenario.pad.prediction, "pad predictor");
-  return entry.make({{scenario, entry.parameters}, std::move(truth)});
+  return MadeBy(entry, PredictorSetup{{scenario, entry.parameters}, std::move(truth)},
+                "pad predictor");
 }
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario) {

@@ -62,13 +62,18 @@ std::map<std::pair<std::string, std::string>, std::vector<Row>> ReadRows(
   return rows;
 }
 
+bool Succeeded(const std::string& name) {
+  const std::optional<Outcome> outcome = OutcomeNamed(name);
+  return outcome && IsSuccess(*outcome);
+}
+
 PartRates RatesOf(const std::vector<Row>& rows) {
   PartRates part;
   std::vector<double> times, errors;
   for (const Row& row : rows) {
     ++part.trials;
     ++part.outcomes[row.outcome];
-    part.succeeded += row.landed || row.outcome == "followed";
+    part.succeeded += Succeeded(row.outcome);
     if (!row.landed) continue;
     times.push_back(row.time_to_land_s);
     errors.push_back(row.touchdown_error_m);
@@ -87,8 +92,7 @@ bool IsError(const std::string& name) {
 std::string OthersText(const PartRates& part) {
   std::vector<std::string> others;
   for (const auto& [outcome, count] : part.outcomes) {
-    if (outcome != "landed" && outcome != "followed")
-      others.push_back(fmt::format("{} {}", count, outcome));
+    if (!Succeeded(outcome)) others.push_back(fmt::format("{} {}", count, outcome));
   }
   return others.empty() ? "" : fmt::format("; {}", fmt::join(others, ", "));
 }

@@ -141,7 +141,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["own_state"] = OwnStateJson(result.own_state);
   json["safety"] = SafetyJson(result.safety);
   json["planner"] = scenario.planner;
-  json["backend"] = scenario.solver.backend;
+  json["backend"] = scenario.solver_name();
   json["scenario"] = scenario.name;
   json["seed"] = result.seed;
   json["wall_clock"] = WallClockJson(result.timing);

@@ -74,7 +74,10 @@ struct RecordPlan {
 struct TrialRecord {
   double map_resolution = 0.1;                                 ///< [m]
   planning::CellIndex map_size = planning::CellIndex::Ones();  ///< of the window
-  OutsideFiles outside;  ///< as they were when the flight began
+  OutsideFiles outside;                               ///< as they were when the flight began
+  Eigen::Vector3d hover_W = Eigen::Vector3d::Zero();  ///< that the planner was told at first [m]
+  int idle_steps = 0;  ///< in which the planner had nothing to do: they are not among the plans
+  std::vector<planning::NamedZone> zones;  ///< of the landing planner's terms
   std::vector<RecordSample> samples;
   std::vector<RecordEvent> events;
   std::vector<RecordPlan> plans;

@@ -93,9 +93,7 @@ struct TrialResult {
 
   bool landed() const { return outcome == Outcome::kLanded; }
   /// It came to what the scenario's task asks for.
-  bool succeeded() const {
-    return landed() || outcome == Outcome::kFollowed || outcome == Outcome::kArrived;
-  }
+  bool succeeded() const { return IsSuccess(outcome); }
   /// Time to land over T*, empty unless landed within the limits.
   std::optional<double> time_ratio() const {
     if (!landed() || !within_limits || !t_star_s) return std::nullopt;

@@ -43,7 +43,7 @@ struct FreeSpace {
   }
   /// A place is free if its cell does not block and it is itself between floor and ceiling.
   bool Blocked(const Eigen::Vector3d& p_W) const {
-    return Closed(map->CellOf(p_W)) || OffLevel(p_W);
+    return !map->HasIndex(p_W) || Closed(map->CellOf(p_W)) || OffLevel(p_W);
   }
   /// By an obstacle, or for want of having been seen.
   bool Closed(const CellIndex& cell) const {

@@ -99,6 +99,9 @@ void LandingProblem::AddTerm(const TermEntry& entry, const LandingProblemOptions
   }
   // A row's weight counts in the whitening's metric alone, which must not lose it.
   if (setup.hard && !(setup.weight > 0.0)) setup.weight = 1.0;
+  if (entry.zones) {
+    for (const TermZone& zone : entry.zones(setup)) zones_.push_back({entry.info.name, zone});
+  }
   const std::shared_ptr<solvers::Term> term = entry.make(setup);
   problem_.AddTerm(term, setup.hard ? solvers::Role::kConstraint : solvers::Role::kCost);
   auto* const user = dynamic_cast<ContextUser*>(term.get());

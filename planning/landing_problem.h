@@ -89,6 +89,9 @@ class LandingProblem {
   int segments() const { return segments_; }
   /// What backends solve: the Reduced view, or with an explicit endpoint the Full one.
   const solvers::View& view() const { return *view_; }
+
+  /// Where its terms act, of those that say so.
+  const std::vector<NamedZone>& zones() const { return zones_; }
   /// Of the present boundary and duration. Throws std::invalid_argument before SetBoundary.
   BoundaryFacts boundary_facts() const;
 
@@ -121,8 +124,9 @@ class LandingProblem {
   VehicleFacts vehicle_;  // alike
   LandingContext context_;
   bool has_boundary_ = false;
-  std::vector<ObstaclePair> pairs_;                     // what context_ points to
-  std::vector<MovingObstacle> obstacles_;               // alike
+  std::vector<ObstaclePair> pairs_;        // what context_ points to
+  std::vector<MovingObstacle> obstacles_;  // alike
+  std::vector<NamedZone> zones_;
   std::vector<ContextUser*> context_users_;             // among the problem's terms
   std::vector<ContextUser*> clearances_, soft_limits_;  // among these
   std::vector<double> x_;                               // all control points

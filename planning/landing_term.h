@@ -94,6 +94,20 @@ struct TermSetup {
 /// is not.
 enum class TermUse { kAlways, kFreeArrival, kExplicitEndpoint, kMovingObstacles };
 
+/// Where in W a term acts, for pictures.
+struct TermZone {
+  enum class Shape { kSphere, kBox, kCylinder };  ///< upright, along W's axes
+  Shape shape = Shape::kSphere;
+  Eigen::Vector3d centre_W = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();      ///< from side to side along x, y and z [m]
+};
+struct NamedZone {
+  std::string term;
+  TermZone zone;
+};
+/// "sphere", "box" or "cylinder".
+const char* ToString(TermZone::Shape shape);
+
 /// An entry of a term registry.
 struct TermEntry {
   solvers::TermInfo info;
@@ -103,6 +117,7 @@ struct TermEntry {
   bool is_limit = false;                  ///< where it is used it becomes rows with hard limits
   bool is_clearance = false;              ///< rounds that find the curve blocked press it harder
   TermUse use = TermUse::kAlways;
+  std::function<std::vector<TermZone>(const TermSetup&)> zones;  ///< may be empty: it has none
   std::function<std::shared_ptr<solvers::Term>(const TermSetup&)> make;
 };
 

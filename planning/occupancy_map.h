@@ -116,9 +116,9 @@ class OccupancyMap {
   void MarkRestFree();
 
   /// A place so near that its cell has an index; farther off, or not finite, it is in no window.
-  static bool HasIndex(const Eigen::Vector3d& p_W) {
-    constexpr double kFarthestPlace = 1e6;  // [m]
-    return (p_W.array().abs() < kFarthestPlace).all();
+  bool HasIndex(const Eigen::Vector3d& p_W) const {
+    constexpr double kMostCells = 1e9;  // that an index counts
+    return (p_W.array().abs() < kMostCells * options_.resolution).all();
   }
   /// @pre HasIndex(p_W).
   CellIndex CellOf(const Eigen::Vector3d& p_W) const {

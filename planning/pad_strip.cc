@@ -18,10 +18,7 @@ constexpr double kAboveDeck = 0.1;  // of one that is not to touch: a cell's rou
 void LayPadStrip(const estimation::PadPrediction& pad, const EndpointTarget& target,
                  const Eigen::Vector3d& p_start, double t_start, double t_end, double radius,
                  double contact_height, FreeSpace* space) noexcept {
-  if (!pad.has_deck()) {
-    space->pad_radius = 0.0;
-    return;
-  }
+  if (!pad.has_deck()) return;
   space->pad_from = pad.MeanAt(t_start).p_WP.head<2>();
   space->pad_to = pad.MeanAt(t_end).p_WP.head<2>();
   space->pad_radius = radius;

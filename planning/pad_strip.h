@@ -11,7 +11,7 @@ namespace touchdown::planning {
 /// side [m]: over the pad a plan keeps off the deck, on which the feet would stand with the body's origin
 /// `contact_height` above it [m], or goes no lower than where it ends, or starts if that is over the pad.
 /// The floor is the deck's and not the plan's end, because a vehicle that sinks when it is told to stay
-/// above needs the way to stop in. A pad without a deck has no strip. Does not allocate.
+/// above needs the way to stop in. A pad without a deck lays none. Does not allocate.
 void LayPadStrip(const estimation::PadPrediction& pad, const EndpointTarget& target,
                  const Eigen::Vector3d& p_start, double t_start, double t_end, double radius,
                  double contact_height, FreeSpace* space) noexcept;

@@ -22,7 +22,9 @@ class Planner {
   /// The vehicle hovers at p_W from t on: the first committed trajectory.
   virtual void CommitHover(const Eigen::Vector3d& p_W, double t) = 0;
 
-  /// One replanning step against the map. The result stays valid until the next call.
+  /// One replanning step against the map. The result stays valid until the next call. It says whether a new answer is
+  /// `committed`, or that there was nothing to do (`idle`): who has a rate of its own may be asked before an
+  /// answer has taken over.
   virtual const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) = 0;
 
   /// Comes to rest and stays, for want of a pad to go to, or with `climb` > 0 [m] that much higher.
@@ -31,8 +33,8 @@ class Planner {
   virtual const ReplanResult& Rest(const ReplanInput& input, double climb,
                                    const OccupancyMap& map) = 0;
 
-  /// The last answer came too late for its t_start: it takes over at t, and until then what it replaces
-  /// is flown on. No step is to be asked for before t.
+  /// The last answer came too late for its t_start: if it is committed it takes over at t, and until then what it
+  /// replaces is flown on. No step is to be asked for before t.
   virtual void TakeOverAt(double t) = 0;
 
   /// The committed reference at time t (yaw fields zero). Does not allocate.

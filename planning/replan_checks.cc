@@ -9,9 +9,12 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kFastest = 1e3;  // beyond this a number is taken for a fault [m/s]
-constexpr int kMostPairs = 1000;  // of a control point: each has its storage
+// Beyond these a number is taken for a fault.
+constexpr double kFarthest = 1e6;  // [m]
+constexpr double kFastest = 1e3;   // [m/s]
+constexpr int kMostPairs = 1000;   // of a control point: each has its storage
 
+bool Near(const Eigen::Vector3d& p) { return p.cwiseAbs().maxCoeff() < kFarthest; }
 bool Slow(const Eigen::Vector3d& v) { return v.cwiseAbs().maxCoeff() < kFastest; }
 
 void Require(bool ok, const char* name, double value, const char* range) {
@@ -34,8 +37,7 @@ const char* WrongInState(const ReplanInput& input) {
   if (input.t_start < input.t_now) return "t_start is before t_now";
   if (!vehicle.p_WB.allFinite()) return "vehicle.p_WB is not finite";
   if (!vehicle.v_WB.allFinite()) return "vehicle.v_WB is not finite";
-  if (!OccupancyMap::HasIndex(vehicle.p_WB))
-    return "vehicle.p_WB is a million metres away or farther";
+  if (!Near(vehicle.p_WB)) return "vehicle.p_WB is a million metres away or farther";
   if (!Slow(vehicle.v_WB)) return "vehicle.v_WB is 1000 m/s or faster";
   if (!input.pull_W.allFinite()) return "pull_W is not finite";
   return Plausible(input.margins) ? nullptr : "a margin is not finite, or below 0";
@@ -48,8 +50,7 @@ const char* WrongInPad(const ReplanInput& input) {
     return "the pad or goal is not finite at t_start";
   if (!std::isfinite(pad.yaw)) return "the pad's yaw is not finite";
   if (!pad.cov_p.allFinite()) return "the pad's covariance is not finite";
-  if (!OccupancyMap::HasIndex(pad.p_WP))
-    return "the pad or goal is a million metres away or farther";
+  if (!Near(pad.p_WP)) return "the pad or goal is a million metres away or farther";
   return Slow(pad.v_WP) ? nullptr : "the pad or goal moves with 1000 m/s or faster";
 }
 
@@ -89,14 +90,15 @@ void Validate(const ReplannerOptions& o) {
   // The proof is of a hull of this size, 0 of a point.
   Require(o.hull_radius >= 0.0 && std::isfinite(o.hull_radius), "hull_radius", o.hull_radius,
           ">= 0 m and finite");
-  Require(o.segment_length > 0.0 && std::isfinite(o.segment_length), "segment_length",
-          o.segment_length, "> 0 m and finite");
+  Require(o.segment_length >= 0.01 && std::isfinite(o.segment_length), "segment_length",
+          o.segment_length, ">= 0.01 m and finite");
   Require(std::isfinite(o.contact_height), "contact_height", o.contact_height, "finite");
   Require(o.pad_radius >= 0.0, "pad_radius", o.pad_radius, ">= 0 m");
   Require(o.deck_half_size >= 0.0, "deck_half_size", o.deck_half_size, ">= 0 m");
   Require(o.vertical_cost >= 1.0, "vertical_cost", o.vertical_cost, ">= 1");
   Require(o.problem.max_pairs_per_point <= kMostPairs, "problem.max_pairs_per_point",
           o.problem.max_pairs_per_point, "<= 1000");
+  Require(std::isfinite(o.floor_height), "floor_height", o.floor_height, "finite");
   Require(o.ceiling_height > o.floor_height, "ceiling_height", o.ceiling_height,
           "above floor_height");
   Require(o.min_duration > 0.0, "min_duration", o.min_duration, "> 0 s");

@@ -87,7 +87,8 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kStartBlocked:
       return "The start is inside an inflated obstacle and no certified way leads out.";
     case ReplanReason::kGoalBlocked:
-      return "The end is inside an inflated obstacle at every arrival time tried.";
+      return "The end is inside an inflated obstacle, or beyond floor or ceiling, at every arrival "
+             "time tried.";
     case ReplanReason::kPadUnreachable:
       return "No arrival time up to the longest allowed reaches the pad within the limits.";
     case ReplanReason::kSearchFailed:

@@ -32,6 +32,7 @@ constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost hold
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kNewBeginning = 2.0;    // who asks later than this begins anew [s]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -152,6 +153,7 @@ FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
 
 FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineState& start,
                                         double t_end, const OccupancyMap& map) const {
+  if (DeckOf(input) == nullptr) return SpaceWithoutPad(input, map);
   FreeSpace space = Space(map);
   LayPadStrip(*input.pad, input.endpoint, start.p, input.t_start, t_end, options_.pad_radius,
               options_.contact_height, &space);
@@ -246,7 +248,8 @@ const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const
 /// Who asks less often than options_.reaction says is taken to go on like that: else each plan would be flown
 /// into its stop.
 void Replanner::Impl::NoteAsked(double t_start) {
-  if (asked_t_) reaction_ = std::max(reaction_, t_start - *asked_t_);
+  const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
+  if (since <= kNewBeginning) reaction_ = std::max(reaction_, since);
   asked_t_ = t_start;
 }
 
@@ -297,19 +300,20 @@ const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const Occu
   result_.reason = !target_valid ? ReplanReason::kInvalidInput
                    : looks       ? ReplanReason::kUnobserved
                                  : Plan(input, start, map);
-  if (target_valid) {
-    strip_ = SpaceOverPad(input, start, WatchedUntil(input), map);
-    strip_t_ = strip_.pad_radius > 0.0 ? input.t_start : kLongAgo;
+  const FreeSpace space = target_valid ? SpaceOverPad(input, start, WatchedUntil(input), map)
+                                       : SpaceWithoutPad(input, map);
+  if (target_valid && DeckOf(input)) {
+    strip_ = space;
+    strip_t_ = input.t_start;
   }
   if (result_.reason == ReplanReason::kNone) {
     result_.status = ReplanStatus::kPlanned;
     planned_before_ = true;
     bound_ = result_.bound;
     Commit(input.t_start);
-    result_.unseen_W = NeededNext(input, HullIn(strip_, DeckOf(input)));
+    result_.unseen_W = NeededNext(input, HullIn(space, DeckOf(input)));
     return result_;
   }
-  const FreeSpace space = target_valid ? strip_ : SpaceWithoutPad(input, map);
   const HullSpace hull = HullIn(space, target_valid ? DeckOf(input) : nullptr);
   return Finish(fallback_.StepDown(FactsFor(input, start, hull), &result_), input.t_start);
 }

@@ -52,6 +52,11 @@ constexpr double kHeaviest = 1e9;
 
 }  // namespace
 
+const char* ToString(TermZone::Shape shape) {
+  if (shape == TermZone::Shape::kSphere) return "sphere";
+  return shape == TermZone::Shape::kBox ? "box" : "cylinder";
+}
+
 TermParameter HingeWidth(double width, const std::string& unit) {
   return {"width", width, 1e-6, 1e3,
           "where the hinge turns from cubic to quadratic [" + unit + "]"};

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace touchdown::sim {
 namespace {
@@ -41,6 +43,11 @@ Eigen::Vector2d IntegrateDirection(const Heading& yaw, double s) {
 }  // namespace
 
 void CurvatureChain::Append(double length, double k0, double k1) {
+  if (!(length >= 0.0) || !std::isfinite(length) || !std::isfinite(k0) || !std::isfinite(k1)) {
+    throw std::invalid_argument("CurvatureChain: a stretch of " + std::to_string(length) +
+                                " m from curvature " + std::to_string(k0) + " to " +
+                                std::to_string(k1) + " 1/m; it must be >= 0 m, and all finite");
+  }
   Segment next{0.0, length, k0, k1, start_, heading_};
   if (!segments_.empty()) {
     const Segment& last = segments_.back();

@@ -32,12 +32,14 @@ class CurvatureChain {
  public:
   CurvatureChain(const Eigen::Vector2d& start, double heading) : start_(start), heading_(heading) {}
 
-  /// Adds a segment whose curvature goes from k0 to k1 [1/m] over `length` [m].
+  /// Adds a segment whose curvature goes from k0 to k1 [1/m] over `length` [m]. Throws std::invalid_argument unless
+  /// the length is >= 0 and all is finite.
   void Append(double length, double k0, double k1);
 
   /// Any s [m]; s = 0 is the start. Does not allocate. The chain must have a segment.
   PathPoint At(double s) const noexcept;
 
+  bool empty() const { return segments_.empty(); }
   double length() const;  ///< of all segments [m]
   PathBounds bounds() const;
 

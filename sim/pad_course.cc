@@ -7,8 +7,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace touchdown::sim {
+
+PathCourse::PathCourse(Path path, double height, double speed, double phase)
+    : path_(std::move(path)), height_(height), speed_(speed), phase_(phase) {
+  Check();
+}
+
+PathCourse::PathCourse(Path path, double height, Pace pace, double t_phase)
+    : path_(std::move(path)), height_(height), pace_(std::move(pace)), phase_(t_phase) {
+  Check();
+}
+
+void PathCourse::Check() const {
+  const auto* chain = std::get_if<CurvatureChain>(&path_);
+  if (chain != nullptr && chain->empty()) {
+    throw std::invalid_argument("PathCourse: the chain has no stretch");
+  }
+  for (const double number : {height_, speed_, phase_}) {
+    if (!std::isfinite(number)) {
+      throw std::invalid_argument("PathCourse: height, speed or phase is not finite");
+    }
+  }
+}
 
 PathPoint PathCourse::PathAt(double s) const noexcept {
   if (const auto* chain = std::get_if<CurvatureChain>(&path_)) return chain->At(s);

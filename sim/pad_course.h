@@ -40,16 +40,16 @@ class PathCourse : public PadCourse {
   using Path = std::variant<CurvatureChain, FigureEight>;
 
   /// At a constant speed [m/s], `phase` metres on at t = 0; `height` is that of the deck's upper face [m].
-  PathCourse(Path path, double height, double speed, double phase)
-      : path_(std::move(path)), height_(height), speed_(speed), phase_(phase) {}
+  /// Throws std::invalid_argument if a chain has no stretch, or a number is not finite.
+  PathCourse(Path path, double height, double speed, double phase);
   /// As `pace` says, from `t_phase` [s] of it on.
-  PathCourse(Path path, double height, Pace pace, double t_phase)
-      : path_(std::move(path)), height_(height), pace_(std::move(pace)), phase_(t_phase) {}
+  PathCourse(Path path, double height, Pace pace, double t_phase);
 
   estimation::PadState At(double t) const noexcept override;
   PadMotionBounds bounds() const override;
 
  private:
+  void Check() const;
   PathPoint PathAt(double s) const noexcept;
   PacePoint PaceAt(double t) const noexcept;
 

@@ -384,7 +384,14 @@ const estimation::VehicleModel& World::plant() const { return impl_->plant_; }
 const std::shared_ptr<const PadCourse>& World::pad_course() const { return impl_->course_; }
 
 std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config) {
-  if (config.pad_course) return config.pad_course;
+  if (config.pad_course) {
+    const double height = config.pad_course->At(0.0).p_WP.z();
+    if (!(std::abs(height - config.pad_motion.p_start.z()) <= 1e-9)) {
+      ThrowOutOfRange("height of the pad's course [m]", height,
+                      std::to_string(config.pad_motion.p_start.z()) + ", as pad_motion says");
+    }
+    return config.pad_course;
+  }
   return std::make_shared<PadMotion>(config.pad_motion);
 }
 

@@ -34,8 +34,8 @@ class FunctionTerm : public Term {
   static constexpr int kMostOutputs = 32;    ///< m
   using Loss = std::variant<SquareLoss, HingeLoss, RangeLoss, LinearLoss>;
 
-  /// Throws std::invalid_argument on a size out of range. A function that writes more outputs than there are cannot be
-  /// evaluated: the solve says so.
+  /// Throws std::invalid_argument on a size out of range. A function that writes the output behind the last
+  /// cannot be evaluated: the solve says so.
   template <class Function>
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Function function)
       : FunctionTerm(

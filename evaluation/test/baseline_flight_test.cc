@@ -45,8 +45,7 @@ TEST(BaselineFlight, PidHasNoPlanToContactAndNoBackend) {
     Shipped("open", {"planner=pid", "descent=planned"});
     FAIL();
   } catch (const BadInput& error) {
-    EXPECT_THAT(error.what(),
-                ::testing::HasSubstr("descent must be vertical with planner pid"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("descent must be vertical with planner pid"));
   }
   EXPECT_THROW(Shipped("open", {"planner=pid", "pid.response=0"}), BadInput);
   const Scenario scenario = Shipped("open", {"planner=pid", "timeout=1"});
@@ -55,7 +54,8 @@ TEST(BaselineFlight, PidHasNoPlanToContactAndNoBackend) {
   EXPECT_EQ(LandJson(scenario, result)["backend"], "none");
 }
 
-TEST(BaselineFlight, APidRecordIsReadAndKeepsTheLimitsAndItsStepsAreNotAskedAgain) {
+// It answers whenever it is asked: all its steps are recorded, and asked again from the first on.
+TEST(BaselineFlight, APidRecordKeepsTheLimitsAndItsStepsAreAskedAgain) {
   const std::string path = ::testing::TempDir() + "touchdown_pid_record.db";
   const Scenario scenario = Shipped("open", {"planner=pid", "timeout=4"});
   const Registries registries = StandardRegistries();
@@ -70,7 +70,12 @@ TEST(BaselineFlight, APidRecordIsReadAndKeepsTheLimitsAndItsStepsAreNotAskedAgai
   EXPECT_EQ(static_cast<int>(flight.plans.size()), result.replans);
   ASSERT_GT(flight.plans.size(), 50u);
   EXPECT_EQ(flight.plans.back().result.curve.segments(), 1);
-  EXPECT_THROW(Replay(flight, registries), BadInput);
+  Replay replay(flight, registries);
+  for (const int step : {0, 1, 20, 20, 5, replay.steps() - 1}) {
+    replay.Seek(step);
+    EXPECT_TRUE(Same(OutcomeOf(replay.Solve()), replay.recorded().result)) << step;
+    EXPECT_TRUE(Same(OutcomeOf(replay.Solve()), replay.recorded().result)) << step << ", again";
+  }
   std::filesystem::remove(path);
 }
 

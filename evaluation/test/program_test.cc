@@ -53,7 +53,7 @@ Ran Call(std::vector<const char*> arguments) {
 }
 
 TEST(Program, UnknownCommandsAreNamedAtEveryLevel) {
-  EXPECT_THAT(Call({"lnad"}).err, HasSubstr("unknown command lnad; the commands are land,"));
+  EXPECT_THAT(Call({"lnad"}).err, HasSubstr("unknown command lnad; the commands are fly, land,"));
   const Ran ran = Call({"study", "hostel"});
   EXPECT_EQ(ran.status, 2);
   EXPECT_THAT(ran.err, AllOf(HasSubstr("unknown command hostel of study; the commands are "),

@@ -42,7 +42,8 @@ TEST_P(ShippedStudy, EveryScenarioLoadsAndSeedsArePaired) {
   for (const SweepTrial& trial : plan.campaign.trials) {
     EXPECT_EQ(trial.index, index++);
     EXPECT_EQ(trial.scenario.timeout, 30.0);
-    EXPECT_EQ(trial.Replay().rfind("touchdown land ", 0), 0U);
+    const bool lands = trial.scenario.task == TaskKind::kLand;
+    EXPECT_EQ(trial.Replay().rfind(lands ? "touchdown land " : "touchdown fly ", 0), 0U);
     const std::string seed = " --seed " + std::to_string(trial.seed);
     EXPECT_EQ(trial.Replay().substr(trial.Replay().size() - seed.size()), seed);
     ASSERT_EQ(trial.varied.size(), plan.campaign.keys.size());

@@ -31,6 +31,7 @@ const ReplanResult& StraightPlanner::Replan(const ReplanInput& input, const Occu
   const bool goes_on = touches_ && next_.t_end() - input.t_start < kShortest;
   if (goes_on && input.endpoint.leads_to_contact()) {
     result_.status = ReplanStatus::kKept;
+    result_.committed = false;
     return result_;
   }
   const SplineState start = StartAt(input.t_start);
@@ -51,7 +52,10 @@ const ReplanResult& StraightPlanner::Replan(const ReplanInput& input, const Occu
 
 const ReplanResult& StraightPlanner::Rest(const ReplanInput& input, double climb,
                                           const OccupancyMap& /*map*/) {
-  if (climb_ == climb) return result_;  // asked again at every step while it lasts
+  if (climb_ == climb) {  // asked again at every step while it lasts
+    result_.committed = false;
+    return result_;
+  }
   const Eigen::Vector3d up = climb * Eigen::Vector3d::UnitZ();
   Commit(MakeRestTrajectory(StartAt(input.t_start), input.t_start, up, limits_),
          climb > 0.0 ? ReplanStatus::kClimbing : ReplanStatus::kBraking, ReplanReason::kNone);
@@ -72,6 +76,7 @@ const ReplanResult& StraightPlanner::Commit(UniformBspline curve, ReplanStatus s
   result_ = {};
   result_.status = status;
   result_.reason = reason;
+  result_.committed = true;
   result_.curve = next_;
   return result_;
 }

@@ -20,7 +20,7 @@ class StraightPlanner : public Planner {
   const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) override;
   const ReplanResult& Rest(const ReplanInput& input, double climb,
                            const OccupancyMap& map) override;
-  void TakeOverAt(double t) override { takes_over_ = t; }
+  void TakeOverAt(double t) override { takes_over_ = result_.committed ? t : takes_over_; }
   FlatState Reference(double t) const override;
 
  private:

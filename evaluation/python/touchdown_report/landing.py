@@ -14,7 +14,7 @@ from matplotlib.collections import LineCollection  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
-from touchdown_report import bspline, command_line  # noqa: E402
+from touchdown_report import bspline, command_line, zones  # noqa: E402
 from touchdown_report.record import Record, RecordError  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
@@ -100,6 +100,7 @@ def draw_world(axes, record, contact, half, side):
     down = 3 if side else 2
     vehicle, pad = record.vehicle[: contact + 1], record.pad[: contact + 1]
     draw_obstacles(axes, record.obstacles, side)
+    zones.draw(axes, record.zones, down - 1)
     for points in record.plans.values():
         curve = bspline.sample(points)
         axes.plot(curve[:, 0], curve[:, down - 1], color=PLAN_COLOUR, lw=0.6, alpha=0.45, zorder=2)

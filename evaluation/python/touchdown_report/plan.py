@@ -17,7 +17,7 @@ import numpy as np  # noqa: E402
 from matplotlib.collections import PatchCollection  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
 
-from touchdown_report import bspline, command_line  # noqa: E402
+from touchdown_report import bspline, command_line, zones  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
 # Okabe and Ito's palette.
@@ -93,6 +93,11 @@ def flown(plan):
 
 def draw_view(axes, plan, down):
     draw_cells(axes, plan, down)
+    zones.draw(
+        axes,
+        [(z["term"], z["shape"], z["centre_W"], z["size_m"]) for z in plan["zones"]],
+        down,
+    )
     for path in plan["guide_paths"]:
         points = np.array(path)
         axes.plot(points[:, 0], points[:, down], color=GUIDE, lw=1.2, ls=":", label="guide path")

@@ -40,6 +40,12 @@ class Record:
                 )
             )
         ]
+        self.zones = [
+            (row[0], row[1], row[2:5], row[5:8])
+            for row in db.execute(
+                "SELECT term, shape, cx, cy, cz, size_x, size_y, size_z FROM zone ORDER BY id"
+            )
+        ]
         self.plans = self._plans(db)
 
     @staticmethod

@@ -15,6 +15,7 @@ DASHES = ["-", (0, (4, 1.5)), (0, (1.2, 1.2))]
 OUTCOME_COLOURS = {
     "landed": "#009E73",
     "followed": "#7FCDB4",
+    "arrived": "#4DAC26",
     "timeout": "#BBBBBB",
     "stood": "#999933",
     "collision": "#D55E00",

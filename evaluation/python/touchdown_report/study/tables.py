@@ -19,11 +19,12 @@ FIGURES = {
 LAST_5_S = ("mean_abs_error_x_m", "mean_abs_error_y_m")
 PAIRED = ("time_to_land_s", "touchdown_error_m", "effort_n2s")
 ALL_CELLS = "all"
+SUCCESS = ("landed", "followed", "arrived")
 
 
 def succeeded(trials):
     """What counts: that the task is done."""
-    return trials["outcome"].isin(["landed", "followed", "arrived"])
+    return trials["outcome"].isin(SUCCESS)
 
 
 def not_cut_short(trials):

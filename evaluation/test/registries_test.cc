@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Entries that say something wrong of themselves end in a sentence, and what they make is there.
+#include "touchdown/evaluation/registries.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/replay.h"
+#include "touchdown/evaluation/scenario_world.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// The shipped ones and a planner that `spoil` has changed.
+std::string Refusal(void (*spoil)(PlannerEntry* entry)) {
+  Registries registries = StandardRegistries();
+  PlannerEntry entry = registries.planners.front();
+  entry.name = "mine";
+  Parameter share;
+  share.key = "mine.share";
+  share.value = 0.5;
+  share.range.hi = 1.0;
+  share.doc = "of something";
+  entry.parameters = {share};
+  spoil(&entry);
+  registries.planners.push_back(entry);
+  try {
+    RequireDistinct(registries);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Registries, WhatAnEntrySaysWrongIsNamed) {
+  EXPECT_EQ(Refusal([](PlannerEntry*) {}), "accepted");
+  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->name = "ego"; }),
+              HasSubstr("two of the planner ego"));
+  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->name = "my planner"; }), HasSubstr("my planner"));
+  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->name = ""; }), HasSubstr("its name"));
+  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->make = nullptr; }), HasSubstr("make"));
+  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->rate = -1.0; }), HasSubstr("rate is -1"));
+  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->rate = std::nan(""); }), HasSubstr("rate"));
+}
+
+TEST(Registries, WhatAParameterMayNotBeIsNamed) {
+  const auto key = [](auto spoil) { return Refusal(spoil); };
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "share"; }),
+              HasSubstr("GROUP.NAME"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "mine..share"; }),
+              HasSubstr("GROUP.NAME"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "mine.the share"; }),
+              HasSubstr("letters"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "pad.speed"; }),
+              HasSubstr("already"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "planner.share"; }),
+              HasSubstr("already"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "solver.options.share"; }),
+              HasSubstr("group of others"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "obstacles.boxes"; }),
+              HasSubstr("group of others"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "ego.horizon"; }),
+              HasSubstr("another default or range"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].value = 50.0; }),
+              HasSubstr("default 50, which is not in [0, 1]"));
+  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].value = std::nan(""); }),
+              HasSubstr("default nan"));
+  EXPECT_THAT(key([](PlannerEntry* e) {
+                e->parameters.push_back(e->parameters[0]);
+                e->parameters[1].key = "mine.share.of";
+              }),
+              HasSubstr("is the group of mine.share.of"));
+}
+
+TEST(Registries, NothingThatIsMadeIsSaidSo) {
+  Registries registries = StandardRegistries();
+  for (PlannerEntry& entry : registries.planners) {
+    entry.make = [](const PlannerSetup&) { return nullptr; };
+  }
+  for (PadMotionEntry& entry : registries.pad_motions) {
+    entry.make = [](const PadMotionSetup&) { return nullptr; };
+  }
+  for (PredictorEntry& entry : registries.predictors) {
+    entry.make = [](const PredictorSetup&) { return nullptr; };
+  }
+  const auto said = [](auto&& call) {
+    try {
+      call();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const Scenario scenario;
+  EXPECT_EQ(said([&] { MakePlanner(scenario, {}, registries); }),
+            "the planner landing made nothing");
+  EXPECT_EQ(said([&] { PadCourseOf(scenario, registries, 0.0, 1); }),
+            "the pad motion straight_turn made nothing");
+  EXPECT_EQ(said([&] { PredictorOf(scenario, registries, nullptr); }),
+            "the pad predictor turn_rate made nothing");
+  registries.planners.clear();
+  EXPECT_EQ(said([&] { PlannerOf(scenario, registries); }), "there is no planner landing");
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
