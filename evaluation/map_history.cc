@@ -58,7 +58,7 @@ const char* ToString(CellState state) {
 MapChange MapRecorder::Take(const planning::OccupancyMap& map) {
   MapChange change;
   change.origin = map.origin();
-  const CellIndex size = map.size();
+  const CellIndex& size = map.size();
   const int words = (size.x() + kWord - 1) / kWord;
   const int in_word = std::min(kWord, size.x());
   const auto all = static_cast<std::size_t>(words) * static_cast<std::size_t>(size.y()) *

@@ -51,7 +51,7 @@ class FastPadEye final : public PadEye {
                                                const estimation::PadFilter& /*expected*/,
                                                SensingTimes* times) override {
     const double begin = solvers::ThreadCpuSeconds();
-    const auto sighting = tags_.Sight(vehicle.t, vehicle, pad, believed.q_WB);
+    auto sighting = tags_.Sight(vehicle.t, vehicle, pad, believed.q_WB);
     times->pad_finding += solvers::ThreadCpuSeconds() - begin;
     return sighting;
   }

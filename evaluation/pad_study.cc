@@ -202,7 +202,7 @@ void PadSums::Add(const PadSums& other) {
 
 std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
                                       const estimation::PadFilterOptions& options) {
-  constexpr auto kAhead = static_cast<std::size_t>(kPadHorizon * kPadLogRate + 0.5);
+  const auto ahead = static_cast<std::size_t>(std::lround(kPadHorizon * kPadLogRate));
   constexpr std::array kModels = {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate};
   std::vector<estimation::PadFilter> filters;
   for (const auto model : kModels) {
@@ -212,16 +212,16 @@ std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
   }
   std::map<std::pair<PadCourse, bool>, std::array<PadSums, kModels.size()>> sums;
   std::size_t arrived = 0;
-  for (std::size_t k = 0; k + kAhead < log.truth.size() && log.truth[k].flying; ++k) {
+  for (std::size_t k = 0; k + ahead < log.truth.size() && log.truth[k].flying; ++k) {
     const double t = log.truth[k].t;
     for (; arrived < log.arrivals.size() && log.arrivals[arrived].t <= t; ++arrived) {
       for (estimation::PadFilter& filter : filters) Give(log.arrivals[arrived], &filter);
     }
     if (t < kPadSettled || !filters[0].initialized() || !filters[1].initialized()) continue;
     const bool tags = std::max(filters[0].TagAge(t), filters[1].TagAge(t)) <= kPadTagsFresh;
-    auto& of_models = sums[{CourseOf(log, k, k + kAhead), tags}];
+    auto& of_models = sums[{CourseOf(log, k, k + ahead), tags}];
     for (std::size_t m = 0; m < kModels.size(); ++m) {
-      of_models[m].Add(Compare(filters[m], log.truth[k], log.truth[k + kAhead]));
+      of_models[m].Add(Compare(filters[m], log.truth[k], log.truth[k + ahead]));
     }
   }
   std::vector<PadStudyRow> rows;

@@ -15,6 +15,7 @@ class Ranks {
  public:
   /// Starts MPI. @throws BadInput where the build has none
   Ranks();
+  // NOLINTNEXTLINE(performance-trivially-destructible): not where there is MPI
   ~Ranks();  ///< of rank 0: lets the others go
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;

@@ -80,7 +80,7 @@ SchemaKey<Scenario> Bool(std::string name, std::string doc, At at) {
 
 // The words stand in the order of the enumerators.
 template <typename At>
-SchemaKey<Scenario> Choice(std::string name, std::vector<std::string> words, std::string doc,
+SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& words, std::string doc,
                            At at) {
   return {name,
           "choice",
@@ -123,6 +123,6 @@ inline ValueRange Above(double lo, double hi, std::string unit) {
 
 /// An accessor of a member, nested ones too.
 #define TOUCHDOWN_AT(member) \
-  [](auto& s) -> auto& { return s.member; }
+  [](auto& s) -> auto& { return s.member; }  // NOLINT(bugprone-macro-parentheses): a member's name
 
 }  // namespace touchdown::evaluation::schema

@@ -153,7 +153,7 @@ CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, Campai
     tell(state);
   };
   const auto begin = std::chrono::steady_clock::now();
-  const CampaignResult result = RunCampaign(plan.campaign, options, registries, progress);
+  CampaignResult result = RunCampaign(plan.campaign, options, registries, progress);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   if (!result.reports || !whole) return result;
   if (const int flown = result.state.flown - result.state.resumed; flown > 0) {

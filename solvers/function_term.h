@@ -39,7 +39,7 @@ class FunctionTerm : public Term {
   template <class Function>
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Function function)
       : FunctionTerm(
-            std::move(info), shape, std::move(loss),
+            std::move(info), shape, loss,
             Functions{Told<double>(function), Told<First>(function), Told<Second>(function)}) {}
 
   const TermInfo& info() const override { return info_; }

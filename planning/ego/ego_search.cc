@@ -126,7 +126,7 @@ EgoSearchStatus EgoSearch::Search(const EgoGrid& grid, const Eigen::Vector3d& fr
       return EgoSearchStatus::kFound;
     }
     if (++expansions > max_expansions_) return EgoSearchStatus::kExpansionLimit;
-    for (std::uint8_t k = 0; k < steps_.size(); ++k) {
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
       const Eigen::Vector3i next = index + steps_[k].offset;
       if (!Contains(next)) continue;
       const std::uint32_t to_address = Address(next);
@@ -136,7 +136,7 @@ EgoSearchStatus EgoSearch::Search(const EgoGrid& grid, const Eigen::Vector3d& fr
       }
       if (grid.Occupied(PointOf(next))) continue;
       g_[to_address] = g;
-      parent_[to_address] = k;
+      parent_[to_address] = static_cast<std::uint8_t>(k);
       seen_[to_address] = open;
       Push(to_address, g + kTieBreaker * DiagonalDistance(next, goal));
     }

@@ -50,7 +50,7 @@ Eigen::Vector3d PidLaw::Step(const PidError& error, double v_z, const Eigen::Vec
   wanted << error.pad_velocity + gains_.proportional * error.position + integral_ +
                 gains_.derivative * error.velocity,
       v_z;
-  const Eigen::Vector3d a = Towards(wanted, v, limits);
+  Eigen::Vector3d a = Towards(wanted, v, limits);
   const bool cut =
       wanted.norm() > limits.speed || (wanted - v).norm() > limits.acceleration * gains_.response;
   if (!cut && error.position.norm() < gains_.integral_zone) {
