@@ -75,6 +75,10 @@ const Figure kFigures[] = {
      [](const TrialResult& r) {
        return r.own_state ? std::optional(r.own_state->rmse_position_m) : std::nullopt;
      }},
+    {"time_to_done_s", "time until it was done", "s",
+     [](const TrialResult& r) {
+       return r.succeeded() && !r.landed() ? std::optional(r.simulated_s) : std::nullopt;
+     }},
     {"following_error_m", "following error, last 10 s", "m",
      [](const TrialResult& r) {
        return r.following && r.succeeded() ? std::optional(r.following->mean_error_m)

@@ -40,6 +40,9 @@ PICTURE_STYLE = {
 }
 
 
+DONE = ("landed", "followed", "arrived")
+
+
 def title_lines(record):
     """Headline with the outcome, and a line with the figures."""
     result = record.result
@@ -54,6 +57,8 @@ def title_lines(record):
             f"touchdown error {touchdown['error_m']:.3f} m",
             f"relative speed {speed:.2f} m/s",
         ]
+    elif result["outcome"] in DONE:
+        headline += f" after {result['simulated_s']:.1f} s"
     if result["min_clearance_m"] is not None:
         figures.append(f"least clearance {result['min_clearance_m']:.2f} m")
     figures += [f"{result['replans']} replans", f"seed {result['seed']}"]
@@ -118,7 +123,7 @@ def draw_world(axes, record, contact, half, side):
             axes.add_patch(
                 Polygon(deck_outline(row, half), fc=fill, ec=PAD_COLOUR, lw=1.2, zorder=3)
             )
-    if record.result["landed"]:
+    if record.result["outcome"] in DONE:
         axes.plot(*vehicle[-1, [1, down]], "*", ms=15, mfc="#009E73", mec="white", zorder=6)
     else:
         axes.plot(*vehicle[-1, [1, down]], "X", ms=11, mfc="#CC0000", mec="white", zorder=6)
@@ -215,13 +220,14 @@ def legend_entries(record, contact):
         Line2D([], [], color=PLAN_COLOUR, lw=1.0, label="plans as they were made"),
         Line2D([], [], marker="o", ls="", mfc="white", mec="#333333", mew=1.5, label="start"),
     ]
-    if record.result["landed"]:
+    if record.result["outcome"] in DONE:
+        label = "touchdown" if record.result["landed"] else "done"
         handles.append(
-            Line2D([], [], marker="*", ls="", ms=12, mfc="#009E73", mec="white", label="touchdown")
+            Line2D([], [], marker="*", ls="", ms=12, mfc="#009E73", mec="white", label=label)
         )
     else:
         handles.append(
-            Line2D([], [], marker="X", ls="", ms=9, mfc="#CC0000", mec="white", label="end, not landed")
+            Line2D([], [], marker="X", ls="", ms=9, mfc="#CC0000", mec="white", label="end, not done")
         )
     return handles
 
