@@ -51,6 +51,10 @@ class Reader {
   }
 
   void ReadEntry(const std::string& name, const YAML::Node& value, const Where& where) {
+    if (lines_ && source_->where.count(name) != 0) {
+      throw BadInput(
+          fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+    }
     if (const auto key = FindScenarioKey(name, registries_)) {
       key->set(source_->scenario, value, where);
       source_->where[name] = where;

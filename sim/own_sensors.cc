@@ -45,7 +45,7 @@ OwnNoise::OwnNoise(const OwnSensorConfig& config, std::uint64_t seed, std::strin
 bool OwnNoise::Due(double t) { return clock_.has_value() && clock_->Due(t); }
 
 Eigen::Vector3d OwnNoise::Draw() {
-  const Eigen::Vector3d error = drift_ + Normal3(white_, config_.sigma);
+  Eigen::Vector3d error = drift_ + Normal3(white_, config_.sigma);
   drift_ =
       keep_ * drift_ + Normal3(drift_stream_, std::sqrt(1.0 - keep_ * keep_) * config_.drift_sigma);
   return error;
