@@ -325,7 +325,7 @@ bool IsInOwnForm(const std::string& path) {
 }
 
 std::string ImportVehicle(const std::string& path, const AirframeExtras& extras) {
-  const std::string text = ReadVehicleFile(path);  // names a file that is not there
+  std::string text = ReadVehicleFile(path);  // names a file that is not there
   const MujocoModel model = CompileMjcfFile(path);
   if (OwnForm(*model)) return text;
   CheckWithin("lag of the rotors [s]", extras.rotor_lag, 0.005, 1.0);

@@ -27,7 +27,7 @@ FunctionTerm::FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss,
       first_(shape.first),
       windows_(shape.windows),
       variables_(shape.window * shape.block_size),
-      loss_(std::move(loss)),
+      loss_(loss),
       functions_(std::move(functions)) {
   const auto require = [this](const char* name, int value, int low, int high) {
     if (value >= low && value <= high) return;
