@@ -202,6 +202,26 @@ TEST(Replanner, SpansAreLoggedWhereSomebodyListens) {
   EXPECT_LE(end, total.begin + total.wall);
 }
 
+TEST(Replanner, SegmentsAreAsShortAsTheOptionSays) {
+  const ArcPad pad({6.0, 0.0, 0.3}, 0.3, 0.0, 0.0);
+  const OccupancyMap map = ObservedMap();
+  int before = 0;
+  for (const double length : {0.75, 0.5, 0.3}) {
+    ReplannerOptions options = Options(ArrivalMode::kFixed);
+    options.segment_length = length;
+    Replanner replanner(options, solvers::StandardBackends());
+    replanner.CommitHover({-4.0, 0.0, 1.5}, 0.0);
+    const ReplanResult& plan = replanner.Replan(Input({-4.0, 0.0, 1.5}, pad, 0.0), map);
+    ASSERT_EQ(plan.status, ReplanStatus::kPlanned) << Explain(plan.reason);
+    EXPECT_GT(plan.curve.segments(), before) << length;
+    EXPECT_LE(plan.curve.interval() * options.limits.speed, length + 1e-9);
+    before = plan.curve.segments();
+  }
+  ReplannerOptions none;
+  none.segment_length = 0.0;
+  EXPECT_THROW(Replanner(none, solvers::StandardBackends()), std::invalid_argument);
+}
+
 TEST(Replanner, NamesWhyThereIsNoPlan) {
   const ArcPad pad({5.0, 0.0, 0.3}, 0.5, 0.0, 0.0);
   const ArcPad racing({5.0, 0.0, 0.3}, 6.0, 0.0, 0.0);
