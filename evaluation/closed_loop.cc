@@ -275,8 +275,9 @@ class Trial {
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
   }
 
-  // Of the tasks that are no landing.
+  // Of the tasks that are no landing: a landing has no such place.
   bool AtTarget(const estimation::VehicleState& vehicle, const estimation::PadState& pad) const {
+    if (task_ == TaskKind::kLand) return false;
     if (task_ == TaskKind::kFollow) {
       return (vehicle.p_WB - pad.p_WP).head<2>().norm() <= stay_distance_;
     }

@@ -40,9 +40,8 @@ void RequireKey(const char* what, const std::string& part, const Parameter& para
     throw std::invalid_argument(
         fmt::format("{} {}: parameter {} {}", what, part, parameter.key, why));
   };
-  const auto is_word = [](const std::string& word) { return IsWord(word); };
   const std::vector<std::string> words = Split(parameter.key, '.');
-  if (words.size() < 2 || !std::all_of(words.begin(), words.end(), is_word)) {
+  if (words.size() < 2 || !std::all_of(words.begin(), words.end(), IsWord)) {
     refuse("must be written GROUP.NAME, of letters, digits, _ and -");
   }
   for (const SchemaKey<Scenario>& key : ScenarioKeys()) {

@@ -68,6 +68,13 @@ TEST(TaskFlight, FollowingEndsWhenItIsDone) {
   }
 }
 
+// Where a goal would be by default, too: a landing has none.
+TEST(TaskFlight, ALandingThatStandsHasNoGoalToStandAt) {
+  const Scenario scenario = Shipped("open", {"start.position=[6,0,2]", "pad.speed=10",
+                                             "pad.start=[20,0]", "stand_limit=3", "timeout=20"});
+  EXPECT_EQ(RunTrial(scenario, 1, StandardRegistries()).outcome, Outcome::kStood);
+}
+
 TEST(TaskFlight, WhoIsNeverNearEnoughDoesNotFollow) {
   const Scenario scenario = Shipped("open", {"task=follow", "planner=ego", "ego.goal_rate=1",
                                              "follow.distance=0.2", "timeout=20"});
