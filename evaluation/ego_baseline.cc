@@ -6,21 +6,40 @@
 namespace touchdown::evaluation {
 namespace {
 
-planning::EgoPlannerOptions OptionsOf(const PlannerSetup& setup, bool goal_velocity) {
-  planning::EgoPlannerOptions options;
-  options.plan.max_speed = setup.limits.speed;
-  options.plan.max_acceleration = setup.limits.acceleration;
-  options.plan.horizon = setup.Get("ego.horizon");
-  options.plan.control_point_distance = setup.Get("ego.control_point_distance");
-  options.plan.clearance = setup.Get("ego.clearance");
-  options.plan.replan_distance = setup.Get("ego.replan_distance");
-  options.plan.no_replan_distance = setup.Get("ego.no_replan_distance");
-  options.plan.emergency_time = setup.Get("ego.emergency_time");
-  options.goal_rate = setup.Get("ego.goal_rate");
-  options.goal_velocity = goal_velocity;
-  options.floor_height = setup.floor_height;
-  options.ceiling_height = setup.ceiling_height;
-  return options;
+using Options = planning::EgoPlannerOptions;
+
+const std::vector<OptionKey<Options>>& Keys() {
+  static const std::vector<OptionKey<Options>> keys = {
+      {"ego.goal_rate",
+       [](Options& o) -> double& { return o.goal_rate; },
+       {0.1, 100, false, "Hz"},
+       "planner ego: the pad's position is sent as a new goal so often"},
+      {"ego.horizon",
+       [](Options& o) -> double& { return o.plan.horizon; },
+       {1, 50, false, "m"},
+       "planner ego: distance of the local target"},
+      {"ego.control_point_distance",
+       [](Options& o) -> double& { return o.plan.control_point_distance; },
+       {0.05, 2, false, "m"},
+       "planner ego: nominal spacing of control points"},
+      {"ego.clearance",
+       [](Options& o) -> double& { return o.plan.clearance; },
+       {0, 3, false, "m"},
+       "planner ego: wanted beyond the grown obstacles"},
+      {"ego.replan_distance",
+       [](Options& o) -> double& { return o.plan.replan_distance; },
+       {0, 50, false, "m"},
+       "planner ego: flown before it replans for no other reason"},
+      {"ego.no_replan_distance",
+       [](Options& o) -> double& { return o.plan.no_replan_distance; },
+       {0, 50, false, "m"},
+       "planner ego: to the goal, nearer it replans for none"},
+      {"ego.emergency_time",
+       [](Options& o) -> double& { return o.plan.emergency_time; },
+       {0, 10, false, "s"},
+       "planner ego: a collision sooner than this stops the vehicle"},
+  };
+  return keys;
 }
 
 PlannerEntry EgoEntry(const char* name, const char* summary, bool goal_velocity) {
@@ -29,32 +48,16 @@ PlannerEntry EgoEntry(const char* name, const char* summary, bool goal_velocity)
   entry.summary = summary;
   entry.rate = planning::EgoPlanner::kRate;
   entry.solver = "lbfgs";
-  entry.parameters = {
-      {"ego.goal_rate",
-       5.0,
-       {0.1, 100, false, "Hz"},
-       "planner ego: the pad's position is sent as a new goal so often"},
-      {"ego.horizon", 7.5, {1, 50, false, "m"}, "planner ego: distance of the local target"},
-      {"ego.control_point_distance",
-       0.4,
-       {0.05, 2, false, "m"},
-       "planner ego: nominal spacing of control points"},
-      {"ego.clearance", 0.5, {0, 3, false, "m"}, "planner ego: wanted beyond the grown obstacles"},
-      {"ego.replan_distance",
-       1.5,
-       {0, 50, false, "m"},
-       "planner ego: flown before it replans for no other reason"},
-      {"ego.no_replan_distance",
-       2.0,
-       {0, 50, false, "m"},
-       "planner ego: to the goal, nearer it replans for none"},
-      {"ego.emergency_time",
-       1.0,
-       {0, 10, false, "s"},
-       "planner ego: a collision sooner than this stops the vehicle"},
-  };
+  entry.parameters = ParametersOf(Keys());
   entry.make = [goal_velocity](const PlannerSetup& setup) {
-    return std::make_unique<planning::EgoPlanner>(OptionsOf(setup, goal_velocity));
+    Options options;
+    Set(setup, Keys(), &options);
+    options.plan.max_speed = setup.limits.speed;
+    options.plan.max_acceleration = setup.limits.acceleration;
+    options.goal_velocity = goal_velocity;
+    options.floor_height = setup.floor_height;
+    options.ceiling_height = setup.ceiling_height;
+    return std::make_unique<planning::EgoPlanner>(options);
   };
   return entry;
 }

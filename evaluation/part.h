@@ -44,7 +44,32 @@ struct PartSetup {
   double Get(std::string_view key) const;
 };
 
-/// "a, b or c": the names of a registry.
+/// A number of some options as a parameter: its default is theirs.
+template <class Options>
+struct OptionKey {
+  std::string key;
+  double& (*of)(Options& options);
+  ValueRange range;
+  std::string doc;
+};
+
+template <class Options>
+std::vector<Parameter> ParametersOf(const std::vector<OptionKey<Options>>& keys) {
+  Options defaults;
+  std::vector<Parameter> parameters;
+  for (const OptionKey<Options>& key : keys) {
+    parameters.push_back({key.key, key.of(defaults), key.range, key.doc});
+  }
+  return parameters;
+}
+
+/// Sets each number to what the scenario says.
+template <class Options>
+void Set(const PartSetup& setup, const std::vector<OptionKey<Options>>& keys, Options* options) {
+  for (const OptionKey<Options>& key : keys) key.of(*options) = setup.Get(key.key);
+}
+
+/// The names of a registry.
 template <class Entry>
 std::vector<std::string> NamesOf(const std::vector<Entry>& registry) {
   std::vector<std::string> names;

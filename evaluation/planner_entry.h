@@ -26,7 +26,7 @@ struct PlannerEntry : Part {
   bool avoids = true;   ///< it keeps clear of the map, which is grown by the hull at least
   double rate = 0.0;    ///< at which it is asked [Hz]; 0: planning.rate
   std::string solver =
-      "none";  ///< its own, which stands as solver.backend; empty: it has the choice
+      "none";  ///< its own, which results name; empty: it has the choice, solver.backend
   std::function<std::unique_ptr<planning::Planner>(const PlannerSetup&)> make;
 };
 
