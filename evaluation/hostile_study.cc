@@ -46,7 +46,7 @@ void ApplySet(const HostileOptions& options, const Registries& registries, Scena
     if (name == "seed" || name.rfind("obstacles", 0) == 0) {
       throw BadInput(fmt::format("--set {}: this study draws it for each flight.", text));
     }
-    if (!FindScenarioKey(name, registries)) {
+    if (!FindScenarioKey(name, ScenarioKeys(registries))) {
       throw BadInput(
           fmt::format("--set {}: {} is a group of keys; set them one by one.", text, name));
     }

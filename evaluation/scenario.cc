@@ -18,17 +18,15 @@
 namespace touchdown::evaluation {
 namespace {
 
+using Keys = std::vector<SchemaKey<Scenario>>;
+
 constexpr char kObstacles[] = "obstacles";
 
 class Reader {
  public:
   /// `file` stands in every sentence; `lines`: with the line.
-  Reader(ScenarioSource* source, std::string file, bool lines, const Registries& registries)
-      : source_(source),
-        file_(std::move(file)),
-        lines_(lines),
-        registries_(registries),
-        keys_(ScenarioKeys(registries)) {}
+  Reader(ScenarioSource* source, std::string file, bool lines, const Keys& keys)
+      : source_(source), file_(std::move(file)), lines_(lines), keys_(keys) {}
 
   void Read(const YAML::Node& root) { ReadMap(root, "", WhereIs(root)); }
 
@@ -55,7 +53,7 @@ class Reader {
       throw BadInput(
           fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
     }
-    if (const auto key = FindScenarioKey(name, registries_)) {
+    if (const auto key = FindScenarioKey(name, keys_)) {
       key->set(source_->scenario, value, where);
       source_->where[name] = where;
     } else if (name == "obstacles.boxes") {
@@ -145,8 +143,7 @@ class Reader {
   ScenarioSource* source_;
   std::string file_;
   bool lines_;
-  const Registries& registries_;
-  std::vector<SchemaKey<Scenario>> keys_;
+  const Keys& keys_;
 };
 
 // `load` gives the YAML documents of what sentences call `path`.
@@ -169,7 +166,7 @@ YAML::Node OneDocument(const std::string& path, const Load& load) {
   }
 }
 
-void ApplyOverride(const std::string& text, const Registries& registries, ScenarioSource* source) {
+void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* source) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
     throw BadInput(fmt::format("--set {}: write KEY=VALUE.", text));
@@ -184,7 +181,7 @@ void ApplyOverride(const std::string& text, const Registries& registries, Scenar
   }
   Where where;
   where.file = file;
-  Reader(source, file, false, registries).ReadEntry(name, value, where);
+  Reader(source, file, false, keys).ReadEntry(name, value, where);
 }
 
 // What the keys that were given ask of those that were not: some planners' plans do not lead to contact, one
@@ -219,8 +216,9 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
   ScenarioSource source;
   source.scenario.name = name;
   source.file = file;
-  Reader(&source, file, true, registries).Read(root);
-  for (const std::string& text : overrides) ApplyOverride(text, registries, &source);
+  const Keys keys = ScenarioKeys(registries);
+  Reader(&source, file, true, keys).Read(root);
+  for (const std::string& text : overrides) ApplyOverride(text, keys, &source);
   SuitDefaults(registries, &source);
   CheckScenario(source, registries);
   return source.scenario;
@@ -231,7 +229,7 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
 void ApplyOverride(const std::string& text, const Registries& registries, Scenario* scenario) {
   ScenarioSource source;
   source.scenario = *scenario;
-  ApplyOverride(text, registries, &source);
+  ApplyOverride(text, ScenarioKeys(registries), &source);
   *scenario = std::move(source.scenario);
 }
 

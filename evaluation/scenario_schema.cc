@@ -131,8 +131,8 @@ std::optional<SchemaKey<Scenario>> FindOpenKey(const std::string& name) {
 }  // namespace
 
 std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
-                                                   const Registries& registries) {
-  for (const SchemaKey<Scenario>& key : ScenarioKeys(registries)) {
+                                                   const std::vector<SchemaKey<Scenario>>& keys) {
+  for (const SchemaKey<Scenario>& key : keys) {
     if (key.name == name) return key;
   }
   return FindOpenKey(name);

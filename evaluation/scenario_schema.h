@@ -34,10 +34,10 @@ std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries);
 const std::vector<SchemaKey<BoxObstacle>>& BoxKeys();
 const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys();
 
-/// The key called `name`: of the lists above, or open: solver.options.<name> and terms.<term>.<key>,
+/// The key called `name`: of `keys`, the list above, or open: solver.options.<name> and terms.<term>.<key>,
 /// whose names and ranges backends and terms know (CheckScenario asks them). Open keys have no `get`.
 std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,
-                                                   const Registries& registries);
+                                                   const std::vector<SchemaKey<Scenario>>& keys);
 
 /// `name` groups open keys.
 bool IsOpenGroup(const std::string& name);

@@ -32,7 +32,7 @@ double RangeEnd(const std::string& text, const std::string& variation) {
 // Every value that a variation can take must be allowed, whatever a seed draws: the ends of a range
 // stand for all of it. @throws BadInput
 void CheckValues(const Variation& variation, const Registries& registries) {
-  const auto key = FindScenarioKey(variation.key, registries);
+  const auto key = FindScenarioKey(variation.key, ScenarioKeys(registries));
   std::vector<std::string> values = variation.values;
   if (values.empty()) values = {WriteNumber(variation.lo), WriteNumber(variation.hi)};
   for (const std::string& value : values) {
@@ -88,7 +88,7 @@ Variation Variation::Parse(const std::string& text, const Registries& registries
   variation.text = text;
   variation.key = text.substr(0, equals);
   const std::string rest = text.substr(equals + 1);
-  if (!FindScenarioKey(variation.key, registries) || variation.key == "seed") {
+  if (!FindScenarioKey(variation.key, ScenarioKeys(registries)) || variation.key == "seed") {
     throw BadInput(fmt::format("--vary {}: {} is no key that can be varied.", text, variation.key));
   }
   if (const std::size_t dots = rest.find(".."); dots != std::string::npos) {
@@ -162,7 +162,8 @@ Campaign SweepCampaign(const SweepOptions& options, const Registries& registries
   nlohmann::json vary = nlohmann::json::array();
   for (const Variation& variation : options.variations) {
     vary.push_back(variation.text);
-    campaign.keys.push_back({variation.key, FindScenarioKey(variation.key, registries)->unit,
+    campaign.keys.push_back({variation.key,
+                             FindScenarioKey(variation.key, ScenarioKeys(registries))->unit,
                              variation.values.empty()});
   }
   campaign.facts = {{"set", nlohmann::json(options.overrides).dump()}, {"vary", vary.dump()}};
