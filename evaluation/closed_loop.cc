@@ -65,20 +65,16 @@ std::optional<SafetyWatch> SafetyWatchOf(const PlannerEntry& planner, const sim:
   return SafetyWatch(world.config().obstacles);
 }
 
-double StayDistance(const Scenario& scenario) {
-  return scenario.task == TaskKind::kGoTo ? scenario.go_to.distance : scenario.follow.distance;
-}
-
-StayTask StayTaskOf(const Scenario& scenario) {
+std::optional<StayTask> StayOf(const Scenario& scenario) {
   switch (scenario.task) {
     case TaskKind::kLand:
       break;
     case TaskKind::kFollow:
-      return {Outcome::kFollowed, scenario.follow.time};
+      return StayTask{Outcome::kFollowed, scenario.follow.distance, scenario.follow.time};
     case TaskKind::kGoTo:
-      return {Outcome::kArrived, scenario.go_to.time};
+      return StayTask{Outcome::kArrived, scenario.go_to.distance, scenario.go_to.time};
   }
-  return {};
+  return std::nullopt;
 }
 
 class Trial {
@@ -112,11 +108,11 @@ class Trial {
                Eigen::Vector4d(world_.rotor_commands().data()), perception_.map()),
         clearance_(world_.config().obstacles, world_.model()),
         task_(scenario.task),
-        stay_distance_(StayDistance(scenario)),
+        stay_(StayOf(scenario)),
         goal_(GoalOf(scenario)),
         limits_(scenario.limits),
         landing_time_(LandingTimeTaskOf(scenario, world_)),
-        judge_(LandingRule{}, scenario.timeout, StayTaskOf(scenario)),
+        judge_(LandingRule{}, scenario.timeout, stay_),
         stand_watch_(scenario.stand_limit),
         safety_watch_(SafetyWatchOf(planner, world_)),
         map_look_clock_(kMapLookRate),
@@ -134,7 +130,7 @@ class Trial {
       record_->outside = OutsideFilesOf(scenario);
       record_->hover_W = perception_.own().now().p_WB;
       if (planner.solver.empty()) {
-        record_->zones = ZonesOf(scenario, world_.model(), registries.terms);
+        record_->zones = ZonesOf(PlannerOptions(scenario, world_.model(), registries.terms));
       }
     }
   }
@@ -275,15 +271,14 @@ class Trial {
     if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
   }
 
-  // Of the tasks that are no landing: a landing has no such place.
   bool AtTarget(const estimation::VehicleState& vehicle, const estimation::PadState& pad) const {
-    if (task_ == TaskKind::kLand) return false;
+    if (!stay_) return false;  // a landing has no such place
     if (task_ == TaskKind::kFollow) {
-      return (vehicle.p_WB - pad.p_WP).head<2>().norm() <= stay_distance_;
+      return (vehicle.p_WB - pad.p_WP).head<2>().norm() <= stay_->distance;
     }
     const estimation::PadState goal = goal_.At(vehicle.t);
-    return (vehicle.p_WB - goal.p_WP).norm() <= stay_distance_ &&
-           (vehicle.v_WB - goal.v_WP).norm() <= stay_distance_ / kSecond;
+    return (vehicle.p_WB - goal.p_WP).norm() <= stay_->distance &&
+           (vehicle.v_WB - goal.v_WP).norm() <= stay_->distance / kSecond;
   }
 
   void WatchSafety(const estimation::VehicleState& vehicle) {
@@ -400,7 +395,7 @@ class Trial {
   Pilot pilot_;
   sim::TrueClearance clearance_;
   TaskKind task_;
-  double stay_distance_;       ///< from the target [m]
+  std::optional<StayTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
   LandingTimeTask landing_time_;  ///< at the start

@@ -146,8 +146,9 @@ std::string Broken(const LandingRule& rule, const Touchdown& d) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-LandingJudge::LandingJudge(const LandingRule& rule, double timeout, const StayTask& task)
-    : rule_(rule), timeout_(timeout), task_(task) {}
+LandingJudge::LandingJudge(const LandingRule& rule, double timeout,
+                           const std::optional<StayTask>& stay)
+    : rule_(rule), timeout_(timeout), stay_(stay) {}
 
 std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   if (outcome_) return outcome_;
@@ -166,7 +167,7 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
   } else {
     outcome_ = touchdown_ ? OnThePad(sample) : InTheAir(sample);
   }
-  if (!outcome_ && task_.asked() && !touchdown_ && Stayed(sample)) outcome_ = task_.done;
+  if (!outcome_ && stay_ && !touchdown_ && Stayed(sample)) outcome_ = stay_->done;
   if (!outcome_ && sample.t >= timeout_) outcome_ = TimeoutClass();
   if (!outcome_ && !touchdown_ && sample.stood) outcome_ = Outcome::kStood;
   return outcome_;
@@ -175,15 +176,15 @@ std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {
 bool LandingJudge::Stayed(const JudgeSample& sample) {
   if (!sample.at_target) there_since_.reset();
   if (sample.at_target && !there_since_) there_since_ = sample.t;
-  const bool ends_by_time = task_.time > 0.0 || task_.done == Outcome::kArrived;
-  return ends_by_time && there_since_ && sample.t - *there_since_ >= task_.time - 1e-3;
+  const bool ends_by_time = stay_->time > 0.0 || Asks(Outcome::kArrived);
+  return ends_by_time && there_since_ && sample.t - *there_since_ >= stay_->time - 1e-3;
 }
 
 std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
   if (sample.hull_on_deck) return Outcome::kCollision;
   // On the way to a goal the pad is one of the obstacles.
   const bool touches = sample.beside_pad || sample.foot_on_pad;
-  if (touches && task_.done == Outcome::kArrived) return Outcome::kCollision;
+  if (touches && Asks(Outcome::kArrived)) return Outcome::kCollision;
   if (sample.beside_pad) {
     const double distance = (sample.vehicle.p_WB - sample.pad.p_WP).head<2>().norm();
     return distance <= rule_.off_pad_distance ? Outcome::kOffPad : Outcome::kCollision;
@@ -192,8 +193,6 @@ std::optional<Outcome> LandingJudge::InTheAir(const JudgeSample& sample) {
     if (!sample.armed) return Outcome::kDisarmedInAir;
     return std::nullopt;
   }
-  if (task_.done == Outcome::kArrived)
-    return Outcome::kCollision;  // the pad is one of the obstacles
   Touchdown touchdown;
   const Eigen::Vector3d axis = sample.vehicle.q_WB * Eigen::Vector3d::UnitZ();
   touchdown.t = sample.t;
@@ -238,7 +237,7 @@ Outcome LandingJudge::TimeoutClass() const {
   if (without_pad_ > rule_.loss_share) return Outcome::kLostPad;
   if (without_plan_ > rule_.loss_share) return Outcome::kInfeasible;
   const bool near = *distance_ <= rule_.following_distance;
-  if (task_.done == Outcome::kFollowed && task_.time <= 0.0 && near) return Outcome::kFollowed;
+  if (Asks(Outcome::kFollowed) && stay_->time <= 0.0 && near) return Outcome::kFollowed;
   return Outcome::kTimeout;
 }
 

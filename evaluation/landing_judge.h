@@ -102,21 +102,19 @@ std::string Broken(const LandingRule& rule, const Touchdown& touchdown);
 /// Velocity of the deck's material point below p_WB, in W [m/s].
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB);
 
-/// To stay where the samples say `at_target`, without a break.
+/// To stay at the target, without a break.
 struct StayTask {
-  Outcome done = Outcome::kLanded;  ///< kFollowed or kArrived; kLanded: it is no such task
-  double time = 0.0;                ///< so long [s]; 0, to follow: near it until the time-out
-  bool asked() const { return done != Outcome::kLanded; }
+  Outcome done = Outcome::kArrived;  ///< or kFollowed
+  double distance = 0.0;             ///< so near is at the target: who samples says so [m]
+  double time = 0.0;                 ///< so long [s]; 0, to follow: near it until the time-out
 };
 
 /// Decides a trial step by step. A pure function of the samples. Does not
 /// allocate.
 class LandingJudge {
  public:
-  /// A landing is asked for, within `timeout` [s].
-  LandingJudge(const LandingRule& rule, double timeout) : LandingJudge(rule, timeout, {}) {}
-  /// A landing, or to stay at the target.
-  LandingJudge(const LandingRule& rule, double timeout, const StayTask& task);
+  /// A landing is asked for within `timeout` [s], or to stay.
+  LandingJudge(const LandingRule& rule, double timeout, const std::optional<StayTask>& stay = {});
 
   /// Takes the next sample (t rising). Returns the outcome once it is decided, and from then on.
   std::optional<Outcome> Observe(const JudgeSample& sample);
@@ -126,6 +124,7 @@ class LandingJudge {
   const std::optional<Touchdown>& touchdown() const { return touchdown_; }
 
  private:
+  bool Asks(Outcome done) const { return stay_ && stay_->done == done; }
   bool Stayed(const JudgeSample& sample);
   std::optional<Outcome> InTheAir(const JudgeSample& sample);
   std::optional<Outcome> OnThePad(const JudgeSample& sample);
@@ -133,7 +132,7 @@ class LandingJudge {
 
   LandingRule rule_;
   double timeout_;
-  StayTask task_;
+  std::optional<StayTask> stay_;
   std::optional<Outcome> outcome_;
   std::optional<Touchdown> touchdown_;
   double t_previous_ = 0.0;

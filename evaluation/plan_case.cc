@@ -141,8 +141,7 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   solved.unseen_W = result.unseen_W;
   for (const solvers::TermCost& term : result.solver.cost_by_term)
     solved.terms.push_back(term.name);
-  solved.zones = ZonesOf(flight.scenario, sim::LoadVehicleModel(VehicleMjcf(flight.scenario)),
-                         registries.terms);
+  solved.zones = ZonesOf(options);
   solved.resolution = replay.map().resolution();
   if (const estimation::PadPrediction* prediction = replay.prediction()) {
     solved.t_pad = solved.recorded.request.input.t_now;

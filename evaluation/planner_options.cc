@@ -129,11 +129,8 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
   return options;
 }
 
-std::vector<planning::NamedZone> ZonesOf(const Scenario& scenario,
-                                         const estimation::VehicleModel& model,
-                                         const planning::TermRegistry& terms) {
+std::vector<planning::NamedZone> ZonesOf(const planning::ReplannerOptions& options) {
   constexpr int kSegments = 12;  // any number will do
-  const planning::ReplannerOptions options = PlannerOptions(scenario, model, terms);
   return planning::LandingProblem(kSegments, planning::ProblemOptions(options, options.arrival))
       .zones();
 }

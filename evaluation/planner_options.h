@@ -15,9 +15,7 @@ planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                                           const planning::TermRegistry& terms);
 
 /// Where terms of the landing planner act, of those that say so.
-std::vector<planning::NamedZone> ZonesOf(const Scenario& scenario,
-                                         const estimation::VehicleModel& model,
-                                         const planning::TermRegistry& terms);
+std::vector<planning::NamedZone> ZonesOf(const planning::ReplannerOptions& options);
 
 /// The planner that the scenario asks for.
 std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
