@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
 from touchdown_report import bspline, command_line, zones  # noqa: E402
+from touchdown_report.outcomes import DONE  # noqa: E402
 from touchdown_report.record import Record, RecordError  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
@@ -38,9 +39,6 @@ PICTURE_STYLE = {
     "xtick.color": "#555555",
     "ytick.color": "#555555",
 }
-
-
-DONE = ("landed", "followed", "arrived")
 
 
 def title_lines(record):

@@ -15,6 +15,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
 from touchdown_report import command_line, database  # noqa: E402
+from touchdown_report.outcomes import DONE  # noqa: E402
 from touchdown_report.style import STYLE, sign  # noqa: E402
 
 SUPPORTED_VERSION = "8"
@@ -77,10 +78,10 @@ class Sweep:
             self.cells[tuple(place[key] for key in self.lists)] = Cell(*figures)
         self._trials = {}
         for key, *trial in db.execute(
-            "SELECT key, value, time_to_land_s, outcome IN ('landed', 'followed', 'arrived') "
-            "FROM trial JOIN variation USING(trial) ORDER BY trial"
+            "SELECT key, value, time_to_land_s, outcome FROM trial JOIN variation USING(trial) ORDER BY trial"
         ):
-            self._trials.setdefault(key, []).append(trial)
+            *figures, outcome = trial
+            self._trials.setdefault(key, []).append([*figures, outcome in DONE])
 
     def trials(self, key):
         """Of every trial [value of the key, time to land in s or None, whether it succeeded]."""

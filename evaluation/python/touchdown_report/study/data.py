@@ -8,7 +8,6 @@ import pandas as pd
 from touchdown_report import database
 
 SUPPORTED_VERSION = "8"
-FLOWN = ("landed", "followed", "arrived")
 
 
 class StudyError(Exception):

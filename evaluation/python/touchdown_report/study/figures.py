@@ -6,6 +6,7 @@ import textwrap
 import matplotlib.pyplot as plt
 import numpy as np
 
+from touchdown_report.outcomes import DONE
 from touchdown_report.study import statistics, tables
 from touchdown_report.study.style import PAGE, legend_above, looks, outcome_colour
 
@@ -57,7 +58,7 @@ def outcomes(study, counts):
     cells = study.cells()
     figure, panels = _grid(len(methods), min(4, len(methods)), 0.2 * len(cells) + 0.6, sharex=True, sharey=True)
     names = [name for name in counts.columns if counts[name].sum() > 0]
-    names.sort(key=lambda name: (name not in tables.SUCCESS, -counts[name].sum()))
+    names.sort(key=lambda name: (name not in DONE, -counts[name].sum()))
     for panel, method in zip(panels, methods):
         for place, cell in enumerate(reversed(cells)):
             if (cell, method) not in counts.index:

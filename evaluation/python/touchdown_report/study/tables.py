@@ -4,6 +4,7 @@ pair of methods, for each outcome and for each failure."""
 import numpy as np
 import pandas as pd
 
+from touchdown_report.outcomes import DONE
 from touchdown_report.study import statistics
 
 # Column of a trial: name in the tables. All are of landed trials.
@@ -19,12 +20,11 @@ FIGURES = {
 LAST_5_S = ("mean_abs_error_x_m", "mean_abs_error_y_m")
 PAIRED = ("time_to_land_s", "touchdown_error_m", "effort_n2s")
 ALL_CELLS = "all"
-SUCCESS = ("landed", "followed", "arrived")
 
 
 def succeeded(trials):
     """What counts: that the task is done."""
-    return trials["outcome"].isin(SUCCESS)
+    return trials["outcome"].isin(DONE)
 
 
 def not_cut_short(trials):
