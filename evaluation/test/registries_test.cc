@@ -39,44 +39,38 @@ std::string Refusal(void (*spoil)(PlannerEntry* entry)) {
   return "accepted";
 }
 
-TEST(Registries, WhatAnEntrySaysWrongIsNamed) {
-  EXPECT_EQ(Refusal([](PlannerEntry*) {}), "accepted");
-  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->name = "ego"; }),
-              HasSubstr("two of the planner ego"));
-  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->name = "my planner"; }), HasSubstr("my planner"));
-  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->name = ""; }), HasSubstr("its name"));
-  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->make = nullptr; }), HasSubstr("make"));
-  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->rate = -1.0; }), HasSubstr("rate is -1"));
-  EXPECT_THAT(Refusal([](PlannerEntry* e) { e->rate = std::nan(""); }), HasSubstr("rate"));
-}
+struct Slip {
+  void (*make)(PlannerEntry* entry);
+  const char* said;
+};
 
-TEST(Registries, WhatAParameterMayNotBeIsNamed) {
-  const auto key = [](auto spoil) { return Refusal(spoil); };
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "share"; }),
-              HasSubstr("GROUP.NAME"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "mine..share"; }),
-              HasSubstr("GROUP.NAME"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "mine.the share"; }),
-              HasSubstr("letters"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "pad.speed"; }),
-              HasSubstr("already"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "planner.share"; }),
-              HasSubstr("already"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "solver.options.share"; }),
-              HasSubstr("group of others"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "obstacles.boxes"; }),
-              HasSubstr("group of others"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].key = "ego.horizon"; }),
-              HasSubstr("another default or range"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].value = 50.0; }),
-              HasSubstr("default 50, which is not in [0, 1]"));
-  EXPECT_THAT(key([](PlannerEntry* e) { e->parameters[0].value = std::nan(""); }),
-              HasSubstr("default nan"));
-  EXPECT_THAT(key([](PlannerEntry* e) {
-                e->parameters.push_back(e->parameters[0]);
-                e->parameters[1].key = "mine.share.of";
-              }),
-              HasSubstr("is the group of mine.share.of"));
+TEST(Registries, WhatAnEntrySaysWrongIsNamed) {
+  const Slip slips[] = {
+      {[](PlannerEntry*) {}, "accepted"},
+      {[](PlannerEntry* e) { e->name = "ego"; }, "two of the planner ego"},
+      {[](PlannerEntry* e) { e->name = "my planner"; }, "my planner"},
+      {[](PlannerEntry* e) { e->name = ""; }, "its name"},
+      {[](PlannerEntry* e) { e->make = nullptr; }, "make"},
+      {[](PlannerEntry* e) { e->rate = -1.0; }, "rate is -1"},
+      {[](PlannerEntry* e) { e->rate = std::nan(""); }, "rate"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "share"; }, "GROUP.NAME"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "mine..share"; }, "GROUP.NAME"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "mine.the share"; }, "letters"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "pad.speed"; }, "already"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "planner.share"; }, "already"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "solver.options.share"; }, "group of others"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "obstacles.boxes"; }, "group of others"},
+      {[](PlannerEntry* e) { e->parameters[0].key = "ego.horizon"; }, "another default or range"},
+      {[](PlannerEntry* e) { e->parameters[0].value = 50.0; },
+       "default 50, which is not in [0, 1]"},
+      {[](PlannerEntry* e) { e->parameters[0].value = std::nan(""); }, "default nan"},
+      {[](PlannerEntry* e) {
+         e->parameters.push_back(e->parameters[0]);
+         e->parameters[1].key = "mine.share.of";
+       },
+       "is the group of mine.share.of"},
+  };
+  for (const Slip& slip : slips) EXPECT_THAT(Refusal(slip.make), HasSubstr(slip.said));
 }
 
 TEST(Registries, NothingThatIsMadeIsSaidSo) {
