@@ -6,16 +6,6 @@
 
 namespace touchdown::evaluation {
 
-sim::WindConfig WindOf(const Scenario& scenario, const TrialDraw& draw) {
-  const Scenario::Wind& wind = scenario.wind;
-  sim::WindConfig config;
-  config.mean = wind.mean;
-  config.max = wind.max > 0.0 ? wind.max : wind.mean;
-  config.direction = draw.wind_direction;
-  config.gust = {wind.gust.speed, wind.gust.start, wind.gust.duration, wind.gust.period};
-  return config;
-}
-
 Air::Air(const Scenario& scenario, const TrialDraw& draw, std::uint64_t seed)
     : wind_(WindOf(scenario, draw), seed), pad_wake_(scenario.air.pad_wake) {}
 

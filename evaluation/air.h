@@ -12,9 +12,6 @@
 
 namespace touchdown::evaluation {
 
-/// The simulator's wind for this scenario and draw.
-sim::WindConfig WindOf(const Scenario& scenario, const TrialDraw& draw);
-
 /// The air of one trial at the vehicle: wind, and the pad vehicle's wake where it is asked for.
 class Air {
  public:

@@ -18,6 +18,7 @@
 #include "touchdown/evaluation/launch.h"
 #include "touchdown/evaluation/ranks.h"
 #include "touchdown/evaluation/rendering_check.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/trial_columns.h"
 #include "touchdown/evaluation/trial_store.h"
 #include "touchdown/evaluation/work_sharing.h"

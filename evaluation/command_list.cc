@@ -8,6 +8,7 @@
 
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/planning/landing_problem.h"
 
 namespace touchdown::evaluation {

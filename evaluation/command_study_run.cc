@@ -17,6 +17,7 @@
 #include "touchdown/evaluation/campaign_progress.h"
 #include "touchdown/evaluation/launch.h"
 #include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/study_rates.h"
 #include "touchdown/evaluation/study_run.h"
 

@@ -12,6 +12,7 @@
 #include "touchdown/evaluation/commands.h"
 #include "touchdown/evaluation/output_path.h"
 #include "touchdown/evaluation/report_program.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
 #include "touchdown/evaluation/trial_store.h"

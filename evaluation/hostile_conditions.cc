@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "touchdown/evaluation/hostile_world.h"
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 

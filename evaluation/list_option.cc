@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 

@@ -11,7 +11,7 @@
 #include "touchdown/evaluation/atomic_file.h"
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -25,6 +25,7 @@
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/rendering_check.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/work_sharing.h"
 

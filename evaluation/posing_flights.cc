@@ -18,9 +18,10 @@
 #include "touchdown/evaluation/replay.h"
 #include "touchdown/evaluation/result_file.h"
 #include "touchdown/evaluation/scenario.h"
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/sweep.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -22,6 +22,8 @@
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/evaluation/shipped_files.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 

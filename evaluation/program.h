@@ -4,6 +4,7 @@
 #include <string>
 
 #include "touchdown/evaluation/registries.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 
@@ -17,9 +18,7 @@ namespace touchdown::evaluation {
 /// 128 + N a sweep was interrupted by signal N (SIGINT, SIGTERM)
 int RunProgram(int argc, const char* const* argv, const Registries& registries);
 
-/// Where scenarios, studies and the report's package are installed, for a program that is not installed beside them:
-/// find_package(touchdown) says so to those that it links.
-bool UseShare(const std::string& directory);
+// find_package(touchdown) says so to programs that it links.
 #ifdef TOUCHDOWN_SHARE_DIRECTORY
 inline const bool kShareIsKnown = UseShare(TOUCHDOWN_SHARE_DIRECTORY);
 #endif

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/scenario_schema.h"
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

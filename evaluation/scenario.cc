@@ -14,6 +14,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_check.h"
 #include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

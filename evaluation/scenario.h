@@ -250,17 +250,6 @@ inline bool PlansContact(const Scenario& scenario) {
   return scenario.task == TaskKind::kLand && scenario.descent == DescentKind::kPlanned;
 }
 
-/// Where a scenario file is looked up by name, first hit first: in the installation that the
-/// program belongs to, then in the source tree it was built from.
-std::vector<std::string> ScenarioDirectories();
-
-/// Path of the scenario file called `name_or_path`: an existing path, or the name of a shipped one
-/// with or without .yaml. @throws BadInput naming what is there.
-std::string FindScenario(const std::string& name_or_path);
-
-/// Names of the shipped scenarios, sorted.
-std::vector<std::string> ListScenarios();
-
 /// Reads `path` through the schema, then applies `overrides` ("pad.speed=1.2") in order, then
 /// checks the whole against what `registries` know. @throws BadInput.
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,

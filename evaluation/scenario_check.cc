@@ -18,6 +18,7 @@
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/words.h"
 #include "touchdown/planning/prepared_problems.h"
 #include "touchdown/sim/obstacle_field.h"
 #include "touchdown/sim/plant.h"

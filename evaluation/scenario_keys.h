@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation::schema {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/scenario_keys.h"
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 

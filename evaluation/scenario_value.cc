@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -127,15 +128,6 @@ std::string WriteVector(const Eigen::VectorXd& values) {
     text += (i > 0 ? ", " : "") + WriteNumber(values[i]);
   }
   return text + "]";
-}
-
-std::string Enumerate(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
-    text += words[i];
-  }
-  return text;
 }
 
 }  // namespace touchdown::evaluation

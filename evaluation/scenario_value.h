@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "touchdown/evaluation/value_range.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 
@@ -41,8 +42,5 @@ Eigen::VectorXd ReadVector(const YAML::Node& node, const Where& where, const std
 /// Shortest decimal text that reads back to the same double.
 std::string WriteNumber(double value);
 std::string WriteVector(const Eigen::VectorXd& values);
-
-/// "a, b or c".
-std::string Enumerate(const std::vector<std::string>& words);
 
 }  // namespace touchdown::evaluation

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/air.h"
 #include "touchdown/evaluation/build_info.h"
 #include "touchdown/evaluation/waypoint_file.h"
 #include "touchdown/sim/random_stream.h"
@@ -116,6 +115,16 @@ TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
   draw.wind_direction =
       scenario.wind.direction_random ? direction : scenario.wind.direction_deg * kRadPerDeg;
   return draw;
+}
+
+sim::WindConfig WindOf(const Scenario& scenario, const TrialDraw& draw) {
+  const Scenario::Wind& wind = scenario.wind;
+  sim::WindConfig config;
+  config.mean = wind.mean;
+  config.max = wind.max > 0.0 ? wind.max : wind.mean;
+  config.direction = draw.wind_direction;
+  config.gust = {wind.gust.speed, wind.gust.start, wind.gust.duration, wind.gust.period};
+  return config;
 }
 
 sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw,

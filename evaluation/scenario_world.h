@@ -11,6 +11,7 @@
 #include "touchdown/sim/obstacle.h"
 #include "touchdown/sim/pad_course.h"
 #include "touchdown/sim/pad_geometry.h"
+#include "touchdown/sim/wind.h"
 #include "touchdown/sim/world.h"
 
 namespace touchdown::evaluation {
@@ -64,6 +65,9 @@ struct TrialDraw {
 
 /// The draws of `seed`, from the streams "start", "pad" and "wind direction".
 TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed);
+
+/// The simulator's wind for this scenario and draw.
+sim::WindConfig WindOf(const Scenario& scenario, const TrialDraw& draw);
 
 /// The simulator's world at t = 0.
 sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw,

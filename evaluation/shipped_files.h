@@ -6,6 +6,21 @@
 
 namespace touchdown::evaluation {
 
+/// Where scenarios, studies and the report's package are installed, for a program that is not installed beside them.
+bool UseShare(const std::string& directory);
+
+/// Path of the scenario file called `name_or_path`: an existing path, or the name of a shipped one
+/// with or without .yaml. Looked up first in the installation that the program belongs to, last in the
+/// source tree. @throws BadInput naming what is there.
+std::string FindScenario(const std::string& name_or_path);
+
+/// Names of the shipped scenarios, sorted.
+std::vector<std::string> ListScenarios();
+
+/// The same of study files.
+std::string FindStudyFile(const std::string& name_or_path);
+std::vector<std::string> ListStudyFiles();
+
 /// Directories that hold the Python package touchdown_report, first hit first.
 std::vector<std::string> PythonDirectories();
 

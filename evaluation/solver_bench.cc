@@ -18,6 +18,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/evaluation/words.h"
 #include "touchdown/sim/random_stream.h"
 #include "touchdown/solvers/evaluator.h"
 #include "touchdown/solvers/thread_clock.h"

@@ -54,11 +54,4 @@ struct StudyFile {
 /// @throws BadInput with file, line and key
 StudyFile LoadStudyFile(const std::string& path, const Registries& registries);
 
-/// Path of the study file called `name_or_path`: an existing path, or the name of a shipped one.
-/// @throws BadInput naming what is there
-std::string FindStudyFile(const std::string& name_or_path);
-
-/// Names of the shipped studies, sorted.
-std::vector<std::string> ListStudyFiles();
-
 }  // namespace touchdown::evaluation

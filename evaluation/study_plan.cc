@@ -10,7 +10,9 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sweep.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

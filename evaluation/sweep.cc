@@ -14,7 +14,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_schema.h"
 #include "touchdown/evaluation/scenario_value.h"
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 #include "touchdown/sim/random_stream.h"
 
 namespace touchdown::evaluation {

@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -10,6 +10,7 @@
 #include <octomap/octomap.h>
 
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/planning/occupancy_map.h"
 #include "touchdown/sim/depth_camera.h"
 #include "touchdown/sim/forest.h"

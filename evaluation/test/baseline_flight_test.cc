@@ -9,6 +9,7 @@
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/record.h"
 #include "touchdown/evaluation/replay.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/trial_json.h"
 
 namespace touchdown::evaluation {

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/campaign.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"
 

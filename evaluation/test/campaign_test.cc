@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/sweep.h"
 #include "touchdown/evaluation/sweep_report.h"

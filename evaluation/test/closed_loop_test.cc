@@ -10,6 +10,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/perception.h"
 #include "touchdown/evaluation/planner_options.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/trial_json.h"
 #include "touchdown/planning/swept_hull.h"
 #include "touchdown/sim/vehicle_file.h"

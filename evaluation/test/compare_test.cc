@@ -16,6 +16,7 @@
 #include "touchdown/evaluation/hostile_study.h"
 #include "touchdown/evaluation/posing_flights.h"
 #include "touchdown/evaluation/record.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sqlite_db.h"
 #include "touchdown/evaluation/sweep.h"
 

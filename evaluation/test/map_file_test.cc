@@ -14,6 +14,7 @@
 
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/program.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

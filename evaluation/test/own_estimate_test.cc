@@ -6,6 +6,7 @@
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/depth_eye.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/trial_json.h"
 
 namespace touchdown::evaluation {

@@ -12,6 +12,7 @@
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/pad_report.h"
 #include "touchdown/evaluation/perception.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

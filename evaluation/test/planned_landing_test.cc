@@ -9,6 +9,7 @@
 
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/solver_bench.h"
 #include "touchdown/evaluation/statistics.h"
 

@@ -11,6 +11,7 @@
 
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/scenario_schema.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

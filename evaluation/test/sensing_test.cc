@@ -9,6 +9,7 @@
 #include "touchdown/evaluation/depth_eye.h"
 #include "touchdown/evaluation/pad_eye.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/trial_json.h"
 
 namespace touchdown::evaluation {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sweep.h"
 
 namespace touchdown::evaluation {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/bad_input.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sweep_cells.h"
 #include "touchdown/evaluation/sweep_report.h"
 

@@ -6,6 +6,7 @@
 #include "touchdown/evaluation/bad_input.h"
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

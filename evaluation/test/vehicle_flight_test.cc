@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "touchdown/evaluation/closed_loop.h"
+#include "touchdown/evaluation/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -11,6 +11,7 @@
 #include "touchdown/evaluation/closed_loop.h"
 #include "touchdown/evaluation/planner_options.h"
 #include "touchdown/evaluation/scenario_world.h"
+#include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/sliding_mean.h"
 #include "touchdown/evaluation/trial_json.h"
 #include "touchdown/sim/pad_wake.h"
@@ -23,8 +24,8 @@ using Overrides = std::vector<std::string>;
 // Steady wind to the north over a pad that stands ahead of the start (what is straight below the camera does
 // not see, and the vehicle does not sink into it), or drives a circle there.
 const Overrides kNorthWind = {"wind.direction_random=false", "wind.direction_deg=90"};
-const Overrides kAbovePad = {"task=follow", "follow.time=0", "pad.motion=static", "pad.start=[3.0, 0.2]",
-                             "pad.prediction=oracle"};
+const Overrides kAbovePad = {"task=follow", "follow.time=0", "pad.motion=static",
+                             "pad.start=[3.0, 0.2]", "pad.prediction=oracle"};
 
 Overrides Join(Overrides a, const Overrides& b, const Overrides& c = {}) {
   a.insert(a.end(), b.begin(), b.end());
@@ -128,8 +129,8 @@ TEST(WindFlight, GustsDoNotBlowALightVehicleOffItsReference) {
 
 TEST(WindFlight, OnACircleTooWithTheEstimatedMomentAndForce) {
   const TrialResult result =
-      Fly(Join({"task=follow", "follow.time=0", "pad.motion=circle", "pad.speed=1", "pad.turn_rate=0.5",
-                "pad.start=[3.0, 0.2]", "pad.prediction=oracle"},
+      Fly(Join({"task=follow", "follow.time=0", "pad.motion=circle", "pad.speed=1",
+                "pad.turn_rate=0.5", "pad.start=[3.0, 0.2]", "pad.prediction=oracle"},
                kNorthWind, {"wind.mean=11", "timeout=22"}));
   ASSERT_TRUE(result.following);
   EXPECT_LE(result.following->mean_error_m, 0.02);

@@ -10,4 +10,7 @@ namespace touchdown::evaluation {
 /// too.
 std::vector<std::string> Split(const std::string& text, char separator);
 
+/// "a, b or c".
+std::string Enumerate(const std::vector<std::string>& words);
+
 }  // namespace touchdown::evaluation

@@ -11,6 +11,7 @@
 #include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/evaluation/shipped_files.h"
 #include "touchdown/evaluation/study_file.h"
+#include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/split.h"
+#include "touchdown/evaluation/words.h"
 
 #include <algorithm>
 
@@ -13,6 +13,15 @@ std::vector<std::string> Split(const std::string& text, char separator) {
     begin = end + 1;
   }
   return parts;
+}
+
+std::string Enumerate(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
+    text += words[i];
+  }
+  return text;
 }
 
 }  // namespace touchdown::evaluation
