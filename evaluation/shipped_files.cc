@@ -7,10 +7,7 @@
 #include <fmt/format.h>
 
 #include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/scenario.h"
-#include "touchdown/evaluation/scenario_value.h"
 #include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/study_file.h"
 #include "touchdown/evaluation/words.h"
 
 namespace touchdown::evaluation {
