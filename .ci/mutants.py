@@ -23,17 +23,17 @@ SOURCE, BUILD = PLACE / "src", PLACE / "build"
 ENOUGH = 0.9
 # What must be right, and the tests that are asked.
 FILES = {
-    "planning/certificate.cc": "planning_test",
-    "planning/curve_check.cc": "planning_test",
-    "planning/boundary_lift.cc": "planning_test",
-    "solvers/banded_newton.cc": "solvers_test",
-    "solvers/banded_interior_point.cc": "solvers_test",
-    "solvers/banded_solver.cc": "solvers_test",
-    "solvers/bordered_cholesky.cc": "solvers_test",
-    "control/landing_state_machine.cc": "control_test",
-    "control/landing_conditions.cc": "control_test",
-    "control/landing_transitions.cc": "control_test",
-    "estimation/pad_filter.cc": "estimation_test",
+    "planning/certify/certificate.cc": "planning_test",
+    "planning/certify/curve_check.cc": "planning_test",
+    "planning/spline/boundary_lift.cc": "planning_test",
+    "solvers/banded/banded_newton.cc": "solvers_test",
+    "solvers/banded/banded_interior_point.cc": "solvers_test",
+    "solvers/banded/banded_solver.cc": "solvers_test",
+    "solvers/linear/bordered_cholesky.cc": "solvers_test",
+    "control/mission/landing_state_machine.cc": "control_test",
+    "control/mission/landing_conditions.cc": "control_test",
+    "control/mission/landing_transitions.cc": "control_test",
+    "estimation/pad/pad_filter.cc": "estimation_test",
 }
 # An operator between blanks, as clang-format writes it, and what becomes of it. No numbers: a constant that
 # is tuned may be another one.

@@ -1,19 +1,20 @@
-# touchdown_add_library(<folder> SOURCES ... PUBLIC ... PRIVATE ...)
-#   One library per top-level folder: target touchdown_<folder>, alias touchdown::<folder>.
-# touchdown_add_test(<folder> SOURCES ... LINK ... [CLOSED_LOOP <filter>])
-#   One GoogleTest executable per folder; every TEST becomes a CTest entry with the label unit, or
-#   closed_loop where the filter takes it: whole flights, which sanitizers make too slow.
+# touchdown_add_library(<folder> [WITHOUT <regex>...] PUBLIC ... PRIVATE ...)
+#   One library per top-level folder: target touchdown_<folder>, alias touchdown::<folder>. Its sources are
+#   those in its rooms, which are the folders below it; WITHOUT: but for those whose path there matches.
+# touchdown_add_test(<folder> [SOURCES ...] LINK ... [CLOSED_LOOP <filter>])
+#   One GoogleTest executable per folder, of all sources in its test/ or of those named; every TEST becomes a
+#   CTest entry with the label unit, or closed_loop where the filter takes it: whole flights, which
+#   sanitizers make too slow.
+# touchdown_add_bench(<folder> LINK ...)
+#   One Google Benchmark executable per folder, <folder>_bench, of bench/; a test runs each for a moment.
 
-# touchdown_add_bench(<folder> SOURCES ... LINK ...)
-#   One Google Benchmark executable per folder, <folder>_bench; a test runs each for a moment.
-
-# Headers are included as "touchdown/<folder>/<file>.h", in the tree through this link and after
-# installation through the include directory.
-file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/include")
-file(CREATE_LINK "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/include/touchdown" SYMBOLIC)
+# A public header is <folder>/include/touchdown/<folder>/<room>/<file>.h, included as "touchdown/<folder>/...": it
+# is installed. An internal one stands beside its source and is included from the root, as
+# "<folder>/<room>/<file>.h".
 
 function(touchdown_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}")
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Woverloaded-virtual -Wold-style-cast
                                            -Wno-missing-field-initializers)
@@ -44,22 +45,24 @@ function(touchdown_compile_options target)
 endfunction()
 
 function(touchdown_add_library folder)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "WITHOUT;PUBLIC;PRIVATE" ${ARGN})
   set(target touchdown_${folder})
-  add_library(${target} STATIC ${ARG_SOURCES})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE "${CMAKE_CURRENT_SOURCE_DIR}" *.cc)
+  foreach(regex "^test/" "^bench/" ${ARG_WITHOUT})
+    list(FILTER sources EXCLUDE REGEX "${regex}")
+  endforeach()
+  add_library(${target} STATIC ${sources})
   add_library(touchdown::${folder} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(${target} PUBLIC
-    "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>"
+    "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>"
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   # One memory layout for every consumer and plug-in, whatever -march they are compiled with.
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
   touchdown_compile_options(${target})
   install(TARGETS ${target} EXPORT touchdownTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/"
-          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/touchdown/${folder}"
-          FILES_MATCHING PATTERN "*.h" PATTERN "test" EXCLUDE PATTERN "bench" EXCLUDE)
+  install(DIRECTORY include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 endfunction()
 
 function(touchdown_add_test folder)
@@ -68,6 +71,13 @@ function(touchdown_add_test folder)
   endif()
   cmake_parse_arguments(ARG "" "CLOSED_LOOP" "SOURCES;LINK" ${ARGN})
   set(target ${folder}_test)
+  if(NOT ARG_SOURCES)
+    file(GLOB ARG_SOURCES CONFIGURE_DEPENDS test/*.cc)
+  endif()
+  # Whoever counts allocations sees first that they are counted.
+  if("touchdown_allocations" IN_LIST ARG_LINK AND NOT folder STREQUAL "solvers")
+    list(APPEND ARG_SOURCES "${PROJECT_SOURCE_DIR}/solvers/test/allocation_count_test.cc")
+  endif()
   add_executable(${target} ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/cmake/test_main.cc")
   target_link_libraries(${target} PRIVATE ${ARG_LINK} GTest::gmock)
   target_compile_definitions(${target} PRIVATE
@@ -86,9 +96,10 @@ function(touchdown_add_bench folder)
   if(NOT TOUCHDOWN_BUILD_BENCHMARKS)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   set(target ${folder}_bench)
-  add_executable(${target} ${ARG_SOURCES})
+  file(GLOB sources CONFIGURE_DEPENDS bench/*.cc)
+  add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE ${ARG_LINK} benchmark::benchmark_main)
   touchdown_compile_options(${target})
   if(TOUCHDOWN_BUILD_TESTS)

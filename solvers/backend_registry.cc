@@ -5,12 +5,12 @@
 
 #include <stdexcept>
 
-#include "touchdown/solvers/banded_solver.h"
-#include "touchdown/solvers/ceres_lbfgs.h"
-#include "touchdown/solvers/ceres_solver.h"
-#include "touchdown/solvers/ipopt_solver.h"
-#include "touchdown/solvers/lbfgs_solver.h"
-#include "touchdown/solvers/nlopt_solver.h"
+#include "solvers/banded/banded_solver.h"
+#include "solvers/ceres/ceres_lbfgs.h"
+#include "solvers/ceres/ceres_solver.h"
+#include "solvers/ipopt/ipopt_solver.h"
+#include "solvers/lbfgs/lbfgs_solver.h"
+#include "solvers/nlopt/nlopt_solver.h"
 
 namespace touchdown::solvers {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/controller.h"
+#include "touchdown/control/tracking/controller.h"
 
 #include <cmath>
 #include <limits>
@@ -10,8 +10,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/control/test/flight_model.h"
-#include "touchdown/control/tracking_law.h"
+#include "control/test/flight_model.h"
+#include "control/tracking/tracking_law.h"
 
 namespace touchdown::control {
 namespace {
@@ -266,8 +266,8 @@ TEST(GeometricController, WhoIsUpsideDownTurnsUprightTheShortWay) {
 
 TEST_P(BothLaws, TheTiltAskedForIsTheLeastOfBothLimits) {
   const auto tilt = [&](double most) {
-    return estimation::Tilt(Eigen::Quaterniond(
-        controller_->Update({}, Hover(50.0, 20.0, 0.0), {}, most).R_WB_desired));
+    return estimation::Tilt(
+        Eigen::Quaterniond(controller_->Update({}, Hover(50.0, 20.0, 0.0), {}, most).R_WB_desired));
   };
   EXPECT_NEAR(tilt(0.3), 0.3, 1e-9);
   EXPECT_NEAR(tilt(1.2), ControllerOptions{}.tilt_max, 1e-9);

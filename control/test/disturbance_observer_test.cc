@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The observer beside a rigid body that is pushed by known thrusts and known disturbances. No tracking
 // law is in the loop here: what it makes of the estimate is tested where the whole vehicle flies.
-#include "touchdown/control/disturbance_observer.h"
+#include "control/tracking/disturbance_observer.h"
 
 #include <cmath>
 #include <functional>
@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/control/test/flight_model.h"
+#include "control/test/flight_model.h"
 
 namespace touchdown::control {
 namespace {

@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "touchdown/control/controller.h"
-#include "touchdown/control/mixer.h"
-#include "touchdown/control/rotor_lead.h"
+#include "control/tracking/mixer.h"
+#include "control/tracking/rotor_lead.h"
+#include "touchdown/control/tracking/controller.h"
 
 namespace touchdown::control {
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/test/mission_fixture.h"
+#include "control/test/mission_fixture.h"
 
 namespace touchdown::control {
 namespace {

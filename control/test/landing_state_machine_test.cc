@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/landing_state_machine.h"
+#include "control/mission/landing_state_machine.h"
 
 #include <cmath>
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/test/mission_fixture.h"
+#include "control/test/mission_fixture.h"
 
 namespace touchdown::control {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/lean.h"
+#include "control/tracking/lean.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "touchdown/control/test/flight_model.h"
+#include "control/test/flight_model.h"
 
 namespace touchdown::control {
 namespace {
@@ -36,17 +36,18 @@ TEST(Lean, BetweenTwoFeetTheRimTouchesSooner) {
   for (double azimuth = -3.0; azimuth < 3.0; azimuth += 0.3) {
     const Eigen::Vector3d axis(-std::sin(azimuth), std::cos(azimuth), 0.0);
     const Eigen::AngleAxisd yaw(0.7, Eigen::Vector3d::UnitZ());
-    const double tilt = FeetFirstTilt(model, yaw * Eigen::Quaterniond(Eigen::AngleAxisd(0.1, axis)));
+    const double tilt =
+        FeetFirstTilt(model, yaw * Eigen::Quaterniond(Eigen::AngleAxisd(0.1, axis)));
     const Eigen::Quaterniond q_WB = yaw * Eigen::Quaterniond(Eigen::AngleAxisd(tilt, axis));
     double foot = 0.0;
     for (const double at : model.foot_azimuths) {
-      const Eigen::Vector3d p_BF(model.foot_radius * std::cos(at),
-                                 model.foot_radius * std::sin(at), -model.foot_depth);
+      const Eigen::Vector3d p_BF(model.foot_radius * std::cos(at), model.foot_radius * std::sin(at),
+                                 -model.foot_depth);
       foot = std::min(foot, (q_WB * p_BF).z());
     }
-    const Eigen::Vector3d p_rim = q_WB * Eigen::Vector3d(model.hull_radius * std::cos(azimuth),
-                                                         model.hull_radius * std::sin(azimuth),
-                                                         -model.hull_bottom);
+    const Eigen::Vector3d p_rim =
+        q_WB * Eigen::Vector3d(model.hull_radius * std::cos(azimuth),
+                               model.hull_radius * std::sin(azimuth), -model.hull_bottom);
     EXPECT_NEAR(foot, p_rim.z(), 1e-12) << azimuth;
     EXPECT_NEAR(FootDrop(model, q_WB), -model.foot_depth - foot, 1e-12);
     EXPECT_LE(tilt, FeetFirstTilt(model) + 1e-12);

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/landing_state_machine.h"
+#include "control/mission/landing_state_machine.h"
 
 namespace touchdown::control {
 
@@ -62,10 +62,9 @@ class Mission {
     if (state.started &&
         !led) {  // the commanded height is continuous and its rate is its derivative
       const double dt = step.state.t - state.t;
-      const bool climb_begins = step.state.mode == MissionMode::kGoAround &&
-                                state.foot_height < parameters.gate_height;
-      const double a =
-          climb_begins ? parameters.turn_acceleration : parameters.height_acceleration;
+      const bool climb_begins =
+          step.state.mode == MissionMode::kGoAround && state.foot_height < parameters.gate_height;
+      const double a = climb_begins ? parameters.turn_acceleration : parameters.height_acceleration;
       EXPECT_LE(step.state.foot_height,
                 std::max(state.foot_height, parameters.follow_height) + 1e-4);
       const double advance = step.state.foot_height - state.foot_height;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/mixer.h"
+#include "control/tracking/mixer.h"
 
 #include <algorithm>
 #include <limits>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/test/flight_model.h"
+#include "control/test/flight_model.h"
 
 namespace touchdown::control {
 namespace {
@@ -107,8 +107,7 @@ TEST(Mixer, RollAndPitchRaiseTheThrustToHalfOfHoverAtMost) {
     estimation::VehicleModel model = TestVehicle();
     model.rotor_thrust_min = least;
     const Mixer mixer(model);
-    const double raised =
-        4.0 * least + Mixer::kRaisedThrust * (model.HoverThrust() - 4.0 * least);
+    const double raised = 4.0 * least + Mixer::kRaisedThrust * (model.HoverThrust() - 4.0 * least);
     for (int trial = 0; trial < 1000; ++trial) {
       const Wrench wrench = {model.HoverThrust() * (1.0 + uniform(random)),
                              {4.0 * uniform(random), 4.0 * uniform(random), 0.0}};

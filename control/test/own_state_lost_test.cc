@@ -2,7 +2,7 @@
 // What the mission does when the vehicle no longer knows its own state well.
 #include <gtest/gtest.h>
 
-#include "touchdown/control/test/mission_fixture.h"
+#include "control/test/mission_fixture.h"
 
 namespace touchdown::control {
 namespace {

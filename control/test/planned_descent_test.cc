@@ -2,7 +2,7 @@
 // A landing by one plan to contact: when it is decided, when it is given up, and what leads it.
 #include <ostream>
 
-#include "touchdown/control/test/mission_fixture.h"
+#include "control/test/mission_fixture.h"
 
 namespace touchdown::control {
 namespace {
@@ -308,14 +308,11 @@ TEST(PlannedDescent, FeetThatWillTouchAnywayArriveOverAKnownDeckAlone) {
     double drop;   // of that foot [m]
     bool arrives;
   };
-  for (const Case& c : {Case{true, true, true, -0.01, 0.0, true},
-                        Case{false, true, true, -0.01, 0.0, true},
-                        Case{true, true, true, 0.01, 0.0, false},
-                        Case{false, true, true, 0.01, 0.0, false},
-                        Case{true, false, true, -0.01, 0.0, false},
-                        Case{true, true, false, -0.01, 0.0, false},
-                        Case{true, true, true, 0.03, 0.04, true},
-                        Case{true, true, true, -0.30, 0.0, false}}) {
+  for (const Case& c :
+       {Case{true, true, true, -0.01, 0.0, true}, Case{false, true, true, -0.01, 0.0, true},
+        Case{true, true, true, 0.01, 0.0, false}, Case{false, true, true, 0.01, 0.0, false},
+        Case{true, false, true, -0.01, 0.0, false}, Case{true, true, false, -0.01, 0.0, false},
+        Case{true, true, true, 0.03, 0.04, true}, Case{true, true, true, -0.30, 0.0, false}}) {
     Approach mission;
     mission.FlyTo(c.committed ? 0.3 : 0.6);
     ASSERT_EQ(mission.outputs.committed, c.committed);

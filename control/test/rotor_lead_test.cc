@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/rotor_lead.h"
+#include "control/tracking/rotor_lead.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/geometric_controller.h"
-#include "touchdown/control/test/flight_model.h"
+#include "control/test/flight_model.h"
+#include "control/tracking/geometric_controller.h"
 
 namespace touchdown::control {
 namespace {
@@ -18,8 +18,8 @@ TEST(RotorLead, RotorsOfTheModelFollowAsIfTheirLagWereAThird) {
   const estimation::VehicleModel model = TestVehicle();
   RotorLead lead(model);
   const double hover = 0.25 * model.HoverThrust();
-  const Eigen::Vector4d wanted = Eigen::Vector4d::Constant(hover) +
-                                 0.1 * hover * Eigen::Vector4d(1.0, -1.0, 0.5, -0.5);
+  const Eigen::Vector4d wanted =
+      Eigen::Vector4d::Constant(hover) + 0.1 * hover * Eigen::Vector4d(1.0, -1.0, 0.5, -0.5);
   Eigen::Vector4d given = Eigen::Vector4d::Constant(hover);
   for (int i = 0; i < 20; ++i) {
     const Eigen::Vector4d command = lead.Command(wanted, i * kStep);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/settling.h"
+#include "control/tracking/settling.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/landing_state_machine.h"
-#include "touchdown/control/test/flight_model.h"
+#include "control/mission/landing_state_machine.h"
+#include "control/test/flight_model.h"
 
 namespace touchdown::control {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/control/yaw_planner.h"
+#include "control/tracking/yaw_planner.h"
 
 #include <cmath>
 #include <limits>
@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/control/rate_profile.h"
-#include "touchdown/estimation/vehicle_state.h"
+#include "control/tracking/rate_profile.h"
+#include "touchdown/estimation/base/vehicle_state.h"
 
 namespace touchdown::control {
 namespace {

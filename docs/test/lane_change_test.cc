@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/pad_course.h"
+#include "touchdown/sim/pad/pad_course.h"
 
 namespace own {
 namespace {

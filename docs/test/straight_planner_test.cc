@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/certificate.h"
+#include "touchdown/planning/certify/certificate.h"
 
 namespace own {
 namespace {

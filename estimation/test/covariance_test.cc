@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/covariance.h"
+#include "estimation/base/covariance.h"
 
 #include <random>
 

@@ -10,9 +10,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "touchdown/estimation/own_state_filter.h"
-#include "touchdown/estimation/rotation_vector.h"
-#include "touchdown/estimation/vehicle_model.h"
+#include "estimation/base/rotation_vector.h"
+#include "touchdown/estimation/base/vehicle_model.h"
+#include "touchdown/estimation/own_state/own_state_filter.h"
 
 namespace touchdown::estimation {
 

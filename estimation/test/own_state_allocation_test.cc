@@ -2,7 +2,7 @@
 // OwnStateFilter allocates in its construction only.
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/test/own_flight.h"
+#include "estimation/test/own_flight.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::estimation {

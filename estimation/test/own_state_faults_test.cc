@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "touchdown/estimation/test/own_flight.h"
+#include "estimation/test/own_flight.h"
 
 namespace touchdown::estimation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/own_state_filter.h"
+#include "touchdown/estimation/own_state/own_state_filter.h"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include "touchdown/estimation/test/own_flight.h"
+#include "estimation/test/own_flight.h"
 
 namespace touchdown::estimation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/own_state_model.h"
+#include "touchdown/estimation/own_state/own_state_model.h"
 
 #include <cmath>
 #include <numbers>
@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "touchdown/estimation/chi_squared.h"
-#include "touchdown/estimation/rotation_vector.h"
-#include "touchdown/estimation/vehicle_model.h"
-#include "touchdown/estimation/vehicle_state.h"
+#include "estimation/base/chi_squared.h"
+#include "estimation/base/rotation_vector.h"
+#include "touchdown/estimation/base/vehicle_model.h"
+#include "touchdown/estimation/base/vehicle_state.h"
 
 namespace touchdown::estimation {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "touchdown/estimation/pad_filter.h"
+#include "touchdown/estimation/pad/pad_filter.h"
 
 namespace touchdown::estimation {
 

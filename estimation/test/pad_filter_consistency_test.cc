@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "touchdown/estimation/pad_filter.h"
-#include "touchdown/estimation/pad_predictor.h"
-#include "touchdown/estimation/test/pad_drive.h"
+#include "estimation/test/pad_drive.h"
+#include "touchdown/estimation/pad/pad_filter.h"
+#include "touchdown/estimation/pad/pad_predictor.h"
 
 namespace touchdown::estimation {
 namespace {

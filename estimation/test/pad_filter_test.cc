@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Behaviour of the pad filter on drives that are not drawn from its own model, and its handling of
 // outliers, outages, late and broken measurements.
-#include "touchdown/estimation/pad_filter.h"
+#include "touchdown/estimation/pad/pad_filter.h"
 
 #include <cmath>
 #include <limits>
@@ -13,8 +13,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/pad_predictor.h"
-#include "touchdown/estimation/test/pad_drive.h"
+#include "estimation/test/pad_drive.h"
+#include "touchdown/estimation/pad/pad_predictor.h"
 
 namespace touchdown::estimation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/pad_finder.h"
+#include "touchdown/estimation/tags/pad_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/pad_sheet.h"
-#include "touchdown/estimation/test/pad_image.h"
+#include "estimation/tags/pad_sheet.h"
+#include "estimation/test/pad_image.h"
 
 namespace touchdown::estimation {
 namespace {

@@ -9,11 +9,11 @@
 
 #include <Eigen/Geometry>
 
-#include "touchdown/estimation/gray_image.h"
-#include "touchdown/estimation/pad_pose.h"
-#include "touchdown/estimation/pad_reprojection.h"
-#include "touchdown/estimation/pad_tags.h"
-#include "touchdown/estimation/tag_code.h"
+#include "estimation/tags/pad_tags.h"
+#include "estimation/tags/tag_code.h"
+#include "touchdown/estimation/base/gray_image.h"
+#include "touchdown/estimation/tags/pad_pose.h"
+#include "touchdown/estimation/tags/pad_reprojection.h"
 
 namespace touchdown::estimation {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/pad_motion_model.h"
+#include "touchdown/estimation/pad/pad_motion_model.h"
 
 #include <cmath>
 #include <random>
@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include "touchdown/estimation/pad_predictor.h"
-#include "touchdown/estimation/test/pad_drive.h"
+#include "estimation/test/pad_drive.h"
+#include "touchdown/estimation/pad/pad_predictor.h"
 
 namespace touchdown::estimation {
 namespace {

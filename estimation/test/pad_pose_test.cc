@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/pad_pose.h"
+#include "touchdown/estimation/tags/pad_pose.h"
 
 #include <cmath>
 #include <limits>
@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "touchdown/estimation/test/pad_image.h"
-#include "touchdown/estimation/vehicle_state.h"
+#include "estimation/test/pad_image.h"
+#include "touchdown/estimation/base/vehicle_state.h"
 
 namespace touchdown::estimation {
 namespace {

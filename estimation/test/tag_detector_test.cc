@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/tag_detector.h"
+#include "touchdown/estimation/tags/tag_detector.h"
 
 #include <cmath>
 #include <random>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/enlarge.h"
-#include "touchdown/estimation/test/pad_image.h"
+#include "estimation/tags/enlarge.h"
+#include "estimation/test/pad_image.h"
 
 namespace touchdown::estimation {
 namespace {

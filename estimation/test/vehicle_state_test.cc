@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/estimation/vehicle_state.h"
+#include "touchdown/estimation/base/vehicle_state.h"
 
 #include <numbers>
 

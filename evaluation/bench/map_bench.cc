@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "touchdown/evaluation/bench/map_flight.h"
-#include "touchdown/solvers/thread_clock.h"
+#include "evaluation/bench/map_flight.h"
+#include "touchdown/solvers/backend/thread_clock.h"
 
 namespace touchdown::evaluation {
 namespace {

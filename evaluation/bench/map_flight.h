@@ -9,11 +9,11 @@
 
 #include <octomap/octomap.h>
 
-#include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/planning/occupancy_map.h"
-#include "touchdown/sim/depth_camera.h"
-#include "touchdown/sim/forest.h"
+#include "evaluation/scenario/scenario_world.h"
+#include "sim/obstacles/forest.h"
+#include "sim/sensors/depth_camera.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+#include "touchdown/planning/map/occupancy_map.h"
 
 namespace touchdown::evaluation {
 

@@ -5,12 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/record.h"
-#include "touchdown/evaluation/replay.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/trial_json.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/record.h"
+#include "evaluation/record/replay.h"
+#include "evaluation/record/trial_json.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -13,10 +13,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/campaign.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/sweep.h"
-#include "touchdown/evaluation/sweep_report.h"
+#include "evaluation/campaign/campaign.h"
+#include "evaluation/campaign/sweep.h"
+#include "evaluation/campaign/sweep_report.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/campaign.h"
+#include "evaluation/campaign/campaign.h"
 
 #include <filesystem>
 #include <stdexcept>
@@ -9,13 +9,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/sqlite_db.h"
-#include "touchdown/evaluation/sweep.h"
-#include "touchdown/evaluation/sweep_report.h"
-#include "touchdown/evaluation/trial_merge.h"
-#include "touchdown/evaluation/trial_store.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/campaign/sweep.h"
+#include "evaluation/campaign/sweep_report.h"
+#include "evaluation/campaign/trial_merge.h"
+#include "evaluation/campaign/trial_store.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/closed_loop.h"
+#include "evaluation/flight/closed_loop.h"
 
 #include <cmath>
 #include <filesystem>
@@ -7,13 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/perception.h"
-#include "touchdown/evaluation/planner_options.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/trial_json.h"
-#include "touchdown/planning/swept_hull.h"
-#include "touchdown/sim/vehicle_file.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/flight/perception.h"
+#include "evaluation/record/trial_json.h"
+#include "evaluation/scenario/planner_options.h"
+#include "sim/vehicle/vehicle_file.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+#include "touchdown/planning/certify/swept_hull.h"
 
 namespace touchdown::evaluation {
 namespace {

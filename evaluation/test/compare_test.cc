@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems are what flights ask, and a flight does not know who listens.
-#include "touchdown/evaluation/compare.h"
+#include "evaluation/compare/compare.h"
 
 #include <cmath>
 #include <filesystem>
@@ -10,15 +10,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/campaign.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/hostile_study.h"
-#include "touchdown/evaluation/posing_flights.h"
-#include "touchdown/evaluation/record.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/sqlite_db.h"
-#include "touchdown/evaluation/sweep.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/campaign/campaign.h"
+#include "evaluation/campaign/sweep.h"
+#include "evaluation/compare/posing_flights.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/record.h"
+#include "evaluation/studies/hostile/hostile_study.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The baseline in the scenes in which the released program was measured: a sample of them. The
 // whole of it is in docs/ego.md.
-#include "touchdown/evaluation/ego_fidelity.h"
+#include "evaluation/studies/fidelity/ego_fidelity.h"
 
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
+#include "evaluation/base/bad_input.h"
 
 namespace touchdown::evaluation {
 namespace {

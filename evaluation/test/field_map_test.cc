@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells against dense samples of the obstacles' signed distance.
-#include "touchdown/evaluation/field_map.h"
+#include "evaluation/flight/field_map.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/forest.h"
-#include "touchdown/sim/random_stream.h"
+#include "sim/base/random_stream.h"
+#include "sim/obstacles/forest.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/forest_flight.h"
+#include "evaluation/studies/replan/forest_flight.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/forest_flight_report.h"
+#include "evaluation/studies/replan/forest_flight_report.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -12,20 +12,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/hostile_conditions.h"
-#include "touchdown/evaluation/hostile_family.h"
-#include "touchdown/evaluation/hostile_report.h"
-#include "touchdown/evaluation/hostile_study.h"
-#include "touchdown/evaluation/hostile_tally.h"
-#include "touchdown/evaluation/hostile_way.h"
-#include "touchdown/evaluation/hostile_world.h"
-#include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/evaluation/stand_watch.h"
-#include "touchdown/evaluation/trial_store.h"
-#include "touchdown/evaluation/truth_map.h"
-#include "touchdown/sim/pad_course.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/campaign/trial_store.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/judge/stand_watch.h"
+#include "evaluation/judge/truth_map.h"
+#include "evaluation/scenario/scenario_world.h"
+#include "evaluation/studies/hostile/hostile_conditions.h"
+#include "evaluation/studies/hostile/hostile_family.h"
+#include "evaluation/studies/hostile/hostile_report.h"
+#include "evaluation/studies/hostile/hostile_study.h"
+#include "evaluation/studies/hostile/hostile_tally.h"
+#include "evaluation/studies/hostile/hostile_way.h"
+#include "evaluation/studies/hostile/hostile_world.h"
+#include "touchdown/sim/pad/pad_course.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every class of the rule, driven by made-up samples at 500 Hz.
-#include "touchdown/evaluation/landing_judge.h"
+#include "evaluation/judge/landing_judge.h"
 
 #include <functional>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/landing_time.h"
+#include "evaluation/judge/landing_time.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "touchdown/evaluation/landing_judge.h"
+#include "evaluation/judge/landing_judge.h"
 
 namespace touchdown::evaluation {
 namespace {

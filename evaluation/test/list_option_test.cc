@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/list_option.h"
+#include "evaluation/base/list_option.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bench/map_flight.h"
+#include "evaluation/bench/map_flight.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maps as files: saved after a flight, known before the next one, refused with a sentence.
 
-#include "touchdown/evaluation/map_file.h"
+#include "evaluation/base/map_file.h"
 
 #include <array>
 #include <filesystem>
@@ -12,9 +12,9 @@
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
 
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/program.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/flight/closed_loop.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+#include "touchdown/evaluation/program/program.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/metrics.h"
+#include "evaluation/judge/metrics.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/sliding_mean.h"
+#include "evaluation/base/sliding_mean.h"
 
 namespace touchdown::evaluation {
 namespace {

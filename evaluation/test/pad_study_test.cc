@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/pad_study.h"
+#include "evaluation/studies/pad/pad_study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/pad_report.h"
-#include "touchdown/evaluation/perception.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/flight/perception.h"
+#include "evaluation/studies/pad/pad_report.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

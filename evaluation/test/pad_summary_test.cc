@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/pad_summary.h"
+#include "evaluation/studies/pad/pad_summary.h"
 
 #include <cmath>
 #include <iomanip>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/pad_report.h"
+#include "evaluation/studies/pad/pad_report.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/plan_oracle.h"
+#include "evaluation/studies/replan/plan_oracle.h"
 
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/field_map.h"
-#include "touchdown/evaluation/motion_search.h"
-#include "touchdown/evaluation/oracle_book.h"
-#include "touchdown/evaluation/scene_sets.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/flight/field_map.h"
+#include "evaluation/judge/motion_search.h"
+#include "evaluation/studies/replan/oracle_book.h"
+#include "evaluation/studies/replan/scene_sets.h"
 
 namespace touchdown::evaluation {
 namespace {

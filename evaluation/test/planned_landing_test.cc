@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/scenario.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/flight/closed_loop.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+#include "touchdown/evaluation/scenario/scenario.h"
 
 namespace touchdown::evaluation {
 namespace {

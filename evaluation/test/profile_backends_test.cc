@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The same steps, and the same problems, for every backend.
-#include "touchdown/evaluation/profile_backends.h"
+#include "evaluation/profile/profile_backends.h"
 
 #include <filesystem>
 #include <string>
@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/record.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/record.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

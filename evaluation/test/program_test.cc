@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program as a library function, with a backend that is broken on purpose: what goes wrong in
 // flight is the program's fault and must not look like the user's.
-#include "touchdown/evaluation/program.h"
+#include "touchdown/evaluation/program/program.h"
 
 #include <filesystem>
 #include <fstream>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "touchdown/evaluation/machine.h"
+#include "evaluation/base/machine.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/progress.h"
+#include "evaluation/base/progress.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/campaign_progress.h"
+#include "evaluation/campaign/campaign_progress.h"
 
 namespace touchdown::evaluation {
 namespace {

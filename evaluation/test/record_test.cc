@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/record.h"
+#include "evaluation/record/record.h"
 
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/atomic_file.h"
-#include "touchdown/evaluation/sqlite_db.h"
+#include "evaluation/base/atomic_file.h"
+#include "evaluation/base/sqlite_db.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/reference_compare.h"
+#include "evaluation/compare/reference_compare.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Entries that say something wrong of themselves end in a sentence, and what they make is there.
-#include "touchdown/evaluation/registries.h"
+#include "touchdown/evaluation/scenario/registries.h"
 
 #include <cmath>
 #include <limits>
@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/planner_options.h"
-#include "touchdown/evaluation/replay.h"
-#include "touchdown/evaluation/scenario_world.h"
+#include "evaluation/record/replay.h"
+#include "evaluation/scenario/planner_options.h"
+#include "evaluation/scenario/scenario_world.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -11,10 +11,10 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/solver_bench.h"
-#include "touchdown/evaluation/statistics.h"
+#include "evaluation/base/statistics.h"
+#include "evaluation/compare/solver_bench.h"
+#include "evaluation/flight/closed_loop.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/replan_scene.h"
+#include "evaluation/studies/replan/replan_scene.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/replan_study.h"
+#include "evaluation/studies/replan/replan_study.h"
 
 #include <array>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/replan_growth.h"
+#include "evaluation/studies/replan/replan_growth.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A record holds all that its replanning steps depend on: asked again, they answer the same bits.
-#include "touchdown/evaluation/replay.h"
+#include "evaluation/record/replay.h"
 
 #include <filesystem>
 #include <fstream>
@@ -9,11 +9,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/record.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/sqlite_db.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/record.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

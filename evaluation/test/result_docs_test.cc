@@ -14,16 +14,16 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/build_info.h"
-#include "touchdown/evaluation/compare_table.h"
-#include "touchdown/evaluation/forest_flight_report.h"
-#include "touchdown/evaluation/pad_report.h"
-#include "touchdown/evaluation/profile_report.h"
-#include "touchdown/evaluation/record.h"
-#include "touchdown/evaluation/replan_report.h"
-#include "touchdown/evaluation/sqlite_db.h"
-#include "touchdown/evaluation/tag_report.h"
-#include "touchdown/evaluation/trial_store.h"
+#include "evaluation/base/build_info.h"
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/campaign/trial_store.h"
+#include "evaluation/compare/compare_table.h"
+#include "evaluation/profile/profile_report.h"
+#include "evaluation/record/record.h"
+#include "evaluation/studies/pad/pad_report.h"
+#include "evaluation/studies/replan/forest_flight_report.h"
+#include "evaluation/studies/replan/replan_report.h"
+#include "evaluation/studies/tags/tag_report.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -140,7 +140,7 @@ std::uint32_t Fingerprint(const std::vector<std::string>& texts) {
 TEST(ResultDocs, OtherColumnsAreAnotherVersion) {
   const std::map<std::string, std::string> known = {
       {"record", "16 133067872"},       {"trials", "8 3477732655"},
-      {"comparison", "3 1794598769"},    {"profile", "2 3081091663"},
+      {"comparison", "3 1794598769"},   {"profile", "2 3081091663"},
       {"replan study", "4 3330845746"}, {"forest flights", "1 1622777177"},
       {"pad study", "2 3143308301"},    {"tag study", "1 1906377180"}};
   const std::string path = ::testing::TempDir() + "touchdown_result_versions.db";

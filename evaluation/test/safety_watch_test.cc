@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/safety_watch.h"
+#include "evaluation/judge/safety_watch.h"
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/scenario/scenario.h"
 
 #include <filesystem>
 #include <fstream>
@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/scenario_schema.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/scenario/scenario_schema.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

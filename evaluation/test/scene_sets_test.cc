@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/scene_sets.h"
+#include "evaluation/studies/replan/scene_sets.h"
 
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/replan_scene.h"
+#include "evaluation/studies/replan/replan_scene.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/depth_eye.h"
-#include "touchdown/evaluation/pad_eye.h"
-#include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/trial_json.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/flight/depth_eye.h"
+#include "evaluation/flight/pad_eye.h"
+#include "evaluation/record/trial_json.h"
+#include "evaluation/scenario/scenario_world.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The judge stands outside, failures stay failures.
-#include "touchdown/evaluation/solver_bench.h"
+#include "evaluation/compare/solver_bench.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/compare_report.h"
-#include "touchdown/evaluation/compare_summary.h"
-#include "touchdown/planning/landing_problem.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/compare/compare_report.h"
+#include "evaluation/compare/compare_summary.h"
+#include "touchdown/planning/problem/landing_problem.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/statistics.h"
+#include "evaluation/base/statistics.h"
 
 #include <cmath>
 #include <stdexcept>

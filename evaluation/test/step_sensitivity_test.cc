@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/step_sensitivity.h"
+#include "evaluation/studies/replan/step_sensitivity.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/scene_sets.h"
-#include "touchdown/planning/term_registry.h"
+#include "evaluation/studies/replan/scene_sets.h"
+#include "touchdown/planning/problem/term_registry.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/sweep.h"
+#include "evaluation/campaign/sweep.h"
 
 #include <map>
 #include <optional>
@@ -9,10 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/sweep_cells.h"
-#include "touchdown/evaluation/sweep_report.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/campaign/sweep_cells.h"
+#include "evaluation/campaign/sweep_report.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/tag_study.h"
+#include "evaluation/studies/tags/tag_study.h"
 
 #include <cmath>
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/tag_fit.h"
-#include "touchdown/evaluation/tag_picture.h"
-#include "touchdown/evaluation/tag_report.h"
+#include "evaluation/studies/tags/tag_fit.h"
+#include "evaluation/studies/tags/tag_picture.h"
+#include "evaluation/studies/tags/tag_report.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/scenario/scenario_world.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

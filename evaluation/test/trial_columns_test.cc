@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/trial_columns.h"
+#include "evaluation/campaign/trial_columns.h"
 
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/trial_json.h"
+#include "evaluation/record/trial_json.h"
 
 namespace touchdown::evaluation {
 namespace {

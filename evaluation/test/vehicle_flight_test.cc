@@ -2,8 +2,8 @@
 // Imported vehicles in the closed loop.
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/shipped_files.h"
+#include "evaluation/flight/closed_loop.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

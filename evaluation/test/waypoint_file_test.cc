@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/waypoint_file.h"
+#include "evaluation/scenario/waypoint_file.h"
 
 #include <fstream>
 #include <istream>

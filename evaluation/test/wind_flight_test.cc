@@ -6,15 +6,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/evaluation/air.h"
-#include "touchdown/evaluation/bad_input.h"
-#include "touchdown/evaluation/closed_loop.h"
-#include "touchdown/evaluation/planner_options.h"
-#include "touchdown/evaluation/scenario_world.h"
-#include "touchdown/evaluation/shipped_files.h"
-#include "touchdown/evaluation/sliding_mean.h"
-#include "touchdown/evaluation/trial_json.h"
-#include "touchdown/sim/pad_wake.h"
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/sliding_mean.h"
+#include "evaluation/flight/air.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/trial_json.h"
+#include "evaluation/scenario/planner_options.h"
+#include "evaluation/scenario/scenario_world.h"
+#include "sim/air/pad_wake.h"
+#include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/evaluation/worker_process.h"
+#include "evaluation/base/worker_process.h"
 
 #include <chrono>
 #include <csignal>
@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "touchdown/evaluation/work_sharing.h"
+#include "evaluation/base/work_sharing.h"
 
 namespace touchdown::evaluation {
 namespace {

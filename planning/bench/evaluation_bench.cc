@@ -4,8 +4,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "touchdown/planning/landing_problem.h"
-#include "touchdown/planning/random_context.h"
+#include "planning/problem/random_context.h"
+#include "touchdown/planning/problem/landing_problem.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/attempt_ladder.h"
+#include "touchdown/planning/replan/attempt_ladder.h"
 
 #include <set>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {
 
-constexpr ReplanReason kReasons[] = {ReplanReason::kStartBlocked,   ReplanReason::kGoalBlocked,
-                                     ReplanReason::kSearchFailed,   ReplanReason::kCollisionRemains,
-                                     ReplanReason::kLimitsExceeded, ReplanReason::kSolverFailed,
-                                     ReplanReason::kEndTooFast,     ReplanReason::kUnobserved,
-                                     ReplanReason::kBudgetSpent};
+constexpr ReplanReason kReasons[] = {
+    ReplanReason::kStartBlocked,     ReplanReason::kGoalBlocked,    ReplanReason::kSearchFailed,
+    ReplanReason::kCollisionRemains, ReplanReason::kLimitsExceeded, ReplanReason::kSolverFailed,
+    ReplanReason::kEndTooFast,       ReplanReason::kUnobserved,     ReplanReason::kBudgetSpent};
 
 LadderFacts UsualFacts() {
   LadderFacts facts;

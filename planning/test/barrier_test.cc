@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/barrier.h"
+#include "planning/search/barrier.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/ego/bspline_fit.h"
+#include "planning/baselines/ego/bspline_fit.h"
 
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/ego/quintic.h"
+#include "planning/baselines/ego/quintic.h"
 
 namespace touchdown::planning {
 namespace {

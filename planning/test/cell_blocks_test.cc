@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Blocks of cells: against a plain map of cells, their reach, their filling, and without allocation.
 
-#include "touchdown/planning/cell_blocks.h"
+#include "touchdown/planning/map/cell_blocks.h"
 
 #include <array>
 #include <map>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each part of the certificate, proven and refused.
 
-#include "touchdown/planning/certificate.h"
+#include "touchdown/planning/certify/certificate.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
+#include "touchdown/planning/spline/boundary_lift.h"
 
 namespace touchdown::planning {
 namespace {

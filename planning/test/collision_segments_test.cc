@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stretches of a polygon in obstacles, at its end too, and the pairs they are given.
-#include "touchdown/planning/ego/collision_segments.h"
+#include "planning/baselines/ego/collision_segments.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/ego_fixtures.h"
+#include "planning/test/ego_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

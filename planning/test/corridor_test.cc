@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/corridor.h"
+#include "planning/search/corridor.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/planning_fixtures.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole-curve check against dense sampling of random curves in random maps.
 
-#include "touchdown/planning/curve_check.h"
+#include "touchdown/planning/certify/curve_check.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

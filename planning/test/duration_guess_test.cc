@@ -3,14 +3,14 @@
 // for a pad that runs away. Of a turning pad it is a guess even so: a few steps towards the fixed point leave it
 // up to a seventh below the straight line at top speed (the worst of 2000 draws).
 
-#include "touchdown/planning/duration_guess.h"
+#include "planning/problem/duration_guess.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
+#include "touchdown/planning/spline/boundary_lift.h"
 
 namespace touchdown::planning {
 namespace {

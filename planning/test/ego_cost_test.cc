@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Costs of the EGO-Planner baseline against differences.
-#include "touchdown/planning/ego/ego_cost.h"
+#include "planning/baselines/ego/ego_cost.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // Maps and plan calls shared by the tests of the EGO-Planner baseline.
 #pragma once
 
-#include "touchdown/planning/ego/ego_grid.h"
-#include "touchdown/planning/ego/ego_plan.h"
+#include "planning/baselines/ego/ego_grid.h"
+#include "planning/baselines/ego/ego_plan.h"
 
 namespace touchdown::planning {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plan calls of the EGO-Planner baseline: every outcome has its name, none crashes, the same call
 // gives the same plan.
-#include "touchdown/planning/ego/ego_plan.h"
+#include "planning/baselines/ego/ego_plan.h"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/ego_fixtures.h"
+#include "planning/test/ego_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

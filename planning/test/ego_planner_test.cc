@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The baseline's state machine in flights that track perfectly.
-#include "touchdown/planning/ego/ego_planner.h"
+#include "planning/baselines/ego/ego_planner.h"
 
 #include <limits>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/ego/ego_reference.h"
+#include "planning/baselines/ego/ego_reference.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/ego/ego_search.h"
+#include "planning/baselines/ego/ego_search.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/ego_fixtures.h"
+#include "planning/test/ego_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The moving endpoint: offsets, approach velocity and derivatives with respect to the arrival time.
 
-#include "touchdown/planning/endpoint.h"
+#include "touchdown/planning/spline/endpoint.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

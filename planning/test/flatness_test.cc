@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Differential flatness: attitude and rates against finite differences along a smooth trajectory.
 
-#include "touchdown/planning/flatness.h"
+#include "touchdown/planning/spline/flatness.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "touchdown/estimation/vehicle_model.h"
+#include "touchdown/estimation/base/vehicle_model.h"
 
 namespace touchdown::planning {
 namespace {

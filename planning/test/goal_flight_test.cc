@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/goal.h"
-#include "touchdown/planning/replanner.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/replan/goal.h"
+#include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/goal.h"
+#include "touchdown/planning/replan/goal.h"
 
 #include <cmath>
 #include <limits>
@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/replanner.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A* against Dijkstra, and what stops it.
 
-#include "touchdown/planning/grid_search.h"
+#include "planning/search/grid_search.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <map>
 #include <queue>
 
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

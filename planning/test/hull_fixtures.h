@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/stored_stop.h"
-#include "touchdown/planning/swept_hull.h"
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
+#include "touchdown/planning/certify/stored_stop.h"
+#include "touchdown/planning/certify/swept_hull.h"
+#include "touchdown/planning/spline/boundary_lift.h"
 
 namespace touchdown::planning {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/ego/initial_path.h"
+#include "planning/baselines/ego/initial_path.h"
 
 #include <algorithm>
 

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-#include "touchdown/planning/certificate.h"
-#include "touchdown/planning/duration_guess.h"
-#include "touchdown/planning/landing_problem.h"
-#include "touchdown/planning/replan_result.h"
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/problem/duration_guess.h"
+#include "planning/test/planning_fixtures.h"
+#include "touchdown/planning/certify/certificate.h"
+#include "touchdown/planning/problem/landing_problem.h"
+#include "touchdown/planning/replan/replan_result.h"
 #include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/backend_registry.h"
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a steady pull leaves of the limits, and that plans keep it.
-#include "touchdown/planning/limits.h"
+#include "touchdown/planning/spline/limits.h"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/rest_trajectory.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/spline/rest_trajectory.h"
 
 namespace touchdown::planning {
 namespace {

@@ -2,7 +2,7 @@
 // A map that is rebuilt from its cells' states answers a planner as the first one did.
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/map/occupancy_map.h"
 
 namespace touchdown::planning {
 namespace {

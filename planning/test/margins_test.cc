@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/margins.h"
+#include "touchdown/planning/certify/margins.h"
 
 #include <gtest/gtest.h>
 

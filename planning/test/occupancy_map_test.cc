@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rolling map: fusion of synthetic depth frames, inflation against brute force, rolling.
 
-#include "touchdown/planning/occupancy_map.h"
+#include "touchdown/planning/map/occupancy_map.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <map>
 #include <set>
 
-#include "touchdown/planning/test/planning_fixtures.h"
-#include "touchdown/planning/voxel_traversal.h"
+#include "planning/map/voxel_traversal.h"
+#include "planning/test/planning_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

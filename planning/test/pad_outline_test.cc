@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a return of the depth camera may come from: the pad, as well as its place is known, or not.
 
-#include "touchdown/planning/pad_outline.h"
+#include "touchdown/planning/map/pad_outline.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/occupancy_map.h"
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
+#include "touchdown/planning/map/occupancy_map.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/pad_strip.h"
+#include "planning/certify/pad_strip.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/pair_binder.h"
+#include "planning/replan/pair_binder.h"
 
 #include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/planning_fixtures.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

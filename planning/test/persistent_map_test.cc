@@ -2,7 +2,7 @@
 // The persistent map: nothing is lost when the window moves, nothing that moved on remains, and
 // octomap itself reads and writes the same files.
 
-#include "touchdown/planning/persistent_map.h"
+#include "touchdown/planning/map/persistent_map.h"
 
 #include <cmath>
 #include <fstream>
@@ -14,7 +14,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/octomap.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

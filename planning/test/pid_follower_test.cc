@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The PID baseline as a planner: what it leads to on a pad that drives straight, at rest, late and lost.
-#include "touchdown/planning/pid/pid_follower.h"
+#include "planning/baselines/pid/pid_follower.h"
 
 #include <algorithm>
 #include <limits>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The baseline's law alone: limits, integral and what is refused.
-#include "touchdown/planning/pid/pid_law.h"
+#include "planning/baselines/pid/pid_law.h"
 
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

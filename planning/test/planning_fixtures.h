@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "touchdown/estimation/pad_prediction.h"
-#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/estimation/pad/pad_prediction.h"
+#include "touchdown/planning/spline/uniform_bspline.h"
 
 namespace touchdown::planning {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/ego/quintic.h"
+#include "planning/baselines/ego/quintic.h"
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/ego/refinement.h"
+#include "planning/baselines/ego/refinement.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/ego/initial_path.h"
+#include "planning/baselines/ego/initial_path.h"
 
 namespace touchdown::planning {
 namespace {

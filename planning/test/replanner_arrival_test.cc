@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/duration_guess.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/problem/duration_guess.h"
+#include "planning/test/replanner_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

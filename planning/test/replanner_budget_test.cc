@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/replanner_fixtures.h"
-#include "touchdown/planning/work_budget.h"
+#include "planning/search/work_budget.h"
+#include "planning/test/replanner_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "touchdown/planning/fallback.h"
-#include "touchdown/planning/replanner.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/replan/fallback.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::planning {
 namespace {

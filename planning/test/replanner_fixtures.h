@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "touchdown/planning/replanner.h"
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
+#include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::planning {
 

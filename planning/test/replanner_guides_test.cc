@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/prepared_problems.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/replan/prepared_problems.h"
+#include "planning/test/replanner_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {
@@ -178,7 +178,9 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
     if (log.attempts.size() < 2 || log.attempts[0].rounds.size() < 2) continue;
     const Limits& limits = replanner.options().limits;
     const UniformBspline& before = log.attempts[0].rounds.front().curve;
-    EXPECT_EQ(before.segments(), SegmentsFor(before.duration(), limits, 1.0, ReplannerOptions().segment_length)) << trial;
+    EXPECT_EQ(before.segments(),
+              SegmentsFor(before.duration(), limits, 1.0, ReplannerOptions().segment_length))
+        << trial;
     for (std::size_t i = 1; i < log.attempts.size(); ++i) {
       const AttemptLog& attempt = log.attempts[i];
       if (attempt.rounds.empty()) continue;  // the pad is blocked then
@@ -187,10 +189,12 @@ TEST(ReplannerGuides, AnAttemptThatFailsIsFollowedByASlowerOne) {
       EXPECT_TRUE(attempt.rounds.front().pairs.empty()) << "everything is decided anew, " << trial;
       const UniformBspline& curve = attempt.rounds.front().curve;
       const double counted = std::min(curve.duration(), 1.2 * before.duration());
-      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments, ReplannerOptions().segment_length))
+      EXPECT_EQ(curve.segments(), SegmentsFor(counted, limits, StepConstants().fine_segments,
+                                              ReplannerOptions().segment_length))
           << trial;
       held_back +=
-          curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments, ReplannerOptions().segment_length);
+          curve.segments() < SegmentsFor(curve.duration(), limits, StepConstants().fine_segments,
+                                         ReplannerOptions().segment_length);
     }
     planned += status == ReplanStatus::kPlanned;
   }

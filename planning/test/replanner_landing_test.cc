@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/cell_box.h"
-#include "touchdown/planning/replanner.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/map/cell_box.h"
+#include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::planning {
 namespace {

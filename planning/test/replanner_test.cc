@@ -2,7 +2,7 @@
 // The replanning step over random pads, horizons, fields and both arrival modes: what is accepted
 // is certified, and every way it can fail has its name.
 
-#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/replan/replanner.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/planning/span_log.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
+#include "touchdown/planning/replan/span_log.h"
 
 namespace touchdown::planning {
 namespace {

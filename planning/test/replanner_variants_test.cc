@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

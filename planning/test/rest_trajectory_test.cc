@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Braking and climbing trajectories: they start where they must, end at rest and keep the limits.
 
-#include "touchdown/planning/rest_trajectory.h"
+#include "touchdown/planning/spline/rest_trajectory.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

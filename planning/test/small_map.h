@@ -2,8 +2,8 @@
 // Small maps shared by the tests of check, search, pairs and certificate.
 #pragma once
 
-#include "touchdown/planning/free_space.h"
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
+#include "touchdown/planning/certify/free_space.h"
 
 namespace touchdown::planning {
 

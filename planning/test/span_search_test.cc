@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/span_search.h"
+#include "planning/search/span_search.h"
 
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/planning_fixtures.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

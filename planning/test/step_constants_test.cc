@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/step_constants.h"
+#include "touchdown/planning/problem/step_constants.h"
 
 #include <limits>
 #include <set>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::planning {
 namespace {

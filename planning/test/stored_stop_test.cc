@@ -2,7 +2,7 @@
 // The pair of a curve and its stored stop: what is proven is what is flown, over random maps, with answers
 // that are lost, late and refused.
 
-#include "touchdown/planning/stored_stop.h"
+#include "touchdown/planning/certify/stored_stop.h"
 
 #include <cmath>
 #include <limits>
@@ -12,9 +12,9 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/pad_strip.h"
-#include "touchdown/planning/test/hull_fixtures.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/certify/pad_strip.h"
+#include "planning/test/hull_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

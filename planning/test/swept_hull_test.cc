@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hull's tube through observed-free cells against the ball looked at cell by cell.
 
-#include "touchdown/planning/swept_hull.h"
+#include "touchdown/planning/certify/swept_hull.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/rest_trajectory.h"
-#include "touchdown/planning/test/hull_fixtures.h"
+#include "planning/test/hull_fixtures.h"
+#include "touchdown/planning/spline/rest_trajectory.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <string>
 
-#include "touchdown/planning/random_context.h"
-#include "touchdown/planning/term_check.h"
-#include "touchdown/planning/terms/norm_limit.h"
-#include "touchdown/planning/terms/smoothness.h"
+#include "planning/problem/random_context.h"
+#include "planning/problem/terms/norm_limit.h"
+#include "planning/problem/terms/smoothness.h"
+#include "touchdown/planning/problem/term_check.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/timed_way.h"
+#include "planning/search/timed_way.h"
 
 #include <gtest/gtest.h>
 

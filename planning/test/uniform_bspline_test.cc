@@ -2,13 +2,13 @@
 // Identities of the uniform cubic B-spline: partition of unity, derivatives, reproduction of
 // cubics, hull bounds.
 
-#include "touchdown/planning/uniform_bspline.h"
+#include "touchdown/planning/spline/uniform_bspline.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/flatness.h"
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
+#include "touchdown/planning/spline/boundary_lift.h"
+#include "touchdown/planning/spline/flatness.h"
 
 namespace touchdown::planning {
 namespace {

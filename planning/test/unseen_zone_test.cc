@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The cells that the next stops may not enter, against a look at every cell.
 
-#include "touchdown/planning/unseen_zone.h"
+#include "touchdown/planning/certify/unseen_zone.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/hull_fixtures.h"
-#include "touchdown/planning/test/replanner_fixtures.h"
+#include "planning/test/hull_fixtures.h"
+#include "planning/test/replanner_fixtures.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

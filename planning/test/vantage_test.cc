@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/vantage.h"
+#include "planning/certify/vantage.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/vehicle_model.h"
+#include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::planning {

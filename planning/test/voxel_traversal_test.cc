@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Voxel traversal against dense sampling.
 
-#include "touchdown/planning/voxel_traversal.h"
+#include "planning/map/voxel_traversal.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/warm_start.h"
+#include "planning/problem/warm_start.h"
 
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/planning_fixtures.h"
+#include "planning/test/planning_fixtures.h"
 
 namespace touchdown::planning {
 namespace {

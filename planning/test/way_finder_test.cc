@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/planning/way_finder.h"
+#include "planning/search/way_finder.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/planning/test/small_map.h"
+#include "planning/test/small_map.h"
 
 namespace touchdown::planning {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/depth_camera.h"
-#include "touchdown/sim/gps.h"
-#include "touchdown/sim/own_state_source.h"
-#include "touchdown/sim/tag_sensor.h"
-#include "touchdown/sim/world.h"
+#include "sim/sensors/depth_camera.h"
+#include "sim/sensors/gps.h"
+#include "sim/sensors/own_state_source.h"
+#include "sim/sensors/tag_sensor.h"
+#include "sim/world/world.h"
 #include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::sim {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/drag.h"
+#include "sim/air/drag.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Statistics against theory. Bounds are 4.5 standard deviations of the estimate, so that a right
 // filter passes whatever its seed is.
-#include "touchdown/sim/dryden.h"
+#include "sim/air/dryden.h"
 
 #include <array>
 #include <cmath>

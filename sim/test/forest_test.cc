@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/forest.h"
+#include "sim/obstacles/forest.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/depth_camera.h"
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/world_mjcf.h"
+#include "sim/sensors/depth_camera.h"
+#include "sim/test/scenes.h"
+#include "sim/world/world_mjcf.h"
 
 namespace touchdown::sim {
 namespace {

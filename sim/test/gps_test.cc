@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/gps.h"
+#include "sim/sensors/gps.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/ground_effect.h"
+#include "sim/air/ground_effect.h"
 
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/drag.h"
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/vehicle_file.h"
+#include "sim/air/drag.h"
+#include "sim/test/scenes.h"
+#include "sim/vehicle/vehicle_file.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/imu.h"
+#include "sim/sensors/imu.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/own_state_model.h"
-#include "touchdown/estimation/rotation_vector.h"
-#include "touchdown/estimation/vehicle_model.h"
+#include "estimation/base/rotation_vector.h"
+#include "touchdown/estimation/base/vehicle_model.h"
+#include "touchdown/estimation/own_state/own_state_model.h"
 
 namespace touchdown::sim {
 namespace {

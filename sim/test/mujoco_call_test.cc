@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/mujoco_call.h"
+#include "sim/mujoco/mujoco_call.h"
 
 #include <mujoco/mujoco.h>
 
@@ -13,9 +13,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/mujoco_model.h"
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/vehicle_file.h"
+#include "sim/mujoco/mujoco_model.h"
+#include "sim/test/scenes.h"
+#include "sim/vehicle/vehicle_file.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/mujoco_model.h"
+#include "sim/mujoco/mujoco_model.h"
 
 #include <mujoco/mujoco.h>
 
@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/vehicle_file.h"
-#include "touchdown/sim/world_mjcf.h"
+#include "sim/test/scenes.h"
+#include "sim/vehicle/vehicle_file.h"
+#include "sim/world/world_mjcf.h"
 
 namespace touchdown::sim {
 namespace {

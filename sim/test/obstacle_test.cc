@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/obstacle.h"
+#include "sim/obstacles/obstacle.h"
 
 #include <cmath>
 #include <limits>
@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/obstacle_field.h"
-#include "touchdown/sim/test/scenes.h"
+#include "sim/obstacles/obstacle_field.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/own_sensors.h"
+#include "sim/sensors/own_sensors.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/own_state_source.h"
+#include "sim/sensors/own_state_source.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-#include "touchdown/estimation/rotation_vector.h"
-#include "touchdown/sim/world.h"
+#include "estimation/base/rotation_vector.h"
+#include "sim/world/world.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/pace.h"
+#include "touchdown/sim/pad/pace.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/path_drive.h"
+#include "sim/pad/path_drive.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/pad_camera.h"
+#include "sim/sensors/pad_camera.h"
 
 #include <cmath>
 #include <numbers>
@@ -8,10 +8,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/pad_pose.h"
-#include "touchdown/estimation/tag_detector.h"
-#include "touchdown/sim/frame_delivery.h"
-#include "touchdown/sim/test/scenes.h"
+#include "sim/sensors/frame_delivery.h"
+#include "sim/test/scenes.h"
+#include "touchdown/estimation/tags/pad_pose.h"
+#include "touchdown/estimation/tags/tag_detector.h"
 
 namespace touchdown::sim {
 namespace {

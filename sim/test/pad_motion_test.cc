@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/pad_motion.h"
+#include "sim/pad/pad_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

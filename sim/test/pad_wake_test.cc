@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/pad_wake.h"
+#include "sim/air/pad_wake.h"
 
 #include <cmath>
 #include <numbers>

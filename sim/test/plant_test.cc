@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A vehicle that is not what its pilot thinks, in the world.
-#include "touchdown/sim/plant.h"
+#include "touchdown/sim/vehicle/plant.h"
 
 #include <array>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/world.h"
+#include "sim/test/scenes.h"
+#include "sim/world/world.h"
 
 namespace touchdown::sim {
 namespace {

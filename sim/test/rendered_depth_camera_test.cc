@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/rendered_depth_camera.h"
+#include "sim/sensors/rendered_depth_camera.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/sample_clock.h"
+#include "sim/base/sample_clock.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/scene_renderer.h"
+#include "sim/rendering/scene_renderer.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/pad_sheet.h"
-#include "touchdown/sim/pad_camera.h"
-#include "touchdown/sim/test/scenes.h"
+#include "estimation/tags/pad_sheet.h"
+#include "sim/sensors/pad_camera.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/test/scenes.h"
+#include "sim/test/scenes.h"
 
 #include <numbers>
 #include <utility>

@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "touchdown/sim/obstacle_field.h"
-#include "touchdown/sim/random_stream.h"
-#include "touchdown/sim/world.h"
+#include "sim/base/random_stream.h"
+#include "sim/obstacles/obstacle_field.h"
+#include "sim/world/world.h"
 
 namespace touchdown::sim::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/tag_sensor.h"
+#include "sim/sensors/tag_sensor.h"
 
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/trim.h"
+#include "sim/vehicle/trim.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/estimation/vehicle_state.h"
-#include "touchdown/sim/drag.h"
-#include "touchdown/sim/world.h"
+#include "sim/air/drag.h"
+#include "sim/world/world.h"
+#include "touchdown/estimation/base/vehicle_state.h"
 
 namespace touchdown::sim {
 namespace {

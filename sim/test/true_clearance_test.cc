@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/true_clearance.h"
+#include "sim/obstacles/true_clearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/forest.h"
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/vehicle_file.h"
+#include "sim/obstacles/forest.h"
+#include "sim/test/scenes.h"
+#include "sim/vehicle/vehicle_file.h"
 
 namespace touchdown::sim {
 namespace {

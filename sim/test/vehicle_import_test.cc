@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/vehicle_import.h"
+#include "sim/vehicle/vehicle_import.h"
 
 #include <cmath>
 #include <fstream>
@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/vehicle_file.h"
-#include "touchdown/sim/world.h"
+#include "sim/test/scenes.h"
+#include "sim/vehicle/vehicle_file.h"
+#include "sim/world/world.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/waypoint_drive.h"
+#include "sim/pad/waypoint_drive.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "touchdown/sim/wind.h"
+#include "sim/air/wind.h"
 
 #include <cmath>
 #include <numbers>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
+#include "sim/test/scenes.h"
 
 namespace touchdown::sim {
 namespace {

@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/world.h"
+#include "sim/test/scenes.h"
+#include "sim/world/world.h"
 
 namespace touchdown::sim {
 namespace {

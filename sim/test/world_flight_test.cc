@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "touchdown/sim/drag.h"
-#include "touchdown/sim/test/scenes.h"
-#include "touchdown/sim/world.h"
+#include "sim/air/drag.h"
+#include "sim/test/scenes.h"
+#include "sim/world/world.h"
 
 namespace touchdown::sim {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "touchdown/solvers/bordered_cholesky.h"
+#include "touchdown/solvers/linear/bordered_cholesky.h"
 
 namespace touchdown::solvers {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "touchdown/solvers/problems/hock_schittkowski.h"
 
-#include "touchdown/solvers/problems/hock_schittkowski_parts.h"
+#include "solvers/problems/hock_schittkowski_parts.h"
 
 namespace touchdown::solvers {
 

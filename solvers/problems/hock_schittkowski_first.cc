@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hock-Schittkowski problems 1 to 29.
 
-#include "touchdown/solvers/problems/hock_schittkowski_parts.h"
+#include "solvers/problems/hock_schittkowski_parts.h"
 
 namespace touchdown::solvers {
 
@@ -230,11 +230,9 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
           .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] + 2.0 * x[1] + 3.0 * x[2] - 1.0; }));
   all->push_back(SmallProblem("HS29", {1.0, 1.0, 1.0}, -16.0 * std::sqrt(2.0), form)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
-                     .AtLeastZero(1,
-                                  [](const auto* x, auto* u) {
-                                    u[0] =
-                                        48.0 - x[0] * x[0] - 2.0 * x[1] * x[1] - 4.0 * x[2] * x[2];
-                                  }));
+                     .AtLeastZero(1, [](const auto* x, auto* u) {
+                       u[0] = 48.0 - x[0] * x[0] - 2.0 * x[1] * x[1] - 4.0 * x[2] * x[2];
+                     }));
 }
 
 }  // namespace touchdown::solvers

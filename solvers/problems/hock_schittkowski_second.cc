@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hock-Schittkowski problems 30 to 53.
 
-#include "touchdown/solvers/problems/hock_schittkowski_parts.h"
+#include "solvers/problems/hock_schittkowski_parts.h"
 
 namespace touchdown::solvers {
 

@@ -28,12 +28,13 @@ void AddOfTwoVariables(std::vector<ReferenceProblem>* all) {
                                 u[1] = x[0] - 29.0 + ((x[1] + 1.0) * x[1] - 14.0) * x[1];
                               })
                      .Other(48.98425367924));
-  all->push_back(
-      Start("powell_badly_scaled", {0.0, 1.0}, 0.0).Other(1.040294004).Squares(2, [](const auto* x, auto* u) {
-        using std::exp;
-        u[0] = 1e4 * x[0] * x[1] - 1.0;
-        u[1] = exp(-x[0]) + exp(-x[1]) - 1.0001;
-      }));
+  all->push_back(Start("powell_badly_scaled", {0.0, 1.0}, 0.0)
+                     .Other(1.040294004)
+                     .Squares(2, [](const auto* x, auto* u) {
+                       using std::exp;
+                       u[0] = 1e4 * x[0] * x[1] - 1.0;
+                       u[1] = exp(-x[0]) + exp(-x[1]) - 1.0001;
+                     }));
   all->push_back(
       Start("brown_badly_scaled", {1.0, 1.0}, 0.0).Squares(3, [](const auto* x, auto* u) {
         u[0] = x[0] - 1e6;
@@ -45,43 +46,49 @@ void AddOfTwoVariables(std::vector<ReferenceProblem>* all) {
     u[1] = 2.25 - x[0] * (1.0 - x[1] * x[1]);
     u[2] = 2.625 - x[0] * (1.0 - x[1] * x[1] * x[1]);
   }));
-  all->push_back(
-      Start("jennrich_sampson", {0.3, 0.4}, 124.3621823557)
-          .Other(259.58019013)  // one or both at minus infinity: flat to rounding
-          .Other(2020.0)
-          .Squares(10, [](const auto* x, auto* u) {
-        using std::exp;
-        for (int i = 1; i <= 10; ++i) {
-          const double k = i;
-          u[i - 1] = 2.0 + 2.0 * k - exp(k * x[0]) - exp(k * x[1]);
-        }
-      }));
+  all->push_back(Start("jennrich_sampson", {0.3, 0.4}, 124.3621823557)
+                     .Other(259.58019013)  // one or both at minus infinity: flat to rounding
+                     .Other(2020.0)
+                     .Squares(10, [](const auto* x, auto* u) {
+                       using std::exp;
+                       for (int i = 1; i <= 10; ++i) {
+                         const double k = i;
+                         u[i - 1] = 2.0 + 2.0 * k - exp(k * x[0]) - exp(k * x[1]);
+                       }
+                     }));
 }
 
 void AddOfThreeVariables(std::vector<ReferenceProblem>* all) {
-  all->push_back(Start("helical_valley", {-1.0, 0.0, 0.0}, 0.0).Squares(3, [](const auto* x, auto* u) {
-    using std::atan, std::sqrt;
-    const double pi = std::acos(-1.0);
-    const auto turn = atan(x[1] / x[0]) / (2.0 * pi) + (x[0] < 0.0 ? 0.5 : 0.0);
-    u[0] = 10.0 * (x[2] - 10.0 * turn);
-    u[1] = 10.0 * (sqrt(x[0] * x[0] + x[1] * x[1]) - 1.0);
-    u[2] = x[2];
-  }));
-  all->push_back(Start("gaussian", {0.4, 1.0, 0.0}, 1.12793276962e-8).Other(0.56422337).Squares(15, [](const auto* x, auto* u) {
-    using std::exp;
-    constexpr double y[] = {0.0009, 0.0044, 0.0175, 0.0540, 0.1295, 0.2420, 0.3521, 0.3989};
-    for (int i = 1; i <= 15; ++i) {
-      const double t = 0.5 * (8 - i);
-      u[i - 1] = x[0] * exp(-0.5 * x[1] * Square(t - x[2])) - y[std::min(i, 16 - i) - 1];
-    }
-  }));
-  all->push_back(Start("box", {0.0, 10.0, 20.0}, 0.0).Other(0.07558874).Squares(10, [](const auto* x, auto* u) {
-    using std::exp;
-    for (int i = 1; i <= 10; ++i) {
-      const double t = 0.1 * i;
-      u[i - 1] = exp(-t * x[0]) - exp(-t * x[1]) - x[2] * (std::exp(-t) - std::exp(-10.0 * t));
-    }
-  }));
+  all->push_back(
+      Start("helical_valley", {-1.0, 0.0, 0.0}, 0.0).Squares(3, [](const auto* x, auto* u) {
+        using std::atan, std::sqrt;
+        const double pi = std::acos(-1.0);
+        const auto turn = atan(x[1] / x[0]) / (2.0 * pi) + (x[0] < 0.0 ? 0.5 : 0.0);
+        u[0] = 10.0 * (x[2] - 10.0 * turn);
+        u[1] = 10.0 * (sqrt(x[0] * x[0] + x[1] * x[1]) - 1.0);
+        u[2] = x[2];
+      }));
+  all->push_back(
+      Start("gaussian", {0.4, 1.0, 0.0}, 1.12793276962e-8)
+          .Other(0.56422337)
+          .Squares(15, [](const auto* x, auto* u) {
+            using std::exp;
+            constexpr double y[] = {0.0009, 0.0044, 0.0175, 0.0540, 0.1295, 0.2420, 0.3521, 0.3989};
+            for (int i = 1; i <= 15; ++i) {
+              const double t = 0.5 * (8 - i);
+              u[i - 1] = x[0] * exp(-0.5 * x[1] * Square(t - x[2])) - y[std::min(i, 16 - i) - 1];
+            }
+          }));
+  all->push_back(Start("box", {0.0, 10.0, 20.0}, 0.0)
+                     .Other(0.07558874)
+                     .Squares(10, [](const auto* x, auto* u) {
+                       using std::exp;
+                       for (int i = 1; i <= 10; ++i) {
+                         const double t = 0.1 * i;
+                         u[i - 1] = exp(-t * x[0]) - exp(-t * x[1]) -
+                                    x[2] * (std::exp(-t) - std::exp(-10.0 * t));
+                       }
+                     }));
 }
 
 void AddOfMoreVariables(std::vector<ReferenceProblem>* all) {
@@ -92,14 +99,15 @@ void AddOfMoreVariables(std::vector<ReferenceProblem>* all) {
         u[2] = Square(x[1] - 2.0 * x[2]);
         u[3] = std::sqrt(10.0) * Square(x[0] - x[3]);
       }));
-  all->push_back(Start("wood", {-3.0, -1.0, -3.0, -1.0}, 0.0).Squares(6, [](const auto* x, auto* u) {
-    u[0] = 10.0 * (x[1] - x[0] * x[0]);
-    u[1] = 1.0 - x[0];
-    u[2] = std::sqrt(90.0) * (x[3] - x[2] * x[2]);
-    u[3] = 1.0 - x[2];
-    u[4] = std::sqrt(10.0) * (x[1] + x[3] - 2.0);
-    u[5] = (x[1] - x[3]) / std::sqrt(10.0);
-  }));
+  all->push_back(
+      Start("wood", {-3.0, -1.0, -3.0, -1.0}, 0.0).Squares(6, [](const auto* x, auto* u) {
+        u[0] = 10.0 * (x[1] - x[0] * x[0]);
+        u[1] = 1.0 - x[0];
+        u[2] = std::sqrt(90.0) * (x[3] - x[2] * x[2]);
+        u[3] = 1.0 - x[2];
+        u[4] = std::sqrt(10.0) * (x[1] + x[3] - 2.0);
+        u[5] = (x[1] - x[3]) / std::sqrt(10.0);
+      }));
   all->push_back(Start("brown_dennis", {25.0, 5.0, -5.0, -1.0}, 85822.2016263)
                      .Squares(20, [](const auto* x, auto* u) {
                        for (int i = 1; i <= 20; ++i) {
@@ -159,9 +167,9 @@ ReferenceProblem DiscreteBoundaryValue(int n) {
       if (i > 0) u[0] -= here[-1];
       if (i < n - 1) u[0] -= here[1];
     };
-    problem->AddTerm(std::make_shared<FunctionTerm>(TermInfo{.name = "bend"}, shape,
-                                                    SquareLoss(2.0), function),
-                     Role::kCost);
+    problem->AddTerm(
+        std::make_shared<FunctionTerm>(TermInfo{.name = "bend"}, shape, SquareLoss(2.0), function),
+        Role::kCost);
   }
   return {"discrete_boundary_value", problem, start, 0.0, {}};
 }

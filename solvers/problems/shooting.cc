@@ -10,7 +10,7 @@
 #include <cmath>
 #include <utility>
 
-#include "touchdown/solvers/window_term.h"
+#include "touchdown/solvers/problem/window_term.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -120,10 +120,10 @@ ReferenceProblem Shooting(std::string name, int steps, double duration,
   const int blocks = steps + 1;
   const double dt = duration / steps;
   auto problem = std::make_shared<Problem>(ProblemShape{.blocks = blocks, .block_size = d});
-  problem->AddTerm(std::make_shared<WindowTerm<Effort<Motion>, SquareLoss>>(
-                       TermInfo{.name = "effort"}, Effort<Motion>(blocks), SquareLoss(2.0 * dt),
-                       blocks),
-                   Role::kCost);
+  problem->AddTerm(
+      std::make_shared<WindowTerm<Effort<Motion>, SquareLoss>>(
+          TermInfo{.name = "effort"}, Effort<Motion>(blocks), SquareLoss(2.0 * dt), blocks),
+      Role::kCost);
   problem->AddTerm(std::make_shared<WindowTerm<Trapezoid<Motion>, SquareLoss>>(
                        TermInfo{.name = "motion"}, Trapezoid<Motion>(Motion(), steps, dt),
                        SquareLoss(1.0), steps),
@@ -145,12 +145,14 @@ ReferenceProblem Shooting(std::string name, int steps, double duration,
       const int from = static_cast<int>(std::lround(knots[m - 1].share * steps));
       const double before = knots[m - 1].states[static_cast<std::size_t>(i)];
       for (int k = from; k <= at && !std::isnan(before); ++k) {
-        start[static_cast<std::size_t>(k * d + i)] = before + (value - before) * (k - from) / (at - from);
+        start[static_cast<std::size_t>(k * d + i)] =
+            before + (value - before) * (k - from) / (at - from);
       }
     }
   }
   problem->SetBounds(std::move(lo), std::move(hi));
-  return {std::move(name), problem,
+  return {std::move(name),
+          problem,
           Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size())),
           std::nan(""),
           {}};
@@ -267,7 +269,8 @@ ReferenceProblem CartPoleUp(int steps) {
   lower[0] = -1.5;
   upper[0] = 1.5;
   return Shooting<CartPole>("cart_pole_" + std::to_string(steps), steps, 2.5,
-                            {{0.0, {0.0, 0.0, 0.0, 0.0}}, {1.0, {1.0, kPi, 0.0, 0.0}}}, lower, upper);
+                            {{0.0, {0.0, 0.0, 0.0, 0.0}}, {1.0, {1.0, kPi, 0.0, 0.0}}}, lower,
+                            upper);
 }
 
 ReferenceProblem ThroughWaypoints(int steps) {
@@ -292,20 +295,23 @@ std::vector<ReferenceProblem> ShootingProblems() {
   all.push_back(CartPoleUp(50));
   std::vector<double> apart = std::vector<double>(12, 0.0);
   for (std::size_t i = 0; i < 6; ++i) apart[i] = i % 2 == 0 ? 0.5 : -0.3;
-  all.push_back(Shooting<MassChain>("mass_chain_100", 100, 10.0, {{0.0, apart}, {1.0, std::vector<double>(12, 0.0)}},
+  all.push_back(Shooting<MassChain>("mass_chain_100", 100, 10.0,
+                                    {{0.0, apart}, {1.0, std::vector<double>(12, 0.0)}},
                                     Limits(12, -1.0, {-1.5, -1.5}), Limits(12, 1.0, {1.5, 1.5})));
-  all.push_back(Shooting<PlanarQuadrotor>(
-      "planar_quadrotor_60", 60, 3.0,
-      {{0.0, std::vector<double>(6, 0.0)}, {0.5, {2.0, 1.0, kFree, kFree, kFree, kFree}}, {1.0, {4.0, 0.0, 0.0, 0.0, 0.0, 0.0}}},
-      Limits(6, -1.0, {0.2 * kGravity, -30.0}), Limits(6, 1.0, {2.0 * kGravity, 30.0})));
+  all.push_back(Shooting<PlanarQuadrotor>("planar_quadrotor_60", 60, 3.0,
+                                          {{0.0, std::vector<double>(6, 0.0)},
+                                           {0.5, {2.0, 1.0, kFree, kFree, kFree, kFree}},
+                                           {1.0, {4.0, 0.0, 0.0, 0.0, 0.0, 0.0}}},
+                                          Limits(6, -1.0, {0.2 * kGravity, -30.0}),
+                                          Limits(6, 1.0, {2.0 * kGravity, 30.0})));
   all.push_back(ThroughWaypoints(40));
   all.push_back(ThroughWaypoints(200));
   std::vector<double> there = std::vector<double>(12, 0.0);
   there[0] = 3.0, there[1] = 1.0, there[2] = -1.0;
-  all.push_back(Shooting<HeavyQuadrotor>(
-      "heavy_quadrotor_30", 30, 2.5, {{0.0, std::vector<double>(12, 0.0)}, {1.0, there}},
-      Limits(12, -1.0, {0.2 * kGravity, -40.0, -40.0, -10.0}),
-      Limits(12, 1.0, {2.0 * kGravity, 40.0, 40.0, 10.0})));
+  all.push_back(Shooting<HeavyQuadrotor>("heavy_quadrotor_30", 30, 2.5,
+                                         {{0.0, std::vector<double>(12, 0.0)}, {1.0, there}},
+                                         Limits(12, -1.0, {0.2 * kGravity, -40.0, -40.0, -10.0}),
+                                         Limits(12, 1.0, {2.0 * kGravity, 40.0, 40.0, 10.0})));
   return all;
 }
 

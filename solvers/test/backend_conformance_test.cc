@@ -7,8 +7,8 @@
 #include <Eigen/LU>
 #include <thread>
 
-#include "touchdown/solvers/missing_backend.h"
-#include "touchdown/solvers/test/every_backend.h"
+#include "solvers/backend/missing_backend.h"
+#include "solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {

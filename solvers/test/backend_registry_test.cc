@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "touchdown/solvers/test/standard_problems.h"
+#include "solvers/test/standard_problems.h"
 
 namespace touchdown::solvers {
 namespace {

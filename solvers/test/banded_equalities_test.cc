@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/banded/banded_solver.h"
 #include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/backend_registry.h"
-#include "touchdown/solvers/banded_solver.h"
-#include "touchdown/solvers/function_term.h"
+#include "touchdown/solvers/problem/function_term.h"
 #include "touchdown/solvers/solve.h"
 
 namespace touchdown::solvers {

@@ -3,7 +3,7 @@
 // the optimality conditions of the interior point with its multipliers, the elastic answer where
 // rows cannot be met, and no allocation in a solve.
 
-#include "touchdown/solvers/banded_solver.h"
+#include "solvers/banded/banded_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@
 #include <random>
 #include <type_traits>
 
+#include "solvers/test/test_terms.h"
 #include "touchdown/solvers/allocation_count.h"
+#include "touchdown/solvers/problem/window_term.h"
 #include "touchdown/solvers/problems/reference_problem.h"
 #include "touchdown/solvers/solvers.h"
-#include "touchdown/solvers/test/test_terms.h"
-#include "touchdown/solvers/window_term.h"
 
 namespace touchdown::solvers {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The arrowhead answers for the whole symmetric matrix.
 
-#include "touchdown/solvers/bordered_band_matrix.h"
+#include "touchdown/solvers/linear/bordered_band_matrix.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // The factor of random arrowheads against Eigen's dense one, for blocks of three and of other
 // sizes.
 
-#include "touchdown/solvers/bordered_cholesky.h"
+#include "touchdown/solvers/linear/bordered_cholesky.h"
 
 #include <gtest/gtest.h>
 
@@ -58,8 +58,9 @@ TEST(BorderedCholesky, MatchesTheDenseFactor) {
        {Shape{15, 3, 3, false}, Shape{15, 3, 3, true}, Shape{2, 3, 3, true}, Shape{9, 3, 1, false},
         Shape{9, 3, 2, true}, Shape{9, 3, 5, true}, Shape{6, 1, 3, false}, Shape{8, 2, 4, true},
         Shape{7, 4, 3, true}, Shape{1, 1, 0, true}, Shape{5, 5, 5, false}, Shape{12, 1, 7, true},
-        Shape{20, 1, 15, false}, Shape{40, 1, 31, true}, Shape{9, 8, 5, true}, Shape{3, 24, 2, false}, Shape{20, 24, 5, true},
-        Shape{1, 33, 0, false}, Shape{4, 33, 1, true}}) {
+        Shape{20, 1, 15, false}, Shape{40, 1, 31, true}, Shape{9, 8, 5, true},
+        Shape{3, 24, 2, false}, Shape{20, 24, 5, true}, Shape{1, 33, 0, false},
+        Shape{4, 33, 1, true}}) {
     const BorderedBandMatrix A = RandomDefinite(shape, &random);
     const Eigen::MatrixXd dense = Dense(A);
     BorderedCholesky factor;

@@ -2,7 +2,7 @@
 // Problems with constraint rows on every backend that takes rows: known optima, infeasibility, rows
 // that cannot be evaluated, multipliers.
 
-#include "touchdown/solvers/test/every_backend.h"
+#include "solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {

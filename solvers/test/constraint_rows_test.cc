@@ -2,14 +2,14 @@
 // Flat rows against the view's own products with its rows and against central differences; rows on
 // eliminated blocks.
 
-#include "touchdown/solvers/constraint_rows.h"
+#include "touchdown/solvers/backend/constraint_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "touchdown/solvers/test/test_terms.h"
+#include "solvers/test/test_terms.h"
 
 namespace touchdown::solvers {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // First and second derivatives.
 
-#include "touchdown/solvers/dual.h"
+#include "touchdown/solvers/problem/dual.h"
 
 #include <cmath>
 #include <string>
@@ -46,7 +46,10 @@ template <class Function>
 constexpr Case MakeCase(const char* name, double x, double y, Function) {
   using First = Dual<2>;
   using Second = SecondDual<2>;
-  return {name, x, y, [](double a, double b) { return Function()(a, b); },
+  return {name,
+          x,
+          y,
+          [](double a, double b) { return Function()(a, b); },
           [](const First& a, const First& b) { return Function()(a, b); },
           [](const Second& a, const Second& b) { return Function()(a, b); }};
 }
@@ -76,27 +79,34 @@ TEST_P(DualFunctions, DerivativesMatchDifferences) {
   }
 }
 
-#define DUAL_CASE(name, x, y, formula) \
-  MakeCase(name, x, y, [](const auto& a, const auto& b) { (void)b; return formula; })
+#define DUAL_CASE(name, x, y, formula)                    \
+  MakeCase(name, x, y, [](const auto& a, const auto& b) { \
+    (void)b;                                              \
+    return formula;                                       \
+  })
 
-using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp, std::log,
-    std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp,
+    std::log, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
 
 INSTANTIATE_TEST_SUITE_P(
     All, DualFunctions,
-    testing::Values(DUAL_CASE("sum", 0.3, 1.2, a + a * b), DUAL_CASE("difference", 0.3, 1.2, a * a - b * b * 3.0),
-                    DUAL_CASE("minus", 0.7, 1.2, -(a * a * b)), DUAL_CASE("quotient", 0.7, -1.3, a * a / (b * a + b)),
-                    DUAL_CASE("of_number", 0.7, -1.3, 2.0 / (b * a)), DUAL_CASE("sqrt", 0.7, 1.3, sqrt(b * a)),
-                    DUAL_CASE("sin", 0.7, 1.3, sin(b * a)), DUAL_CASE("cos", 0.7, 1.3, cos(b * a)),
-                    DUAL_CASE("exp", 0.7, 1.3, exp(b * a)), DUAL_CASE("log", 0.7, 1.3, log(b * a)),
-                    DUAL_CASE("atan2", 0.7, -1.3, atan2(b * a, a - b * b)), DUAL_CASE("tan", 0.4, 0.9, tan(a * b)), DUAL_CASE("asin", 0.3, -0.8, asin(a * b)),
-                    DUAL_CASE("acos", -0.6, 0.7, acos(a * b)), DUAL_CASE("atan", 2.0, -3.0, atan(a * b)),
-                    DUAL_CASE("sinh", 1.1, -0.7, sinh(a * b)), DUAL_CASE("cosh", 1.1, -0.7, cosh(a * b)),
-                    DUAL_CASE("tanh", 0.5, 0.8, tanh(a - b)), DUAL_CASE("abs", -2.0, 1.5, abs(a * b)),
-                    DUAL_CASE("pow_whole", -1.5, 0.3, pow(a * b, 3.0)),
-                    DUAL_CASE("pow_broken", 1.5, 0.3, pow(a * b, -0.7)),
-                    DUAL_CASE("pow_of_both", 1.7, 0.6, pow(a, b * a)),
-                    DUAL_CASE("pow_of_number", 0.8, -0.6, pow(2.5, a * b))),
+    testing::Values(
+        DUAL_CASE("sum", 0.3, 1.2, a + a * b),
+        DUAL_CASE("difference", 0.3, 1.2, a* a - b * b * 3.0),
+        DUAL_CASE("minus", 0.7, 1.2, -(a* a* b)),
+        DUAL_CASE("quotient", 0.7, -1.3, a* a / (b * a + b)),
+        DUAL_CASE("of_number", 0.7, -1.3, 2.0 / (b * a)), DUAL_CASE("sqrt", 0.7, 1.3, sqrt(b* a)),
+        DUAL_CASE("sin", 0.7, 1.3, sin(b* a)), DUAL_CASE("cos", 0.7, 1.3, cos(b* a)),
+        DUAL_CASE("exp", 0.7, 1.3, exp(b* a)), DUAL_CASE("log", 0.7, 1.3, log(b* a)),
+        DUAL_CASE("atan2", 0.7, -1.3, atan2(b* a, a - b * b)),
+        DUAL_CASE("tan", 0.4, 0.9, tan(a* b)), DUAL_CASE("asin", 0.3, -0.8, asin(a* b)),
+        DUAL_CASE("acos", -0.6, 0.7, acos(a* b)), DUAL_CASE("atan", 2.0, -3.0, atan(a* b)),
+        DUAL_CASE("sinh", 1.1, -0.7, sinh(a* b)), DUAL_CASE("cosh", 1.1, -0.7, cosh(a* b)),
+        DUAL_CASE("tanh", 0.5, 0.8, tanh(a - b)), DUAL_CASE("abs", -2.0, 1.5, abs(a* b)),
+        DUAL_CASE("pow_whole", -1.5, 0.3, pow(a* b, 3.0)),
+        DUAL_CASE("pow_broken", 1.5, 0.3, pow(a* b, -0.7)),
+        DUAL_CASE("pow_of_both", 1.7, 0.6, pow(a, b* a)),
+        DUAL_CASE("pow_of_number", 0.8, -0.6, pow(2.5, a* b))),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 #undef DUAL_CASE

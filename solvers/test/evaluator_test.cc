@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The evaluator counts, caches, stops and keeps the best feasible point.
 
-#include "touchdown/solvers/evaluator.h"
+#include "touchdown/solvers/backend/evaluator.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/solvers/test/test_terms.h"
+#include "solvers/test/test_terms.h"
 
 namespace touchdown::solvers {
 namespace {

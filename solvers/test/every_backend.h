@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/test/standard_problems.h"
 #include "touchdown/solvers/backend_registry.h"
-#include "touchdown/solvers/test/standard_problems.h"
 
 namespace touchdown::solvers {
 

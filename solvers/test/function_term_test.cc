@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A term sized at run time against the same WindowTerm.
 
-#include "touchdown/solvers/function_term.h"
+#include "touchdown/solvers/problem/function_term.h"
 
 #include <gtest/gtest.h>
 
-#include "touchdown/solvers/problem.h"
-#include "touchdown/solvers/window_term.h"
+#include "touchdown/solvers/problem/problem.h"
+#include "touchdown/solvers/problem/window_term.h"
 
 namespace touchdown::solvers {
 namespace {

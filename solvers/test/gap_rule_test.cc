@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One stop rule for all backends: each ends as near to the optimum as was asked for, and not much nearer.
 
-#include "touchdown/solvers/gap_rule.h"
+#include "touchdown/solvers/backend/gap_rule.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "solvers/test/every_backend.h"
 #include "touchdown/solvers/allocation_count.h"
-#include "touchdown/solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {

@@ -2,7 +2,7 @@
 // Our L-BFGS on standard functions, with its stop test, its budget, its cancel callback, functions
 // that cannot be evaluated everywhere; and its line search against the two conditions it promises.
 
-#include "touchdown/solvers/lbfgs.h"
+#include "solvers/lbfgs/lbfgs.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <functional>
 #include <limits>
 
+#include "solvers/test/every_backend.h"
 #include "touchdown/solvers/allocation_count.h"
-#include "touchdown/solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {

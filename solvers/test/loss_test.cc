@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Losses: derivatives, residuals, convexity, smooth joints.
 
-#include "touchdown/solvers/loss.h"
+#include "touchdown/solvers/problem/loss.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "touchdown/solvers/window_term.h"
+#include "touchdown/solvers/problem/window_term.h"
 
 namespace touchdown::solvers {
 namespace {

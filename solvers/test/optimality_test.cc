@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The check of optimality, and what becomes of claims that it does not confirm.
 
-#include "touchdown/solvers/optimality.h"
+#include "touchdown/solvers/backend/optimality.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include <Eigen/Geometry>
 
+#include "solvers/test/every_backend.h"
 #include "touchdown/solvers/problems/hock_schittkowski.h"
 #include "touchdown/solvers/problems/more_garbow_hillstrom.h"
-#include "touchdown/solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Structure checks and constraint rows.
 
-#include "touchdown/solvers/problem.h"
+#include "touchdown/solvers/problem/problem.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "touchdown/solvers/test/test_terms.h"
+#include "solvers/test/test_terms.h"
 
 namespace touchdown::solvers {
 namespace {

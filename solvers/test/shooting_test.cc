@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-#include "touchdown/solvers/constraint_rows.h"
-#include "touchdown/solvers/test/every_backend.h"
+#include "solvers/test/every_backend.h"
+#include "touchdown/solvers/backend/constraint_rows.h"
 
 namespace touchdown::solvers {
 namespace {
@@ -43,7 +43,8 @@ TEST(ShootingProblems, DerivativesAreRight) {
   for (const ReferenceProblem& p : ShootingProblems()) {
     const View view(*p.problem);
     Eigen::VectorXd y = p.start;
-    for (Eigen::Index i = 0; i < y.size(); ++i) y[i] += 0.1 * std::sin(7.0 * static_cast<double>(i));
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      y[i] += 0.1 * std::sin(7.0 * static_cast<double>(i));
     ViewEvaluation at, near;
     view.Resize(&at);
     view.Resize(&near);
@@ -59,7 +60,8 @@ TEST(ShootingProblems, DerivativesAreRight) {
     }
     const Lagrangian lagrangian{.rows = rows.data()};
     Eigen::VectorXd step(y.size());
-    for (Eigen::Index i = 0; i < y.size(); ++i) step[i] = std::sin(5.0 * static_cast<double>(i) + 1.0);
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      step[i] = std::sin(5.0 * static_cast<double>(i) + 1.0);
     ASSERT_TRUE(view.Evaluate(y.data(), {.gradient = true, .hessian = true}, lagrangian, &at));
     std::vector<double> curved(static_cast<std::size_t>(y.size()));
     at.hessian.Multiply(step.data(), curved.data());

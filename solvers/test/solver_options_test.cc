@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Options name what is wrong with a value.
 
-#include "touchdown/solvers/solver_options.h"
+#include "touchdown/solvers/backend/solver_options.h"
 
 #include <gtest/gtest.h>
 

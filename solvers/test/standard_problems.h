@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "touchdown/solvers/problem.h"
-#include "touchdown/solvers/test/test_terms.h"
+#include "solvers/test/test_terms.h"
+#include "touchdown/solvers/problem/problem.h"
 
 namespace touchdown::solvers {
 

@@ -9,8 +9,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "touchdown/solvers/view.h"
-#include "touchdown/solvers/window_term.h"
+#include "touchdown/solvers/problem/view.h"
+#include "touchdown/solvers/problem/window_term.h"
 
 namespace touchdown::solvers {
 

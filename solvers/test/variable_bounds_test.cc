@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/test/every_backend.h"
 #include "touchdown/solvers/allocation_count.h"
 #include "touchdown/solvers/problems/reference_problem.h"
-#include "touchdown/solvers/test/every_backend.h"
 
 namespace touchdown::solvers {
 namespace {

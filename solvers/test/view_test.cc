@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Problems through views against central differences.
 
-#include "touchdown/solvers/view.h"
+#include "touchdown/solvers/problem/view.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <random>
 #include <type_traits>
 
-#include "touchdown/solvers/derivative_check.h"
-#include "touchdown/solvers/test/test_terms.h"
+#include "solvers/test/test_terms.h"
+#include "touchdown/solvers/backend/derivative_check.h"
 
 namespace touchdown::solvers {
 namespace {

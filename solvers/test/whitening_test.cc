@@ -2,13 +2,13 @@
 // In whitened variables the nominal Hessian is the identity, and gradients follow the change of
 // variables.
 
-#include "touchdown/solvers/whitening.h"
+#include "touchdown/solvers/backend/whitening.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "touchdown/solvers/test/test_terms.h"
+#include "solvers/test/test_terms.h"
 
 namespace touchdown::solvers {
 namespace {

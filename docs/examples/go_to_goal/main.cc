@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A vehicle that flies its reference exactly goes to a point, through a map that is filled by hand.
 #include <iostream>
-#include "touchdown/planning/goal.h"
-#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/replan/goal.h"
+#include "touchdown/planning/replan/replanner.h"
 #include "touchdown/solvers/backend_registry.h"
 using namespace touchdown::planning;
 
@@ -33,7 +33,8 @@ int main() {
     input.pad = &goal;
     input.endpoint.height = 0.0;  // the end is in the goal, not above it
     const ReplanResult& plan = planner.Replan(input, map);
-    if (plan.status != ReplanStatus::kPlanned) std::cout << t << " s: " << Explain(plan.reason) << "\n";
+    if (plan.status != ReplanStatus::kPlanned)
+      std::cout << t << " s: " << Explain(plan.reason) << "\n";
   }
   return 1;
 }

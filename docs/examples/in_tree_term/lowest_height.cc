@@ -2,7 +2,7 @@
 // Keeps the way, but for its two ends, above a height over the ground: u = height - z for every
 // control point that is free to move. Convex. Source: this example.
 
-#include "touchdown/planning/landing_term.h"
+#include "touchdown/planning/problem/landing_term.h"
 
 namespace touchdown::planning {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
-#include "touchdown/evaluation/program.h"
-#include "touchdown/solvers/newton_step.h"
-#include "touchdown/solvers/solver_backend.h"
+#include "touchdown/evaluation/program/program.h"
+#include "touchdown/solvers/backend/newton_step.h"
+#include "touchdown/solvers/backend/solver_backend.h"
 
 namespace solvers = touchdown::solvers;
 using solvers::SolveStatus;

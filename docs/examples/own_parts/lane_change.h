@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "touchdown/sim/curvature_chain.h"
+#include "touchdown/sim/pad/curvature_chain.h"
 
 namespace own {
 

@@ -2,8 +2,8 @@
 // The whole program `touchdown` with a planner and a pad motion of one's own.
 #include "lane_change.h"
 #include "straight_planner.h"
-#include "touchdown/evaluation/program.h"
-#include "touchdown/evaluation/scenario.h"
+#include "touchdown/evaluation/program/program.h"
+#include "touchdown/evaluation/scenario/scenario.h"
 
 using namespace touchdown;  // NOLINT: an example
 

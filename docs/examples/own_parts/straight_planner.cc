@@ -6,9 +6,9 @@
 
 #include <utility>
 
-#include "touchdown/planning/boundary_lift.h"
-#include "touchdown/planning/rest_trajectory.h"
-#include "touchdown/planning/stage_timer.h"
+#include "touchdown/planning/replan/stage_timer.h"
+#include "touchdown/planning/spline/boundary_lift.h"
+#include "touchdown/planning/spline/rest_trajectory.h"
 
 namespace own {
 namespace {

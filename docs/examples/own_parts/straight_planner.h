@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "touchdown/planning/limits.h"
-#include "touchdown/planning/planner.h"
+#include "touchdown/planning/replan/planner.h"
+#include "touchdown/planning/spline/limits.h"
 
 namespace own {
 

@@ -15,13 +15,19 @@ int main() {
 
   Problem problem({.blocks = kPoints, .block_size = 1});
   // The curve at knot k is a mean of three control points.
-  problem.AddTerm(std::make_shared<FunctionTerm>(
-      TermInfo{"misfit"}, FunctionShape{.window = 3, .windows = kPoints - 2}, SquareLoss(1.0),
-      [=](int k, const auto* q, auto* u) { u[0] = (q[0] + 4.0 * q[1] + q[2]) / 6.0 - measured[k]; }), Role::kCost);
+  problem.AddTerm(
+      std::make_shared<FunctionTerm>(
+          TermInfo{"misfit"}, FunctionShape{.window = 3, .windows = kPoints - 2}, SquareLoss(1.0),
+          [=](int k, const auto* q, auto* u) {
+            u[0] = (q[0] + 4.0 * q[1] + q[2]) / 6.0 - measured[k];
+          }),
+      Role::kCost);
   // The third derivative, constant between two knots.
   problem.AddTerm(std::make_shared<FunctionTerm>(
-      TermInfo{"roughness"}, FunctionShape{.window = 4, .windows = kPoints - 3}, SquareLoss(1000.0),
-      [](const auto* q, auto* u) { u[0] = q[3] - 3.0 * q[2] + 3.0 * q[1] - q[0]; }), Role::kCost);
+                      TermInfo{"roughness"}, FunctionShape{.window = 4, .windows = kPoints - 3},
+                      SquareLoss(1000.0),
+                      [](const auto* q, auto* u) { u[0] = q[3] - 3.0 * q[2] + 3.0 * q[1] - q[0]; }),
+                  Role::kCost);
   problem.SetBounds(std::vector<double>(kPoints, 0.0), std::vector<double>(kPoints, 1.0));
 
   const SolverResult found = Solve(problem, Eigen::VectorXd::Constant(kPoints, 0.5));
@@ -31,6 +37,7 @@ int main() {
     least = std::min(least, curve), most = std::max(most, curve);
     squares += std::pow(curve - 0.5 + 0.5 * std::cos(0.2 * k), 2);
   }
-  std::cout << ToString(found.status) << ", cost " << found.cost << ", from " << least << " to " << most
-            << ", in the root mean square " << std::sqrt(squares / (kPoints - 2)) << " from the truth\n";
+  std::cout << ToString(found.status) << ", cost " << found.cost << ", from " << least << " to "
+            << most << ", in the root mean square " << std::sqrt(squares / (kPoints - 2))
+            << " from the truth\n";
 }

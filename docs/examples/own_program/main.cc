@@ -2,8 +2,8 @@
 // The whole program `touchdown` with a term of one's own: keeps the pad's distance to every knot
 // below `reach`, as seen at the knot's own time. u = |p(t_k) - P(t_k)|^2 / (2 reach) - reach / 2.
 
-#include "touchdown/evaluation/program.h"
-#include "touchdown/planning/term_kinematics.h"
+#include "touchdown/evaluation/program/program.h"
+#include "touchdown/planning/problem/term_kinematics.h"
 
 namespace planning = touchdown::planning;
 

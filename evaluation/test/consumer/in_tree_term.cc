@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program `touchdown` as it is with the term of docs/examples/in_tree_term in its tree.
-#include "touchdown/evaluation/program.h"
+#include "touchdown/evaluation/program/program.h"
 
 namespace touchdown::planning {
 TermEntry LowestHeightTerm();

@@ -3,8 +3,8 @@
 // drives straight, one certified plan around the wall.
 #include <iostream>
 
-#include "touchdown/planning/occupancy_map.h"
-#include "touchdown/planning/replanner.h"
+#include "touchdown/planning/map/occupancy_map.h"
+#include "touchdown/planning/replan/replanner.h"
 #include "touchdown/solvers/backend_registry.h"
 
 namespace {

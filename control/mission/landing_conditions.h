@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the landing mission makes of one step's inputs; of landing_state_machine.cc and its transitions alone.
+#pragma once
+
+#include <limits>
+
+#include "control/mission/landing_state_machine.h"
+
+namespace touchdown::control {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// The inputs read once: what is usable, and which conditions hold now.
+struct Conditions {
+  bool numbers_valid;
+  bool pad_good;   ///< the pad can be planned to
+  bool gate_open;  ///< the pad is known well enough to descend below the gate height
+  bool may_land;   ///< the gate is open, and in the wind felt now the feet would touch first
+  bool in_corridor;
+  bool in_cone;   ///< of a planned landing: wider, and it opens upwards
+  bool touching;  ///< the deck, with some force
+  bool
+      will_touch;  ///< a foot is so low over a deck that is surely there that a climb comes too late
+};
+
+/// The height that is lost until the present descent is ended by what takes hold after `time` [s] [m].
+double HeightLost(const MissionInputs& inputs, const MissionParameters& parameters,
+                  double time) noexcept;
+
+Conditions Assess(const MissionState& state, const MissionInputs& inputs,
+                  const MissionParameters& parameters) noexcept;
+
+/// False for a condition that does not hold.
+inline bool LastedLonger(double since, double t, double duration) { return t - since > duration; }
+
+inline bool Planned(const MissionInputs& inputs) {
+  return inputs.descent == DescentStyle::kPlanned;
+}
+
+/// Whether plans lead to the deck while tracking.
+inline bool TouchesDown(const MissionState& state, const MissionInputs& inputs) {
+  return Planned(inputs) && !state.waits_above;
+}
+
+}  // namespace touchdown::control

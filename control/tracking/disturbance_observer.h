@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "control/tracking/mixer.h"
+#include "touchdown/control/tracking/controller.h"
+
+namespace touchdown::control {
+
+struct DisturbanceObserverOptions {
+  double force_bandwidth = 9.0;    ///< both poles of the force's observer at -this [rad/s]
+  double moment_bandwidth = 10.0;  ///< of the moment's [rad/s]
+  double steady_time = 2.0;        ///< the steady force is the force's mean over about this [s]
+  double force_max = 1.0;          ///< of the estimated force, as a share of the weight [-]
+  double moment_max = 0.1;         ///< of the estimated moment, as a share of the greatest thrust
+                                   ///< times the longest arm [-]
+};
+
+/// Throws std::invalid_argument naming the first option out of its range.
+void Validate(const DisturbanceObserverOptions& options);
+
+/// Estimates force, moment and factor of thrust that the vehicle's model does not explain, from what the vehicle knows:
+/// its own state, and the thrusts it commanded, behind the rotors' lag. In steady wind the estimate
+/// has no bias. Its memory is its own: the tracking laws have none. Not to be shared between threads.
+class DisturbanceObserver {
+ public:
+  /// Rotors start at hover thrust. Throws std::invalid_argument for a model or an option out of
+  /// range.
+  explicit DisturbanceObserver(const estimation::VehicleModel& model,
+                               const DisturbanceObserverOptions& options = {});
+
+  /// Takes the state at state.t, before thrusts for it are commanded; once per control step, in time
+  /// order. Does not allocate.
+  /// @param held nothing is learned now: feet in contact push too.
+  /// A state that is not finite, or whose velocity has jumped farther than forces can make it, as a
+  /// filter's does when its sensors are back, teaches nothing either.
+  const Disturbance& Update(const estimation::VehicleState& state, bool held) noexcept;
+
+  /// The thrusts [N] that the rotors are told from the last Update on, after the mixer: what the
+  /// vehicle cannot give must not be taken for a disturbance.
+  void Command(const Eigen::Vector4d& thrusts) noexcept;
+
+  /// As after a long hover that ends now, at state.t: force and factor that keep the vehicle at the
+  /// state's velocity and attitude with these thrusts [N] are learned. Before the first Update. Does not
+  /// allocate.
+  void Hover(const estimation::VehicleState& state, const Eigen::Vector4d& thrusts) noexcept;
+
+  const Disturbance& disturbance() const { return disturbance_; }
+  /// The force without its quick changes [N]: what plans can reckon with.
+  const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }
+
+ private:
+  void Predict(double dt) noexcept;
+  void LearnGain(double dt) noexcept;
+  void Correct(const estimation::VehicleState& state, double dt) noexcept;
+
+  estimation::VehicleModel model_;
+  DisturbanceObserverOptions options_;
+  Mixer mixer_;
+  double force_max_;   ///< [N]
+  double moment_max_;  ///< [N m]
+  bool started_ = false;
+  estimation::VehicleState last_;
+  Eigen::Vector4d thrusts_;  ///< behind the lag [N]
+  Eigen::Vector4d commanded_;
+  Eigen::Vector3d v_WB_ = Eigen::Vector3d::Zero();    ///< as the model has it
+  Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< alike
+  Disturbance disturbance_;
+  Eigen::Vector3d steady_force_W_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace touchdown::control

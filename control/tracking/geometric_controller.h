@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "touchdown/control/tracking/controller.h"
+
+namespace touchdown::control {
+
+/// Geometric tracking control on SE(3) (Lee, Leok, McClamroch 2010): attitude error on SO(3), body
+/// rate fed forward from the reference's jerk, known linear rotor drag fed forward on the
+/// reference's velocity, the given disturbance compensated.
+class GeometricController final : public Controller {
+ public:
+  /// Throws std::invalid_argument for a model or an option out of range.
+  explicit GeometricController(const estimation::VehicleModel& model,
+                               const ControllerOptions& options = {});
+
+  ControlOutput Update(const estimation::VehicleState& state, const planning::FlatState& reference,
+                       const Disturbance& disturbance, double tilt_most) const noexcept override;
+
+ private:
+  estimation::VehicleModel model_;
+  ControllerOptions options_;
+};
+
+}  // namespace touchdown::control

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "touchdown/control/tracking/controller.h"
+
+namespace touchdown::control {
+
+/// The paper's law (eq. 19-22): force from position and velocity error plus the reference's
+/// acceleration, moment proportional to the small-angle attitude error. Printed without rate
+/// damping eq. 21 is unstable; the damping of its source (the paper's [14]) is kept, on the body
+/// rate itself, without feed-forward of rate or drag.
+class PaperController final : public Controller {
+ public:
+  /// Throws std::invalid_argument for a model or an option out of range.
+  explicit PaperController(const estimation::VehicleModel& model,
+                           const ControllerOptions& options = {});
+
+  ControlOutput Update(const estimation::VehicleState& state, const planning::FlatState& reference,
+                       const Disturbance& disturbance, double tilt_most) const noexcept override;
+
+ private:
+  estimation::VehicleModel model_;
+  ControllerOptions options_;
+};
+
+}  // namespace touchdown::control

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A lead filter (T s + 1) / (T s / (1 + k) + 1) on the rotors' commands, T the model's lag. It is made with
+// the model's rotors instead of a difference of the command: command = given + (1 + k)(wanted - given). The
+// mixer decides what of it is given up where the limits forbid it: a rotor that is cut off alone lifts the
+// vehicle. Yaw, to which it gives least, is not led. Rotors follow what they were told, so that nothing winds up.
+
+#include "control/tracking/rotor_lead.h"
+
+#include <cmath>
+
+namespace touchdown::control {
+namespace {
+// With the plant 20 % off in everything the attitude's loop, with the observer and 4 ms of delay, keeps a damping
+// ratio of 0.52 in the worst corner (its eigenvalues); with a lead of 1 it is 0.45, without one 0.21.
+constexpr double kLead = 2.0;
+}  // namespace
+
+RotorLead::RotorLead(const estimation::VehicleModel& model)
+    : lag_(model.rotor_lag_s), mixer_(model) {
+  given_.setConstant(0.25 * model.HoverThrust());
+  commanded_ = given_;
+}
+
+void RotorLead::Hover(const Eigen::Vector4d& thrusts) noexcept { given_ = commanded_ = thrusts; }
+
+Eigen::Vector4d RotorLead::Command(const Eigen::Vector4d& thrusts, double t) noexcept {
+  if (started_ && lag_ > 0.0) given_ += (1.0 - std::exp(-(t - t_) / lag_)) * (commanded_ - given_);
+  started_ = true;
+  t_ = t;
+  const Wrench wanted = mixer_.Apply(thrusts), given = mixer_.Apply(given_);
+  Wrench led = wanted;
+  led.thrust += kLead * (wanted.thrust - given.thrust);
+  led.moment_B.head<2>() += kLead * (wanted.moment_B - given.moment_B).head<2>();
+  commanded_ = mixer_.Mix(led).thrusts;
+  return commanded_;
+}
+
+}  // namespace touchdown::control

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "control/tracking/mixer.h"
+#include "touchdown/estimation/base/vehicle_model.h"
+
+namespace touchdown::control {
+
+/// Rotors follow their command with a lag. Commanding more than what is wanted, by the part that is still
+/// missing, makes them follow sooner: with the lead k as if the lag were 1 / (1 + k) of its length.
+/// That lag is what costs the attitude its damping. Not to be shared between threads.
+class RotorLead {
+ public:
+  /// Rotors start at the model's hover thrust.
+  explicit RotorLead(const estimation::VehicleModel& model);
+
+  /// The rotors have been told `thrusts` [N] for long. Before the first Command.
+  void Hover(const Eigen::Vector4d& thrusts) noexcept;
+
+  /// The command with which the rotors are told from time t [s] on to give `thrusts` [N]: within their
+  /// limits (Mixer). Once per control step, in time order. Does not allocate.
+  Eigen::Vector4d Command(const Eigen::Vector4d& thrusts, double t) noexcept;
+
+ private:
+  double lag_;  ///< of the model [s]
+  Mixer mixer_;
+  double t_ = 0.0;
+  bool started_ = false;
+  Eigen::Vector4d given_;  ///< by the rotors, as the model has it [N]
+  Eigen::Vector4d commanded_;
+};
+
+}  // namespace touchdown::control

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The includes are what docs/architecture.md says, and a breach of its rules is seen."""
+import pytest
+import rooms
+
+PAGE = """
+| room | what is in it | may include |
+|---|---|---|
+| `solvers/linear` | matrices | |
+| `solvers/banded` | steps | `linear` |
+| `planning/map` | cells | `solvers/` |
+| `planning/replan` | a step | `map` |
+"""
+HOUSE = {
+    "solvers/linear/matrix.cc": '#include "solvers/linear/matrix.h"\n',
+    "solvers/linear/matrix.h": "#include <Eigen/Core>\n",
+    "solvers/banded/step.cc": '#include "touchdown/solvers/banded/step.h"\n#include "solvers/linear/matrix.h"\n',
+    "solvers/include/touchdown/solvers/banded/step.h": "#include <vector>\n",
+    "planning/map/cells.h": '#include "touchdown/solvers/banded/step.h"\n',
+    "planning/replan/replanner.cc": '#include "planning/map/cells.h"\n',
+    "planning/test/cells_test.cc": '#include "evaluation/base/words.h"\n',
+}
+
+
+def said(root, files):
+    """What is wrong with HOUSE, in which `files` are otherwise."""
+    for path, content in {**HOUSE, **files}.items():
+        (root / path).parent.mkdir(parents=True, exist_ok=True)
+        (root / path).write_text(content)
+    return rooms.wrong_in(rooms.sources(root), rooms.allowed(PAGE))
+
+
+def test_includes_are_what_the_page_says():
+    files = rooms.sources()
+    page = (rooms.ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    print(rooms.text(files))
+    assert len(files) > 400, "where are the sources?"
+    assert not (wrong := rooms.wrong_in(files, rooms.allowed(page))), "\n".join(wrong)
+
+
+def test_a_house_in_order_is_in_order(tmp_path):
+    assert said(tmp_path, {}) == []
+
+
+@pytest.mark.parametrize(
+    "path, content, sentence",
+    [
+        ("solvers/linear/matrix.cc", '#include "planning/map/cells.h"\n', "solvers/linear includes planning/, which its line"),
+        ("solvers/linear/matrix.cc", '#include "touchdown/solvers/banded/step.h"\n', "solvers/linear includes solvers/banded"),
+        ("planning/map/cells.cc", '#include "planning/replan/replanner.h"\n', "(planning/replan/replanner.h)"),
+        ("planning/replan/replanner.cc", "", "planning/replan may include planning/map, and does not"),
+        ("control/law.cc", "", "control has no line"),
+        ("solvers/include/touchdown/solvers/banded/step.h", '#include "solvers/linear/matrix.h"\n', "public and includes solvers/linear/matrix.h"),
+        ("solvers/include/touchdown/solvers/banded/step.h", "#include <ceres/ceres.h>\n", "public and includes ceres/ceres.h"),
+    ],
+)  # fmt: skip
+def test_a_breach_is_named(tmp_path, path, content, sentence):
+    assert any(sentence in line for line in said(tmp_path, {path: content}))
+
+
+def test_an_upward_line_is_no_leave(tmp_path):
+    page = PAGE.replace("| matrices | |", "| matrices | `banded` |")
+    files = {"solvers/linear/matrix.cc": '#include "touchdown/solvers/banded/step.h"\n'}
+    said(tmp_path, files)
+    wrong = rooms.wrong_in(rooms.sources(tmp_path), rooms.allowed(page))
+    assert any("solvers/banded, which stands below it" in line for line in wrong)
+
+
+def test_a_full_room_is_named(tmp_path):
+    wrong = said(tmp_path, {f"planning/map/part_{i}.h": "" for i in range(rooms.MOST_FILES)})
+    assert wrong == ["planning/map holds 51 files; 50 are the most"]

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "touchdown/estimation/pad/pad_filter.h"
+#include "touchdown/estimation/pad/pad_motion_model.h"
+#include "touchdown/estimation/pad/pad_prediction.h"
+
+namespace touchdown::estimation {
+
+/// The future of the pad as one belief foretells it: straight for kVelocity and kHeading, a
+/// circular arc for kTurn. A snapshot by value: later measurements do not change it.
+class BeliefPrediction final : public PadPrediction {
+ public:
+  /// `height`: deck's upper face in W [m]. The turn rate is shrunk towards zero by its signal to
+  /// noise ratio, omega^3 / (omega^2 + var(omega)): a turn is foretold only as far as it is known.
+  BeliefPrediction(const PadBelief& belief, double height, const PadNoise& noise);
+
+  /// Any finite t [s], before or after the belief's. Does not allocate.
+  PadState At(double t) const noexcept override;
+  /// cov_p is zero.
+  PadState MeanAt(double t) const noexcept override;
+
+  const PadBelief& belief() const { return belief_; }
+
+ private:
+  PadBelief belief_;
+  double height_;
+  PadNoise noise_;
+};
+
+/// Prediction from the filter's present belief. Throws std::invalid_argument before the filter's
+/// first measurement. Does not allocate.
+BeliefPrediction Predict(const PadFilter& filter);
+
+}  // namespace touchdown::estimation

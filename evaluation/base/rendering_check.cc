@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/base/rendering_check.h"
+
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/worker_process.h"
+#include "sim/rendering/gl_context.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr char kWorks[] = "works";
+
+std::string Try() {
+  try {
+    sim::GlContext().MakeCurrent();
+    return kWorks;
+  } catch (const std::runtime_error& error) {
+    std::string why = error.what();
+    while (!why.empty() && why.back() == '.') why.pop_back();
+    return why;
+  }
+}
+
+// Empty: nothing stands against it. Tried in a process of its own: the rasteriser starts threads that stay, and a
+// process with threads is not to be forked, as a sweep forks for its trials.
+std::optional<std::string> WhyNotRender() {
+  constexpr double kPatience = 60.0;  // [s]
+  WorkerProcess process([](int) { return Try(); }, kPatience);
+  process.Start(0);
+  const WorkerReply reply = process.Receive();
+  if (reply.end == WorkerReply::End::kTimedOut) return "it does not come to an end";
+  if (reply.end == WorkerReply::End::kDied) return "it ends by " + reply.text;
+  if (reply.text == kWorks) return std::nullopt;
+  return reply.text;
+}
+
+}  // namespace
+
+void RequireRendering(const std::string& who) {
+  static const std::optional<std::string> why = WhyNotRender();
+  if (!why) return;
+  throw BadInput(
+      fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend its "
+                  "OSMesa (Debian: libosmesa6); sensing: fast flies without it.",
+                  who, *why));
+}
+
+}  // namespace touchdown::evaluation

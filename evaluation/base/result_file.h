@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "evaluation/base/machine.h"
+#include "evaluation/base/sqlite_db.h"
+
+namespace touchdown::evaluation {
+
+/// What a result file says of itself in its table `manifest`: pairs of key and value.
+using ManifestFacts = std::vector<std::pair<std::string, std::string>>;
+
+/// What a file says that it is. A format whose tables change gets a new version: readers refuse those
+/// that they do not know.
+struct ResultFormat {
+  const char* name;
+  int version;
+};
+
+/// Where times were taken: `pinned_cpu`, `load_before`, `load_after`.
+void AddMachine(const MachineState& machine, ManifestFacts* facts);
+
+/// What a result file holds: the table `manifest` (key, value) with `format`, `version`, the facts and the
+/// build, and the tables of `schema` (SQL), which `fill` fills; in one transaction. @throws SqliteError
+void FillResultFile(SqliteDb& db, const ResultFormat& format, const char* schema,
+                    const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
+
+/// The file has that table: it is a result file, and no record of a flight.
+bool HasManifest(SqliteDb& db);
+
+/// Writes a result file, an SQLite file that appears at `path` when it is complete, see FillResultFile.
+/// @throws SqliteError, std::filesystem::filesystem_error
+void WriteResultFile(const std::string& path, const ResultFormat& format, const char* schema,
+                     const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A thin owner around SQLite's C interface: what a record and a trial table need and no more.
+// Every return code is looked at and becomes an SqliteError with the library's own words.
+#include "evaluation/base/sqlite_db.h"
+
+#include <cmath>
+#include <utility>
+
+#include <sqlite3.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+void Check(sqlite3* db, int code) {
+  if (code == SQLITE_OK || code == SQLITE_ROW || code == SQLITE_DONE) return;
+  const char* file = sqlite3_db_filename(db, "main");
+  throw SqliteError(std::string(file != nullptr ? file : "database") + ": " + sqlite3_errmsg(db));
+}
+
+}  // namespace
+
+SqliteStatement::SqliteStatement(sqlite3* db, std::string_view sql) : db_(db) {
+  Check(db_,
+        sqlite3_prepare_v2(db_, sql.data(), static_cast<int>(sql.size()), &statement_, nullptr));
+}
+
+SqliteStatement::~SqliteStatement() { sqlite3_finalize(statement_); }
+
+SqliteStatement::SqliteStatement(SqliteStatement&& other) noexcept
+    : db_(other.db_), statement_(std::exchange(other.statement_, nullptr)) {}
+
+void SqliteStatement::Bind(int index, double value) {
+  if (!std::isfinite(value)) return BindNull(index);
+  Check(db_, sqlite3_bind_double(statement_, index + 1, value));
+}
+
+void SqliteStatement::Bind(int index, std::int64_t value) {
+  Check(db_, sqlite3_bind_int64(statement_, index + 1, value));
+}
+
+void SqliteStatement::Bind(int index, std::string_view value) {
+  Check(db_, sqlite3_bind_text(statement_, index + 1, value.data(), static_cast<int>(value.size()),
+                               SQLITE_TRANSIENT));
+}
+
+void SqliteStatement::Bind(int index, const SqlValue& value) {
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return Bind(index, *whole);
+  if (const auto* number = std::get_if<double>(&value)) return Bind(index, *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return Bind(index, *text);
+  BindNull(index);
+}
+
+void SqliteStatement::BindNull(int index) { Check(db_, sqlite3_bind_null(statement_, index + 1)); }
+
+bool SqliteStatement::Step() {
+  const int code = sqlite3_step(statement_);
+  Check(db_, code);
+  return code == SQLITE_ROW;
+}
+
+void SqliteStatement::RunRow(std::int64_t first, const std::vector<SqlValue>& values) {
+  Bind(0, first);
+  for (std::size_t i = 0; i < values.size(); ++i) Bind(static_cast<int>(i) + 1, values[i]);
+  Run();
+}
+
+void SqliteStatement::RunRow(const std::vector<SqlValue>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) Bind(static_cast<int>(i), values[i]);
+  Run();
+}
+
+void SqliteStatement::Reset() { Check(db_, sqlite3_reset(statement_)); }
+
+std::vector<SqlValue> SqliteStatement::Row(int first) const {
+  std::vector<SqlValue> row;
+  for (int i = first; i < sqlite3_column_count(statement_); ++i) {
+    switch (sqlite3_column_type(statement_, i)) {
+      case SQLITE_INTEGER:
+        row.emplace_back(Integer(i));
+        break;
+      case SQLITE_FLOAT:
+        row.emplace_back(Real(i));
+        break;
+      case SQLITE_NULL:
+        row.emplace_back();
+        break;
+      default:
+        row.emplace_back(Text(i));
+    }
+  }
+  return row;
+}
+
+bool SqliteStatement::IsNull(int column) const {
+  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+}
+
+double SqliteStatement::Real(int column) const { return sqlite3_column_double(statement_, column); }
+
+std::int64_t SqliteStatement::Integer(int column) const {
+  return sqlite3_column_int64(statement_, column);
+}
+
+std::string SqliteStatement::Text(int column) const {
+  const unsigned char* text = sqlite3_column_text(statement_, column);
+  const int bytes = sqlite3_column_bytes(statement_, column);
+  if (text == nullptr) return {};
+  return {text, text + bytes};
+}
+
+SqliteDb::SqliteDb(const std::string& path, Mode mode) {
+  // A reader must be able to recover what a killed writer left: it opens for writing, where the file lets
+  // it, and is kept from doing so below.
+  int flags = SQLITE_OPEN_READWRITE;
+  if (mode == Mode::kCreate) flags |= SQLITE_OPEN_CREATE;
+  const int code = sqlite3_open_v2(path.c_str(), &db_, flags, nullptr);
+  if (code != SQLITE_OK) {
+    const std::string words = db_ != nullptr ? sqlite3_errmsg(db_) : sqlite3_errstr(code);
+    sqlite3_close(db_);
+    throw SqliteError(path + ": " + words);
+  }
+  sqlite3_busy_timeout(db_, 10000);
+  if (mode == Mode::kReadOnly) Execute("PRAGMA query_only=ON");
+}
+
+SqliteDb::~SqliteDb() { sqlite3_close(db_); }
+
+void SqliteDb::Execute(const std::string& sql) {
+  Check(db_, sqlite3_exec(db_, sql.c_str(), nullptr, nullptr, nullptr));
+}
+
+SqliteTransaction::~SqliteTransaction() {
+  if (!open_) return;
+  try {
+    db_.Execute("ROLLBACK");
+  } catch (const SqliteError&) {
+    // The file stays as it was before the transaction: SQLite rolls back on close as well.
+  }
+}
+
+void SqliteTransaction::Commit() {
+  db_.Execute("COMMIT");
+  open_ = false;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two figures decide whether trials belong together: the hash of the plan and the hash of the build. All
+// other facts of a manifest only serve to say in words what is different.
+#include "evaluation/campaign/campaign_facts.h"
+
+#include <algorithm>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/build_info.h"
+#include "evaluation/scenario/scenario_world.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+std::string HashOfFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return HashOf({std::istreambuf_iterator<char>(file), {}});
+}
+
+// Of what a scenario says, and of what the files say that it names. Most trials of a campaign share
+// both.
+class ScenarioHashes {
+ public:
+  const std::string& Of(const Scenario& scenario) {
+    const std::string text = DumpScenario(scenario);
+    const auto [at, fresh] = scenarios_.try_emplace(text);
+    if (!fresh) return at->second;
+    const OutsideFiles outside = OutsideFilesOf(scenario);
+    std::string all = text + '\0' + outside.pad_waypoints + '\0' + outside.vehicle_hash;
+    if (scenario.map_prior != "none") all += '\0' + OfMap(scenario.map_prior);
+    return at->second = HashOf(all);
+  }
+
+ private:
+  const std::string& OfMap(const std::string& path) {
+    const auto [at, fresh] = maps_.try_emplace(path);
+    if (fresh) at->second = HashOfFile(path);
+    return at->second;
+  }
+  std::map<std::string, std::string> scenarios_;
+  std::map<std::string, std::string> maps_;
+};
+
+std::string HashOfPlan(const Campaign& campaign) {
+  std::string text;
+  ScenarioHashes hashes;
+  for (const SweepTrial& trial : campaign.trials) {
+    text += fmt::format("{} {} ", trial.seed, hashes.Of(trial.scenario));
+    for (const auto& [key, value] : trial.varied) {
+      text.append(key).append(1, '\0').append(value).append(1, '\0');
+    }
+  }
+  return HashOf(text);
+}
+
+// Of two texts the first lines that differ.
+std::string OtherLine(const std::string& there, const std::string& here) {
+  std::istringstream those(there), these(here);
+  const auto next = [](std::istringstream& lines) {
+    std::string line;
+    if (!std::getline(lines, line)) return std::string("nothing");
+    return line.substr(std::min(line.size(), line.find_first_not_of(' ')));
+  };
+  for (;;) {
+    const std::string that = next(those), line = next(these);
+    if (that != line)
+      return fmt::format("its scenario says \"{}\" where this one says \"{}\"", that, line);
+  }
+}
+
+std::string Fact(const Manifest& manifest, const std::string& key) {
+  const auto at = manifest.find(key);
+  return at == manifest.end() ? "" : at->second;
+}
+
+// The first of `keys` which the two say differently, in words; empty: none.
+std::string FirstOther(const Manifest& there, const Manifest& here,
+                       std::initializer_list<const char*> keys) {
+  constexpr std::size_t kLong = 80;
+  for (const std::string key : keys) {
+    const std::string that = Fact(there, key), mine = Fact(here, key);
+    if (that == mine) continue;
+    if (key == "scenario_yaml") return OtherLine(that, mine);
+    if (that.size() > kLong || mine.size() > kLong)
+      return fmt::format("its {} is another one", key);
+    return fmt::format("its {} is {}, not {}", key, that, mine);
+  }
+  return {};
+}
+
+}  // namespace
+
+ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard) {
+  ManifestFacts facts = {{"campaign", campaign.name},
+                         {"sweep_seed", std::to_string(campaign.seed)},
+                         {"trials", std::to_string(campaign.trials.size())},
+                         {"shard", shard.ToString()}};
+  facts.insert(facts.end(), campaign.facts.begin(), campaign.facts.end());
+  if (!campaign.trials.empty()) {
+    const Scenario& first = campaign.trials.front().scenario;
+    facts.emplace_back("scenario", first.name);
+    facts.emplace_back("scenario_yaml", DumpScenario(first));
+  }
+  facts.emplace_back("plan_hash", HashOfPlan(campaign));
+  return facts;
+}
+
+std::string CampaignHash(const Campaign& campaign) { return HashOfPlan(campaign) + BuildHash(); }
+
+Manifest ReadManifest(SqliteDb& db, const std::string& path) {
+  Manifest manifest;
+  try {
+    SqliteStatement facts = db.Prepare("SELECT key, value FROM manifest");
+    while (facts.Step()) manifest.emplace(facts.Text(0), facts.Text(1));
+  } catch (const SqliteError&) {
+    manifest.clear();
+  }
+  if (Fact(manifest, "format") != kTrialFormat.name) {
+    throw BadInput(fmt::format("{}: it is no file of trials.", path));
+  }
+  if (Fact(manifest, "version") != std::to_string(kTrialFormat.version)) {
+    throw BadInput(fmt::format("{}: its format has version {}, and this program writes version {}.",
+                               path, Fact(manifest, "version"), kTrialFormat.version));
+  }
+  return manifest;
+}
+
+std::string Difference(const Manifest& there, const Manifest& here) {
+  std::string words = FirstOther(there, here, {"campaign", "sweep_seed", "trials"});
+  if (words.empty() && Fact(there, "plan_hash") != Fact(here, "plan_hash")) {
+    words = FirstOther(there, here, {"scenario", "vary", "set", "scenario_yaml"});
+    if (words.empty()) words = "its trials are others, or a file that they name has changed";
+  }
+  if (words.empty() && Fact(there, "build_hash") != Fact(here, "build_hash")) {
+    words = FirstOther(there, here,
+                       {"touchdown_version", "revision", "build_type", "compiler", "compiler_flags",
+                        "instruction_set", "eigen", "ceres", "nlopt", "ipopt", "mujoco", "sqlite",
+                        "cpu", "cpu_flags"});
+    if (words.empty()) words = "another build of the program wrote it";
+  }
+  return words;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "evaluation/campaign/campaign.h"
+
+namespace touchdown::evaluation {
+
+/// "37 of 100 trials, 36 succeeded and 1 failed, 1.21 a second, 52 s left": the time left at the rate since the
+/// beginning, `elapsed_s` ago [s]; trials flown before count for neither.
+std::string CampaignLine(const CampaignState& state, double elapsed_s);
+
+/// Tells the log what is resumed, then about every two seconds, and at the end, how far a campaign is.
+class CampaignProgress {
+ public:
+  void operator()(const CampaignState& state);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_;
+  Clock::time_point last_;
+  bool begun_ = false;
+};
+
+/// Tells the log how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere.
+/// The exit status for it: 128 and the signal's number, as a shell has it.
+int Interrupted(const CampaignResult& result, const std::string& db);
+
+}  // namespace touchdown::evaluation

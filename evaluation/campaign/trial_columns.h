@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/judge/trial_result.h"
+
+namespace touchdown::evaluation {
+
+/// A trial's result as values of the columns of the tables `trial` and `timing`, but for the first, the
+/// trial's number, and its single replans. There and back is the same result, but that numbers which are
+/// not finite come back as NaN, and figures at touchdown only of landings.
+struct TrialValues {
+  std::vector<SqlValue> trial;
+  std::vector<SqlValue> timing;
+};
+TrialValues ValuesOf(const TrialResult& result);
+/// Without its replan times. @throws std::invalid_argument for values that are no trial's
+TrialResult ResultOf(const TrialValues& values);
+
+/// "seed INTEGER, landed INTEGER, ...": the columns' declarations in SQL.
+std::string TrialColumns();
+std::string TimingColumns();
+
+/// A whole result as bytes, for another process of the same program.
+std::string PackResult(const TrialResult& result);
+TrialResult UnpackResult(const std::string& bytes);
+
+}  // namespace touchdown::evaluation

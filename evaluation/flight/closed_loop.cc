@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One trial. In each step of 2 ms: sensors that are due, mission, replanning if due, tracking, then
+// physics, then the judge and the figures on the true state. The judge is given the state from
+// before the step together with the contacts found in it: the velocity before the impact.
+#include "evaluation/flight/closed_loop.h"
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/rendering_check.h"
+#include "evaluation/base/sliding_mean.h"
+#include "evaluation/flight/air.h"
+#include "evaluation/flight/pad_log.h"
+#include "evaluation/flight/perception.h"
+#include "evaluation/flight/pilot.h"
+#include "evaluation/judge/landing_time.h"
+#include "evaluation/judge/metrics.h"
+#include "evaluation/judge/safety_watch.h"
+#include "evaluation/judge/stand_watch.h"
+#include "evaluation/scenario/planner_options.h"
+#include "evaluation/scenario/scenario_world.h"
+#include "sim/obstacles/true_clearance.h"
+#include "sim/vehicle/trim.h"
+#include "touchdown/solvers/backend/thread_clock.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kSecond = 1.0;              // [s]
+constexpr double kMissionRate = 100.0;       // [Hz]
+constexpr double kMapLookRate = 1.0;         // of the safety figures [Hz]
+constexpr double kSampleRate = kPadLogRate;  // of metrics, record and pad log [Hz]
+
+// What T* is asked: the trial's world without its obstacles, in still air.
+LandingTimeTask LandingTimeTaskOf(const Scenario& scenario, const sim::World& world) {
+  const LandingRule rule;
+  LandingTimeTask task;
+  task.p_WB = world.vehicle().p_WB;
+  task.speed = scenario.limits.speed;
+  task.acceleration = scenario.limits.acceleration;
+  task.deck_half_size = world.config().pad.deck_half_size;
+  task.deck_thickness = world.config().pad.deck_thickness;
+  task.foot_reach = world.model().foot_reach;
+  task.foot_radius = world.model().foot_radius;
+  task.foot_depth = world.model().foot_depth;
+  task.horizontal_speed = rule.horizontal_speed;
+  task.vertical_speed = rule.vertical_speed;
+  task.horizon = scenario.timeout;
+  task.pad_rates = world.pad_course()->bounds();
+  const sim::World::PadLag lag = world.MaxPadLag();
+  task.pad_position_error = lag.position;
+  task.pad_velocity_error = lag.velocity;
+  task.pad_yaw_error = lag.yaw;
+  task.pad_yaw_rate_error = lag.yaw_rate;
+  return task;
+}
+
+std::optional<SafetyWatch> SafetyWatchOf(const PlannerEntry& planner, const sim::World& world) {
+  if (!planner.proves) return std::nullopt;
+  return SafetyWatch(world.config().obstacles);
+}
+
+std::optional<StayTask> StayOf(const Scenario& scenario) {
+  switch (scenario.task) {
+    case TaskKind::kLand:
+      break;
+    case TaskKind::kFollow:
+      return StayTask{Outcome::kFollowed, scenario.follow.distance, scenario.follow.time};
+    case TaskKind::kGoTo:
+      return StayTask{Outcome::kArrived, scenario.go_to.distance, scenario.go_to.time};
+  }
+  return std::nullopt;
+}
+
+class Trial {
+ public:
+  Trial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
+        TrialRecord* record, TrialSamples* samples)
+      : Trial(scenario, seed, DrawTrial(scenario, seed), PlannerOf(scenario, registries),
+              registries, record, samples) {}
+
+  TrialResult Run() {
+    try {
+      while (!judge_.outcome()) Step();
+    } catch (const std::exception& error) {
+      throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
+                                           world_.time(), result_.seed, error.what()));
+    }
+    Finish();
+    return result_;
+  }
+
+  planning::PersistentMap TakePersistentMap() { return perception_.TakePersistentMap(); }
+
+ private:
+  Trial(const Scenario& scenario, std::uint64_t seed, const TrialDraw& draw,
+        const PlannerEntry& planner, const Registries& registries, TrialRecord* record,
+        TrialSamples* samples)
+      : world_(WorldOf(scenario, draw, registries)),
+        air_(scenario, draw, seed),
+        perception_(scenario, world_, registries, seed),
+        pilot_(scenario, world_.model(), world_.pad_course(), registries, perception_.own().now(),
+               Eigen::Vector4d(world_.rotor_commands().data()), perception_.map()),
+        clearance_(world_.config().obstacles, world_.model()),
+        task_(scenario.task),
+        stay_(StayOf(scenario)),
+        goal_(GoalOf(scenario)),
+        limits_(scenario.limits),
+        landing_time_(LandingTimeTaskOf(scenario, world_)),
+        judge_(LandingRule{}, scenario.timeout, stay_),
+        stand_watch_(scenario.stand_limit),
+        safety_watch_(SafetyWatchOf(planner, world_)),
+        map_look_clock_(kMapLookRate),
+        mission_clock_(kMissionRate),
+        replan_clock_(PlannerRate(scenario, planner)),
+        close_clock_(ClosePlannerRate(scenario, planner)),
+        sample_clock_(kSampleRate),
+        record_(record),
+        samples_(samples) {
+    result_.seed = seed;
+    if (samples_ != nullptr) perception_.LogPadTo(&samples_->pad.arrivals);
+    if (record_ != nullptr) {
+      record_->map_resolution = perception_.map().resolution();
+      record_->map_size = perception_.map().size();
+      record_->outside = OutsideFilesOf(scenario);
+      record_->hover_W = perception_.own().now().p_WB;
+      if (planner.solver.empty()) {
+        record_->zones = ZonesOf(PlannerOptions(scenario, world_.model(), registries.terms));
+      }
+    }
+  }
+
+  // Runs a stage and adds its thread CPU time to `stage`.
+  template <typename Stage>
+  static void Timed(double* stage, Stage&& run) {
+    const double begin = solvers::ThreadCpuSeconds();
+    run();
+    *stage += solvers::ThreadCpuSeconds() - begin;
+  }
+
+  void Step() {
+    perception_.Sense(world_);
+    if (perception_.image_taken()) stand_watch_.Image();
+    if (samples_ != nullptr && perception_.image_taken()) {
+      samples_->frames.push_back({world_.time(), perception_.frame_times()});
+    }
+    const estimation::VehicleState vehicle = world_.vehicle();
+    const estimation::VehicleState believed = perception_.own().now();
+    const estimation::PadState pad = world_.pad();
+    NoteOwnStatus(vehicle.t);
+    Timed(&result_.timing.control_cpu_s, [&] {
+      if (mission_clock_.Due(vehicle.t)) StepMission(believed);
+    });
+    if (ReplanDue(vehicle.t)) Replan(believed);
+    control::MixerOutput mix;
+    Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(believed); });
+    std::array<double, 4> command;
+    for (int i = 0; i < 4; ++i) command[i] = mix.thrusts[i];
+    Timed(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
+    Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, mix.saturated); });
+  }
+
+  bool ReplanDue(double t) {
+    const bool usual = replan_clock_.Due(t), close = close_clock_.Due(t);
+    return pilot_.plans_often() ? close : usual;
+  }
+
+  // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
+  void StepPhysics(const std::array<double, 4>& command) {
+    try {
+      world_.Step(command, air_.Step(world_));
+    } catch (const std::runtime_error& error) {
+      physics_failure_ = error.what();
+    }
+  }
+
+  void StepMission(const estimation::VehicleState& believed) {
+    pilot_.StepMission(perception_.own(), perception_.pad_filter(), world_.foot_force().force,
+                       1.0 / kMissionRate);
+    const control::MissionOutputs& mission = pilot_.mission();
+    if (mission.reason != control::TransitionReason::kNone) {
+      Note(believed.t, "mode",
+           fmt::format("{} ({})", control::ToString(mission.mode),
+                       control::ToString(mission.reason)));
+    }
+  }
+
+  void Replan(const estimation::VehicleState& believed) {
+    const planning::ReplanResult* plan = nullptr;
+    planning::ReplannerState before;
+    if (record_ != nullptr) before = pilot_.replanner_state();
+    Timed(&result_.timing.planning_cpu_s,
+          [&] { plan = pilot_.Replan(believed, perception_.pad_filter(), perception_.map()); });
+    if (plan == nullptr) {
+      if (record_ != nullptr && pilot_.idle()) ++record_->idle_steps;
+      return;
+    }
+    ++result_.replans;
+    ++result_.replans_by_status[planning::ToString(plan->status)];
+    no_plan_reason_.clear();
+    if (plan->reason != planning::ReplanReason::kNone) {
+      const bool named =
+          !plan->detail.empty() && plan->reason != planning::ReplanReason::kInvalidInput;
+      no_plan_reason_ = named ? std::string(plan->detail) : planning::ToString(plan->reason);
+      ++result_.replans_by_reason[no_plan_reason_];
+    }
+    if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
+    if (safety_watch_ && !judge_.touchdown())
+      safety_watch_->Step(*plan, pilot_.last_replan().request.input.margins,
+                          pilot_.last_replan().late);
+    const planning::StageTimes::Span& total = plan->times.total;
+    result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
+    result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
+    if (total.wall > pilot_.last_replan().latency_s) ++result_.timing.deadline_misses;
+    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(believed.t, *plan));
+    if (record_ == nullptr) return;
+    RecordPlan row;
+    row.request = pilot_.last_replan().request;
+    row.pad = pilot_.last_replan().pad;
+    row.before = std::move(before);
+    row.map_change = map_recorder_.Take(perception_.map());
+    row.result = OutcomeOf(*plan);
+    record_->plans.push_back(std::move(row));
+  }
+
+  void Judge(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+             bool saturated) {
+    JudgeSample sample;
+    sample.t = vehicle.t;
+    sample.vehicle = vehicle;
+    sample.pad = pad;
+    sample.simulated = physics_failure_.empty();
+    if (sample.simulated) {
+      for (const sim::Contact& contact : world_.contacts()) TakeContact(contact, &sample);
+    }
+    sample.armed = pilot_.mission().motors_armed;
+    sample.pad_known = task_ == TaskKind::kGoTo || perception_.pad_filter().Converged(vehicle.t);
+    sample.plan_valid = pilot_.plan_valid(vehicle.t);
+    sample.at_target = AtTarget(vehicle, pad);
+    sample.stood = stand_watch_.Stands(vehicle.t, vehicle.p_WB) && !sample.at_target;
+
+    const bool in_flight = !judge_.touchdown();
+    if (sample_clock_.Due(vehicle.t)) {
+      through_air_.Add(vehicle.t, vehicle.v_WB - air_.velocity());
+      if (in_flight) {
+        metrics_.Sample(vehicle.t, vehicle, task_ == TaskKind::kGoTo ? goal_.At(vehicle.t) : pad);
+        if (perception_.own().estimated()) metrics_.OwnState(perception_.own().now(), vehicle);
+      }
+      if (record_ != nullptr) RecordState(vehicle, pad);
+      if (samples_ != nullptr) samples_->pad.truth.push_back({vehicle.t, in_flight, pad});
+    }
+    if (in_flight && safety_watch_) WatchSafety(vehicle);
+    if (in_flight) {
+      metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
+      if (perception_.pad_measured() && perception_.pad_filter().Converged(vehicle.t)) {
+        metrics_.Estimate(perception_.pad_filter().Estimate(vehicle.t), pad,
+                          perception_.own().now().p_WB - vehicle.p_WB);
+      }
+    }
+    if (in_flight && sample.foot_on_pad) {
+      // Tilt is measured from the attitude that steady flight through the air needs.
+      const auto trim = sim::TrimAt(world_.plant(), through_air_.Mean(), 0.0);
+      if (trim) sample.equilibrium_axis = trim->q_WB * Eigen::Vector3d::UnitZ();
+    }
+    judge_.Observe(sample);
+    if (in_flight && judge_.touchdown()) Note(vehicle.t, "contact", "foot-deck");
+  }
+
+  bool AtTarget(const estimation::VehicleState& vehicle, const estimation::PadState& pad) const {
+    if (!stay_) return false;  // a landing has no such place
+    if (task_ == TaskKind::kFollow) {
+      return (vehicle.p_WB - pad.p_WP).head<2>().norm() <= stay_->distance;
+    }
+    const estimation::PadState goal = goal_.At(vehicle.t);
+    return (vehicle.p_WB - goal.p_WP).norm() <= stay_->distance &&
+           (vehicle.v_WB - goal.v_WP).norm() <= stay_->distance / kSecond;
+  }
+
+  void WatchSafety(const estimation::VehicleState& vehicle) {
+    const Eigen::Vector3d believed = perception_.own().now().p_WB;
+    safety_watch_->Tracked(believed, vehicle.p_WB, pilot_.Reference(vehicle.t).p_WB);
+    if (!map_look_clock_.Due(vehicle.t)) return;
+    safety_watch_->LookAt(perception_.map(), believed, believed - vehicle.p_WB);
+  }
+
+  void TakeContact(const sim::Contact& contact, JudgeSample* sample) {
+    switch (contact.kind) {
+      case sim::ContactKind::kFootDeck:
+        sample->foot_on_pad = true;
+        return;
+      case sim::ContactKind::kGround:
+      case sim::ContactKind::kPadVehicle:
+        sample->beside_pad = true;
+        break;
+      case sim::ContactKind::kObstacle:
+        sample->on_obstacle = true;
+        break;
+      case sim::ContactKind::kHullDeck:
+        sample->hull_on_deck = true;
+        break;
+    }
+    touched_ = sim::ToString(contact.kind);
+    if (contact.obstacle >= 0) touched_ += fmt::format(" {}", contact.obstacle);
+  }
+
+  std::optional<double> TrueClearanceAt(const estimation::VehicleState& vehicle) const {
+    if (world_.config().obstacles.empty()) return std::nullopt;
+    return clearance_.Distance(vehicle);
+  }
+
+  void RecordState(const estimation::VehicleState& vehicle, const estimation::PadState& pad) {
+    RecordSample row;
+    row.t = vehicle.t;
+    row.vehicle = vehicle;
+    row.vehicle_estimate = perception_.own().now();
+    row.pad = pad;
+    row.pad_known = perception_.pad_filter().initialized();
+    if (row.pad_known) row.pad_estimate = perception_.pad_filter().Estimate(vehicle.t);
+    row.reference = pilot_.Reference(vehicle.t);
+    row.rotor_thrusts = world_.rotor_thrusts();
+    row.air = air_.velocity();
+    row.disturbance = pilot_.disturbance();
+    row.mode = control::ToString(pilot_.mission().mode).data();
+    record_->samples.push_back(row);
+  }
+
+  void NoteOwnStatus(double t) {
+    const estimation::OwnStatus status = perception_.own().status();
+    if (status == own_status_) return;
+    own_status_ = status;
+    Note(t, "own_state", std::string(estimation::ToString(status)));
+  }
+
+  void Note(double t, const char* kind, const std::string& text) {
+    if (record_ != nullptr) record_->events.push_back({t, kind, text});
+  }
+
+  void Finish() {
+    result_.outcome = *judge_.outcome();
+    result_.touchdown = judge_.touchdown();
+    result_.simulated_s = world_.time();
+    if (!result_.succeeded()) {
+      result_.detail = Explain(result_.outcome);
+      if (const auto& touchdown = judge_.touchdown()) {
+        const std::string broken = Broken(LandingRule(), *touchdown);
+        if (!broken.empty()) result_.detail += " At first contact: " + broken + ".";
+      }
+      if (!physics_failure_.empty()) result_.detail += " Simulator: " + physics_failure_ + ".";
+      if (!touched_.empty()) result_.detail += " Touched: " + touched_ + ".";
+      result_.cause = touched_;
+      const bool too_late = result_.outcome == Outcome::kStood ||
+                            result_.outcome == Outcome::kTimeout ||
+                            result_.outcome == Outcome::kInfeasible;
+      if (too_late && !no_plan_reason_.empty()) {
+        result_.detail += " Reason: " + no_plan_reason_ + ".";
+      }
+      if (result_.outcome == Outcome::kStood) {
+        result_.cause = no_plan_reason_.empty()
+                            ? std::string(control::ToString(pilot_.mission().mode))
+                            : no_plan_reason_;
+      }
+      result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
+    }
+    metrics_.Fill(&result_);
+    result_.within_limits = result_.max_speed_mps <= limits_.speed &&
+                            result_.max_acceleration_mps2 <= limits_.acceleration;
+    if (task_ == TaskKind::kLand) {
+      Timed(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
+    }
+    if (task_ == TaskKind::kFollow) result_.following = metrics_.LastFollowing();
+    if (safety_watch_) result_.safety = safety_watch_->figures();
+    result_.timing.simulated_s = world_.time();
+    result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
+    result_.timing.sensing_stages = perception_.sensing_times();
+    result_.timing.mapping_cpu_s = perception_.mapping_cpu_s();
+    Note(world_.time(), "outcome", ToString(result_.outcome));
+  }
+
+  void BoundLandingTime() {
+    const sim::OraclePadPrediction pad(world_.pad_course());
+    result_.t_star_s = LandingTimeLowerBound(landing_time_, pad);
+    if (const auto flight = LandingTimeUpperBound(landing_time_, pad, *result_.t_star_s)) {
+      result_.t_star_upper_s = flight->time;
+    }
+  }
+
+  sim::World world_;
+  Air air_;
+  Perception perception_;
+  Pilot pilot_;
+  sim::TrueClearance clearance_;
+  TaskKind task_;
+  std::optional<StayTask> stay_;
+  planning::MovingGoal goal_;  ///< of the task go_to
+  Scenario::Limits limits_;
+  LandingTimeTask landing_time_;  ///< at the start
+  LandingJudge judge_;
+  StandWatch stand_watch_;
+  std::optional<SafetyWatch> safety_watch_;  ///< of the landing planner
+  sim::SampleClock map_look_clock_;
+  Metrics metrics_;
+  estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
+  SlidingMean through_air_;
+  sim::SampleClock mission_clock_;
+  sim::SampleClock replan_clock_;
+  sim::SampleClock close_clock_;
+  sim::SampleClock sample_clock_;
+  TrialRecord* record_;
+  MapRecorder map_recorder_;
+  TrialSamples* samples_;
+  TrialResult result_;
+  std::string touched_;
+  std::string no_plan_reason_;   ///< of the last replanning step; empty: it made a plan
+  std::string physics_failure_;  ///< empty while the physics works
+};
+
+// What the simulator or a backend refuses before the flight is the user's to mend.
+Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
+            TrialRecord* record, TrialSamples* samples) {
+  if (scenario.sensing == SensingKind::kRendered) RequireRendering("sensing: rendered");
+  try {
+    return Trial(scenario, seed, registries, record, samples);
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: it cannot be set up with seed {}: {}.", scenario.name, seed,
+                               error.what()));
+  }
+}
+
+}  // namespace
+
+TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
+                     TrialRecord* record, std::optional<planning::PersistentMap>* map,
+                     TrialSamples* samples) {
+  const auto wall = std::chrono::steady_clock::now();
+  const double cpu = solvers::ThreadCpuSeconds();
+  Trial trial = SetUp(scenario, seed, registries, record, samples);
+  TrialResult result = trial.Run();
+  result.timing.wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+  result.timing.cpu_s = solvers::ThreadCpuSeconds() - cpu;
+  if (map != nullptr) *map = trial.TakePersistentMap();
+  return result;
+}
+
+}  // namespace touchdown::evaluation

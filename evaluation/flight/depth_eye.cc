@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/flight/depth_eye.h"
+
+#include "sim/sensors/depth_camera.h"
+#include "sim/sensors/rendered_depth_camera.h"
+#include "touchdown/planning/replan/stage_timer.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+sim::DepthCameraConfig ConfigOf(const Scenario& scenario) {
+  sim::DepthCameraConfig config;
+  config.width = scenario.depth.width;
+  config.height = scenario.depth.height;
+  config.max_range = scenario.depth.range;
+  config.range_noise = scenario.depth.noise;
+  return config;
+}
+
+/// Of sim::DepthCamera or sim::RenderedDepthCamera.
+template <typename Camera>
+class CameraDepthEye final : public DepthEye {
+ public:
+  CameraDepthEye(const Scenario& scenario, std::uint64_t seed, Camera camera)
+      : DepthEye(scenario, seed), camera_(std::move(camera)) {}
+
+ private:
+  void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+               estimation::DepthFrame* frame) override {
+    camera_.Capture(vehicle, pad, frame);
+  }
+
+  Camera camera_;
+};
+
+}  // namespace
+
+DepthEye::DepthEye(const Scenario& scenario, std::uint64_t seed)
+    : clock_(scenario.depth_rate),
+      delivery_({scenario.depth.latency_ms, scenario.depth.drop}, seed, "depth camera delivery") {}
+
+void DepthEye::Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+                    SensingTimes* times) {
+  if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
+  DepthGlimpse glimpse = std::move(spare_);
+  glimpse.sense = planning::StageTimes::Span{"sense"};
+  {
+    const planning::StageTimer timer(&glimpse.sense);
+    Capture(vehicle, pad, &glimpse.frame);
+  }
+  glimpse.vehicle = vehicle;
+  times->depth_image += glimpse.sense.cpu;
+  delivery_.Hold(vehicle.t, std::move(glimpse));
+}
+
+void PlaceFrame(const estimation::VehicleState& truth, const estimation::VehicleState& believed,
+                estimation::DepthFrame* frame) {
+  const Eigen::Matrix3d turn = (believed.q_WB * truth.q_WB.conjugate()).toRotationMatrix();
+  frame->p_WC = believed.p_WB + turn * (frame->p_WC - truth.p_WB);
+  frame->R_WC = turn * frame->R_WC;
+}
+
+std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,
+                                       std::uint64_t seed) {
+  const sim::DepthCameraConfig config = ConfigOf(scenario);
+  if (scenario.sensing == SensingKind::kFast) {
+    return std::make_unique<CameraDepthEye<sim::DepthCamera>>(
+        scenario, seed, sim::DepthCamera(config, world.obstacles, world.pad, seed));
+  }
+  sim::VisualScene scene;
+  scene.obstacles = world.obstacles;
+  scene.pad = world.pad;
+  scene.deck_height = scenario.pad.deck_height;
+  return std::make_unique<CameraDepthEye<sim::RenderedDepthCamera>>(
+      scenario, seed, sim::RenderedDepthCamera(config, scene, seed));
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the vehicle sees obstacles: by rendered depth images, or by cast rays.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "evaluation/base/sensing_times.h"
+#include "sim/base/sample_clock.h"
+#include "sim/sensors/frame_delivery.h"
+#include "sim/world/world.h"
+#include "touchdown/estimation/base/measurements.h"
+#include "touchdown/estimation/base/vehicle_state.h"
+#include "touchdown/estimation/pad/pad_prediction.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+#include "touchdown/planning/replan/replan_result.h"
+
+namespace touchdown::evaluation {
+
+/// A depth image with its true pose, the vehicle's true state when it was taken, and what it took to make it.
+struct DepthGlimpse {
+  estimation::DepthFrame frame;
+  estimation::VehicleState vehicle;
+  planning::StageTimes::Span sense{"sense"};
+};
+
+/// The depth camera at the nose. Images come at the camera's rate; some are dropped, and they arrive
+/// late, as the scenario says. Belongs to the thread that made it.
+class DepthEye {
+ public:
+  virtual ~DepthEye() = default;
+  DepthEye(const DepthEye&) = delete;
+  DepthEye& operator=(const DepthEye&) = delete;
+
+  /// Takes an image if one is due at the vehicle's time. Call once per physics step.
+  void Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+            SensingTimes* times);
+
+  /// The oldest image that has arrived by the time t [s]; call until there is none.
+  std::optional<DepthGlimpse> Poll(double t) { return delivery_.Poll(t); }
+
+  /// Takes the memory of an image that is done with, for one to come.
+  void Recycle(DepthGlimpse glimpse) { spare_ = std::move(glimpse); }
+
+ protected:
+  DepthEye(const Scenario& scenario, std::uint64_t seed);
+
+ private:
+  virtual void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+                       estimation::DepthFrame* frame) = 0;
+
+  sim::SampleClock clock_;
+  sim::FrameDelivery<DepthGlimpse> delivery_;
+  DepthGlimpse spare_;
+};
+
+/// The pose of `frame` as a vehicle that takes itself to be at `believed` knows it; it was taken at
+/// the true state `truth`. The camera's place in the vehicle is known exactly.
+void PlaceFrame(const estimation::VehicleState& truth, const estimation::VehicleState& believed,
+                estimation::DepthFrame* frame);
+
+/// The eye of the scenario's `sensing`; as MakePadEye.
+std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,
+                                       std::uint64_t seed);
+
+}  // namespace touchdown::evaluation

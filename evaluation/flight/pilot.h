@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "control/mission/landing_state_machine.h"
+#include "control/tracking/disturbance_observer.h"
+#include "control/tracking/mixer.h"
+#include "control/tracking/rotor_lead.h"
+#include "control/tracking/settling.h"
+#include "control/tracking/yaw_planner.h"
+#include "evaluation/flight/own_estimate.h"
+#include "evaluation/flight/replan_request.h"
+#include "touchdown/control/tracking/controller.h"
+#include "touchdown/estimation/base/vehicle_model.h"
+#include "touchdown/estimation/pad/pad_filter.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+#include "touchdown/planning/replan/planner.h"
+#include "touchdown/sim/pad/pad_course.h"
+
+namespace touchdown::evaluation {
+
+/// A replanning step, as the pilot asked for it.
+struct PilotReplan {
+  ReplanRequest request;
+  estimation::PadState pad;  ///< the prediction at t_now
+  double latency_s = 0.0;    ///< with which the plan is flown
+  bool late = false;         ///< a new pair took over later than that
+};
+
+/// A plan that is to end in contact: `level_time` before it [s], level, sinking with `touchdown_rate` [m/s].
+planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, double touchdown_rate,
+                                       double level_time);
+/// Between a plan's end and contact in still air, in which the tilt dies away [s].
+inline constexpr double kLevelTime = 0.15;
+
+/// The vehicle's own software: mission, replanning, heading, tracking. Knows only estimates; an
+/// oracle prediction is the one exception, on request of the scenario.
+class Pilot {
+ public:
+  /// The flight begins with a hover at `start`, for which the rotors are told `start_thrusts` [N].
+  /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
+  Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
+        std::shared_ptr<const sim::PadCourse> truth, const Registries& registries,
+        const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
+        const planning::OccupancyMap& map);
+
+  /// Mission and heading, by what the vehicle knows of itself. Call at a fixed rate.
+  void StepMission(const OwnEstimate& own, const estimation::PadFilter& filter, double foot_force,
+                   double dt);
+
+  /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
+  /// hovering or disarmed, and where the planner had nothing to do. Call at
+  /// PlannerRate, or at ClosePlannerRate where it `plans_often`. The result
+  /// is the planner's until the next.
+  const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
+                                       const estimation::PadFilter& filter,
+                                       const planning::OccupancyMap& map);
+
+  /// Rotor thrusts for this control step [N]. Once per step: the disturbance is estimated from it.
+  control::MixerOutput Control(const estimation::VehicleState& vehicle);
+
+  /// What the tracking law compensates; nothing where it is not estimated.
+  control::Disturbance disturbance() const;
+
+  /// Committed reference with heading at time t.
+  planning::FlatState Reference(double t) const;
+
+  const control::MissionOutputs& mission() const { return mission_; }
+  const PilotReplan& last_replan() const { return replan_; }
+  /// What the landing planner remembers before its next step; empty with any other. Allocates.
+  planning::ReplannerState replanner_state() const;
+  bool plan_valid(double t) const;
+  /// The planner was asked in the last Replan, and had nothing to do.
+  bool idle() const { return idle_; }
+  /// To contact, or away from a deck that is near: Replan is to be called at ClosePlannerRate.
+  bool plans_often() const;
+
+ private:
+  bool arriving() const;
+  double TiltMost(const estimation::VehicleState& vehicle) const;
+  double HeadingAhead(const estimation::VehicleState& vehicle,
+                      const estimation::PadFilter& filter) const;
+  double Seeing(double heading, const Eigen::Vector3d& p_WB) const;
+  double DesiredHeading();
+  planning::EndpointTarget Endpoint(double t) const;
+  double Latency() const;
+  bool DeliverLate(double t);
+  bool Levelled(double t) const;
+  bool Landing() const;
+  Eigen::Vector3d WayAt(double t) const;
+  double LevelTime(const Eigen::Vector3d& pull_W) const;
+  double TouchdownRate(const Eigen::Vector3d& pull_W) const;
+  bool to_goal() const;
+  bool KnowsTarget(const estimation::PadFilter& filter) const;
+  bool IsSureOfTarget(const estimation::PadFilter& filter, double t) const;
+  estimation::PadState TargetAt(const estimation::PadFilter& filter, double t) const;
+  bool WantsPlan(const estimation::PadFilter& filter, double t) const;
+  double RestClimb() const;
+  const planning::ReplanResult& Ask(bool for_plan, const estimation::PadFilter& filter,
+                                    const planning::OccupancyMap& map);
+
+  Scenario scenario_;
+  estimation::VehicleModel model_;
+  double shortest_contact_plan_;  ///< that the replanner makes [s]
+  std::unique_ptr<PadPredictor> predictor_;
+  PlannerEntry planner_entry_;
+  std::unique_ptr<planning::Planner> planner_;
+  std::unique_ptr<control::Controller> controller_;
+  control::Mixer mixer_;
+  std::optional<control::RotorLead> lead_;  ///< the paper's law has none
+  std::optional<control::DisturbanceObserver> observer_;
+  control::Settling settling_;
+  control::MissionParameters parameters_;
+  control::MissionState mission_state_;
+  control::MissionOutputs mission_;
+  control::YawState yaw_;
+  double yaw_t_ = 0.0;                     ///< time of yaw_
+  double foot_force_ = 0.0;                ///< as it was last told [N]
+  double foot_height_ = 0.0;               ///< of the feet above the deck, as last estimated [m]
+  bool at_deck_ = false;                   ///< the feet are close over the deck, or on it
+  bool blown_off_ = false;                 ///< ... and the vehicle far off a way that does not land
+  double heading_ahead_ = 0.0;             ///< of the way that is flown [rad]
+  std::optional<Eigen::Vector3d> look_W_;  ///< what the next stops need to have seen
+  double heading_ = 0.0;                   ///< that is steered for [rad]
+  bool leans_ = false;                     ///< the heading is chosen by the wind
+  PilotReplan replan_;
+  bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
+  bool has_plan_ = false;
+  bool idle_ = false;
+  bool at_goal_ = false;                           ///< the last step made no plan: the goal is near
+  const planning::UniformBspline* way_ = nullptr;  // of the latest plan, the planner's own
+  bool lands_ = false;                             // what is flown ends in contact
+  double own_position_sigma_ = 0.0, own_attitude_sigma_ = 0.0;
+  planning::RecentError recent_error_;      // of tracking
+  std::optional<double> meets_vehicle_at_;  // the reference does, that of a plan from the vehicle
+  bool last_planned_ = false;          ///< the last replanning step left no plan to be wished for
+  std::optional<double> planned_t_;    ///< when the last new plan was made
+  std::optional<double> requested_t_;  ///< since when plans are asked for without a break
+  /// When the committed plan that leads to contact ends [s]; infinite if there is none.
+  double plan_end_t_ = std::numeric_limits<double>::infinity();
+  double touchdown_rate_ = 0.0;    ///< with which a planned landing meets the deck [m/s]
+  double level_time_ = 0.0;        ///< from there to contact [s]
+  double measured_latency_ = 0.0;  ///< of the last replanning step [s]
+  double busy_until_ = -std::numeric_limits<double>::infinity();  ///< with a late step [s]
+};
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parses the command line with CLI11 and maps every way to fail to the program's exit statuses:
+// what the user wrote (CLI::ParseError, BadInput) is 2, what the program could not do (any other
+// exception) is 1, each with one sentence on stderr.
+#include "touchdown/evaluation/program/program.h"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/machine.h"
+#include "evaluation/base/output_path.h"
+#include "evaluation/base/words.h"
+#include "evaluation/program/commands.h"
+#include "evaluation/scenario/planner_options.h"
+#include "evaluation/scenario/scenario_schema.h"
+#include "evaluation/scenario/scenario_value.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+
+namespace touchdown::evaluation {
+
+void ScenarioArguments::AddTo(Command command, bool scenario_required) {
+  const Option positional = command.Add(
+      "SCENARIO", scenario, "Name of a shipped scenario (`touchdown list scenarios`) or a file");
+  if (scenario_required) {
+    positional.Required();
+  } else {
+    positional.ShowDefault();
+  }
+  command.Add("--set", set, "Change a key of the scenario; may be given again")
+      .TypeName("KEY=VALUE")
+      .OneWord();
+  command.Add("--planner", planner, "Short for --set planner=").TypeName("NAME");
+  command.Add("--backend", backend, "Short for --set solver.backend=").TypeName("NAME");
+}
+
+std::vector<std::string> ScenarioArguments::Overrides() const {
+  std::vector<std::string> overrides = set;
+  if (!planner.empty()) overrides.push_back("planner=" + planner);
+  if (!backend.empty()) overrides.push_back("solver.backend=" + backend);
+  if (!seed.empty()) overrides.push_back("seed=" + seed);
+  return overrides;
+}
+
+Scenario ScenarioArguments::Load(const Registries& registries) const {
+  Scenario loaded = LoadScenario(FindScenario(scenario), Overrides(), registries);
+  if (!backend.empty() && !PlannerOf(loaded, registries).solver.empty()) {
+    throw BadInput(fmt::format("--backend {}: the planner {} has no choice of solvers.", backend,
+                               loaded.planner));
+  }
+  return loaded;
+}
+
+void CheckTimings(bool allow_debug) {
+  if (TimingsMeanSomething() || allow_debug) return;
+  throw BadInput(
+      "This build is not optimised, so its timings mean nothing: use the preset release or native, "
+      "or give --allow-debug.");
+}
+
+void CheckNewStudy(const std::string& option, const std::string& path) {
+  CheckOutputPath(option, path);
+  if (std::filesystem::exists(path)) {
+    throw BadInput(
+        fmt::format("{} {}: the file exists; a study is never overwritten.", option, path));
+  }
+}
+
+void CheckOutputs(const std::string& db, const std::string& picture) {
+  if (!db.empty() && db == picture) {
+    throw BadInput(fmt::format("--db and --picture are the same file, {}.", db));
+  }
+  if (!db.empty()) CheckNewStudy("--db", db);
+  if (!picture.empty()) CheckPicturePath("--picture", picture);
+}
+
+std::vector<std::string> BackendNames(const Registries& registries) {
+  std::vector<std::string> names;
+  for (const solvers::BackendEntry& entry : registries.backends) names.push_back(entry.name);
+  return names;
+}
+
+namespace {
+
+// CLI11 answers an unknown word with "a subcommand is required", without the word.
+void CheckCommand(const CLI::App& app, const char* const* word, const char* const* end) {
+  if (word == end || (*word)[0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == *word) return CheckCommand(*command, word + 1, end);
+    names.push_back(command->get_name());
+  }
+  if (names.empty()) return;
+  const std::string of = app.get_parent() == nullptr ? "" : " of " + app.get_name();
+  throw BadInput(
+      fmt::format("unknown command {}{}; the commands are {}.", *word, of, Enumerate(names)));
+}
+
+// The words that the chosen command does not know, the options among them where there are any: what follows
+// an unknown option is its value.
+std::string Unknown(const CLI::App& app) {
+  const CLI::App* command = &app;
+  std::string name = app.get_name();
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().front();
+    name += " " + command->get_name();
+  }
+  std::vector<std::string> options, words = app.remaining(true);
+  std::copy_if(words.begin(), words.end(), std::back_inserter(options),
+               [](const std::string& word) { return word.starts_with("-"); });
+  return options.empty()
+             ? fmt::format("{} takes no {} (try --help)", name, fmt::join(words, " "))
+             : fmt::format("{} has no option {} (try --help)", name, fmt::join(options, ", "));
+}
+
+}  // namespace
+
+int RunProgram(int argc, const char* const* argv, const Registries& registries) {
+  auto log = std::make_shared<spdlog::logger>("touchdown",
+                                              std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  log->set_pattern("touchdown: %v");
+  spdlog::set_default_logger(log);
+
+  CLI::App app{"Plans, flies and evaluates quadrotor landings on a moving vehicle."};
+  app.name("touchdown");
+  app.set_version_flag("--version", TOUCHDOWN_VERSION);
+  app.require_subcommand(1);
+  CommandRun run;
+  try {
+    RequireDistinct(registries);
+  } catch (const std::invalid_argument& error) {
+    spdlog::error("{}.", error.what());
+    return kBadInput;
+  }
+  AddFlyCommands(Command(&app), registries, &run);
+  AddCompareCommand(Command(&app), registries, &run);
+  AddStudyCommand(Command(&app), registries, &run);
+  AddSweepCommand(Command(&app), registries, &run);
+  AddMergeCommand(Command(&app), &run);
+  AddPlanCommand(Command(&app), registries, &run);
+  AddProfileCommand(Command(&app), registries, &run);
+  AddCheckTermCommand(Command(&app), registries, &run);
+  AddListCommand(Command(&app), registries, &run);
+  try {
+    CheckCommand(app, argv + std::min(1, argc), argv + argc);
+    app.parse(argc, argv);
+    return run();
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ExtrasError&) {
+    spdlog::error("{}", Unknown(app));
+    return kBadInput;
+  } catch (const CLI::ParseError& error) {
+    spdlog::error("{} (try --help)", error.what());
+    return kBadInput;
+  } catch (const BadInput& error) {
+    spdlog::error("{}", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kFellShort;
+  } catch (...) {
+    spdlog::error("something that is no std::exception was thrown");
+    return kFellShort;
+  }
+}
+
+}  // namespace touchdown::evaluation

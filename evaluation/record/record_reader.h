@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "evaluation/flight/trial_record.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+
+namespace touchdown::evaluation {
+
+/// The part of a record that replanning steps are asked again from.
+struct RecordedFlight {
+  std::string path;
+  Scenario scenario;  ///< the effective one, its seed that of the flight
+  std::string build_hash;
+  std::string revision;
+  Eigen::Vector3d hover_W = Eigen::Vector3d::Zero();  ///< before the first of them [m]
+  int idle_steps = 0;                                 ///< that are not among them
+  std::vector<RecordPlan> plans;                      ///< in the order in which they were made
+};
+
+/// What of a recorded flight can be changed, as a help text says it.
+inline constexpr const char* kReplayKeys =
+    "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
+
+/// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario. @throws BadInput
+/// with one sentence: an override is none of kReplayKeys, or, with the file's name, it is not there, no record, of another
+/// version, or something in it is missing or out of its range.
+RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
+                          const Registries& registries);
+
+}  // namespace touchdown::evaluation

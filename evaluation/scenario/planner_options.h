@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "touchdown/estimation/base/vehicle_model.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+#include "touchdown/planning/replan/replanner.h"
+
+namespace touchdown::evaluation {
+
+/// What the replanner is told of a scenario and its vehicle; `terms` are those it may use.
+planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
+                                          const estimation::VehicleModel& model,
+                                          const planning::TermRegistry& terms);
+
+/// Where terms of the landing planner act, of those that say so.
+std::vector<planning::NamedZone> ZonesOf(const planning::ReplannerOptions& options);
+
+/// The planner that the scenario asks for.
+std::unique_ptr<planning::Planner> MakePlanner(const Scenario& scenario,
+                                               const estimation::VehicleModel& model,
+                                               const Registries& registries);
+
+/// Its entry. Throws std::invalid_argument if there is none of that name.
+const PlannerEntry& PlannerOf(const Scenario& scenario, const Registries& registries);
+
+/// How often it is to be called [Hz]: at its own rate, or at planning.rate.
+double PlannerRate(const Scenario& scenario, const PlannerEntry& planner);
+
+/// The same shortly before a planned landing's contact [Hz]: at least 20 Hz, if the latency leaves room.
+double ClosePlannerRate(const Scenario& scenario, const PlannerEntry& planner);
+
+/// The scenario's terms.<name>.* as the planner takes them.
+planning::TermSettings TermSettingsOf(const std::string& name,
+                                      const std::map<std::string, double>& keys);
+
+/// How far the tracking law may tilt: farther than plans, which do not count on all of it [rad].
+double TrackingTilt(const Scenario& scenario);
+
+/// How far plans stay from obstacles: planning.clearance, but no less than what proven pairs
+/// keep in calm air, the hull at every tilt and its margins [m].
+double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model,
+                     const Registries& registries);
+
+/// Plans stay above this away from the pad [m].
+double LowestPlan(const estimation::VehicleModel& model);
+
+/// Longest time from the question to the plan [s]: the least time between two replanning steps. A
+/// plan that took over later would still be waiting when the next one is asked for.
+double LongestLatency(const Scenario& scenario);
+
+}  // namespace touchdown::evaluation

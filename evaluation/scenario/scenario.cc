@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reading and writing scenario files. The YAML tree is walked once and every leaf is looked up in
+// the schema by its dotted name; what the schema does not know is refused with its file and line.
+#include "touchdown/evaluation/scenario/scenario.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/words.h"
+#include "evaluation/scenario/scenario_check.h"
+#include "evaluation/scenario/scenario_schema.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using Keys = std::vector<SchemaKey<Scenario>>;
+
+constexpr char kObstacles[] = "obstacles";
+
+class Reader {
+ public:
+  /// `file` stands in every sentence; `lines`: with the line.
+  Reader(ScenarioSource* source, std::string file, bool lines, const Keys& keys)
+      : source_(source), file_(std::move(file)), lines_(lines), keys_(keys) {}
+
+  void Read(const YAML::Node& root) { ReadMap(root, "", WhereIs(root)); }
+
+  void ReadMap(const YAML::Node& node, const std::string& prefix, const Where& place) {
+    if (!node.IsMap()) {
+      throw BadInput(fmt::format("{}: {} must be a map of keys.", place.ToString(),
+                                 prefix.empty() ? "a scenario" : prefix));
+    }
+    std::set<std::string> seen;
+    for (const auto& entry : node) {
+      const Where where = WhereIs(entry.first);
+      const std::string key = KeyText(entry.first);
+      const std::string name = prefix.empty() ? key : prefix + "." + key;
+      if (!seen.insert(name).second) {
+        throw BadInput(
+            fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+      }
+      ReadEntry(name, entry.second, where);
+    }
+  }
+
+  void ReadEntry(const std::string& name, const YAML::Node& value, const Where& where) {
+    if (lines_ && source_->where.count(name) != 0) {
+      throw BadInput(
+          fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+    }
+    if (const auto key = FindScenarioKey(name, keys_)) {
+      key->set(source_->scenario, value, where);
+      source_->where[name] = where;
+    } else if (name == "obstacles.boxes") {
+      ReadList(name, value, where, BoxKeys(), &source_->scenario.boxes);
+    } else if (name == "obstacles.cylinders") {
+      ReadList(name, value, where, CylinderKeys(), &source_->scenario.cylinders);
+    } else if (IsGroup(name)) {
+      ReadMap(value, name, where);
+    } else {
+      throw BadInput(fmt::format("{}: unknown key {}; {}.", where.ToString(), name, Suggest(name)));
+    }
+  }
+
+ private:
+  Where WhereIs(const YAML::Node& node) const {
+    return {file_, lines_ && node.Mark().line >= 0 ? node.Mark().line + 1 : 0};
+  }
+
+  // YAML allows lists and maps as keys.
+  std::string KeyText(const YAML::Node& key) const {
+    if (!key.IsScalar()) RefuseValue(WhereIs(key), "a key", "a text", key);
+    return key.Scalar();
+  }
+
+  bool IsGroup(const std::string& name) const {
+    if (name == kObstacles || IsOpenGroup(name)) return true;
+    return std::any_of(keys_.begin(), keys_.end(),
+                       [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
+  }
+
+  // The keys of the same group, or the groups: what may stand here instead.
+  std::string Suggest(const std::string& name) const {
+    const std::size_t dot = name.rfind('.');
+    const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
+    std::vector<std::string> words;
+    for (const auto& key : keys_) {
+      if (key.name.rfind(group, 0) != 0) continue;
+      const std::string word = key.name.substr(0, key.name.find('.', group.size()));
+      if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+    }
+    if (group.empty()) words.insert(words.end(), {"terms", kObstacles});
+    if (group == std::string(kObstacles) + ".") words = {"obstacles.boxes", "obstacles.cylinders"};
+    if (words.empty()) return "`docs/scenario.md` lists the keys";
+    return "allowed here: " + Enumerate(words);
+  }
+
+  template <typename Element>
+  void ReadList(const std::string& name, const YAML::Node& list, const Where& where,
+                const std::vector<SchemaKey<Element>>& keys, std::vector<Element>* elements) {
+    if (!list.IsSequence()) RefuseValue(where, name, "a list", list);
+    elements->clear();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const YAML::Node& node = list[i];
+      const std::string label = fmt::format("{}[{}]", name, i);
+      const Where here = WhereIs(node);
+      if (!node.IsMap()) RefuseValue(here, label, "a map of keys", node);
+      Element element;
+      std::set<std::string> seen;
+      for (const auto& entry : node) {
+        const std::string key = KeyText(entry.first);
+        ReadElementKey(keys, key, entry.second, WhereIs(entry.first), label, &element);
+        seen.insert(key);
+      }
+      for (const auto& key : keys) {
+        if (!key.optional && seen.count(key.name) == 0) {
+          throw BadInput(fmt::format("{}: {} lacks the key {}.", here.ToString(), label, key.name));
+        }
+      }
+      elements->push_back(element);
+      source_->where[label] = here;
+    }
+  }
+
+  template <typename Element>
+  static void ReadElementKey(const std::vector<SchemaKey<Element>>& keys, const std::string& name,
+                             const YAML::Node& value, const Where& where, const std::string& label,
+                             Element* element) {
+    std::vector<std::string> words;
+    for (const auto& key : keys) {
+      if (key.name == name) return key.set(*element, value, where);
+      words.push_back(key.name);
+    }
+    throw BadInput(fmt::format("{}: unknown key {}.{}; allowed here: {}.", where.ToString(), label,
+                               name, Enumerate(words)));
+  }
+
+  ScenarioSource* source_;
+  std::string file_;
+  bool lines_;
+  const Keys& keys_;
+};
+
+// `load` gives the YAML documents of what sentences call `path`.
+template <typename Load>
+YAML::Node OneDocument(const std::string& path, const Load& load) {
+  try {
+    const std::vector<YAML::Node> documents = load();
+    if (documents.empty() || documents.front().IsNull()) {
+      throw BadInput(fmt::format("{}: the scenario file holds no key.", path));
+    }
+    if (documents.size() > 1) {
+      throw BadInput(fmt::format("{}: a scenario file holds one YAML document, and this one {}.",
+                                 path, documents.size()));
+    }
+    return documents.front();
+  } catch (const YAML::BadFile&) {
+    throw BadInput(fmt::format("{}: the scenario file cannot be read.", path));
+  } catch (const YAML::Exception& error) {
+    throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
+  }
+}
+
+void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* source) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw BadInput(fmt::format("--set {}: write KEY=VALUE.", text));
+  }
+  const std::string name = text.substr(0, equals);
+  const std::string file = "--set " + text;
+  YAML::Node value;
+  try {
+    value = YAML::Load(text.substr(equals + 1));
+  } catch (const YAML::Exception& error) {
+    throw BadInput(fmt::format("{}: {}.", file, error.msg));
+  }
+  Where where;
+  where.file = file;
+  Reader(source, file, false, keys).ReadEntry(name, value, where);
+}
+
+// What the keys that were given ask of those that were not: some planners' plans do not lead to contact, one
+// that does ends when it is best, and a wind's direction that is given is meant, not one that is drawn.
+void SuitDefaults(const Registries& registries, ScenarioSource* source) {
+  Scenario& s = source->scenario;
+  const auto given = [source](const char* key) { return source->where.count(key) != 0; };
+  const PlannerEntry* planner = FindPart(registries.planners, s.planner);
+  s.own_solver = planner ? planner->solver : "";
+  if (!given("descent") && planner && !planner->lands) s.descent = DescentKind::kVertical;
+  if (!given("solver.arrival")) {
+    s.solver.arrival = PlansContact(s) ? ArrivalKind::kFree : ArrivalKind::kFixed;
+  }
+  const auto fill = [&s](const auto& registry, const std::string& name) {
+    const Part* part = FindPart(registry, name);
+    if (part == nullptr) return;
+    for (const Parameter& parameter : part->parameters) {
+      s.parameters.emplace(parameter.key, parameter.value);
+    }
+  };
+  fill(registries.planners, s.planner);
+  fill(registries.pad_motions, s.pad.motion);
+  fill(registries.controllers, s.controller);
+  fill(registries.predictors, s.pad.prediction);
+  if (given("wind.direction_deg") && !given("wind.direction_random")) {
+    s.wind.direction_random = false;
+  }
+}
+
+Scenario Complete(const YAML::Node& root, const std::string& name, const std::string& file,
+                  const std::vector<std::string>& overrides, const Registries& registries) {
+  ScenarioSource source;
+  source.scenario.name = name;
+  source.file = file;
+  const Keys keys = ScenarioKeys(registries);
+  Reader(&source, file, true, keys).Read(root);
+  for (const std::string& text : overrides) ApplyOverride(text, keys, &source);
+  SuitDefaults(registries, &source);
+  CheckScenario(source, registries);
+  return source.scenario;
+}
+
+}  // namespace
+
+void ApplyOverride(const std::string& text, const Registries& registries, Scenario* scenario) {
+  ScenarioSource source;
+  source.scenario = *scenario;
+  ApplyOverride(text, ScenarioKeys(registries), &source);
+  *scenario = std::move(source.scenario);
+}
+
+Scenario::Scenario() = default;
+
+const char* ToString(TaskKind kind) {
+  if (kind == TaskKind::kGoTo) return "go_to";
+  return kind == TaskKind::kFollow ? "follow" : "land";
+}
+
+const char* ToString(DescentKind kind) {
+  return kind == DescentKind::kVertical ? "vertical" : "planned";
+}
+
+Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
+                      const Registries& registries) {
+  const auto load = [&path] { return YAML::LoadAllFromFile(path); };
+  return Complete(OneDocument(path, load), std::filesystem::path(path).stem().string(), path,
+                  overrides, registries);
+}
+
+Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& file,
+                       const std::vector<std::string>& overrides, const Registries& registries) {
+  const auto load = [&text] { return YAML::LoadAll(text); };
+  return Complete(OneDocument(file, load), name, file, overrides, registries);
+}
+
+std::string DumpScenario(const Scenario& scenario) {
+  std::string text;
+  std::string open_group;
+  for (const auto& key : ScenarioKeys()) {
+    const std::size_t dot = key.name.find('.');
+    const std::string group = dot == std::string::npos ? "" : key.name.substr(0, dot);
+    if (group != open_group && !group.empty()) text += group + ":\n";
+    open_group = group;
+    const std::string name = group.empty() ? key.name : "  " + key.name.substr(dot + 1);
+    text += name + ": " + key.get(scenario) + "\n";
+  }
+  text += DumpOpenKeys(scenario);
+  if (scenario.boxes.empty() && scenario.cylinders.empty()) return text;
+  text += std::string(kObstacles) + ":\n";
+  const auto list = [&text](const std::string& name, const auto& elements, const auto& keys) {
+    if (elements.empty()) return;
+    text += "  " + name + ":\n";
+    for (const auto& element : elements) {
+      std::string line;
+      for (const auto& key : keys) {
+        line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
+      }
+      text += "    - {" + line + "}\n";
+    }
+  };
+  list("boxes", scenario.boxes, BoxKeys());
+  list("cylinders", scenario.cylinders, CylinderKeys());
+  return text;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "evaluation/scenario/scenario_value.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+
+namespace touchdown::evaluation {
+
+/// A scenario with the place each of its values came from.
+struct ScenarioSource {
+  Scenario scenario;
+  std::string file;
+  std::map<std::string, Where> where;  ///< by key, "obstacles.boxes[2]" for list elements
+
+  /// Where `key` was set; the file as a whole if it has its default.
+  Where WhereOf(const std::string& key) const;
+};
+
+/// What no single key shows: obstacles or the pad on the start, obstacles on the pad's way, a GPS outage
+/// that ends before it begins, a deck smaller than the sheet that is to be seen on it, a latency beyond
+/// the replanning period, a clearance below the hull, a ceiling below what is flown, an unreadable vehicle
+/// or map file, an airframe or a wind direction without effect; a backend, one of its options, a term or
+/// a goal in an obstacle or beyond floor and ceiling, one of its parameters that the registries do not know or allow; a formulation that the backend refuses.
+/// A pad faster than the vehicle is none of it: the flight shows what becomes of it. @throws BadInput
+void CheckScenario(const ScenarioSource& source, const Registries& registries);
+
+}  // namespace touchdown::evaluation

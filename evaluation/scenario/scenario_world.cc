@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Units become SI here (degrees to radians) and draws are made: each purpose has its own stream,
+// and every stream is drawn from whether or not its figure is used, so that one option never shifts
+// another's draws.
+#include "evaluation/scenario/scenario_world.h"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "evaluation/base/build_info.h"
+#include "evaluation/scenario/waypoint_file.h"
+#include "sim/base/random_stream.h"
+#include "sim/vehicle/vehicle_file.h"
+#include "sim/vehicle/vehicle_import.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadPerDeg = kPi / 180.0;
+
+/// Whatever is known of the pad: it is not where the vehicle is to go.
+class ToGoal final : public PadPredictor {
+ public:
+  explicit ToGoal(const Scenario& scenario) : goal_(GoalOf(scenario)) {}
+  const estimation::PadPrediction& Predict(const PadKnowledge& /*known*/) override { return goal_; }
+
+ private:
+  planning::MovingGoal goal_;
+};
+
+}  // namespace
+
+ObstacleList ObstaclesOf(const Scenario& scenario) {
+  ObstacleList list;
+  for (std::size_t i = 0; i < scenario.boxes.size(); ++i) {
+    const BoxObstacle& spec = scenario.boxes[i];
+    sim::Box box;
+    box.center << spec.centre, spec.base + 0.5 * spec.size.z();
+    box.half_extents = 0.5 * spec.size;
+    list.push_back({fmt::format("obstacles.boxes[{}]", i), box});
+  }
+  for (std::size_t i = 0; i < scenario.cylinders.size(); ++i) {
+    const CylinderObstacle& spec = scenario.cylinders[i];
+    sim::Cylinder cylinder;
+    cylinder.center << spec.centre, 0.5 * spec.height;
+    cylinder.radius = spec.radius;
+    cylinder.height = spec.height;
+    list.push_back({fmt::format("obstacles.cylinders[{}]", i), cylinder});
+  }
+  return list;
+}
+
+std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
+                                                  const Registries& registries, double phase,
+                                                  std::uint64_t seed) {
+  const PadMotionEntry& entry =
+      PartNamed(registries.pad_motions, scenario.pad.motion, "pad motion");
+  return MadeBy(entry, PadMotionSetup{{scenario, entry.parameters}, phase, seed}, "pad motion");
+}
+
+planning::MovingGoal GoalOf(const Scenario& scenario) {
+  const Eigen::Vector3d p = scenario.go_to.goal, v = scenario.go_to.velocity;
+  return planning::MovingGoal([p, v](const planning::Taylor& t) {
+    return planning::MovingGoal::Position{p.x() + v.x() * t, p.y() + v.y() * t, p.z() + v.z() * t};
+  });
+}
+
+std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
+                                          std::shared_ptr<const sim::PadCourse> truth) {
+  if (scenario.task == TaskKind::kGoTo) return std::make_unique<ToGoal>(scenario);
+  const PredictorEntry& entry =
+      PartNamed(registries.predictors, scenario.pad.prediction, "pad predictor");
+  return MadeBy(entry, PredictorSetup{{scenario, entry.parameters}, std::move(truth)},
+                "pad predictor");
+}
+
+sim::PadGeometry PadGeometryOf(const Scenario& scenario) {
+  sim::PadGeometry geometry;
+  geometry.deck_half_size = 0.5 * scenario.pad.deck_size;
+  return geometry;
+}
+
+std::string VehicleMjcf(const Scenario& scenario) {
+  if (scenario.vehicle == "default") return sim::DefaultVehicleMjcf();
+  const Scenario::Airframe& frame = scenario.airframe;
+  return sim::ImportVehicle(scenario.vehicle, {frame.rotor_lag, frame.rotor_drag,
+                                               frame.body_drag_area, frame.hull, frame.feet});
+}
+
+OutsideFiles OutsideFilesOf(const Scenario& scenario) {
+  OutsideFiles files;
+  if (scenario.pad.waypoints != "none") {
+    files.pad_waypoints = WaypointText(ReadWaypointFile(scenario.pad.waypoints));
+  }
+  if (scenario.vehicle != "default") files.vehicle_hash = HashOf(VehicleMjcf(scenario));
+  return files;
+}
+
+TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
+  TrialDraw draw;
+  draw.seed = seed;
+  sim::RandomStream start(seed, "start");
+  for (int axis = 0; axis < 3; ++axis) {
+    draw.p_WB[axis] = scenario.start.position[axis] +
+                      scenario.start.position_spread[axis] * start.Uniform(-1.0, 1.0);
+  }
+  const double yaw = start.Uniform(-kPi, kPi);
+  draw.yaw = scenario.start.yaw_random ? yaw : scenario.start.yaw_deg * kRadPerDeg;
+  sim::RandomStream pad(seed, "pad");
+  draw.phase = scenario.pad.phase + scenario.pad.phase_spread * pad.Uniform(-1.0, 1.0);
+  const double direction = sim::RandomStream(seed, "wind direction").Uniform(-kPi, kPi);
+  draw.wind_direction =
+      scenario.wind.direction_random ? direction : scenario.wind.direction_deg * kRadPerDeg;
+  return draw;
+}
+
+sim::WindConfig WindOf(const Scenario& scenario, const TrialDraw& draw) {
+  const Scenario::Wind& wind = scenario.wind;
+  sim::WindConfig config;
+  config.mean = wind.mean;
+  config.max = wind.max > 0.0 ? wind.max : wind.mean;
+  config.direction = draw.wind_direction;
+  config.gust = {wind.gust.speed, wind.gust.start, wind.gust.duration, wind.gust.period};
+  return config;
+}
+
+sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw,
+                         const Registries& registries) {
+  sim::WorldConfig config;
+  std::vector<sim::Obstacle> obstacles;
+  for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
+  config.obstacles = sim::ObstacleField(std::move(obstacles));
+  config.pad = PadGeometryOf(scenario);
+  config.pad_motion.p_start.z() = scenario.pad.deck_height;
+  config.pad_course = PadCourseOf(scenario, registries, draw.phase, draw.seed);
+  config.vehicle_mjcf = VehicleMjcf(scenario);
+  config.plant = scenario.plant;
+  config.ground_effect = scenario.air.ground_effect;
+  config.start.p_WB = draw.p_WB;
+  config.start.q_WB = Eigen::AngleAxisd(draw.yaw, Eigen::Vector3d::UnitZ());
+  // The flight begins with a hover, in the wind of its first step; wake and ground effect are left out.
+  config.hover_air_W =
+      sim::Wind(WindOf(scenario, draw), draw.seed).Step(config.start, config.timestep);
+  return config;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a scenario's plain numbers to the simulator's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/air/wind.h"
+#include "sim/obstacles/obstacle.h"
+#include "sim/pad/pad_geometry.h"
+#include "sim/world/world.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+#include "touchdown/planning/replan/goal.h"
+#include "touchdown/sim/pad/pad_course.h"
+
+namespace touchdown::evaluation {
+
+/// An obstacle with the key it came from, "obstacles.boxes[2]".
+struct NamedObstacle {
+  std::string key;
+  sim::Obstacle obstacle;
+};
+using ObstacleList = std::vector<NamedObstacle>;
+
+/// Boxes first, then cylinders: the order of the obstacle field.
+ObstacleList ObstaclesOf(const Scenario& scenario);
+
+/// What drives the pad in the trial of `seed` with `phase` metres driven before t = 0.
+/// @throws std::invalid_argument if the motion cannot be made or is unknown; if its waypoint file cannot be read, the line
+/// first.
+std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
+                                                  const Registries& registries, double phase,
+                                                  std::uint64_t seed);
+
+/// The goal of the task go_to.
+planning::MovingGoal GoalOf(const Scenario& scenario);
+
+/// What foretells the pad, whose future is `truth`, or in the task go_to the goal. @throws std::invalid_argument if the predictor is unknown.
+std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
+                                          std::shared_ptr<const sim::PadCourse> truth);
+
+sim::PadGeometry PadGeometryOf(const Scenario& scenario);
+
+/// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
+std::string VehicleMjcf(const Scenario& scenario);
+
+/// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
+/// points of the waypoint file, the hash of the vehicle's MJCF text; each `none` without such a file.
+/// @throws std::invalid_argument as PadCourseOf and VehicleMjcf do.
+struct OutsideFiles {
+  std::string pad_waypoints = "none";
+  std::string vehicle_hash = "none";
+};
+OutsideFiles OutsideFilesOf(const Scenario& scenario);
+
+/// What a trial draws before it begins.
+struct TrialDraw {
+  Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start of the vehicle [m]
+  double yaw = 0.0;                                ///< [rad]
+  double phase = 0.0;                              ///< of the pad [m]
+  std::uint64_t seed = 0;                          ///< of the trial
+  double wind_direction = 0.0;                     ///< where the wind blows to [rad]
+};
+
+/// The draws of `seed`, from the streams "start", "pad" and "wind direction".
+TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed);
+
+/// The simulator's wind for this scenario and draw.
+sim::WindConfig WindOf(const Scenario& scenario, const TrialDraw& draw);
+
+/// The simulator's world at t = 0.
+sim::WorldConfig WorldOf(const Scenario& scenario, const TrialDraw& draw,
+                         const Registries& registries);
+
+}  // namespace touchdown::evaluation

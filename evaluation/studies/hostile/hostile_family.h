@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/base/random_stream.h"
+#include "touchdown/evaluation/scenario/scenario.h"
+
+namespace touchdown::evaluation {
+
+/// Diameters of the poles [m]: what the planner promises to see, and what it does not.
+inline constexpr double kThinnestPole = 0.03;
+inline constexpr double kPromisedPole = 0.10;
+inline constexpr double kThickestPole = 0.20;
+
+/// What a generator is told beside the scenario's conditions, which are drawn before.
+struct HostileAsk {
+  bool thin_poles = false;  ///< poles thinner than kPromisedPole
+};
+
+/// A kind of world. `make` adds obstacles, start, pad and ceiling to a scenario whose conditions are set.
+struct HostileFamily {
+  const char* name;
+  const char* what;    ///< one line
+  const char* ranges;  ///< of its parameters, in words
+  void (*make)(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+};
+
+/// In the order of the report.
+const std::vector<HostileFamily>& HostileFamilies();
+std::vector<std::string> HostileFamilyNames();
+/// @throws BadInput
+const HostileFamily& HostileFamilyNamed(const std::string& name);
+
+// The generators, by file: hostile_pockets.cc, hostile_passages.cc, hostile_heights.cc, hostile_open.cc.
+void MakeDeadEnd(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeFacingWall(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeBlindCorner(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeDoor(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeZigzag(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeWalls(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeOverhang(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeRoof(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeLowWall(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakePoles(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeNearStart(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeWideField(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+
+}  // namespace touchdown::evaluation

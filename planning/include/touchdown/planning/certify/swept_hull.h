@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "touchdown/estimation/pad/pad_prediction.h"
+#include "touchdown/planning/certify/free_space.h"
+#include "touchdown/planning/spline/uniform_bspline.h"
+
+namespace touchdown::planning {
+
+/// What the hull may sweep until it rests: cells that were observed free, and the deck
+/// (docs/safety.md). A view of the map, made anew for every replanning step.
+struct HullSpace {
+  const FreeSpace* space = nullptr;  ///< its map; its floor and ceiling for the body's origin
+  double hull_radius = 0.0;          ///< of the hull at every tilt [m]
+  double margin = 0.0;               ///< around it: Margins::Sum [m]
+  /// Where the deck will be; nullptr: there is none.
+  const estimation::PadPrediction* pad = nullptr;
+  double deck_half_size = 0.0;  ///< half the deck's side [m]
+  double foot_depth = 0.0;      ///< of the feet below the body's origin [m]
+  /// Only what is seen to be occupied blocks: of a way that was proven before.
+  bool unseen_passes = false;
+  /// The start is on a pair that was proven: what the hull starts among was observed free then, or the
+  /// deck's.
+  bool start_proven = false;
+
+  double radius() const { return hull_radius + margin; }
+};
+
+/// Cells that are not observed free among which a sweep starts. It moves away from those alone.
+struct StartCells {
+  bool occupied = false;  ///< the hull is among some that are seen to be occupied
+  bool unknown = false;   ///< ... that are neither, and to which no proven pair has led it
+  bool narrow = false;    ///< the grown hull is among either
+
+  bool leaves() const { return occupied || unknown; }
+  StartCells operator|(const StartCells& other) const {
+    return {occupied || other.occupied, unknown || other.unknown, narrow || other.narrow};
+  }
+};
+
+/// What became of a look along a curve.
+struct Sweep {
+  bool proven = false;
+  StartCells start;
+  /// First place that is not observed free, in W [m], if that is why nothing is proven.
+  std::optional<Eigen::Vector3d> unseen_W;
+};
+
+/// Where and when what is looked at begins.
+struct HullStart {
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();  ///< of the body's origin [m]
+  double t = 0.0;                                 ///< [s]
+};
+
+/// What SweepHull adds to the grown hull for the way between two places that it looks at [m].
+inline constexpr double kSweepRoom = 0.01;
+
+/// What the landing rule allows at contact, relative to the deck [m/s], and the share of it that a landing may use
+/// that is to be committed.
+inline constexpr double kSoftSink = 0.5;
+inline constexpr double kSoftDrift = 0.6;
+inline constexpr double kLandingRoom = 0.9;
+
+/// At any time, and at none: when the hull may touch the deck [s].
+inline constexpr double kAnyTime = -std::numeric_limits<double>::infinity();
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Looks whether the hull, grown by the margins, stays in observed-free cells along the curve from t_from
+/// to t_to [s], past the curve's end at its end's velocity, and the body's origin between floor and
+/// ceiling. Exceptions: cells that end below the map's ground height; while the body's origin is over the
+/// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
+/// upper face, and those over the deck where its returns lie by
+/// their noise, unless occupied; and, at the start, cells around `start` that the hull reached there already and
+/// does not come nearer to. Before `t_contact` [s] the feet are above the deck while the hull may be over it,
+/// and sink softly close to it, but for a start that is lower and rises. Does not allocate.
+Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const HullStart& start,
+                const HullSpace& hull, double t_contact);
+
+}  // namespace touchdown::planning

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "touchdown/planning/map/occupancy_map.h"
+
+namespace touchdown::planning {
+
+/// OctoMap's two file formats.
+enum class MapFormat {
+  kLogOdds,  ///< .ot: what was observed, in full
+  kBinary,   ///< .bt: free or occupied; a cell that is neither is left out
+};
+
+/// Everything that was ever observed: what a rolling map forgets when its window moves on, it gets
+/// back from here when the window comes back. In the window the rolling map knows better; a cell
+/// comes here when it leaves, or in Flush, and only if it has changed. So a cell that an obstacle has
+/// left is free here as soon as it is stored again: nothing that moves leaves a trail. What a file said
+/// is an octree (OctoMap); what was touched since is in blocks of cells (touchdown/planning/map/cell_blocks.h). Cells
+/// more than 32768 cells from the world's origin are not kept.
+class PersistentMap {
+ public:
+  /// An empty map with the resolution and the probabilities of the rolling map that it serves.
+  explicit PersistentMap(const OccupancyMapOptions& options);
+  ~PersistentMap();
+  PersistentMap(PersistentMap&&) noexcept;
+  PersistentMap& operator=(PersistentMap&&) noexcept;
+
+  /// OccupancyMap::Recentre, with what leaves stored and what enters refilled.
+  void Recentre(const Eigen::Vector3d& p_W, OccupancyMap* map);
+
+  /// Gives the map's whole window what is known of it here: prior knowledge, before anything is seen.
+  void Refill(OccupancyMap* map) const;
+
+  /// Stores what has changed in the map's window.
+  void Flush(OccupancyMap* map);
+
+  /// What is known of a cell, in steps of OccupancyMap::kLogOddsStep; none if it is unknown.
+  std::optional<std::int8_t> LogOdds(const CellIndex& cell) const;
+  bool IsOccupied(const CellIndex& cell) const;
+
+  /// What it holds: nodes of the octree, and cells in blocks.
+  std::size_t size() const;
+
+  /// Replaces the map by an OctoMap file of either format, as octomap's own tools write them: an
+  /// OcTree of this map's resolution. @throws std::invalid_argument that says what is wrong with it;
+  /// the map is then as before.
+  void Read(std::istream& in);
+
+  /// Writes the map for octomap's tools and for Read. Then all of it is in the octree.
+  void Write(std::ostream& out, MapFormat format);
+
+ private:
+  struct Impl;
+
+  void Refill(const CellBox& box, OccupancyMap* map) const;
+
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A hash table of blocks whose nodes lie in one piece of memory, one behind the other: to keep what a
+// window forgets costs neither an allocation nor a copy of what is kept already.
+
+#include "touchdown/planning/map/cell_blocks.h"
+
+#include <utility>
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr int kAxisBits = 16 - CellBlock::kSideLog2;  // of a block's place along an axis
+static_assert(2 * CellBlocks::kReach >> CellBlock::kSideLog2 == 1 << kAxisBits);
+
+// Of a node of the table: a block with its key and what links it.
+constexpr std::size_t kNodeBytes = sizeof(CellBlock) + 4 * sizeof(void*);
+
+}  // namespace
+
+CellBlocks::CellBlocks(Fill fill)
+    : fill_(std::move(fill)),
+      room_(std::make_unique_for_overwrite<std::byte[]>(kReserved * (kNodeBytes + sizeof(void*)))),
+      memory_(room_.get(), kReserved * (kNodeBytes + sizeof(void*))),
+      blocks_(&memory_) {
+  blocks_.reserve(kReserved);
+}
+
+CellBlocks::Key CellBlocks::KeyOf(const CellIndex& cell) {
+  const auto along = [](int c) { return static_cast<Key>(c + kReach) >> CellBlock::kSideLog2; };
+  return (along(cell.z()) << kAxisBits | along(cell.y())) << kAxisBits | along(cell.x());
+}
+
+CellIndex CellBlocks::LowOf(Key key) {
+  const auto along = [&](int axis) {
+    constexpr Key kMask = (Key{1} << kAxisBits) - 1;
+    return static_cast<int>((key >> axis * kAxisBits & kMask) << CellBlock::kSideLog2) - kReach;
+  };
+  return {along(0), along(1), along(2)};
+}
+
+void CellBlocks::Put(const CellValue& value) {
+  const CellIndex& cell = value.cell;
+  if ((cell.array() < -kReach).any() || (cell.array() >= kReach).any()) return;
+  (*Make(cell))[cell] = value.log_odds;
+}
+
+const CellBlock* CellBlocks::Find(const CellIndex& cell) const {
+  const auto found = blocks_.find(KeyOf(cell));
+  return found != blocks_.end() ? &found->second : nullptr;
+}
+
+CellBlock* CellBlocks::Make(const CellIndex& cell) {
+  const Key key = KeyOf(cell);
+  Latest& latest = latest_[key % latest_.size()];
+  if (latest.key == key) return latest.block;
+  const auto [place, is_new] = blocks_.try_emplace(key);
+  if (is_new && fill_) fill_(LowOf(key), &place->second);
+  latest = {key, &place->second};
+  return latest.block;
+}
+
+}  // namespace touchdown::planning

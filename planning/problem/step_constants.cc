@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/planning/problem/step_constants.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace touchdown::planning {
+
+std::span<const StepConstant> StepConstantTable() {
+  using C = StepConstants;
+  static constexpr std::array kTable = {
+      StepConstant{"way_greed", &C::way_greed, "", "weight of the estimate in the search for a way",
+                   1.0},
+      StepConstant{"way_tight_cost", &C::way_tight_cost, "m/m",
+                   "cost of a metre beside an obstacle", 1.0},
+      StepConstant{
+          "detour_longer", &C::detour_longer, "m",
+          "a detour of the committed curve is longer than the straight line by this at most"},
+      StepConstant{"beside_time", &C::beside_time, "s",
+                   "a curve that has come to a way's side stays there for so long"},
+      StepConstant{"way_dearer", &C::way_dearer, "m/m",
+                   "cost over the first way's, up to which another is looked for", 1.0},
+      StepConstant{"side_cheaper", &C::side_cheaper, "",
+                   "share of the cost that makes a change of side worth while"},
+      StepConstant{"near_obstacle", &C::near_obstacle, "segments",
+                   "until an obstacle that needs fine segments at once"},
+      StepConstant{"fine_segments", &C::fine_segments, "", "share of the longest segment"},
+      StepConstant{"bound_beside", &C::bound_beside, "control points",
+                   "that are bound beside a blocked stretch"},
+      StepConstant{"stand_off", &C::stand_off, "m", "of a reference point from what is in the way"},
+      StepConstant{"pair_growth", &C::pair_growth, "", "of the pairs' weight from round to round",
+                   1.0},
+      StepConstant{"blocked_left", &C::blocked_left, "",
+                   "share of the blocked time that a round leaves at most"},
+      StepConstant{"limit_growth", &C::limit_growth, "",
+                   "of the weight of soft limits that are exceeded", 1.0},
+      StepConstant{"limit_far", &C::limit_far, "",
+                   "of a limit, beyond which that weight grows by the square", 1.0},
+      StepConstant{"limit_rounds", &C::limit_rounds, "solves", "that press limits harder"},
+      StepConstant{"look_every", &C::look_every, "s", "between looks for other ways"},
+      StepConstant{"kept_latest", &C::kept_latest, "",
+                   "of the time left, after which a kept plan may not arrive", 1.0},
+      StepConstant{"retime_below", &C::retime_below, "",
+                   "a fresh guess this much shorter replaces a promised arrival"},
+      StepConstant{"near_contact", &C::near_contact, "s",
+                   "of a plan to contact, that are made anew at every step"},
+      StepConstant{"stretch", &C::stretch, "", "of the duration after an attempt that failed", 1.0},
+      StepConstant{"end_step", &C::end_step, "", "of the duration while the plan's end is blocked",
+                   1.0},
+      StepConstant{"grid_longest", &C::grid_longest, "",
+                   "segments are for so many times the first arrival at most", 1.0},
+      StepConstant{"unseen_reach", &C::unseen_reach, "m",
+                   "around a start, where a plan keeps to what was seen"},
+      StepConstant{"unseen_least", &C::unseen_least, "m", "... where nothing leads out of that"},
+  };
+  return kTable;
+}
+
+double ValueOf(const StepConstants& constants, const StepConstant& which) {
+  return std::visit([&](auto member) { return static_cast<double>(constants.*member); },
+                    which.value);
+}
+
+StepConstants Scaled(const StepConstants& constants, const StepConstant& which, double factor) {
+  if (!(factor > 0.0) || !std::isfinite(factor)) {
+    throw std::invalid_argument("Scaled: factor is " + std::to_string(factor) +
+                                ", it must be positive and finite");
+  }
+  StepConstants changed = constants;
+  if (const auto* real = std::get_if<double StepConstants::*>(&which.value)) {
+    double& value = changed.*(*real);
+    value = which.least + factor * (value - which.least);
+    return changed;
+  }
+  int& count = changed.*std::get<int StepConstants::*>(which.value);
+  const int rounded = static_cast<int>(std::lround(count * factor));
+  const int step = factor < 1.0 ? -1 : factor > 1.0 ? 1 : 0;
+  count = std::max(1, rounded == count ? count + step : rounded);
+  return changed;
+}
+
+}  // namespace touchdown::planning

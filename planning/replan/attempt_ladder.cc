@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/planning/replan/attempt_ladder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace touchdown::planning {
+
+namespace {
+
+struct Case {
+  const Rung& rung;
+  const Outcome& outcome;
+  const LadderFacts& facts;
+  const StepConstants& constants;
+
+  bool first() const { return rung.attempt == 0; }
+  bool closed() const { return rung.unseen_reach > 0.0; }
+  bool is(ReplanReason reason) const { return outcome.reason == reason; }
+  bool free() const { return rung.arrival == ArrivalMode::kFree; }
+  bool slower_helps() const {
+    return is(ReplanReason::kLimitsExceeded) || is(ReplanReason::kUnobserved) ||
+           is(ReplanReason::kCollisionRemains) || is(ReplanReason::kGoalBlocked) ||
+           is(ReplanReason::kBudgetSpent);
+  }
+};
+
+Climb Stop(ReplanReason reason) { return {std::nullopt, reason}; }
+
+Climb Next(const Case& c, void (*change)(const Case& c, Rung* rung)) {
+  Climb climb = {c.rung, ReplanReason::kNone};
+  ++climb.next->attempt;
+  change(c, &*climb.next);
+  return climb;
+}
+
+/// Once more a little later: a pad that brakes is not met with what was promised before.
+void LandLater(const Case& c, Rung* rung) {
+  if (c.facts.arrival == ArrivalMode::kFree && rung->duration >= c.facts.min_duration) {
+    rung->arrival = ArrivalMode::kFree;
+  } else {
+    rung->duration = std::min(c.constants.stretch * rung->duration, c.facts.max_duration);
+  }
+}
+
+/// Of a free arrival what it chose, where only limits were exceeded: one that still collides only fled from
+/// the pressure of what it hit.
+double Tried(const Case& c) {
+  const bool fled = c.free() && !c.is(ReplanReason::kLimitsExceeded);
+  return fled ? c.rung.duration : std::max(c.rung.duration, c.outcome.duration);
+}
+
+/// Fixed, and at least as late as a fresh guess: a promise that cannot be kept binds no longer.
+void ArriveLater(const Case& c, Rung* rung) {
+  rung->arrival = ArrivalMode::kFixed;
+  rung->duration =
+      std::min(std::max(c.constants.stretch * Tried(c), c.facts.fresh), c.facts.max_duration);
+}
+
+struct Rule {
+  bool (*holds)(const Case& c);
+  Climb (*climb)(const Case& c);
+};
+
+constexpr std::array kRules = {
+    // Before a contact nothing is put off but this once.
+    Rule{[](const Case& c) { return c.facts.lands_soon && c.first(); },
+         [](const Case& c) { return Next(c, LandLater); }},
+    Rule{[](const Case& c) { return c.facts.lands_soon; },
+         [](const Case& c) { return Stop(c.outcome.reason); }},
+    // What the last plan led around may be seen by now.
+    Rule{
+        [](const Case& c) { return c.first() && c.closed() && !c.is(ReplanReason::kUnobserved); },
+        [](const Case& c) { return Next(c, [](const Case&, Rung* r) { r->unseen_reach = 0.0; }); }},
+    // What the stop would have touched unseen is closed, and the same arrival tried again.
+    Rule{[](const Case& c) { return !c.closed() && c.is(ReplanReason::kUnobserved); },
+         [](const Case& c) {
+           return Next(
+               c, [](const Case& of, Rung* r) { r->unseen_reach = of.constants.unseen_reach; });
+         }},
+    Rule{[](const Case& c) {
+           return c.closed() && c.facts.at_rest && c.rung.unseen_reach > c.constants.unseen_least;
+         },
+         [](const Case& c) {
+           return Next(
+               c, [](const Case& of, Rung* r) { r->unseen_reach = of.constants.unseen_least; });
+         }},
+    Rule{[](const Case& c) { return c.closed() && c.facts.at_rest; },
+         [](const Case&) { return Stop(ReplanReason::kUnobserved); }},
+    // Where the end itself is not seen yet, there is nothing to lead around.
+    Rule{[](const Case& c) { return c.closed() && c.is(ReplanReason::kGoalBlocked); },
+         [](const Case&) { return Stop(ReplanReason::kUnobserved); }},
+    Rule{[](const Case& c) { return c.slower_helps() && Tried(c) < c.facts.max_duration; },
+         [](const Case& c) { return Next(c, ArriveLater); }},
+    Rule{[](const Case& c) { return !c.slower_helps() && c.free(); },
+         [](const Case& c) {
+           return Next(c, [](const Case&, Rung* r) { r->arrival = ArrivalMode::kFixed; });
+         }},
+};
+
+}  // namespace
+
+Climb NextRung(const Rung& rung, const Outcome& outcome, const LadderFacts& facts,
+               const StepConstants& constants) {
+  const Case c = {rung, outcome, facts, constants};
+  const auto rule =
+      std::find_if(kRules.begin(), kRules.end(), [&](const Rule& r) { return r.holds(c); });
+  if (rule == kRules.end()) return Stop(outcome.reason);
+  return rule->climb(c);
+}
+
+}  // namespace touchdown::planning

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planning/replan/fallback_ladder.h"
+
+#include <limits>
+
+#include "planning/certify/vantage.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
+const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
+constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
+constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
+
+}  // namespace
+
+bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& endpoint,
+               const HullSpace& hull) {
+  return hull.pad != nullptr && endpoint.leads_to_contact() &&
+         endpoint.may_touch(hull.foot_depth) && committed.Lands() &&
+         ContactTime(committed.curve, t0, hull) - t0 < kLastStretch;
+}
+
+Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result) {
+  const FlightPair& committed = *facts.committed;
+  const HullSpace& hull = *facts.hull;
+  const double t0 = facts.t0;
+  const Fallback::Landing landing = Fallback::LookAtLanding(committed, t0, hull);
+  if (!result->from_odometry && landing == Fallback::Landing::kHolds &&
+      LandsSoon(committed, t0, facts.endpoint, hull)) {
+    Fallback::FlyStop(committed, t0, hull, result);
+    return {.commits = false, .on_plan = facts.planned};
+  }
+  const bool at_rest = !result->from_odometry && Fallback::AtRest(committed, t0);
+  const bool on_plan = facts.planned && !result->from_odometry && !at_rest;
+  if (on_plan && GoesOn(facts, result)) {
+    result->status = ReplanStatus::kKept;
+    return {.commits = true, .on_plan = true};
+  }
+  if (at_rest && fallback_.Escapes(t0, facts.start, hull, result)) {
+    result->status = ReplanStatus::kEscaping;
+    return {.commits = true};
+  }
+  if (at_rest && result->reason == ReplanReason::kUnobserved && StepsAside(facts, result)) {
+    return {.commits = true};
+  }
+  // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
+  if (result->from_odometry || committed.Lands()) {
+    if (Stops(facts, kNoShift, Fallback::Room::kOfPlans, result) ||
+        Stops(facts, kUpFromMiss, Fallback::Room::kOfPlans, result)) {
+      return {.commits = true};
+    }
+  }
+  if (landing == Fallback::Landing::kMisses) {
+    if (!Stops(facts, kUpFromMiss, Fallback::Room::kOfHull, result) &&
+        !Stops(facts, kNoShift, Fallback::Room::kOfHull, result)) {
+      fallback_.RisesUnproven(t0, facts.start, kUpFromMiss.z(), hull, result);
+      result->status = ReplanStatus::kBraking;
+    }
+    return {.commits = true};
+  }
+  Fallback::FlyStop(committed, t0, hull, result);
+  return {};
+}
+
+Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResult* result) {
+  memory_.looks_at_W.reset();
+  const bool under_way = memory_.climb == climb && !result->from_odometry;
+  if (!under_way) {
+    memory_.climb.reset();
+    // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
+    for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
+      if (!Stops(facts, {0.0, 0.0, rise}, Fallback::Room::kOfPlans, result)) continue;
+      // That none came out is no reason to stop trying.
+      if (rise > 0.0 || climb == 0.0) memory_.climb = climb;
+      if (rise > 0.0) result->status = ReplanStatus::kClimbing;
+      return {.commits = true};
+    }
+  }
+  FallbackFacts resting = facts;
+  resting.planned = false;
+  const Fallen fallen = StepDown(resting, result);
+  if (under_way && result->status == ReplanStatus::kBraking) result->status = ReplanStatus::kKept;
+  return fallen;
+}
+
+bool FallbackLadder::GoesOn(const FallbackFacts& facts, ReplanResult* result) {
+  return fallback_.GoesOn(*facts.committed, facts.t0, facts.t0 + facts.reaction, *facts.hull,
+                          result);
+}
+
+bool FallbackLadder::StillLooks(const OccupancyMap& map, bool from_odometry) {
+  if (!memory_.looks_at_W) return false;
+  const CellIndex cell = map.CellOf(*memory_.looks_at_W);
+  if (from_odometry || map.IsObservedFree(cell) || map.IsOccupied(cell)) memory_.looks_at_W.reset();
+  return memory_.looks_at_W.has_value();
+}
+
+/// A stop that ends `shift` from where braking does [m], if there is one.
+bool FallbackLadder::Stops(const FallbackFacts& facts, const Eigen::Vector3d& shift,
+                           Fallback::Room room, ReplanResult* result) {
+  if (!fallback_.Rests(facts.t0, facts.start, shift, *facts.hull, room, result)) return false;
+  result->status = ReplanStatus::kBraking;
+  return true;
+}
+
+/// Who has looked for long and does not see what the way on needs goes to where it is better in sight. But not
+/// low, where the pad may come by, nor from where a landing goes on.
+bool FallbackLadder::StepsAside(const FallbackFacts& facts, ReplanResult* result) {
+  if (!result->unseen_W || facts.t0 - facts.committed->Last().t_end() < kLookTime) return false;
+  memory_.looks_at_W.reset();
+  const Eigen::Vector3d unseen = *result->unseen_W;
+  if ((facts.start.p - unseen).norm() > kAsideFrom) return false;
+  const HullSpace& hull = *facts.hull;
+  double lowest = -std::numeric_limits<double>::infinity();
+  if (hull.pad != nullptr) {
+    lowest = LowestRest(facts.t0, hull);
+    if (facts.endpoint.leads_to_contact() && hull.space->OverPad(facts.start.p)) return false;
+  }
+  for (const Eigen::Vector3d& shift : Vantages(facts.start.p, unseen, facts.pull_W)) {
+    if (facts.start.p.z() + shift.z() < lowest) continue;
+    if (!Stops(facts, shift, Fallback::Room::kOfPlans, result)) continue;
+    memory_.looks_at_W = unseen;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace touchdown::planning

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "planning/replan/fallback.h"
+#include "touchdown/planning/certify/stored_stop.h"
+#include "touchdown/planning/replan/replan_result.h"
+#include "touchdown/planning/spline/endpoint.h"
+#include "touchdown/planning/spline/limits.h"
+#include "touchdown/planning/spline/uniform_bspline.h"
+
+namespace touchdown::planning {
+
+/// What the ladder below a plan goes by.
+struct FallbackFacts {
+  const FlightPair* committed = nullptr;
+  bool planned = false;  ///< the committed curve is a plan to the pad
+  SplineState start;
+  double t0 = 0.0;        ///< of the start [s]
+  double reaction = 0.0;  ///< after which a newer stop begins [s]
+  const HullSpace* hull = nullptr;
+  EndpointTarget endpoint;
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
+};
+
+/// What the ladder came to.
+struct [[nodiscard]] Fallen {
+  bool commits = false;  ///< the result's pair takes over; else what is committed goes on
+  bool on_plan = false;  ///< what is flown then, new or not, is a plan to the pad
+};
+
+/// Whether the committed pair is about to make a contact that is still wanted. Nothing is put off then: the pair was
+/// proven until there.
+bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& endpoint,
+               const HullSpace& hull);
+
+/// Where no plan was certified, the first of this that is proven: the landing that is committed, the committed curve
+/// with a newer stop, a way out from rest, a better place to look from, a rest; then the stop that is stored; and
+/// where that was a landing that misses, up, proven or not. It remembers what a rest was for. Does not allocate.
+class FallbackLadder {
+ public:
+  explicit FallbackLadder(const Limits& limits) : fallback_(limits) {}
+
+  /// What the pull of this step leaves of the limits.
+  void SetLimits(const Limits& limits) { fallback_.SetLimits(limits); }
+
+  /// Fills curve, stop, certificate, status, and what is told of the map. @pre `result` tells the reason, the cell that
+  /// was not seen, whether tracking is lost, and whether a plan may end in contact.
+  Fallen StepDown(const FallbackFacts& facts, ReplanResult* result);
+
+  /// The caller asked for a rest, `climb` higher [m], or as much of that as a roof leaves.
+  Fallen Rest(const FallbackFacts& facts, double climb, ReplanResult* result);
+
+  /// The committed curve, with a newer stop.
+  bool GoesOn(const FallbackFacts& facts, ReplanResult* result);
+
+  /// The start itself leads into an obstacle: arriving later does not change that.
+  bool NoTimeToBrake(const SplineState& start, const FreeSpace& space) {
+    return fallback_.NoTimeToBrake(start, space);
+  }
+
+  /// Who went to where a cell is in sight makes no plan before it is known, or there is no better place.
+  bool StillLooks(const OccupancyMap& map, bool from_odometry);
+
+  /// What a committed rest is for.
+  struct Memory {
+    std::optional<Eigen::Vector3d> looks_at_W;  ///< it leads to where this is in sight
+    std::optional<double> climb;                ///< the caller asked for it, so much higher [m]
+  };
+  const Memory& memory() const { return memory_; }
+  void Restore(const Memory& memory) { memory_ = memory; }
+  void Forget() { memory_ = {}; }
+  void ForgetClimb() { memory_.climb.reset(); }
+
+ private:
+  bool Stops(const FallbackFacts& facts, const Eigen::Vector3d& shift, Fallback::Room room,
+             ReplanResult* result);
+  bool StepsAside(const FallbackFacts& facts, ReplanResult* result);
+
+  Fallback fallback_;
+  Memory memory_;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning/replan/pair_binder.h"
+#include "planning/replan/prepared_problems.h"
+#include "planning/search/timed_way.h"
+#include "planning/search/way_finder.h"
+#include "planning/search/work_budget.h"
+#include "touchdown/planning/certify/certificate.h"
+#include "touchdown/planning/certify/stored_stop.h"
+#include "touchdown/planning/problem/landing_problem.h"
+#include "touchdown/planning/replan/replan_log.h"
+#include "touchdown/planning/replan/replan_result.h"
+#include "touchdown/solvers/backend_registry.h"
+
+namespace touchdown::planning {
+
+/// What one attempt is made with.
+struct AttemptRequest {
+  SplineState start;
+  double t0 = 0.0;
+  double reaction = 0.0;  ///< after which the plan's stop begins [s]
+  const estimation::PadPrediction* pad = nullptr;
+  EndpointTarget target;
+  Limits limits;  ///< what the pull leaves of the options' (LimitsUnder)
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();  ///< steady force over the mass [m/s^2]
+  double duration = 1.0;                             ///< T, or its first guess [s]
+  int segments = 0;                                  ///< as SegmentsFor gives them ...
+  int near_segments = 0;                             ///< ... and where an obstacle is near
+  ArrivalMode arrival = ArrivalMode::kFixed;
+  const FreeSpace* space = nullptr;
+  const HullSpace* hull = nullptr;  ///< of `space`: where the plan's pair is to be proven
+  PairEnd pair_end = PairEnd::kRest;
+  const UniformBspline* previous = nullptr;  ///< committed curve ...
+  bool starts_on_previous = false;           ///< ... which is the way of choice then ...
+  const BoundParts* bound = nullptr;         ///< ... and what it was bound to
+  bool keeps = false;                        ///< it may be kept while it holds
+  bool looks = true;  ///< for the best way anew; else what is committed is kept while it holds
+  AttemptLog* log = nullptr;  ///< filled if not null (allocates)
+};
+
+/// One attempt at a plan, in stages (plan_attempt.cc): pose the problem, solve it without obstacles, lay ways past
+/// what blocks that, follow each with pairs that are bound along it until the curve is clear, certify, and
+/// choose the cheapest that is certified. Against the side that is flown already another has to be much
+/// cheaper. Keeps one prepared problem and backend per number of segments.
+class PlanAttempt {
+ public:
+  static constexpr int kMostControlPoints = PairBinder::kMostControlPoints;  ///< of a plan
+
+  PlanAttempt(const ReplannerOptions& options, const solvers::BackendRegistry& backends);
+  PlanAttempt(const PlanAttempt&) = delete;  // its parts take from one budget
+  PlanAttempt& operator=(const PlanAttempt&) = delete;
+
+  /// Makes room for searches on maps with this one's window.
+  void Prepare(const OccupancyMap& map) { finder_.Prepare(map); }
+
+  /// All attempts until the next call share the step's budget, max_work.
+  void BeginStep() {
+    budget_.Refill(options_.max_work);
+    spent_ = false;
+  }
+  /// An attempt of this step ended for want of budget.
+  bool spent() const { return spent_; }
+  /// Of this step's budget.
+  int work() const { return budget_.done(); }
+
+  /// Tries once; fills curve with its stop, certificate, pairs, guide paths, solver, counts and times of `result`
+  /// (adding to counts and times). Returns kNone when the certificate passed. With a backend that
+  /// does not allocate it does not either, once its buffers have grown.
+  ReplanReason Run(const AttemptRequest& request, ReplanResult* result);
+
+  /// Of the plan that the last attempt tried [s]: as requested, or later where the way round took longer or
+  /// the arrival was free.
+  double duration() const { return duration_; }
+
+ private:
+  /// Factors on weights.
+  struct Pressure {
+    double pairs = 1.0;
+    double limits = 1.0;
+  };
+
+  /// A problem with its ends set, and the point that the next solve of it starts from.
+  struct Posed {
+    PreparedProblem* prepared = nullptr;
+    int segments = 0;
+  };
+
+  /// A plan on its way through the stages.
+  struct Candidate {
+    std::vector<ObstaclePair> pairs;
+    Pressure pressure;
+    FlightPair pair;
+    std::vector<BlockedRun> blocked;  // of its curve
+    std::optional<Certificate> certificate;
+    solvers::SolverSummary solver;
+    BoundParts bound;
+    bool solved = false;
+    int round = -1;  // of the log
+    ReplanReason reason = ReplanReason::kNone;
+  };
+
+  static void Begin(Candidate* candidate);
+
+  ReplanReason Try(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason FindAnew(const AttemptRequest& request, const UniformBspline* warm,
+                        bool leads_around, ReplanResult* result);
+
+  ReplanReason Pose(const AttemptRequest& request, int segments, Posed* posed);
+  ReplanReason SolveWithoutPairs(const AttemptRequest& request, int segments,
+                                 const UniformBspline* guess, Posed* posed, Candidate* candidate,
+                                 ReplanResult* result);
+  ReplanReason Refine(const AttemptRequest& request, Posed* posed, Candidate* candidate,
+                      ReplanResult* result);
+  void KeepWay(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason LayWay(const AttemptRequest& request, const BlockedRun& span, double max_cost,
+                      ReplanResult* result);
+  void Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request);
+  ReplanReason KeepCommitted(const AttemptRequest& request, ReplanResult* result);
+  ReplanReason TryWays(const AttemptRequest& request, Posed* posed, ReplanResult* result);
+  ReplanReason Follow(const AttemptRequest& request, const TimedWay& way, const BoundParts& more,
+                      double latest, const Posed& posed, Candidate* candidate,
+                      ReplanResult* result);
+  ReplanReason BindBlocked(const AttemptRequest& request, const TimedWay& way,
+                           const Candidate& candidate);
+  ReplanReason Solve(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                     ReplanResult* result);
+  ReplanReason KeepLimits(const AttemptRequest& request, const Posed& posed, Candidate* candidate,
+                          ReplanResult* result);
+  ReplanReason Finish(const AttemptRequest& request, Candidate* candidate, ReplanResult* result);
+  double CostOfShape(const solvers::SolverSummary& solver) const;
+  bool Better(const Candidate& a, const Candidate& b, bool keeps_side) const;
+
+  ReplannerOptions options_;
+  PreparedProblems problems_;
+  WorkBudget budget_;  // of the step
+  WayFinder finder_;
+  PairBinder binder_;
+  std::vector<std::string> pressed_;  // terms whose weights are scaled
+
+  // Room of the attempt under way.
+  double duration_ = 0.0;
+  int segments_ = 0;
+  bool spent_ = false;
+  Candidate best_, other_;
+  UniformBspline first_curve_;  // before any pair
+  TimedWay kept_, way_;
+  bool kept_asked_ = false;
+  FreeSpace later_space_;
+  GuidePath path_;
+};
+
+}  // namespace touchdown::planning

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the replanner refuses before it plans.
+#pragma once
+
+#include "touchdown/planning/replan/replanner.h"
+
+namespace touchdown::planning {
+
+/// Throws std::invalid_argument naming the first option out of its range, its value and the range.
+void Validate(const ReplannerOptions& options);
+
+// Each of these says in some words what is wrong, nullptr: nothing. They do not allocate.
+
+/// The times and the vehicle's state can be used: finite, ordered, and no farther or faster than a vehicle
+/// gets.
+const char* WrongInState(const ReplanInput& input);
+
+/// The pad is known, and its state at the start can be used.
+const char* WrongInPad(const ReplanInput& input);
+
+/// The pad and the endpoint can be used.
+const char* WrongInTarget(const ReplanInput& input);
+
+}  // namespace touchdown::planning

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names and sentences of the replanning statuses.
+
+#include "touchdown/planning/replan/replan_result.h"
+
+namespace touchdown::planning {
+
+const char* ToString(ReplanStatus status) {
+  switch (status) {
+    case ReplanStatus::kPlanned:
+      return "planned";
+    case ReplanStatus::kKept:
+      return "kept";
+    case ReplanStatus::kBraking:
+      return "braking";
+    case ReplanStatus::kClimbing:
+      return "climbing";
+    case ReplanStatus::kEscaping:
+      return "escaping";
+    case ReplanStatus::kHolding:
+      return "holding";
+    case ReplanStatus::kUnsafe:
+      return "unsafe";
+  }
+  return "unknown";
+}
+
+const char* ToString(ReplanReason reason) {
+  switch (reason) {
+    case ReplanReason::kNone:
+      return "none";
+    case ReplanReason::kInvalidInput:
+      return "invalid_input";
+    case ReplanReason::kStartBlocked:
+      return "start_blocked";
+    case ReplanReason::kGoalBlocked:
+      return "goal_blocked";
+    case ReplanReason::kPadUnreachable:
+      return "pad_unreachable";
+    case ReplanReason::kSearchFailed:
+      return "search_failed";
+    case ReplanReason::kSolverFailed:
+      return "solver_failed";
+    case ReplanReason::kCollisionRemains:
+      return "collision_remains";
+    case ReplanReason::kUnobserved:
+      return "unobserved";
+    case ReplanReason::kEndTooFast:
+      return "end_too_fast";
+    case ReplanReason::kBudgetSpent:
+      return "budget_spent";
+    case ReplanReason::kLimitsExceeded:
+      return "limits_exceeded";
+    case ReplanReason::kAtGoal:
+      return "at_goal";
+  }
+  return "unknown";
+}
+
+const char* Explain(ReplanStatus status) {
+  switch (status) {
+    case ReplanStatus::kPlanned:
+      return "A new plan to the pad is flown.";
+    case ReplanStatus::kKept:
+      return "The committed curve is still safe and goes on.";
+    case ReplanStatus::kBraking:
+      return "The vehicle brakes to rest.";
+    case ReplanStatus::kClimbing:
+      return "The vehicle climbs to rest along a certified curve.";
+    case ReplanStatus::kEscaping:
+      return "The vehicle leaves the inflated zone around an obstacle and comes to rest.";
+    case ReplanStatus::kHolding:
+      return "The vehicle is at rest in free space and stays.";
+    case ReplanStatus::kUnsafe:
+      return "Nothing could be certified: the vehicle brakes without a certificate.";
+  }
+  return "Unknown status.";
+}
+
+const char* Explain(ReplanReason reason) {
+  switch (reason) {
+    case ReplanReason::kNone:
+      return "A new plan was certified.";
+    case ReplanReason::kInvalidInput:
+      return "A number of the input is not finite or absurd, or an earlier answer has not taken "
+             "over yet.";
+    case ReplanReason::kStartBlocked:
+      return "The start is inside an inflated obstacle and no certified way leads out.";
+    case ReplanReason::kGoalBlocked:
+      return "The end is inside an inflated obstacle, or beyond floor or ceiling, at every arrival "
+             "time tried.";
+    case ReplanReason::kPadUnreachable:
+      return "No arrival time up to the longest allowed reaches the pad within the limits.";
+    case ReplanReason::kSearchFailed:
+      return "No way around an obstacle was found, or the work that a search may do was done.";
+    case ReplanReason::kSolverFailed:
+      return "The solver returned no usable point.";
+    case ReplanReason::kCollisionRemains:
+      return "The curve is still blocked after every re-binding round.";
+    case ReplanReason::kUnobserved:
+      return "The plan is too fast to stop before space that was never observed.";
+    case ReplanReason::kEndTooFast:
+      return "The pad moves at more than nine tenths of the speed limit: hard limits leave no "
+             "interior.";
+    case ReplanReason::kBudgetSpent:
+      return "The work that a step may do was done before there was a plan.";
+    case ReplanReason::kLimitsExceeded:
+      return "The curve still exceeds a limit after every re-timing.";
+    case ReplanReason::kAtGoal:
+      return "The goal is nearer than the baseline makes plans for.";
+  }
+  return "unknown";
+}
+
+}  // namespace touchdown::planning

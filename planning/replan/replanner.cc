@@ -1,0 +1,541 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The replanning step: start from the committed trajectory (or from the vehicle where tracking lost
+// it), choose an arrival, try, re-time while limits or obstacles forbid, commit what is certified.
+// If nothing is, the ladder of fallback_ladder.h. What is committed is always a pair, a curve and its stop, so that
+// a step that has no answer needs none.
+
+#include "touchdown/planning/replan/replanner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "planning/certify/pad_strip.h"
+#include "planning/problem/duration_guess.h"
+#include "planning/replan/fallback.h"
+#include "planning/replan/fallback_ladder.h"
+#include "planning/replan/plan_attempt.h"
+#include "planning/replan/replan_checks.h"
+#include "planning/search/timed_way.h"
+#include "touchdown/planning/replan/attempt_ladder.h"
+#include "touchdown/planning/replan/stage_timer.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kLongAgo = -std::numeric_limits<double>::infinity();
+constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
+constexpr int kUsualPaths = 32;       // room for those of one step
+constexpr int kUsualPathPoints = 512;
+constexpr double kClockRounding = 1e-6;  // [s]
+constexpr double kNewBeginning = 2.0;    // who asks later than this begins anew [s]
+constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
+
+/// Length of what is left of a curve over the straight line between its ends, at least 1.
+double DetourOf(const UniformBspline& curve, double from) {
+  const double straight = (curve.Position(curve.t_end()) - curve.Position(from)).norm();
+  return straight > 0.0 ? std::max(1.0, LengthOf(curve, from, curve.t_end()) / straight) : 1.0;
+}
+
+SplineState ToSpline(const FlatState& flat) { return {flat.p_WB, flat.v_WB, flat.a_WB}; }
+
+/// The deck that there is, below a pad that is known; nullptr: none.
+const estimation::PadPrediction* DeckOf(const ReplanInput& input) {
+  return input.pad != nullptr && input.pad->has_deck() ? input.pad : nullptr;
+}
+
+}  // namespace
+
+class Replanner::Impl {
+ public:
+  Impl(const ReplannerOptions& options, const solvers::BackendRegistry& backends)
+      : options_(options), attempt_(options, backends), fallback_(options.limits) {
+    for (UniformBspline* curve : {&current_.curve, &current_.stop, &next_.curve, &next_.stop,
+                                  &result_.curve, &result_.stop}) {
+      curve->Reserve(PlanAttempt::kMostControlPoints);
+    }
+    result_.guide_paths.Reserve(kUsualPaths, kUsualPathPoints);
+    for (BoundParts* parts : {&bound_, &result_.bound}) {
+      parts->reserve(PlanAttempt::kMostControlPoints);
+    }
+  }
+
+  void Prepare(const OccupancyMap& map) { attempt_.Prepare(map); }
+
+  /// The pair of the result takes over at t0.
+  void Commit(double t0) {
+    current_ = next_;
+    next_ = result_.pair();
+    next_.from_unknown = result_.certificate.start_cells.unknown;
+    takes_over_ = t0;
+    result_.committed = true;
+  }
+
+  /// A pair that comes after the older one's stop has begun comes too late: it does not start there.
+  void TakeOverAt(double t) {
+    if (!result_.committed || t <= takes_over_) return;
+    takes_over_ = t;
+    if (t > current_.t_stop) {
+      next_ = current_;
+      result_.committed = planned_before_ = false;
+      fallback_.Forget();
+      Fallback::FlyStop(next_, t, HullSpace{}, &result_);
+    }
+  }
+
+  /// The pair that is flown at time t.
+  const FlightPair& InForce(double t) const { return t < takes_over_ ? current_ : next_; }
+
+  const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map);
+  const ReplanResult& Rest(const ReplanInput& input, double climb, const OccupancyMap& map);
+
+  ReplannerState State() const;
+  void Restore(const ReplannerState& state);
+
+  const ReplannerOptions options_;
+  FlightPair current_, next_;
+  double takes_over_ = 0.0;  // next_ does [s]
+  ReplanLog* log_ = nullptr;
+
+ private:
+  FreeSpace Space(const OccupancyMap& map) const;
+  FreeSpace SpaceWithoutPad(const ReplanInput& input, const OccupancyMap& map) const;
+  double WatchedUntil(const ReplanInput& input) const;
+  FreeSpace SpaceOverPad(const ReplanInput& input, const SplineState& start, double t_end,
+                         const OccupancyMap& map) const;
+  void Begin(const ReplanInput& input);
+  const char* WrongInState(const ReplanInput& input) const;
+  const ReplanResult& RefuseState(const ReplanInput& input, const char* wrong);
+  void NoteAsked(double t_start);
+  SplineState Start(const ReplanInput& input);
+  double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
+  Rung FirstRung(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
+                 LadderFacts* facts);
+  AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start, const Rung& rung,
+                            const LadderFacts& facts, double first, const HullSpace& hull);
+  ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
+  HullSpace HullIn(const FreeSpace& space, const estimation::PadPrediction* pad) const;
+  std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
+  FallbackFacts FactsFor(const ReplanInput& input, const SplineState& start,
+                         const HullSpace& hull) const;
+  const ReplanResult& Finish(const Fallen& fallen, double t0);
+
+  PlanAttempt attempt_;
+  FallbackLadder fallback_;
+  Limits limits_;                  // what the pull of this step leaves
+  double margin_ = 0.0;            // around the hull in this step [m]
+  double reaction_ = 0.0;          // after which a stop of this step begins [s]
+  std::optional<double> asked_t_;  // the last answer took over then [s]
+  bool stands_ = false;            // something is committed
+  ReplanResult result_;
+  UnseenZone unseen_;
+  bool planned_before_ = false;     // the committed curve is a plan to the pad: its arrival is kept
+  bool around_unseen_ = false;      // ... and it led around cells that were not seen
+  BoundParts bound_;                // what of it is bound to free space
+  double looked_t_ = 0.0;           // when other ways were last looked for [s]
+  std::optional<Rung> unfinished_;  // at which this step will have run out of its budget, ...
+  std::optional<Rung> resumes_;     // ... and the last one did
+  FreeSpace strip_;                 // over the last known pad ...
+  double strip_t_ = kLongAgo;       // ... at this time
+};
+
+FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
+  FreeSpace space;
+  space.map = &map;
+  space.floor = options_.floor_height;
+  space.ceiling = options_.ceiling_height;
+  return space;
+}
+
+FreeSpace Replanner::Impl::SpaceOverPad(const ReplanInput& input, const SplineState& start,
+                                        double t_end, const OccupancyMap& map) const {
+  if (DeckOf(input) == nullptr) return SpaceWithoutPad(input, map);
+  FreeSpace space = Space(map);
+  LayPadStrip(*input.pad, input.endpoint, start.p, input.t_start, t_end, options_.pad_radius,
+              options_.contact_height, &space);
+  return space;
+}
+
+/// A vehicle that has just lost its pad is still above it: the strip stays for a while.
+FreeSpace Replanner::Impl::SpaceWithoutPad(const ReplanInput& input,
+                                           const OccupancyMap& map) const {
+  FreeSpace space = input.t_start - strip_t_ <= kStripMemory ? strip_ : Space(map);
+  space.map = &map;
+  return space;
+}
+
+/// The strip over the pad reaches as far as the committed plan does.
+double Replanner::Impl::WatchedUntil(const ReplanInput& input) const {
+  return std::max(input.t_start + options_.min_duration, next_.curve.t_end());
+}
+
+ReplannerState Replanner::Impl::State() const {
+  ReplannerState state;
+  state.current = current_;
+  state.next = next_;
+  state.planned = planned_before_;
+  state.around_unseen = around_unseen_;
+  state.bound = bound_;
+  state.looked_t = looked_t_;
+  state.asked_t = asked_t_;
+  state.unfinished = unfinished_;
+  state.looks_at_W = fallback_.memory().looks_at_W;
+  state.climb = fallback_.memory().climb;
+  if (std::isfinite(strip_t_)) state.strip_t = strip_t_;
+  state.strip_from = strip_.pad_from;
+  state.strip_to = strip_.pad_to;
+  state.strip_floor = strip_.pad_floor;
+  return state;
+}
+
+void Replanner::Impl::Restore(const ReplannerState& state) {
+  stands_ = true;
+  current_ = state.current;
+  next_ = state.next;
+  takes_over_ = next_.curve.t0();
+  planned_before_ = state.planned;
+  around_unseen_ = state.around_unseen;
+  bound_ = state.bound;
+  looked_t_ = state.looked_t;
+  asked_t_ = state.asked_t;
+  unfinished_ = state.unfinished;
+  fallback_.Restore({state.looks_at_W, state.climb});
+  strip_t_ = state.strip_t.value_or(kLongAgo);
+  strip_.floor = options_.floor_height;
+  strip_.ceiling = options_.ceiling_height;
+  strip_.pad_from = state.strip_from;
+  strip_.pad_to = state.strip_to;
+  strip_.pad_radius = options_.pad_radius;
+  strip_.pad_floor = state.strip_floor;
+}
+
+void Replanner::Impl::Begin(const ReplanInput& input) {
+  resumes_ = std::exchange(unfinished_, std::nullopt);
+  margin_ = input.margins.Sum();
+  reaction_ = options_.reaction;
+  limits_ = LimitsUnder(options_.limits, options_.problem.vehicle, input.pull_W);
+  fallback_.SetLimits(limits_);
+  if (log_) log_->attempts.clear();
+  result_.times = {};
+  result_.guide_paths.Clear();
+  result_.pairs = result_.solves = result_.rebinds = result_.work = 0;
+  result_.from_odometry = result_.map_error = result_.committed = false;
+  result_.proven = true;
+  result_.ends_in_contact = DeckOf(input) && input.endpoint.may_touch(options_.contact_height);
+  result_.unseen_W.reset();
+  result_.reason = ReplanReason::kNone;
+  result_.detail = {};
+  result_.certificate = {};
+  result_.solver.status = solvers::SolveStatus::kNumericalFailure;
+  result_.solver.iterations = result_.solver.evaluations = 0;
+  result_.solver.cost = 0.0;
+  for (solvers::TermCost& term : result_.solver.cost_by_term) term.cost = 0.0;
+}
+
+/// Without a usable state of the vehicle nothing can be decided: what is committed goes on, to its stop.
+const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const char* wrong) {
+  const double t0 = std::isfinite(input.t_start) ? input.t_start : next_.curve.t0();
+  Fallback::FlyStop(next_, t0, HullSpace{}, &result_);
+  result_.reason = ReplanReason::kInvalidInput;
+  result_.detail = wrong;
+  return result_;
+}
+
+/// Who asks less often than options_.reaction says is taken to go on like that: else each plan would be flown
+/// into its stop.
+void Replanner::Impl::NoteAsked(double t_start) {
+  const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
+  if (since <= kNewBeginning) reaction_ = std::max(reaction_, since);
+  asked_t_ = t_start;
+}
+
+/// The committed state when the answer takes over, or the vehicle's own where tracking is lost.
+SplineState Replanner::Impl::Start(const ReplanInput& input) {
+  const FlatState reference = InForce(input.t_now).At(input.t_now);
+  const double error = (reference.p_WB - input.vehicle.p_WB).norm();
+  result_.from_odometry = error > options_.odometry_threshold;
+  if (!result_.from_odometry) return ToSpline(InForce(input.t_start).At(input.t_start));
+  const double latency = input.t_start - input.t_now;
+  return {input.vehicle.p_WB + latency * input.vehicle.v_WB, input.vehicle.v_WB,
+          Eigen::Vector3d::Zero()};
+}
+
+/// The last answer must have taken over before the next is asked for: only one is ever pending.
+const char* Replanner::Impl::WrongInState(const ReplanInput& input) const {
+  if (!stands_) throw std::invalid_argument("Replanner: a step is asked for before CommitHover");
+  if (const char* wrong = planning::WrongInState(input)) return wrong;
+  const bool in_time = input.t_now >= takes_over_ - kClockRounding;
+  return in_time ? nullptr : "an earlier answer has not taken over yet at t_now";
+}
+
+HullSpace Replanner::Impl::HullIn(const FreeSpace& space,
+                                  const estimation::PadPrediction* pad) const {
+  HullSpace hull;
+  hull.space = &space;
+  hull.hull_radius = options_.hull_radius;
+  hull.margin = margin_;
+  hull.pad = pad;
+  hull.deck_half_size = options_.deck_half_size;
+  hull.foot_depth = options_.contact_height;
+  hull.start_proven = !result_.from_odometry && next_.proven && !next_.from_unknown;
+  return hull;
+}
+
+const ReplanResult& Replanner::Impl::Replan(const ReplanInput& input, const OccupancyMap& map) {
+  Begin(input);
+  StageTimer total(&result_.times.total);
+  if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
+  NoteAsked(input.t_start);
+  const SplineState start = Start(input);
+  fallback_.ForgetClimb();
+  const char* wrong = WrongInTarget(input);
+  const bool target_valid = wrong == nullptr;
+  if (wrong) result_.detail = wrong;
+  const bool looks = target_valid && fallback_.StillLooks(map, result_.from_odometry);
+  if (looks) result_.unseen_W = fallback_.memory().looks_at_W;
+  result_.reason = !target_valid ? ReplanReason::kInvalidInput
+                   : looks       ? ReplanReason::kUnobserved
+                                 : Plan(input, start, map);
+  const FreeSpace space = target_valid ? SpaceOverPad(input, start, WatchedUntil(input), map)
+                                       : SpaceWithoutPad(input, map);
+  if (target_valid && DeckOf(input)) {
+    strip_ = space;
+    strip_t_ = input.t_start;
+  }
+  if (result_.reason == ReplanReason::kNone) {
+    result_.status = ReplanStatus::kPlanned;
+    planned_before_ = true;
+    bound_ = result_.bound;
+    Commit(input.t_start);
+    result_.unseen_W = NeededNext(input, HullIn(space, DeckOf(input)));
+    return result_;
+  }
+  const HullSpace hull = HullIn(space, target_valid ? DeckOf(input) : nullptr);
+  return Finish(fallback_.StepDown(FactsFor(input, start, hull), &result_), input.t_start);
+}
+
+/// They point to what is committed, and to `hull`.
+FallbackFacts Replanner::Impl::FactsFor(const ReplanInput& input, const SplineState& start,
+                                        const HullSpace& hull) const {
+  FallbackFacts facts;
+  facts.committed = &next_;
+  facts.start = start;
+  facts.t0 = input.t_start;
+  facts.reaction = reaction_;
+  facts.hull = &hull;
+  facts.endpoint = input.endpoint;
+  facts.pull_W = input.pull_W;
+  facts.planned = planned_before_;
+  return facts;
+}
+
+/// Commits what the ladder came to, if that is new.
+const ReplanResult& Replanner::Impl::Finish(const Fallen& fallen, double t0) {
+  planned_before_ = fallen.on_plan;
+  if (fallen.commits) Commit(t0);
+  return result_;
+}
+
+/// What the stops of the steps to come need: the way on behind the pair's first part.
+std::optional<Eigen::Vector3d> Replanner::Impl::NeededNext(const ReplanInput& input,
+                                                           const HullSpace& hull) const {
+  const UniformBspline& curve = next_.curve;
+  const double t_from = input.t_start + reaction_;
+  const double t_to = std::min(t_from + kLookAhead, curve.t_end());
+  if (t_to <= t_from) return std::nullopt;
+  return SweepHull(curve, t_from, t_to, {curve.Position(t_from), t_from}, hull, kAnyTime).unseen_W;
+}
+
+const ReplanResult& Replanner::Impl::Rest(const ReplanInput& input, double climb,
+                                          const OccupancyMap& map) {
+  Begin(input);
+  StageTimer total(&result_.times.total);
+  if (const char* wrong = WrongInState(input)) return RefuseState(input, wrong);
+  NoteAsked(input.t_start);
+  const SplineState start = Start(input);
+  const bool remembered = input.t_start - strip_t_ <= kStripMemory || WrongInTarget(input);
+  const FreeSpace space = remembered ? SpaceWithoutPad(input, map)
+                                     : SpaceOverPad(input, start, WatchedUntil(input), map);
+  const HullSpace hull = HullIn(space, WrongInPad(input) ? nullptr : DeckOf(input));
+  return Finish(fallback_.Rest(FactsFor(input, start, hull), climb, &result_), input.t_start);
+}
+
+/// The first arrival from T on at which the plan's end is free, before the next attempt's would be, or T if
+/// there is none: a pad that passes an obstacle is met behind it.
+double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
+                                         const OccupancyMap& map) const {
+  const FreeSpace space = Space(map);
+  const double latest = std::min(options_.constants.stretch * T, options_.max_duration);
+  for (double later = T; later <= latest; later *= options_.constants.end_step) {
+    const SplineState end = EndStateAt(*input.pad, input.endpoint, input.t_start + later).state;
+    if (!space.Blocked(end.p)) return later;
+  }
+  return T;
+}
+
+/// What is tried first, and what the ladder of attempts depends on. Out of reach: the fresh guess is longer than
+/// a plan may be.
+Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& start,
+                                const FreeSpace& plain, LadderFacts* facts) {
+  StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
+  const auto guess = [&](double detour) {
+    return GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, detour);
+  };
+  facts->fresh = guess(1.0);
+  facts->lands_soon = !result_.from_odometry &&
+                      LandsSoon(next_, input.t_start, input.endpoint, HullIn(plain, DeckOf(input)));
+  facts->at_rest = !result_.from_odometry && Fallback::AtRest(next_, input.t_start);
+  facts->arrival = options_.arrival;
+  facts->min_duration = options_.min_duration;
+  facts->max_duration = options_.max_duration;
+  // An arrival once promised is kept: guessing anew at every step would put it off for ever. What would be soon
+  // in the straight way need not be on a long way round.
+  const double left = next_.curve.t_end() - input.t_start;
+  const bool on_plan = planned_before_ && !result_.from_odometry;
+  const bool promised = on_plan && guess(DetourOf(next_.curve, input.t_start)) >
+                                       options_.constants.retime_below * left;
+  // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
+  const double shortest =
+      input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
+  Rung rung;
+  rung.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
+  // The prepared problems' free arrival has the usual bound below.
+  const bool fixed = rung.duration < options_.min_duration || facts->lands_soon;
+  rung.arrival = fixed ? ArrivalMode::kFixed : options_.arrival;
+  // A plan that led around what was not seen is followed by others that do: not by turns.
+  const bool closes = around_unseen_ && on_plan && !facts->lands_soon;
+  rung.unseen_reach = closes ? options_.constants.unseen_reach : 0.0;
+  return rung;
+}
+
+/// The ladder of attempts (attempt_ladder.h), until one gives a plan.
+ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& start,
+                                   const OccupancyMap& map) {
+  LadderFacts facts;
+  Rung rung = FirstRung(input, start, Space(map), &facts);
+  if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
+  const bool on_plan = planned_before_ && !result_.from_odometry;
+  const double first = std::max(rung.duration, facts.fresh);
+  // On a plan the next step first looks whether that holds.
+  if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) rung = *resumes_;
+  attempt_.BeginStep();
+  for (int tried = 1;; ++tried) {
+    if (!facts.lands_soon) rung.duration = FirstFreeArrival(input, rung.duration, map);
+    FreeSpace space = SpaceOverPad(input, start, input.t_start + rung.duration, map);
+    const HullSpace hull = HullIn(space, DeckOf(input));
+    if (rung.unseen_reach > 0.0) {
+      unseen_.Build(hull, start.p, rung.unseen_reach);
+      space.unseen = &unseen_;
+    }
+    const ReplanReason reason =
+        attempt_.Run(RequestFor(input, start, rung, facts, first, hull), &result_);
+    result_.work = attempt_.work();
+    if (reason == ReplanReason::kNone) {
+      around_unseen_ = rung.unseen_reach > 0.0 && result_.rebinds > 0;
+      return reason;
+    }
+    if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
+      return reason;
+    // What is not seen yet may soon be: as long as it can, the committed curve goes on.
+    if (reason == ReplanReason::kUnobserved && rung.attempt == 0 && on_plan && !facts.at_rest &&
+        !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
+      return reason;
+    }
+    const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
+    if (attempt_.spent()) {
+      // A later attempt gets a whole budget in the next step; a first one had it, and is left behind.
+      unfinished_ = tried > 1 ? rung : climb.next;
+      // Who rests and does not see what the way on needs may look from elsewhere (fallback_ladder.h).
+      return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
+    }
+    if (!climb.next) return climb.reason;
+    rung = *climb.next;
+  }
+}
+
+/// @param first the first duration that was thought of [s].
+AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const SplineState& start,
+                                           const Rung& rung, const LadderFacts& facts, double first,
+                                           const HullSpace& hull) {
+  const StepConstants& constants = options_.constants;
+  const bool is_first = rung.attempt == 0;
+  AttemptRequest request;
+  request.start = start;
+  request.t0 = input.t_start;
+  request.reaction = reaction_;
+  request.pad = input.pad;
+  request.target = input.endpoint;
+  request.limits = limits_;
+  request.pull_W = input.pull_W;
+  request.arrival = rung.arrival;
+  request.duration = rung.duration;
+  request.space = hull.space;
+  request.hull = &hull;
+  // A stretched plan is slower, not longer: it needs hardly more control points.
+  const double longest = std::min(rung.duration, constants.grid_longest * first);
+  request.near_segments =
+      SegmentsFor(longest, limits_, constants.fine_segments, options_.segment_length);
+  request.segments = is_first ? SegmentsFor(longest, limits_, 1.0, options_.segment_length)
+                              : request.near_segments;
+  request.pair_end = facts.lands_soon          ? PairEnd::kContact
+                     : result_.ends_in_contact ? PairEnd::kRestOrContact
+                                               : PairEnd::kRest;
+  // The committed side of an obstacle is tried once; if it fails, the map decides anew.
+  request.previous = is_first && planned_before_ ? &next_.curve : nullptr;
+  request.starts_on_previous = request.previous != nullptr && !result_.from_odometry;
+  request.bound = &bound_;
+  // Shortly before contact nothing is kept: what was bound before would push the vehicle there.
+  const double left = next_.curve.t_end() - input.t_start;
+  request.keeps = request.starts_on_previous &&
+                  !(input.endpoint.leads_to_contact() && left < constants.near_contact);
+  request.looks = !request.keeps || input.t_start - looked_t_ >= constants.look_every;
+  if (request.looks) looked_t_ = input.t_start;
+  request.log = log_ ? &log_->attempts.emplace_back() : nullptr;
+  return request;
+}
+
+Replanner::Replanner(const ReplannerOptions& options, const solvers::BackendRegistry& backends) {
+  Validate(options);
+  impl_ = std::make_unique<Impl>(options, backends);
+}
+Replanner::~Replanner() = default;
+
+void Replanner::Prepare(const OccupancyMap& map) { impl_->Prepare(map); }
+
+void Replanner::CommitHover(const Eigen::Vector3d& p_W, double t) {
+  ControlPoints points(3, 4);
+  points.colwise() = p_W;
+  ReplannerState hover;
+  hover.current.curve = hover.next.curve = UniformBspline(points, 1.0, t);
+  impl_->Restore(hover);
+}
+
+const ReplanResult& Replanner::Replan(const ReplanInput& input, const OccupancyMap& map) {
+  return impl_->Replan(input, map);
+}
+
+const ReplanResult& Replanner::Rest(const ReplanInput& input, double climb,
+                                    const OccupancyMap& map) {
+  return impl_->Rest(input, climb, map);
+}
+
+void Replanner::TakeOverAt(double t) {
+  if (std::isnan(t)) throw std::invalid_argument("Replanner: TakeOverAt(NaN), it takes a time");
+  impl_->TakeOverAt(t);
+}
+
+FlatState Replanner::Reference(double t) const { return impl_->InForce(t).At(t); }
+
+const ReplannerOptions& Replanner::options() const { return impl_->options_; }
+
+ReplannerState Replanner::state() const { return impl_->State(); }
+
+void Replanner::Restore(const ReplannerState& state) { impl_->Restore(state); }
+
+void Replanner::set_log(ReplanLog* log) { impl_->log_ = log; }
+
+}  // namespace touchdown::planning

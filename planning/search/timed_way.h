@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "planning/search/grid_search.h"
+#include "touchdown/planning/certify/curve_check.h"
+#include "touchdown/planning/problem/bound_part.h"
+#include "touchdown/planning/spline/uniform_bspline.h"
+
+namespace touchdown::planning {
+
+/// Of a curve between two of its times, by 24 chords [m].
+double LengthOf(const UniformBspline& curve, double from, double to);
+
+/// A way for a curve to follow: places in time, along another curve but for detours past what blocks that.
+/// Times are the other curve's, and later by what the detours take longer. The parts that the detours replace
+/// are those that a curve has to be bound to. Nothing of it allocates, but to grow to a high-water mark.
+class TimedWay {
+ public:
+  TimedWay();
+
+  void Clear();
+
+  /// On along the curve, from `from` [s] on until `to`, both in the curve's time.
+  void AddCurve(const UniformBspline& curve, double from, double to);
+
+  /// Instead of the curve in `run`, at a constant speed. What the path is longer takes its time at `speed`
+  /// [m/s].
+  void AddDetour(const UniformBspline& curve, const BlockedRun& run, const GuidePath& path,
+                 double speed);
+
+  bool known() const { return !places_.empty(); }
+  double t0() const { return places_.front().t; }
+  double t_end() const { return places_.back().t; }
+  /// By what the detours take longer [s].
+  double delay() const { return delay_; }
+
+  /// Stretches that a curve has to be bound to, in the way's time.
+  const BoundParts& bound() const { return bound_; }
+  void Bind(const BoundPart& part) { bound_.push_back(part); }
+
+  /// Where the way is at a time, clamped to it. @pre known().
+  Eigen::Vector3d At(double t) const;
+
+  /// At a share of its time, in [0, 1]. @pre known().
+  Eigen::Vector3d AtShare(double share) const { return At(t0() + share * (t_end() - t0())); }
+
+  /// From one time to a later one, at least two places. @pre known().
+  void Sample(double from, double to, GuidePath* path) const;
+
+  /// Beside a stretch of a curve that follows it: from where it is nearest to the stretch's start to where it is
+  /// nearest to its end, or at the same shares of time where these are not in order. @pre known().
+  void SampleBeside(const UniformBspline& curve, const BlockedRun& run, GuidePath* path) const;
+
+  /// The way's time at a time of the curve that it follows, later by the detours until then.
+  double TimeOf(double curve_t) const;
+
+  /// Of the way in this part of its time [m]. @pre known().
+  double LengthOf(const BoundPart& part) const;
+
+ private:
+  struct Place {
+    double t;
+    Eigen::Vector3d p_W;
+  };
+
+  // In the time of the curve, and how late the way is before and behind.
+  struct Detour {
+    double from, to;
+    double late_before, late_behind;
+  };
+
+  double NearestTo(const Eigen::Vector3d& p_W) const;
+
+  std::vector<Place> places_;  // in order of time
+  BoundParts bound_;
+  std::vector<Detour> detours_;
+  double delay_ = 0.0;
+};
+
+}  // namespace touchdown::planning

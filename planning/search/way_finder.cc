@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A way tells the side on which an obstacle is passed, and how long that takes: so a search may be greedy, and
+// the curve that is flown already is as good a way as any. A wall that turns out to be longer than it seemed
+// moves the committed way by its length, and does not ask which way to take at all.
+
+#include "planning/search/way_finder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning/map/voxel_traversal.h"
+
+namespace touchdown::planning {
+
+namespace {
+
+constexpr double kStep = 0.05;        // sampling of a curve [s]
+constexpr double kLevelMargin = 0.3;  // of a way from floor and ceiling, out of the window [m]
+
+void CutToWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
+  const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Position(t))); };
+  if (!in_window(run->t_in)) return;
+  while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kStep);
+}
+
+void SampleBetweenLevels(const UniformBspline& curve, const BlockedRun& run, const FreeSpace& space,
+                         GuidePath* path) {
+  path->clear();
+  const double time = run.t_out - run.t_in;
+  const int steps = std::max(1, static_cast<int>(std::ceil(time / kStep)));
+  for (int i = 0; i <= steps; ++i) {
+    Eigen::Vector3d p = curve.Position(run.t_in + i * time / steps);
+    p.z() =
+        std::max(std::min(p.z(), space.ceiling - kLevelMargin), space.FloorAt(p) + kLevelMargin);
+    path->push_back(p);
+  }
+}
+
+}  // namespace
+
+WayFinder::WayFinder(double vertical_cost, const StepConstants& constants, WorkBudget* budget)
+    : constants_(constants),
+      search_({vertical_cost, constants.way_tight_cost}, constants.way_greed),
+      budget_(budget) {
+  barriers_.reserve(8);
+  runs_.reserve(64);
+  detour_.reserve(1024);
+}
+
+void WayFinder::Begin(double speed) {
+  barriers_.clear();
+  speed_ = speed;
+}
+
+SearchStatus WayFinder::Search(const FreeSpace& space, const Eigen::Vector3d& from,
+                               const Eigen::Vector3d& to, int most_work, double max_cost) {
+  const int most = std::max(0, most_work) / WorkBudget::kSpan;
+  const SearchStatus status = search_.Search(space, from, to, most, &detour_, barriers_, max_cost);
+  budget_->Take(WorkBudget::kSpan * search_.expansions());
+  return status;
+}
+
+void WayFinder::Keep(const UniformBspline& committed, double t_from, const FreeSpace& space,
+                     TimedWay* way) {
+  way->Clear();
+  FindBlockedRuns(committed, t_from, space, &runs_);
+  if (!runs_.empty() && (runs_.front().at_start || runs_.back().at_end)) return;
+  const WorkBudget::SetAside aside(1.0 - WorkBudget::kSearchShare, budget_);
+  double t = t_from;
+  for (const BlockedRun& run : runs_) {
+    way->AddCurve(committed, t, run.t_in);
+    const Eigen::Vector3d from = committed.Position(run.t_in), to = committed.Position(run.t_out);
+    const SearchStatus status =
+        Search(space, from, to, budget_->left(), std::numeric_limits<double>::infinity());
+    const double longest = (to - from).norm() + constants_.detour_longer;
+    if (status != SearchStatus::kFound || PathLength(detour_) > longest) return way->Clear();
+    way->AddDetour(committed, run, detour_, speed_);
+    t = run.t_out;
+  }
+  way->AddCurve(committed, t, committed.t_end());
+}
+
+SearchStatus WayFinder::LeadPast(const UniformBspline& curve, BlockedRun run,
+                                 const FreeSpace& space, TimedWay* way, int reserve,
+                                 double max_cost) {
+  way->Clear();
+  CutToWindow(curve, *space.map, &run);
+  const double share = ways_closed() > 0 ? WorkBudget::kSearchShare : 1.0;
+  const int most = static_cast<int>(share * (budget_->left() - reserve));
+  const SearchStatus status =
+      Search(space, curve.Position(run.t_in), curve.Position(run.t_out), most, max_cost);
+  // Out of the window only floor and ceiling block, and there is one way between them.
+  if (status == SearchStatus::kEndsOutside && ways_closed() > 0) return SearchStatus::kNoPath;
+  if (status == SearchStatus::kEndsOutside) SampleBetweenLevels(curve, run, space, &detour_);
+  if (status != SearchStatus::kFound && status != SearchStatus::kEndsOutside) return status;
+  way->AddCurve(curve, curve.t0(), run.t_in);
+  way->AddDetour(curve, run, detour_, speed_);
+  way->AddCurve(curve, run.t_out, curve.t_end());
+  return status;
+}
+
+void EndBeside(const TimedWay& way, const UniformBspline& curve, const FreeSpace& space,
+               double more, BlockedRun* run) {
+  const auto is_free = [&](const CellIndex& cell) { return !space.Blocked(cell); };
+  const auto sees_way = [&](double t) {
+    const Eigen::Vector3d there = way.AtShare((t - curve.t0()) / curve.duration());
+    return TraverseCells(curve.Position(t), there, space.map->resolution(), is_free);
+  };
+  for (double t = run->t_out; t < curve.t_end(); t += kStep) {
+    if (!sees_way(t)) run->t_out = std::min(t + more, curve.t_end());
+  }
+}
+
+}  // namespace touchdown::planning

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ownership of MuJoCo 2.2.2's C structures.
+//
+// mj_loadXML reports what is wrong with a model in its message; only where memory runs out does it leave by an error, and
+// then what its C++ parts hold is lost. It keeps the model parsed last in a global, hence the lock. mjVFS is megabytes large,
+// hence the heap; the text in it is freed by mj_deleteVFS, so it is allocated by mju_malloc.
+
+#include "sim/mujoco/mujoco_model.h"
+
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <cstring>
+#include <mutex>
+#include <stdexcept>
+
+#include "sim/mujoco/mujoco_call.h"
+
+namespace touchdown::sim {
+namespace {
+
+constexpr char kSceneName[] = "scene.xml";
+
+struct VfsDeleter {
+  void operator()(mjVFS* vfs) const noexcept {
+    mj_deleteVFS(vfs);
+    delete vfs;
+  }
+};
+
+void AddText(const char* name, const std::string& text, mjVFS* vfs) {
+  if (text.empty()) throw std::invalid_argument(std::string("MJCF: ") + name + " is empty");
+  const int size = static_cast<int>(text.size());
+  if (mj_makeEmptyFileVFS(vfs, name, size) != 0) {
+    throw std::runtime_error(std::string("MuJoCo: no room in memory for the text of ") + name);
+  }
+  std::memcpy(vfs->filedata[mj_findFileVFS(vfs, name)], text.data(), text.size());
+}
+
+MujocoModel Load(const char* name, const mjVFS* vfs) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  std::array<char, 1024> message{};
+  MujocoModel model;
+  CallMujoco([&] {
+    model.reset(mj_loadXML(name, vfs, message.data(), static_cast<int>(message.size())));
+  });
+  if (!model) {
+    for (char& c : message) {
+      if (c == '\n') c = ' ';
+    }
+    throw std::invalid_argument(std::string("MJCF: ") + message.data());
+  }
+  return model;
+}
+
+}  // namespace
+
+void MujocoModelDeleter::operator()(mjModel_* model) const noexcept { mj_deleteModel(model); }
+void MujocoDataDeleter::operator()(mjData_* data) const noexcept { mj_deleteData(data); }
+
+MujocoModel CompileMjcf(const std::string& mjcf, const std::string& vehicle_mjcf) {
+  std::unique_ptr<mjVFS, VfsDeleter> vfs(new mjVFS);
+  mj_defaultVFS(vfs.get());
+  AddText(kSceneName, mjcf, vfs.get());
+  if (!vehicle_mjcf.empty()) AddText(kVehicleIncludeName, vehicle_mjcf, vfs.get());
+  return Load(kSceneName, vfs.get());
+}
+
+MujocoModel CompileMjcfFile(const std::string& path) { return Load(path.c_str(), nullptr); }
+
+MujocoData MakeMujocoData(const mjModel_& model) {
+  MujocoData data;
+  CallMujoco([&] { data.reset(mj_makeData(&model)); });
+  if (!data) throw std::runtime_error("MuJoCo: no memory for the simulation's state");
+  return data;
+}
+
+}  // namespace touchdown::sim

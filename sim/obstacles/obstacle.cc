@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Distances and rays for boxes and cylinders (compound_shapes.cc has the others), each in the obstacle's own frame, where a box is
+// axis-aligned and a cylinder is a rectangle in (radius, z). The signed distance to a rectangle or
+// box of half extents h at a point p is |max(q, 0)| + min(max_i q_i, 0) with q = |p| - h.
+
+#include "sim/obstacles/obstacle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/base/argument_check.h"
+#include "sim/obstacles/ray_intersection.h"
+
+namespace touchdown::sim {
+namespace {
+
+constexpr double kMaxSize = 1000.0;       // [m]
+constexpr double kMaxCoordinate = 1.0e5;  // [m]
+
+// A vector of W in the frame of a box: turned back by its yaw.
+Eigen::Vector3d TurnedBack(double yaw, const Eigen::Vector3d& v_W) {
+  const double c = std::cos(yaw);
+  const double s = std::sin(yaw);
+  return {c * v_W.x() + s * v_W.y(), -s * v_W.x() + c * v_W.y(), v_W.z()};
+}
+
+void ValidateCenter(const Eigen::Vector3d& center, const std::string& name) {
+  for (int axis = 0; axis < 3; ++axis) {
+    CheckWithin(name + ": center." + "xyz"[axis], center[axis], -kMaxCoordinate, kMaxCoordinate);
+  }
+}
+
+void ValidateOne(const Box& box, const std::string& name) {
+  ValidateCenter(box.center, name);
+  for (int axis = 0; axis < 3; ++axis) {
+    CheckAbove(name + ": half_extents." + "xyz"[axis], box.half_extents[axis], 0.0, kMaxSize);
+  }
+  CheckWithin(name + ": yaw", box.yaw, -1.0e3, 1.0e3);
+}
+
+void ValidateOne(const Cylinder& cylinder, const std::string& name) {
+  ValidateCenter(cylinder.center, name);
+  CheckAbove(name + ": radius", cylinder.radius, 0.0, kMaxSize);
+  CheckAbove(name + ": height", cylinder.height, 0.0, kMaxSize);
+}
+
+void ValidateOne(const VoxelColumns& columns, const std::string& name) {
+  ValidateCenter(columns.corner, name);
+  CheckAbove(name + ": cell", columns.cell, 0.0, kMaxSize);
+  CheckWithin(name + ": count_x", columns.count_x, 1, 1000);
+  CheckWithin(name + ": count_y", columns.count_y, 1, 1000);
+  const double wanted = static_cast<double>(columns.count_x) * columns.count_y;
+  CheckWithin(name + ": number of heights", static_cast<double>(columns.heights.size()), wanted,
+              wanted);
+  for (const double height : columns.heights) {
+    CheckWithin(name + ": height", height, 0.0, kMaxSize);
+  }
+  CheckAbove(name + ": greatest height",
+             *std::max_element(columns.heights.begin(), columns.heights.end()), 0.0, kMaxSize);
+}
+
+void ValidateOne(const Ring& ring, const std::string& name) {
+  ValidateCenter(ring.center, name);
+  CheckAbove(name + ": half_width", ring.half_width, 0.0, kMaxSize);
+  CheckAbove(name + ": half_height", ring.half_height, 0.0, kMaxSize);
+  CheckAbove(name + ": tube_radius", ring.tube_radius, 0.0, kMaxSize);
+  CheckWithin(name + ": yaw", ring.yaw, -1.0e3, 1.0e3);
+}
+
+double DistanceTo(const Box& box, const Eigen::Vector3d& p_W) {
+  const Eigen::Vector3d p = TurnedBack(box.yaw, p_W - box.center);
+  const Eigen::Vector3d q = p.cwiseAbs() - box.half_extents;
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+double DistanceTo(const Cylinder& cylinder, const Eigen::Vector3d& p_W) {
+  const Eigen::Vector3d p = p_W - cylinder.center;
+  const Eigen::Vector2d q(p.head<2>().norm() - cylinder.radius,
+                          std::abs(p.z()) - 0.5 * cylinder.height);
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+}
+
+double RayTo(const Box& box, const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) {
+  return RayBox(box.half_extents, TurnedBack(box.yaw, origin_W - box.center),
+                TurnedBack(box.yaw, direction_W));
+}
+
+double RayTo(const Cylinder& cylinder, const Eigen::Vector3d& origin_W,
+             const Eigen::Vector3d& direction_W) {
+  return RayCylinder(cylinder.radius, 0.5 * cylinder.height, origin_W - cylinder.center,
+                     direction_W);
+}
+
+Bounds BoundsOfOne(const Box& box) {
+  const double c = std::abs(std::cos(box.yaw));
+  const double s = std::abs(std::sin(box.yaw));
+  const Eigen::Vector3d& h = box.half_extents;
+  const Eigen::Vector3d reach(c * h.x() + s * h.y(), s * h.x() + c * h.y(), h.z());
+  return {box.center - reach, box.center + reach};
+}
+
+Bounds BoundsOfOne(const Cylinder& cylinder) {
+  const Eigen::Vector3d reach(cylinder.radius, cylinder.radius, 0.5 * cylinder.height);
+  return {cylinder.center - reach, cylinder.center + reach};
+}
+
+Bounds BoundsOfOne(const VoxelColumns& columns) {
+  Eigen::Array2i low(columns.count_x, columns.count_y);
+  Eigen::Array2i high(0, 0);
+  double top = 0.0;
+  for (int y = 0; y < columns.count_y; ++y) {
+    for (int x = 0; x < columns.count_x; ++x) {
+      const double height = columns.heights[static_cast<std::size_t>(y * columns.count_x + x)];
+      if (height <= 0.0) continue;
+      low = low.min(Eigen::Array2i(x, y));
+      high = high.max(Eigen::Array2i(x + 1, y + 1));
+      top = std::max(top, height);
+    }
+  }
+  return {columns.corner + columns.cell * Eigen::Vector3d(low.x(), low.y(), 0.0),
+          columns.corner + Eigen::Vector3d(columns.cell * high.x(), columns.cell * high.y(), top)};
+}
+
+Bounds BoundsOfOne(const Ring& ring) {
+  Bounds bounds{ring.Corner(0), ring.Corner(0)};
+  for (int i = 1; i < Ring::kSides; ++i) {
+    bounds.min = bounds.min.cwiseMin(ring.Corner(i));
+    bounds.max = bounds.max.cwiseMax(ring.Corner(i));
+  }
+  bounds.min.array() -= ring.tube_radius;
+  bounds.max.array() += ring.tube_radius;
+  return bounds;
+}
+
+}  // namespace
+
+void Validate(const Obstacle& obstacle, const std::string& name) {
+  std::visit([&](const auto& shape) { ValidateOne(shape, name); }, obstacle);
+}
+
+void CheckGeom(const Obstacle& obstacle, const std::string& name, const std::string& user) {
+  const bool columns = std::holds_alternative<VoxelColumns>(obstacle);
+  if (!columns && !std::holds_alternative<Ring>(obstacle)) return;
+  throw std::invalid_argument(name + " is " + (columns ? "a group of voxel columns" : "a ring") +
+                              ": " + user + " takes boxes and cylinders only");
+}
+
+double SignedDistance(const Obstacle& obstacle, const Eigen::Vector3d& p_W) {
+  return std::visit([&](const auto& shape) { return DistanceTo(shape, p_W); }, obstacle);
+}
+
+double RayDistance(const Obstacle& obstacle, const Eigen::Vector3d& origin_W,
+                   const Eigen::Vector3d& direction_W) {
+  return std::visit([&](const auto& shape) { return RayTo(shape, origin_W, direction_W); },
+                    obstacle);
+}
+
+Bounds BoundsOf(const Obstacle& obstacle) {
+  return std::visit([](const auto& shape) { return BoundsOfOne(shape); }, obstacle);
+}
+
+}  // namespace touchdown::sim

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/obstacles/obstacle.h"
+
+namespace touchdown::sim {
+
+/// All obstacles of a world, each valid. The ground (z = 0) and the pad are not in it. A value
+/// type.
+class ObstacleField {
+ public:
+  ObstacleField() = default;
+
+  /// Throws std::invalid_argument naming "obstacle <index>", the value and the allowed range.
+  explicit ObstacleField(std::vector<Obstacle> obstacles);
+
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  std::size_t size() const { return obstacles_.size(); }
+  bool empty() const { return obstacles_.empty(); }
+
+  /// Distance from `p_W` to the nearest surface [m], negative inside; +infinity in an empty field.
+  double SignedDistance(const Eigen::Vector3d& p_W) const;
+
+  /// Nearest crossing over all obstacles, as sim::RayDistance.
+  double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
+
+ private:
+  std::vector<Obstacle> obstacles_;
+};
+
+}  // namespace touchdown::sim

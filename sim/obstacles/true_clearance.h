@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "sim/obstacles/obstacle_field.h"
+#include "touchdown/estimation/base/vehicle_model.h"
+#include "touchdown/estimation/base/vehicle_state.h"
+
+namespace touchdown::sim {
+
+/// Nearest obstacle and how far it is.
+struct Clearance {
+  double distance = 0.0;  ///< [m]; negative: depth of penetration; +infinity: no obstacle at all
+  int obstacle = -1;      ///< index in the field, -1: none
+};
+
+/// True distance between the vehicle and the obstacles, by FCL on the exact shapes: a checker that
+/// shares no code with map, planner or contact physics. The vehicle is the upright-in-B cylinder of
+/// hull_radius from the soles of the feet (-foot_depth) to hull_top, which holds every colliding
+/// part of it. Ground and pad do not count.
+class TrueClearance {
+ public:
+  /// Throws std::invalid_argument naming the value if the model's hull is not a cylinder of
+  /// positive size.
+  TrueClearance(const ObstacleField& obstacles, const estimation::VehicleModel& model);
+  TrueClearance(TrueClearance&&) noexcept;
+  TrueClearance& operator=(TrueClearance&&) noexcept;
+  ~TrueClearance();
+
+  /// Distance at the vehicle's pose [m], as Clearance::distance.
+  double Distance(const estimation::VehicleState& vehicle) const;
+
+  /// The same with the obstacle that is nearest, or deepest when in collision.
+  Clearance Nearest(const estimation::VehicleState& vehicle) const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace touchdown::sim

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "touchdown/estimation/base/gray_image.h"
+
+namespace touchdown::sim {
+
+/// Something like worn asphalt, always the same, that fits to itself at its edges. @param texels
+/// along each side, a power of two from 8 on.
+estimation::GrayImage GroundTexture(int texels);
+
+}  // namespace touchdown::sim

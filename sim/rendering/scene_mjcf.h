@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/obstacles/obstacle_field.h"
+#include "sim/pad/pad_geometry.h"
+
+namespace touchdown::sim {
+
+/// What there is to be seen besides the vehicle, which its own cameras do not see.
+struct VisualScene {
+  ObstacleField obstacles;
+  PadGeometry pad;
+  double deck_height = 0.3;  ///< upper face of the deck above the ground [m]
+  double occlusion = 0.0;    ///< share of the printed sheet under an opaque plate, in [0, 1)
+};
+
+/// How it is looked at: a pinhole camera with square pixels and its axis through the image's middle.
+struct ViewConfig {
+  int width = 320;          ///< [pixel], in [1, 4096]
+  int height = 240;         ///< [pixel], in [1, 4096]
+  double fov_y_deg = 90.0;  ///< vertical field of view [deg], in (0, 170]
+  double near = 0.02;       ///< nothing nearer along the optical axis is drawn [m], in [0.005, 1]
+  double far = 60.0;        ///< nor farther [m], in (near, 1000]
+};
+
+/// MJCF text of the scene for rendering: the mocap bodies "pad" (its origin at the centre of the
+/// deck's upper face) and "camera" (x right, y up, looks along -z) are moved by hand, nothing
+/// collides, nothing moves by itself. Textures "ground" and "pad" are to be filled. Throws
+/// std::invalid_argument for an obstacle that is neither box nor cylinder.
+std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view);
+
+/// Edge of the square texture "ground" [texel].
+inline constexpr int kGroundTexels = 512;
+
+}  // namespace touchdown::sim

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Depth images by casting one ray per pixel centre at the analytic shapes, which at 80x60 pixels
+// costs a tenth of mj_ray and of rendering. Rays have z_C = 1, so that a ray's parameter is the
+// depth. Per frame, shapes out of range are dropped and the camera is put into each remaining
+// shape's frame once; per ray, a shape whose bounding sphere it misses is skipped: with m = center
+// - camera and direction d it misses if it is farther than r from the centre, |m|^2 - (m.d)^2 /
+// |d|^2 > r^2.
+
+#include "sim/sensors/depth_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "sim/base/argument_check.h"
+#include "sim/obstacles/ray_intersection.h"
+
+namespace touchdown::sim {
+namespace {
+
+double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
+
+}  // namespace
+
+void Validate(const DepthCameraConfig& config) {
+  CheckWithin("depth_camera.width", config.width, 1, 4096);
+  CheckWithin("depth_camera.height", config.height, 1, 4096);
+  CheckAbove("depth_camera.fov_x_deg", config.fov_x_deg, 0.0, 170.0);
+  CheckAbove("depth_camera.max_range", config.max_range, 0.0, 100.0);
+  CheckWithin("depth_camera.pitch_deg", config.pitch_deg, -90.0, 90.0);
+  CheckWithin("depth_camera.range_noise", config.range_noise, 0.0, 0.5);
+  CheckWithin("length of depth_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
+}
+
+estimation::CameraIntrinsics IntrinsicsOf(const DepthCameraConfig& config) {
+  estimation::CameraIntrinsics intrinsics;
+  intrinsics.width = config.width;
+  intrinsics.height = config.height;
+  intrinsics.focal = 0.5 * config.width / std::tan(0.5 * Radians(config.fov_x_deg));
+  intrinsics.cx = 0.5 * config.width;
+  intrinsics.cy = 0.5 * config.height;
+  return intrinsics;
+}
+
+Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config) {
+  const double c = std::cos(Radians(config.pitch_deg));
+  const double s = std::sin(Radians(config.pitch_deg));
+  Eigen::Matrix3d R_BC;
+  R_BC.col(0) = -Eigen::Vector3d::UnitY();
+  R_BC.col(1) = Eigen::Vector3d(-s, 0.0, -c);
+  R_BC.col(2) = Eigen::Vector3d(c, 0.0, -s);
+  return R_BC;
+}
+
+DepthCamera::Shape DepthCamera::MakeShape(const Obstacle& obstacle) {
+  Shape shape;
+  if (const auto* box = std::get_if<Box>(&obstacle)) {
+    shape.is_box = true;
+    shape.center = box->center;
+    shape.size = box->half_extents;
+    shape.cos_yaw = std::cos(box->yaw);
+    shape.sin_yaw = std::sin(box->yaw);
+    shape.bounding_radius = box->half_extents.norm();
+  } else {
+    const auto& cylinder = std::get<Cylinder>(obstacle);
+    const double half_height = 0.5 * cylinder.height;
+    shape.center = cylinder.center;
+    shape.size = {cylinder.radius, cylinder.radius, half_height};
+    shape.bounding_radius = std::hypot(cylinder.radius, half_height);
+  }
+  return shape;
+}
+
+Eigen::Vector3d DepthCamera::Shape::ToLocal(const Eigen::Vector3d& v_W) const {
+  return {cos_yaw * v_W.x() + sin_yaw * v_W.y(), -sin_yaw * v_W.x() + cos_yaw * v_W.y(), v_W.z()};
+}
+
+double DepthCamera::Shape::Cast(const Eigen::Vector3d& ray_W, double ray_squared) const {
+  const double along = from_camera.dot(ray_W);
+  if (miss_squared * ray_squared > along * along) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector3d ray = ToLocal(ray_W);
+  return is_box ? RayBox(size, camera, ray) : RayCylinder(size.x(), size.z(), camera, ray);
+}
+
+DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& obstacles,
+                         const PadGeometry& pad, std::uint64_t seed)
+    : config_(config), pad_(pad), noise_(seed, "depth camera") {
+  Validate(config);
+  intrinsics_ = IntrinsicsOf(config);
+  R_BC_ = CameraAxes(config);
+
+  rays_C_.reserve(static_cast<std::size_t>(config.width) * config.height);
+  for (int row = 0; row < config.height; ++row) {
+    for (int column = 0; column < config.width; ++column) {
+      rays_C_.emplace_back((column + 0.5 - intrinsics_.cx) / intrinsics_.focal,
+                           (row + 0.5 - intrinsics_.cy) / intrinsics_.focal, 1.0);
+    }
+  }
+  for (const Obstacle& obstacle : obstacles.obstacles()) {
+    CheckGeom(obstacle, "obstacle " + std::to_string(scene_.size()), "the depth camera");
+    scene_.push_back(MakeShape(obstacle));
+  }
+  near_.reserve(scene_.size() + 2);
+}
+
+void DepthCamera::CollectNear(const Eigen::Vector3d& p_WC, const estimation::PadState& pad) {
+  const auto add_if_near = [&](Shape shape) {
+    shape.from_camera = shape.center - p_WC;
+    const double distance = shape.from_camera.norm();
+    if (distance - shape.bounding_radius > config_.max_range) return;
+    shape.miss_squared = distance * distance - shape.bounding_radius * shape.bounding_radius;
+    shape.camera = shape.ToLocal(-shape.from_camera);
+    near_.push_back(shape);
+  };
+  near_.clear();
+  for (const Shape& shape : scene_) add_if_near(shape);
+  add_if_near(MakeShape(DeckBox(pad_, pad)));
+  add_if_near(MakeShape(PadBodyBox(pad_, pad)));
+}
+
+void DepthCamera::Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+                          estimation::DepthFrame* frame) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Eigen::Matrix3d R_WB = vehicle.q_WB.toRotationMatrix();
+  frame->t = vehicle.t;
+  frame->intrinsics = intrinsics_;
+  frame->R_WC = R_WB * R_BC_;
+  frame->p_WC = vehicle.p_WB + R_WB * config_.p_BC;
+  frame->max_range = config_.max_range;
+  frame->depth.resize(rays_C_.size());
+  CollectNear(frame->p_WC, pad);
+
+  for (std::size_t i = 0; i < rays_C_.size(); ++i) {
+    const Eigen::Vector3d ray_W = frame->R_WC * rays_C_[i];
+    const double ray_squared = rays_C_[i].squaredNorm();
+    // The ground is seen from above only.
+    const double to_ground = -frame->p_WC.z() / ray_W.z();
+    double depth = ray_W.z() < 0.0 && to_ground >= 0.0 ? to_ground : kInfinity;
+    for (const Shape& shape : near_) depth = std::min(depth, shape.Cast(ray_W, ray_squared));
+    const bool seen = depth * depth * ray_squared <= config_.max_range * config_.max_range;
+    if (seen && config_.range_noise > 0.0) {
+      depth = std::max(0.0, depth * (1.0 + noise_.Normal(config_.range_noise)));
+    }
+    frame->depth[i] = static_cast<float>(seen ? depth : kInfinity);
+  }
+}
+
+}  // namespace touchdown::sim

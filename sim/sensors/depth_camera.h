@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/base/random_stream.h"
+#include "sim/obstacles/obstacle_field.h"
+#include "sim/pad/pad_geometry.h"
+#include "touchdown/estimation/base/measurements.h"
+#include "touchdown/estimation/base/vehicle_state.h"
+#include "touchdown/estimation/pad/pad_prediction.h"
+
+namespace touchdown::sim {
+
+/// Forward depth camera at the vehicle's nose. C: x right, y down, z along the optical axis.
+struct DepthCameraConfig {
+  int width = 80;                           ///< [pixel], in [1, 4096]
+  int height = 60;                          ///< [pixel], in [1, 4096]
+  double fov_x_deg = 90.0;                  ///< horizontal field of view [deg], in (0, 170]
+  double max_range = 6.0;                   ///< along the ray [m], in (0, 100]
+  Eigen::Vector3d p_BC = {0.10, 0.0, 0.0};  ///< camera in B [m]
+  double pitch_deg = 0.0;                   ///< optical axis below B's x axis [deg], in [-90, 90]
+  double range_noise = 0.0;  ///< standard deviation of a range over the range, in [0, 0.5]
+};
+
+/// Throws std::invalid_argument naming the key, its value and the allowed range.
+void Validate(const DepthCameraConfig& config);
+
+estimation::CameraIntrinsics IntrinsicsOf(const DepthCameraConfig& config);
+
+/// The camera's axes in B: rotation C to B.
+Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config);
+
+/// Depth images by analytic ray casting of ground, obstacles and pad vehicle at its true pose. The
+/// vehicle does not see itself. One DepthCamera belongs to one thread.
+class DepthCamera {
+ public:
+  /// `seed` feeds the stream "depth camera". Throws std::invalid_argument naming the key, its value
+  /// and the allowed range.
+  DepthCamera(const DepthCameraConfig& config, const ObstacleField& obstacles,
+              const PadGeometry& pad, std::uint64_t seed);
+
+  /// Takes an image. `frame->depth` is resized to height x width if it has another size; else
+  /// nothing is allocated.
+  void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+               estimation::DepthFrame* frame);
+
+  const DepthCameraConfig& config() const { return config_; }
+  const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }
+
+ private:
+  /// Shape to cast rays at, in its own upright frame, with the sphere that holds it.
+  struct Shape {
+    bool is_box = false;                               ///< else a cylinder
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< in W [m]
+    Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< half extents [m]
+    double cos_yaw = 1.0;
+    double sin_yaw = 0.0;
+    double bounding_radius = 0.0;
+    // Of the frame at hand:
+    Eigen::Vector3d from_camera = Eigen::Vector3d::Zero();  ///< center - camera, in W
+    Eigen::Vector3d camera = Eigen::Vector3d::Zero();       ///< in the shape's frame
+    double miss_squared = 0.0;  ///< |from_camera|^2 - bounding_radius^2; negative: camera inside
+
+    Eigen::Vector3d ToLocal(const Eigen::Vector3d& v_W) const;
+    double Cast(const Eigen::Vector3d& ray_W, double ray_squared) const;
+  };
+  static Shape MakeShape(const Obstacle& obstacle);
+  void CollectNear(const Eigen::Vector3d& p_WC, const estimation::PadState& pad);
+
+  DepthCameraConfig config_;
+  estimation::CameraIntrinsics intrinsics_;
+  Eigen::Matrix3d R_BC_;
+  PadGeometry pad_;
+  std::vector<Shape> scene_;             ///< all obstacles
+  std::vector<Shape> near_;              ///< of the frame at hand; capacity reserved
+  std::vector<Eigen::Vector3d> rays_C_;  ///< per pixel, z = 1: a ray's parameter is its depth
+  RandomStream noise_;
+};
+
+}  // namespace touchdown::sim

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A vehicle that is not what its pilot thinks it is.
+
+#include "touchdown/sim/vehicle/plant.h"
+
+#include <stdexcept>
+
+#include "sim/base/argument_check.h"
+
+namespace touchdown::sim {
+namespace {
+
+constexpr double kLeast = 0.5;
+constexpr double kMost = 2.0;
+
+}  // namespace
+
+estimation::VehicleModel AlteredVehicle(const estimation::VehicleModel& known,
+                                        const PlantFactors& factors) {
+  CheckWithin("plant.mass", factors.mass, kLeast, kMost);
+  CheckWithin("plant.inertia", factors.inertia, kLeast, kMost);
+  CheckWithin("plant.drag", factors.drag, kLeast, kMost);
+  CheckWithin("plant.rotor_lag", factors.rotor_lag, kLeast, kMost);
+  CheckWithin("plant.thrust", factors.thrust, kLeast, kMost);
+  estimation::VehicleModel plant = known;
+  plant.mass_kg *= factors.mass;
+  plant.inertia *= factors.inertia;
+  plant.rotor_drag *= factors.drag;
+  plant.body_drag_area *= factors.drag;
+  plant.rotor_lag_s *= factors.rotor_lag;
+  plant.rotor_thrust_min *= factors.thrust;
+  plant.rotor_thrust_max *= factors.thrust;
+  if (plant.MaxThrust() <= plant.HoverThrust()) {
+    throw std::invalid_argument("plant.mass is " + NumberText(factors.mass) +
+                                " and plant.thrust is " + NumberText(factors.thrust) +
+                                "; allowed is what leaves more thrust, " +
+                                NumberText(plant.MaxThrust()) + " N, than weight, " +
+                                NumberText(plant.HoverThrust()) + " N");
+  }
+  return plant;
+}
+
+}  // namespace touchdown::sim

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+namespace touchdown::sim {
+
+/// What MJCF quadrotors in the common form do not say.
+struct AirframeExtras {
+  double rotor_lag = 0.03;      ///< of motors without dynamics [s], in [0.005, 1]
+  double rotor_drag = 0.0;      ///< linear, along x_B and y_B [N s/m]
+  double body_drag_area = 0.0;  ///< [m^2]
+  /// Cylinder about z_B through the centre of mass that collides: radius, bottom and top [m]. Zero: one
+  /// that holds every geom and motor.
+  Eigen::Vector3d hull = Eigen::Vector3d::Zero();
+  /// Distance of the feet from z_B and depth of their soles below B [m]. Zero: 0.6 of the hull's radius,
+  /// and 0.35 of that below the hull.
+  Eigen::Vector2d feet = Eigen::Vector2d::Zero();
+};
+
+/// MJCF text in the form of sim/vehicle/vehicle_file.h of the quadrotor in the file at `path`. A file in that
+/// form is returned as it is. Else it must have one free joint and no other, and four actuators that
+/// push along a site's z axis: names do not matter, nor does where the mass is, and bodies may be
+/// joined rigidly. Mass, inertia, arms, thrust limits (of control and force) and reaction torques are read
+/// from the compiled model; its geoms, meshes too, count as the outline only. What collides is the hull
+/// and four feet.
+/// B is at the centre of mass, with the axes of the body that has the free joint.
+/// Throws std::invalid_argument with MuJoCo's message, or saying what of this the file lacks.
+std::string ImportVehicle(const std::string& path, const AirframeExtras& extras);
+
+/// Whether ImportVehicle returns the file as it is, with nothing left to say. Throws likewise.
+bool IsInOwnForm(const std::string& path);
+
+}  // namespace touchdown::sim

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The part of a solve that is the same for every backend (a non-virtual interface, as in Drake's
+// SolverBase): refuse what the backend cannot take, check the caller's numbers, time the solve, and
+// return the best feasible point that the evaluator saw.
+
+#include "touchdown/solvers/backend/solver_backend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "touchdown/solvers/backend/constraint_rows.h"
+#include "touchdown/solvers/backend/newton_step.h"
+#include "touchdown/solvers/backend/thread_clock.h"
+
+namespace touchdown::solvers {
+
+namespace {
+
+/// A cost that has fallen by so many times its first value, slope and curvature has no end.
+constexpr double kEndless = 1e12;
+constexpr std::size_t kLongestMessage = 100;  // of backends of our own
+
+}  // namespace
+
+std::string SolverBackend::Refusal(const View& view) const {
+  const Capabilities can = capabilities();
+  if (!can.compiled) {
+    return "backend " + name_ + " was not compiled in (configure with its TOUCHDOWN_WITH_ option)";
+  }
+  if (view.free_interval() && !can.free_interval) {
+    return "backend " + name_ + " cannot optimise the arrival time";
+  }
+  if (view.bounded() && !view.identity()) {
+    return "bounds on variables need a view of the problem's own variables";
+  }
+  if (view.bounded() && !can.variable_bounds) {
+    return "backend " + name_ + " takes no bounds on variables: make them costs";
+  }
+  const Problem& problem = view.problem();
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    if (problem.role(i) == Role::kCost) {
+      if (can.needs_residuals && !problem.term(i).shape().has_residual) {
+        return "backend " + name_ + " minimises sums of squares, and the cost term " +
+               problem.term(i).info().name + " is none";
+      }
+      continue;
+    }
+    const LossBounds bounds = problem.term(i).bounds();
+    const bool equality = bounds.lo == bounds.hi;
+    if (equality ? !can.equality_rows : !can.hard_rows) {
+      return "backend " + name_ + " takes no " + (equality ? "equality" : "inequality") +
+             " constraints: make term " + problem.term(i).info().name + " a cost";
+    }
+  }
+  return "";
+}
+
+void SolverBackend::Prepare(const View& view) {
+  const std::string refusal = Refusal(view);
+  if (!refusal.empty()) throw std::invalid_argument(refusal);
+  prepared_ = {};  // what follows may throw with half of it sized
+  evaluator_.Prepare(view);
+  check_.Prepare(view);
+  if (!measures_gap()) rule_.Prepare(view, &check_);
+  inside_.y.resize(view.num_variables());
+  if (view.num_variables() > 0) DoPrepare(view);
+  prepared_ = ViewStructure(view);
+}
+
+void SolverBackend::Reserve(const View& view, SolverResult* result) {
+  const Problem& problem = view.problem();
+  result->x.resize(view.num_variables());
+  result->cost_by_term.clear();
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    result->cost_by_term.push_back({problem.term(i).info().name, 0.0});
+  }
+  ConstraintRows::Size(view, &result->multipliers);
+  result->bound_multipliers.reserve(static_cast<std::size_t>(view.num_variables()));
+  result->message.reserve(kLongestMessage);
+}
+
+namespace {
+
+std::string WhatFailed(const Problem& problem, const Evaluation& at) {
+  const std::string term =
+      at.failed_term >= 0 ? "term " + problem.term(at.failed_term).info().name : "the gradient";
+  return at.failure.empty() ? term + " is not finite" : term + ": " + at.failure;
+}
+
+}  // namespace
+
+void SolverBackend::Solve(const View& view, const WarmStart& warm, const Stop& stop,
+                          SolverResult* result) {
+  const int n = view.num_variables();
+  if (prepared_.empty()) {
+    throw std::invalid_argument("backend " + name_ + ": Solve before Prepare");
+  }
+  if (!prepared_.IsOf(view)) {
+    throw std::invalid_argument(
+        "backend " + name_ +
+        ": this view does not have the structure it was prepared for: sizes, "
+        "terms, their rows' bounds, and which variables have bounds");
+  }
+  if (result == nullptr) throw std::invalid_argument("backend " + name_ + ": no result to fill");
+  if (warm.y.size() != n) {
+    throw std::invalid_argument("backend " + name_ + ": the warm start has " +
+                                std::to_string(warm.y.size()) + " numbers, it needs " +
+                                std::to_string(n));
+  }
+  for (int i = 0; i < n; ++i) {
+    if (std::isfinite(warm.y[i])) continue;
+    throw std::invalid_argument("backend " + name_ + ": number " + std::to_string(i) +
+                                " of the warm start is not finite");
+  }
+  if (!warm.multipliers.empty() && !ConstraintRows::Fit(view, warm.multipliers)) {
+    throw std::invalid_argument("backend " + name_ +
+                                ": the warm start's multipliers are not those of this problem: "
+                                "[term][row], none for a cost");
+  }
+  for (const std::vector<double>& rows : warm.multipliers) {
+    if (!std::all_of(rows.begin(), rows.end(), [](double m) { return std::isfinite(m); })) {
+      throw std::invalid_argument("backend " + name_ +
+                                  ": the warm start has multipliers that are " + "not finite");
+    }
+  }
+  if (!(stop.gap >= 0.0 && stop.gap < 1.0)) {
+    throw std::invalid_argument("backend " + name_ + ": stop.gap is " + std::to_string(stop.gap) +
+                                ", it must be in [0, 1)");
+  }
+  if (stop.max_iterations < 0 || stop.max_evaluations < 0) {
+    const bool iterations = stop.max_iterations < 0;
+    throw std::invalid_argument(
+        "backend " + name_ + ": stop." + (iterations ? "max_iterations" : "max_evaluations") +
+        " is " + std::to_string(iterations ? stop.max_iterations : stop.max_evaluations) +
+        ", it must be >= 0");
+  }
+  if (!(stop.wall_limit_s >= 0.0)) {
+    throw std::invalid_argument("backend " + name_ + ": stop.wall_limit_s is " +
+                                std::to_string(stop.wall_limit_s) + ", it must be >= 0 s");
+  }
+  inside_.y = warm.y;
+  view.MoveIntoBounds(inside_.y.data());
+  if (inside_.y != warm.y) {
+    inside_.multipliers = warm.multipliers;
+    return Solve(view, inside_, stop, result);
+  }
+  if (listener_) listener_({view, warm, stop});
+  const double cpu_start = ThreadCpuSeconds();
+  const bool asks_rule = stop.gap > 0.0 && n > 0 && !measures_gap();
+  if (asks_rule) rule_.Begin(view, stop.gap);
+  evaluator_.Begin(view, stop, asks_rule ? &rule_ : nullptr);
+  result->trace.clear();
+  result->message.clear();
+  for (auto& rows : result->multipliers) rows.clear();  // keeps its storage
+  result->bound_multipliers.clear();
+  result->native_status = 0;
+  if (n == 0) {
+    evaluator_.Evaluate(warm.y.data(), {});  // all is eliminated: nothing to choose
+    const bool feasible = evaluator_.best_violation() <= Evaluator::kFeasible;
+    result->status = feasible ? SolveStatus::kConverged : SolveStatus::kInfeasible;
+  } else {
+    // A start may be near enough, or all that the budget allows.
+    if (asks_rule && evaluator_.Evaluate(warm.y.data(), {.gradient = true})) evaluator_.CheckGap();
+    result->status = evaluator_.stop_status();
+    if (!evaluator_.must_stop()) DoSolve(view, warm, stop, &evaluator_, result);
+    if (evaluator_.near_enough()) result->status = SolveStatus::kConverged;
+  }
+  // A claim that the last iteration allowed has led to is looked at like others.
+  const bool claimed = result->status == SolveStatus::kConverged &&
+                       evaluator_.stop_status() == SolveStatus::kIterationLimit;
+  if (evaluator_.must_stop() && result->usable() && !claimed) {
+    result->status = evaluator_.stop_status();
+  }
+  if (!evaluator_.has_best()) result->status = SolveStatus::kEvaluationFailed;
+  if (result->status == SolveStatus::kEvaluationFailed) {
+    result->message = WhatFailed(view.problem(), evaluator_.last().full);
+  }
+
+  result->optimality = {};
+  if (n > 0 && stop.confirm && !evaluator_.near_enough()) Judge(view, warm.y, result);
+
+  result->x = evaluator_.has_best() ? evaluator_.best() : warm.y;
+  result->cost = evaluator_.best_cost();
+  result->max_violation = evaluator_.best_violation();
+  result->cost_by_term.resize(evaluator_.best_cost_by_term().size());
+  for (std::size_t i = 0; i < result->cost_by_term.size(); ++i) {
+    result->cost_by_term[i].name = view.problem().term(static_cast<int>(i)).info().name;
+    result->cost_by_term[i].cost = evaluator_.best_cost_by_term()[i];
+  }
+  evaluator_.SwitchShare(Share::kAdapter);  // charges the time since the last switch
+  result->shares = evaluator_.shares();
+  if (stop.trace) result->trace = evaluator_.TakeTrace();
+  result->iterations = evaluator_.iterations();
+  result->evaluations = evaluator_.evaluations();
+  result->wall_s = evaluator_.elapsed_s();
+  result->cpu_s = ThreadCpuSeconds() - cpu_start;
+}
+
+/// What becomes of a backend's word.
+void SolverBackend::Judge(const View& view, const Eigen::VectorXd& start, SolverResult* result) {
+  SolveStatus* status = &result->status;
+  const ShareScope scope(&evaluator_, Share::kEvaluation);
+  const OptimalityCheck::MustStop must_stop = [this] { return evaluator_.CheckClock(); };
+  ViewEvaluation* storage = evaluator_.mutable_last();
+  if (*status == SolveStatus::kInfeasible) {
+    const bool closer = check_.CanGetCloser(view, evaluator_.best(), must_stop, storage);
+    if (closer) *status = SolveStatus::kNumericalFailure;
+  } else if (*status == SolveStatus::kConverged || *status == SolveStatus::kUnconfirmed) {
+    const Optimality at =
+        check_.Look(view, evaluator_.best(), *result, evaluator_.first_cost(), must_stop, storage);
+    result->optimality = at;
+    if (evaluator_.CheckClock()) {
+      *status = evaluator_.stop_status();
+    } else if (!at.feasible() || !at.stationary()) {
+      *status = SolveStatus::kUnconfirmed;
+    } else if (at.saddle) {
+      *status = SolveStatus::kSaddle;
+    } else {
+      *status = SolveStatus::kConverged;
+      return;
+    }
+  }
+  if (FellWithoutEnd(view, start)) {
+    *status = SolveStatus::kUnbounded;
+  } else if (*status == SolveStatus::kUnbounded) {
+    *status = SolveStatus::kNumericalFailure;  // its points ran away, the cost did not
+  }
+}
+
+/// By what a step as long as the start is large could have gained there, so many times.
+bool SolverBackend::FellWithoutEnd(const View& view, const Eigen::VectorXd& start) {
+  const double fallen = evaluator_.first_cost() - evaluator_.best_cost();
+  const bool feasible =
+      evaluator_.has_best() && evaluator_.best_violation() <= Evaluator::kFeasible;
+  if (!feasible || !(fallen > kEndless * std::abs(evaluator_.first_cost()))) return false;
+  ViewEvaluation* at = evaluator_.mutable_last();
+  if (!view.Evaluate(start.data(), {.gradient = true, .hessian = true}, {}, at)) return false;
+  double slope = 0.0, size = 1.0;
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    slope = std::max(slope, (1.0 + std::abs(start[i])) * std::abs(at->gradient[i]));
+    size = std::max(size, 1.0 + std::abs(start[i]));
+  }
+  const double could = std::abs(at->full.value) + slope + size * size * LargestElement(at->hessian);
+  return could > 0.0 && fallen > kEndless * could;
+}
+
+const char* ToString(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::kConverged:
+      return "converged";
+    case SolveStatus::kIterationLimit:
+      return "iteration_limit";
+    case SolveStatus::kTimeLimit:
+      return "time_limit";
+    case SolveStatus::kStopped:
+      return "stopped";
+    case SolveStatus::kUnconfirmed:
+      return "unconfirmed";
+    case SolveStatus::kSaddle:
+      return "saddle";
+    case SolveStatus::kUnbounded:
+      return "unbounded";
+    case SolveStatus::kInfeasible:
+      return "infeasible";
+    case SolveStatus::kEvaluationFailed:
+      return "evaluation_failed";
+    case SolveStatus::kNumericalFailure:
+      return "numerical_failure";
+  }
+  return "unknown";
+}
+
+}  // namespace touchdown::solvers

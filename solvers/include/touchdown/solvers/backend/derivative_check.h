@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "touchdown/solvers/backend/whitening.h"
+#include "touchdown/solvers/problem/view.h"
+
+namespace touchdown::solvers {
+
+/// Worst disagreement between derivatives and central differences, relative to the largest number
+/// of the two compared arrays, or to what the differences themselves can resolve where that is
+/// larger; infinite where a number is not finite. A residual whose u changes sign between the two
+/// points is compared with the one-sided differences.
+struct DerivativeErrors {
+  bool evaluated = false;          ///< false: the point could not be evaluated
+  double gradient = 0.0;           ///< of the objective
+  double hessian = 0.0;            ///< of the Lagrangian, against differences of its gradient;
+                                   ///< diagonal blocks whole, others as they are stored
+  double residual_jacobian = 0.0;  ///< of every residual, in reduced variables
+  double row_jacobian = 0.0;       ///< of every u, in reduced variables
+  double worst() const;            ///< infinite where nothing was evaluated
+};
+
+/// Checks every derivative that `view` offers at y by central differences that move no variable by
+/// more than `step`; with a `whitening` (set for this view) those of the Whitened view at
+/// z = L^T y. Allocates.
+DerivativeErrors CheckDerivatives(const View& view, const Eigen::VectorXd& y,
+                                  const Lagrangian& lagrangian = {}, double step = 1e-6,
+                                  const Whitening* whitening = nullptr);
+
+}  // namespace touchdown::solvers

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "touchdown/solvers/problem/view.h"
+
+namespace touchdown::solvers {
+
+/// What storage, sparsity or a refusal depends on: sizes, terms, their rows' bounds, which variables have
+/// bounds. A view whose parameters alone differ is of the same structure. None is empty by default, and then no
+/// view is of it.
+class ViewStructure {
+ public:
+  ViewStructure() = default;
+  explicit ViewStructure(const View& view);
+
+  bool empty() const { return numbers_.empty(); }
+
+  /// Does not allocate.
+  bool IsOf(const View& view) const;
+
+ private:
+  std::vector<double> numbers_;
+};
+
+}  // namespace touchdown::solvers

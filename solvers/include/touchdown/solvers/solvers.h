@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one needs for a problem of one's own (docs/library.md).
+#pragma once
+
+#include "touchdown/solvers/backend_registry.h"
+#include "touchdown/solvers/problem/function_term.h"
+#include "touchdown/solvers/problem/problem.h"
+#include "touchdown/solvers/problem/window_term.h"
+#include "touchdown/solvers/solve.h"

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What one needs for a problem of one's own (docs/library.md).
-#pragma once
-
-#include "touchdown/solvers/backend_registry.h"
-#include "touchdown/solvers/function_term.h"
-#include "touchdown/solvers/problem.h"
-#include "touchdown/solvers/solve.h"
-#include "touchdown/solvers/window_term.h"
