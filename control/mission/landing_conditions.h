@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "control/mission/landing_state_machine.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 
 namespace touchdown::control {
 

@@ -5,7 +5,7 @@
 // by one step of a rate- and acceleration-limited profile. The height never jumps, whatever the
 // transition, because only its target changes; while a plan leads to the deck it is the vehicle's own.
 
-#include "control/mission/landing_state_machine.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "control/mission/landing_state_machine.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 
 namespace touchdown::control {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "control/mission/landing_state_machine.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 
 #include <cmath>
 #include <functional>

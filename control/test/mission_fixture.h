@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/mission/landing_state_machine.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 
 namespace touchdown::control {
 

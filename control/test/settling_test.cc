@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "control/mission/landing_state_machine.h"
 #include "control/test/flight_model.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 
 namespace touchdown::control {
 namespace {

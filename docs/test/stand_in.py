@@ -147,7 +147,7 @@ def main(called, arguments):
             run_program(BUILD / "consumer" / "consumer" / "in_tree_term", arguments)
         elif name == "touchdown":
             run_program(os.environ["TOUCHDOWN_PROGRAM"], arguments)
-        elif name.startswith("own_") or name == "go_to_goal":
+        elif name.startswith("own_") or name in ("go_to_goal", "onboard"):
             run_program(BUILD / "consumer" / name / name, arguments)
         elif name.endswith(".sh"):
             look_at_script(name, arguments)

@@ -54,6 +54,18 @@ PadVector NoiseDensities(PadMotion motion, const PadNoise& noise) {
 
 }  // namespace
 
+const char* ToString(PadMotion motion) {
+  switch (motion) {
+    case PadMotion::kVelocity:
+      return "velocity";
+    case PadMotion::kHeading:
+      return "heading";
+    case PadMotion::kTurn:
+      return "turn";
+  }
+  return "unknown";
+}
+
 int StateSize(PadMotion motion) { return motion == PadMotion::kTurn ? 5 : 4; }
 
 PadVector Propagate(PadMotion motion, const PadVector& mean, double dt) {

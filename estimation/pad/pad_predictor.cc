@@ -30,6 +30,22 @@ PadState BeliefPrediction::MeanAt(double t) const noexcept {
   return ToPadState(belief, height_);
 }
 
+const PadPrediction& BeliefPredictor::Predict(const PadKnowledge& known) {
+  return prediction_.emplace(known.belief, known.height, known.noise);
+}
+
+const PadPrediction& StraightPredictor::Predict(const PadKnowledge& known) {
+  PadKnowledge straight = known;
+  PadBelief& belief = straight.belief;
+  if (belief.motion == PadMotion::kTurn) {
+    belief.motion = PadMotion::kHeading;
+    belief.mean[4] = 0.0;
+    belief.cov.row(4).setZero();
+    belief.cov.col(4).setZero();
+  }
+  return BeliefPredictor::Predict(straight);
+}
+
 BeliefPrediction Predict(const PadFilter& filter) {
   if (!filter.initialized()) {
     throw std::invalid_argument("Predict: the pad filter has had no measurement yet");

@@ -15,9 +15,9 @@
 #include "evaluation/base/rendering_check.h"
 #include "evaluation/base/sliding_mean.h"
 #include "evaluation/flight/air.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/flight/pad_log.h"
 #include "evaluation/flight/perception.h"
-#include "evaluation/flight/pilot.h"
 #include "evaluation/judge/landing_time.h"
 #include "evaluation/judge/metrics.h"
 #include "evaluation/judge/safety_watch.h"
@@ -32,7 +32,6 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kSecond = 1.0;              // [s]
-constexpr double kMissionRate = 100.0;       // [Hz]
 constexpr double kMapLookRate = 1.0;         // of the safety figures [Hz]
 constexpr double kSampleRate = kPadLogRate;  // of metrics, record and pad log [Hz]
 
@@ -95,7 +94,7 @@ class Trial {
     return result_;
   }
 
-  planning::PersistentMap TakePersistentMap() { return perception_.TakePersistentMap(); }
+  planning::PersistentMap TakePersistentMap() { return onboard_.TakeMemory(); }
 
  private:
   Trial(const Scenario& scenario, std::uint64_t seed, const TrialDraw& draw,
@@ -103,9 +102,8 @@ class Trial {
         TrialSamples* samples)
       : world_(WorldOf(scenario, draw, registries)),
         air_(scenario, draw, seed),
-        perception_(scenario, world_, registries, seed),
-        pilot_(scenario, world_.model(), world_.pad_course(), registries, perception_.own().now(),
-               Eigen::Vector4d(world_.rotor_commands().data()), perception_.map()),
+        perception_(scenario, world_, seed),
+        onboard_(MakeOnboard(scenario, world_.model(), world_.pad_course(), registries)),
         clearance_(world_.config().obstacles, world_.model()),
         task_(scenario.task),
         stay_(StayOf(scenario)),
@@ -116,19 +114,19 @@ class Trial {
         stand_watch_(scenario.stand_limit),
         safety_watch_(SafetyWatchOf(planner, world_)),
         map_look_clock_(kMapLookRate),
-        mission_clock_(kMissionRate),
-        replan_clock_(PlannerRate(scenario, planner)),
-        close_clock_(ClosePlannerRate(scenario, planner)),
         sample_clock_(kSampleRate),
         record_(record),
         samples_(samples) {
     result_.seed = seed;
-    if (samples_ != nullptr) perception_.LogPadTo(&samples_->pad.arrivals);
+    perception_.Hover(world_, &onboard_);
+    onboard_.Begin(Eigen::Vector4d(world_.rotor_commands().data()));
+    if (samples_ != nullptr) onboard_.LogPadTo(&samples_->pad.arrivals);
     if (record_ != nullptr) {
-      record_->map_resolution = perception_.map().resolution();
-      record_->map_size = perception_.map().size();
+      onboard_.KeepBefore(true);
+      record_->map_resolution = onboard_.map().resolution();
+      record_->map_size = onboard_.map().size();
       record_->outside = OutsideFilesOf(scenario);
-      record_->hover_W = perception_.own().now().p_WB;
+      record_->hover_W = onboard_.own().p_WB;
       if (planner.solver.empty()) {
         record_->zones = ZonesOf(PlannerOptions(scenario, world_.model(), registries.terms));
       }
@@ -144,30 +142,20 @@ class Trial {
   }
 
   void Step() {
-    perception_.Sense(world_);
+    perception_.Sense(world_, &onboard_);
     if (perception_.image_taken()) stand_watch_.Image();
     if (samples_ != nullptr && perception_.image_taken()) {
       samples_->frames.push_back({world_.time(), perception_.frame_times()});
     }
     const estimation::VehicleState vehicle = world_.vehicle();
-    const estimation::VehicleState believed = perception_.own().now();
     const estimation::PadState pad = world_.pad();
-    NoteOwnStatus(vehicle.t);
-    Timed(&result_.timing.control_cpu_s, [&] {
-      if (mission_clock_.Due(vehicle.t)) StepMission(believed);
-    });
-    if (ReplanDue(vehicle.t)) Replan(believed);
-    control::MixerOutput mix;
-    Timed(&result_.timing.control_cpu_s, [&] { mix = pilot_.Control(believed); });
+    const control::Setpoint& setpoint = onboard_.Step(world_.time());
+    NoteMode(vehicle.t);
+    NotePlan(vehicle.t);
     std::array<double, 4> command;
-    for (int i = 0; i < 4; ++i) command[i] = mix.thrusts[i];
+    for (int i = 0; i < 4; ++i) command[i] = setpoint.thrusts[i];
     Timed(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
-    Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, mix.saturated); });
-  }
-
-  bool ReplanDue(double t) {
-    const bool usual = replan_clock_.Due(t), close = close_clock_.Due(t);
-    return pilot_.plans_often() ? close : usual;
+    Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, setpoint.saturated); });
   }
 
   // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
@@ -179,27 +167,27 @@ class Trial {
     }
   }
 
-  void StepMission(const estimation::VehicleState& believed) {
-    pilot_.StepMission(perception_.own(), perception_.pad_filter(), world_.foot_force().force,
-                       1.0 / kMissionRate);
-    const control::MissionOutputs& mission = pilot_.mission();
-    if (mission.reason != control::TransitionReason::kNone) {
-      Note(believed.t, "mode",
+  void NoteMode(double t) {
+    const control::OnboardStatus& status = onboard_.status();
+    if (status.own != own_status_) {
+      own_status_ = status.own;
+      Note(t, "own_state", std::string(estimation::ToString(own_status_)));
+    }
+    const control::MissionOutputs& mission = status.mission;
+    if (status.mission_step && mission.reason != control::TransitionReason::kNone) {
+      Note(t, "mode",
            fmt::format("{} ({})", control::ToString(mission.mode),
                        control::ToString(mission.reason)));
     }
   }
 
-  void Replan(const estimation::VehicleState& believed) {
-    const planning::ReplanResult* plan = nullptr;
-    planning::ReplannerState before;
-    if (record_ != nullptr) before = pilot_.replanner_state();
-    Timed(&result_.timing.planning_cpu_s,
-          [&] { plan = pilot_.Replan(believed, perception_.pad_filter(), perception_.map()); });
+  void NotePlan(double t) {
+    const planning::ReplanResult* plan = onboard_.plan().answer;
     if (plan == nullptr) {
-      if (record_ != nullptr && pilot_.idle()) ++record_->idle_steps;
+      if (record_ != nullptr && onboard_.plan().idle) ++record_->idle_steps;
       return;
     }
+    const control::OnboardReplan& asked = *onboard_.plan().asked;
     ++result_.replans;
     ++result_.replans_by_status[planning::ToString(plan->status)];
     no_plan_reason_.clear();
@@ -211,25 +199,25 @@ class Trial {
     }
     if (plan->status == planning::ReplanStatus::kPlanned) stand_watch_.Planned();
     if (safety_watch_ && !judge_.touchdown())
-      safety_watch_->Step(*plan, pilot_.last_replan().request.input.margins,
-                          pilot_.last_replan().late);
+      safety_watch_->Step(*plan, asked.request.input.margins, asked.late);
     const planning::StageTimes::Span& total = plan->times.total;
     result_.timing.replan_wall_ms.push_back(1e3 * total.wall);
     result_.timing.replan_cpu_ms.push_back(1e3 * total.cpu);
-    if (total.wall > pilot_.last_replan().latency_s) ++result_.timing.deadline_misses;
-    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(believed.t, *plan));
+    if (total.wall > asked.latency_s) ++result_.timing.deadline_misses;
+    if (samples_ != nullptr) samples_->replans.push_back(SampleOf(t, *plan));
     if (record_ == nullptr) return;
     RecordPlan row;
-    row.request = pilot_.last_replan().request;
-    row.pad = pilot_.last_replan().pad;
-    row.before = std::move(before);
-    row.map_change = map_recorder_.Take(perception_.map());
+    row.request = asked.request;
+    row.pad = asked.pad;
+    row.before = onboard_.plan().before;
+    row.map_change = map_recorder_.Take(onboard_.map());
     row.result = OutcomeOf(*plan);
     record_->plans.push_back(std::move(row));
   }
 
   void Judge(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
              bool saturated) {
+    const control::OnboardStatus& status = onboard_.status();
     JudgeSample sample;
     sample.t = vehicle.t;
     sample.vehicle = vehicle;
@@ -238,9 +226,9 @@ class Trial {
     if (sample.simulated) {
       for (const sim::Contact& contact : world_.contacts()) TakeContact(contact, &sample);
     }
-    sample.armed = pilot_.mission().motors_armed;
-    sample.pad_known = task_ == TaskKind::kGoTo || perception_.pad_filter().Converged(vehicle.t);
-    sample.plan_valid = pilot_.plan_valid(vehicle.t);
+    sample.armed = status.mission.motors_armed;
+    sample.pad_known = status.pad_sure;
+    sample.plan_valid = status.plan_valid;
     sample.at_target = AtTarget(vehicle, pad);
     sample.stood = stand_watch_.Stands(vehicle.t, vehicle.p_WB) && !sample.at_target;
 
@@ -249,7 +237,7 @@ class Trial {
       through_air_.Add(vehicle.t, vehicle.v_WB - air_.velocity());
       if (in_flight) {
         metrics_.Sample(vehicle.t, vehicle, task_ == TaskKind::kGoTo ? goal_.At(vehicle.t) : pad);
-        if (perception_.own().estimated()) metrics_.OwnState(perception_.own().now(), vehicle);
+        if (onboard_.own_estimated()) metrics_.OwnState(onboard_.own(), vehicle);
       }
       if (record_ != nullptr) RecordState(vehicle, pad);
       if (samples_ != nullptr) samples_->pad.truth.push_back({vehicle.t, in_flight, pad});
@@ -257,9 +245,9 @@ class Trial {
     if (in_flight && safety_watch_) WatchSafety(vehicle);
     if (in_flight) {
       metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
-      if (perception_.pad_measured() && perception_.pad_filter().Converged(vehicle.t)) {
-        metrics_.Estimate(perception_.pad_filter().Estimate(vehicle.t), pad,
-                          perception_.own().now().p_WB - vehicle.p_WB);
+      if (perception_.pad_measured() && onboard_.pad().Converged(vehicle.t)) {
+        metrics_.Estimate(onboard_.pad().Estimate(vehicle.t), pad,
+                          onboard_.own().p_WB - vehicle.p_WB);
       }
     }
     if (in_flight && sample.foot_on_pad) {
@@ -282,10 +270,10 @@ class Trial {
   }
 
   void WatchSafety(const estimation::VehicleState& vehicle) {
-    const Eigen::Vector3d believed = perception_.own().now().p_WB;
-    safety_watch_->Tracked(believed, vehicle.p_WB, pilot_.Reference(vehicle.t).p_WB);
+    const Eigen::Vector3d believed = onboard_.own().p_WB;
+    safety_watch_->Tracked(believed, vehicle.p_WB, onboard_.Reference(vehicle.t).p_WB);
     if (!map_look_clock_.Due(vehicle.t)) return;
-    safety_watch_->LookAt(perception_.map(), believed, believed - vehicle.p_WB);
+    safety_watch_->LookAt(onboard_.map(), believed, believed - vehicle.p_WB);
   }
 
   void TakeContact(const sim::Contact& contact, JudgeSample* sample) {
@@ -317,23 +305,16 @@ class Trial {
     RecordSample row;
     row.t = vehicle.t;
     row.vehicle = vehicle;
-    row.vehicle_estimate = perception_.own().now();
+    row.vehicle_estimate = onboard_.own();
     row.pad = pad;
-    row.pad_known = perception_.pad_filter().initialized();
-    if (row.pad_known) row.pad_estimate = perception_.pad_filter().Estimate(vehicle.t);
-    row.reference = pilot_.Reference(vehicle.t);
+    row.pad_known = onboard_.pad().initialized();
+    if (row.pad_known) row.pad_estimate = onboard_.pad().Estimate(vehicle.t);
+    row.reference = onboard_.Reference(vehicle.t);
     row.rotor_thrusts = world_.rotor_thrusts();
     row.air = air_.velocity();
-    row.disturbance = pilot_.disturbance();
-    row.mode = control::ToString(pilot_.mission().mode).data();
+    row.disturbance = onboard_.disturbance();
+    row.mode = control::ToString(onboard_.status().mission.mode).data();
     record_->samples.push_back(row);
-  }
-
-  void NoteOwnStatus(double t) {
-    const estimation::OwnStatus status = perception_.own().status();
-    if (status == own_status_) return;
-    own_status_ = status;
-    Note(t, "own_state", std::string(estimation::ToString(status)));
   }
 
   void Note(double t, const char* kind, const std::string& text) {
@@ -361,10 +342,11 @@ class Trial {
       }
       if (result_.outcome == Outcome::kStood) {
         result_.cause = no_plan_reason_.empty()
-                            ? std::string(control::ToString(pilot_.mission().mode))
+                            ? std::string(control::ToString(onboard_.status().mission.mode))
                             : no_plan_reason_;
       }
-      result_.detail += fmt::format(" Mode: {}.", control::ToString(pilot_.mission().mode));
+      result_.detail +=
+          fmt::format(" Mode: {}.", control::ToString(onboard_.status().mission.mode));
     }
     metrics_.Fill(&result_);
     result_.within_limits = result_.max_speed_mps <= limits_.speed &&
@@ -375,6 +357,8 @@ class Trial {
     if (task_ == TaskKind::kFollow) result_.following = metrics_.LastFollowing();
     if (safety_watch_) result_.safety = safety_watch_->figures();
     result_.timing.simulated_s = world_.time();
+    result_.timing.control_cpu_s = onboard_.times().control;
+    result_.timing.planning_cpu_s = onboard_.times().planning;
     result_.timing.sensing_cpu_s = perception_.sensing_cpu_s();
     result_.timing.sensing_stages = perception_.sensing_times();
     result_.timing.mapping_cpu_s = perception_.mapping_cpu_s();
@@ -392,7 +376,7 @@ class Trial {
   sim::World world_;
   Air air_;
   Perception perception_;
-  Pilot pilot_;
+  control::Onboard onboard_;
   sim::TrueClearance clearance_;
   TaskKind task_;
   std::optional<StayTask> stay_;
@@ -402,14 +386,11 @@ class Trial {
   LandingJudge judge_;
   StandWatch stand_watch_;
   std::optional<SafetyWatch> safety_watch_;  ///< of the landing planner
-  sim::SampleClock map_look_clock_;
+  estimation::SampleClock map_look_clock_;
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   SlidingMean through_air_;
-  sim::SampleClock mission_clock_;
-  sim::SampleClock replan_clock_;
-  sim::SampleClock close_clock_;
-  sim::SampleClock sample_clock_;
+  estimation::SampleClock sample_clock_;
   TrialRecord* record_;
   MapRecorder map_recorder_;
   TrialSamples* samples_;

@@ -26,11 +26,19 @@ class CameraDepthEye final : public DepthEye {
 
  private:
   void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
-               estimation::DepthFrame* frame) override {
-    camera_.Capture(vehicle, pad, frame);
+               estimation::DepthImage* image) override {
+    frame_.depth.swap(image->depth);
+    camera_.Capture(vehicle, pad, &frame_);
+    frame_.depth.swap(image->depth);
+    image->t = frame_.t;
+    image->intrinsics = frame_.intrinsics;
+    image->max_range = frame_.max_range;
+    image->p_BC = camera_.config().p_BC;
+    image->R_BC = camera_.R_BC();
   }
 
   Camera camera_;
+  estimation::DepthFrame frame_;
 };
 
 }  // namespace
@@ -46,18 +54,10 @@ void DepthEye::Look(const estimation::VehicleState& vehicle, const estimation::P
   glimpse.sense = planning::StageTimes::Span{"sense"};
   {
     const planning::StageTimer timer(&glimpse.sense);
-    Capture(vehicle, pad, &glimpse.frame);
+    Capture(vehicle, pad, &glimpse.image);
   }
-  glimpse.vehicle = vehicle;
   times->depth_image += glimpse.sense.cpu;
   delivery_.Hold(vehicle.t, std::move(glimpse));
-}
-
-void PlaceFrame(const estimation::VehicleState& truth, const estimation::VehicleState& believed,
-                estimation::DepthFrame* frame) {
-  const Eigen::Matrix3d turn = (believed.q_WB * truth.q_WB.conjugate()).toRotationMatrix();
-  frame->p_WC = believed.p_WB + turn * (frame->p_WC - truth.p_WB);
-  frame->R_WC = turn * frame->R_WC;
 }
 
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,

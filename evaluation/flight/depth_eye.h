@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
-#include "sim/base/sample_clock.h"
 #include "sim/sensors/frame_delivery.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -19,10 +19,9 @@
 
 namespace touchdown::evaluation {
 
-/// A depth image with its true pose, the vehicle's true state when it was taken, and what it took to make it.
+/// A depth image, and what it took to make it.
 struct DepthGlimpse {
-  estimation::DepthFrame frame;
-  estimation::VehicleState vehicle;
+  estimation::DepthImage image;
   planning::StageTimes::Span sense{"sense"};
 };
 
@@ -49,17 +48,12 @@ class DepthEye {
 
  private:
   virtual void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
-                       estimation::DepthFrame* frame) = 0;
+                       estimation::DepthImage* image) = 0;
 
-  sim::SampleClock clock_;
+  estimation::SampleClock clock_;
   sim::FrameDelivery<DepthGlimpse> delivery_;
   DepthGlimpse spare_;
 };
-
-/// The pose of `frame` as a vehicle that takes itself to be at `believed` knows it; it was taken at
-/// the true state `truth`. The camera's place in the vehicle is known exactly.
-void PlaceFrame(const estimation::VehicleState& truth, const estimation::VehicleState& believed,
-                estimation::DepthFrame* frame);
 
 /// The eye of the scenario's `sensing`; as MakePadEye.
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,

@@ -145,7 +145,7 @@ void PadEye::Look(const estimation::VehicleState& vehicle, const estimation::Veh
                   SensingTimes* times) {
   if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
   if (const auto sighting = Sight(vehicle, believed, pad, expected, times)) {
-    delivery_.Hold(vehicle.t, {*sighting, vehicle});
+    delivery_.Hold(vehicle.t, *sighting);
   }
 }
 

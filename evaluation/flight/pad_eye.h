@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
-#include "sim/base/sample_clock.h"
 #include "sim/sensors/frame_delivery.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -16,12 +16,6 @@
 #include "touchdown/evaluation/scenario/scenario.h"
 
 namespace touchdown::evaluation {
-
-/// A sighting, with the vehicle's true state at its time stamp.
-struct PadGlimpse {
-  estimation::PadSighting sighting;
-  estimation::VehicleState vehicle;
-};
 
 /// The downward camera and what is made of its images. Images come at the camera's rate; some are
 /// dropped, and what is seen arrives late, as the scenario says. Belongs to the thread that made it.
@@ -39,8 +33,8 @@ class PadEye {
             const estimation::PadState& pad, const estimation::PadFilter& expected,
             SensingTimes* times);
 
-  /// The oldest glimpse that has arrived by the time t [s]; call until there is none.
-  std::optional<PadGlimpse> Poll(double t) { return delivery_.Poll(t); }
+  /// The oldest sighting that has arrived by the time t [s]; call until there is none.
+  std::optional<estimation::PadSighting> Poll(double t) { return delivery_.Poll(t); }
 
  protected:
   PadEye(const Scenario& scenario, std::uint64_t seed);
@@ -52,8 +46,8 @@ class PadEye {
                                                        const estimation::PadFilter& expected,
                                                        SensingTimes* times) = 0;
 
-  sim::SampleClock clock_;
-  sim::FrameDelivery<PadGlimpse> delivery_;
+  estimation::SampleClock clock_;
+  sim::FrameDelivery<estimation::PadSighting> delivery_;
 };
 
 /// The eye of the scenario's `sensing`. `world` only gives the configuration; `seed` feeds its own

@@ -8,8 +8,8 @@
 #include <Eigen/Core>
 
 #include "evaluation/flight/map_history.h"
-#include "evaluation/flight/replan_request.h"
 #include "evaluation/scenario/scenario_world.h"
+#include "touchdown/control/onboard/replan_request.h"
 #include "touchdown/control/tracking/controller.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
@@ -63,7 +63,7 @@ bool Same(const ReplanOutcome& a, const ReplanOutcome& b);
 
 /// One replanning step: what was asked and what came out.
 struct RecordPlan {
-  ReplanRequest request;
+  control::ReplanRequest request;
   planning::ReplannerState before;  ///< what the replanner remembered
   MapChange map_change;             ///< since the previous replanning step
   estimation::PadState pad;         ///< the prediction at t_now

@@ -6,14 +6,14 @@
 
 #include <fmt/format.h>
 
-#include "control/mission/landing_state_machine.h"
+#include "control/onboard/pilot.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/flight/field_map.h"
-#include "evaluation/flight/perception.h"
-#include "evaluation/flight/pilot.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/vehicle/vehicle_file.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 #include "touchdown/planning/replan/span_log.h"
 
 namespace touchdown::evaluation {
@@ -27,7 +27,7 @@ planning::EndpointTarget FirstTarget(const Scenario& scenario,
   const control::MissionParameters mission;
   planning::EndpointTarget target;
   if (PlansContact(scenario)) {
-    target = ContactTarget(model, mission.touchdown_rate, kLevelTime);
+    target = control::ContactTarget(model, mission.touchdown_rate, control::kLevelTime);
   } else if (scenario.task == TaskKind::kGoTo) {
     target.height = 0.0;
   } else {

@@ -108,7 +108,7 @@ Json AttemptJson(const planning::AttemptLog& attempt) {
 }
 
 Json InputJson(const SolvedStep& solved) {
-  const ReplanRequest& request = solved.recorded.request;
+  const control::ReplanRequest& request = solved.recorded.request;
   const planning::ReplanInput& input = request.input;
   Json json = {{"t_now", input.t_now},
                {"t_start", input.t_start},

@@ -191,7 +191,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   for (const RecordPlan& row : plans) {
     WriteInput(input, id, row);
     const bool known = row.request.pad.has_value();
-    const PadKnowledge p = row.request.pad.value_or(PadKnowledge());
+    const estimation::PadKnowledge p = row.request.pad.value_or(estimation::PadKnowledge());
     const estimation::PadNoise& n = p.noise;
     prediction.Run(id, known, ToString(p.belief.motion), p.belief.t, p.height, n.position,
                    n.velocity, n.acceleration, n.heading, n.turn);

@@ -14,7 +14,7 @@
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/result_file.h"
 #include "evaluation/base/table_rows.h"
-#include "evaluation/flight/perception.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/record/record.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/vehicle/vehicle_file.h"
@@ -175,8 +175,8 @@ void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
       plans, read_input);
   const auto read_prediction = [](TableRows& row, RecordPlan* plan) {
     const bool known = row.Flag();
-    PadKnowledge p;
-    p.belief.motion = row.Named(estimation::PadMotion::kTurn, ToString);
+    estimation::PadKnowledge p;
+    p.belief.motion = row.Named(estimation::PadMotion::kTurn, estimation::ToString);
     p.belief.t = row.Number();
     p.height = row.Number();
     p.noise = {row.Number(), row.Number(), row.Number(), row.Number(), row.Number()};

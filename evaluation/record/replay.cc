@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/flight/perception.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/vehicle/vehicle_file.h"
@@ -79,7 +79,7 @@ void Replay::Seek(int step) {
 }
 
 const estimation::PadPrediction* Replay::prediction() {
-  const std::optional<PadKnowledge>& known = recorded().request.pad;
+  const std::optional<estimation::PadKnowledge>& known = recorded().request.pad;
   return known ? &predictor_->Predict(*known) : nullptr;
 }
 

@@ -44,7 +44,7 @@ class Replay {
   const RecordedFlight& flight_;
   const Registries& registries_;
   estimation::VehicleModel model_;
-  std::unique_ptr<PadPredictor> predictor_;
+  std::unique_ptr<estimation::PadPredictor> predictor_;
   std::unique_ptr<planning::Planner> planner_;
   planning::Replanner* replanner_;
   planning::OccupancyMap map_;

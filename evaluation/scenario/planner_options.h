@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "touchdown/control/onboard/envelope.h"
 #include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/evaluation/scenario/scenario.h"
 #include "touchdown/planning/replan/replanner.h"
@@ -35,16 +36,13 @@ double ClosePlannerRate(const Scenario& scenario, const PlannerEntry& planner);
 planning::TermSettings TermSettingsOf(const std::string& name,
                                       const std::map<std::string, double>& keys);
 
-/// How far the tracking law may tilt: farther than plans, which do not count on all of it [rad].
-double TrackingTilt(const Scenario& scenario);
+/// What the vehicle may do in flight.
+control::Envelope EnvelopeOf(const Scenario& scenario);
 
 /// How far plans stay from obstacles: planning.clearance, but no less than what proven pairs
 /// keep in calm air, the hull at every tilt and its margins [m].
 double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model,
                      const Registries& registries);
-
-/// Plans stay above this away from the pad [m].
-double LowestPlan(const estimation::VehicleModel& model);
 
 /// Longest time from the question to the plan [s]: the least time between two replanning steps. A
 /// plan that took over later would still be waiting when the next one is asked for.

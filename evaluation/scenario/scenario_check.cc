@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include "control/mission/landing_state_machine.h"
 #include "estimation/tags/pad_sheet.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/map_file.h"
@@ -23,6 +22,7 @@
 #include "sim/obstacles/obstacle_field.h"
 #include "sim/vehicle/vehicle_file.h"
 #include "sim/vehicle/vehicle_import.h"
+#include "touchdown/control/mission/landing_state_machine.h"
 #include "touchdown/sim/vehicle/plant.h"
 
 namespace touchdown::evaluation {
@@ -66,7 +66,7 @@ void CheckCeiling(const ScenarioSource& source, const estimation::VehicleModel& 
   const double followed =
       s.pad.deck_height + control::MissionParameters{}.follow_height + model.foot_depth;
   const std::pair<double, const char*> lowest =
-      std::max({std::pair{LowestPlan(model), "the floor of plans"},
+      std::max({std::pair{control::LowestPlan(model), "the floor of plans"},
                 std::pair{s.start.position.z() + s.start.position_spread.z(),
                           "start.position with its spread"},
                 std::pair{followed, "the height at which the pad is followed"}});
@@ -235,7 +235,7 @@ void CheckGoal(const ScenarioSource& source, const ObstacleList& obstacles,
   const Scenario& s = source.scenario;
   if (s.task != TaskKind::kGoTo) return;
   const std::string where = source.WhereOf("go_to.goal").ToString();
-  const double low = LowestPlan(model), z = s.go_to.goal.z();
+  const double low = control::LowestPlan(model), z = s.go_to.goal.z();
   if (z < low || z > s.planning.ceiling) {
     throw BadInput(
         fmt::format("{}: go_to.goal must be in [{:.4g}, {:g}] m in z, from the floor of plans to "

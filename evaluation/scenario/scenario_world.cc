@@ -22,10 +22,12 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadPerDeg = kPi / 180.0;
 
 /// Whatever is known of the pad: it is not where the vehicle is to go.
-class ToGoal final : public PadPredictor {
+class ToGoal final : public estimation::PadPredictor {
  public:
   explicit ToGoal(const Scenario& scenario) : goal_(GoalOf(scenario)) {}
-  const estimation::PadPrediction& Predict(const PadKnowledge& /*known*/) override { return goal_; }
+  const estimation::PadPrediction& Predict(const estimation::PadKnowledge& /*known*/) override {
+    return goal_;
+  }
 
  private:
   planning::MovingGoal goal_;
@@ -68,8 +70,9 @@ planning::MovingGoal GoalOf(const Scenario& scenario) {
   });
 }
 
-std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
-                                          std::shared_ptr<const sim::PadCourse> truth) {
+std::unique_ptr<estimation::PadPredictor> PredictorOf(const Scenario& scenario,
+                                                      const Registries& registries,
+                                                      std::shared_ptr<const sim::PadCourse> truth) {
   if (scenario.task == TaskKind::kGoTo) return std::make_unique<ToGoal>(scenario);
   const PredictorEntry& entry =
       PartNamed(registries.predictors, scenario.pad.prediction, "pad predictor");

@@ -37,8 +37,9 @@ std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
 planning::MovingGoal GoalOf(const Scenario& scenario);
 
 /// What foretells the pad, whose future is `truth`, or in the task go_to the goal. @throws std::invalid_argument if the predictor is unknown.
-std::unique_ptr<PadPredictor> PredictorOf(const Scenario& scenario, const Registries& registries,
-                                          std::shared_ptr<const sim::PadCourse> truth);
+std::unique_ptr<estimation::PadPredictor> PredictorOf(const Scenario& scenario,
+                                                      const Registries& registries,
+                                                      std::shared_ptr<const sim::PadCourse> truth);
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/flight/perception.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/record/trial_json.h"
 #include "evaluation/scenario/planner_options.h"
 #include "sim/vehicle/vehicle_file.h"

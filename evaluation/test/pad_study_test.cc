@@ -10,7 +10,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/flight/closed_loop.h"
-#include "evaluation/flight/perception.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/studies/pad/pad_report.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
@@ -41,7 +41,7 @@ PadLog DrivenLog(double turn_rate, bool tags, double duration = 8.0) {
     const estimation::PadState pad = pad_at(t);
     if (k % 5 == 0) log.arrivals.push_back({t, estimation::PadGpsFix{t, pad.p_WP.head<2>(), 0.01}});
     if (tags && k % 3 == 0) {
-      BelievedSighting seen;
+      estimation::BelievedSighting seen;
       seen.believed.t = t;
       seen.believed.p_WB = pad.p_WP + Eigen::Vector3d(0.0, 0.0, 1.0);
       seen.sighting = {t, {0.0, 0.0, -1.0}, pad.yaw, Eigen::Vector3d::Constant(0.005), 0.01, 4};
@@ -109,16 +109,17 @@ TEST(PadStudy, EndsAtContact) {
 TEST(PadStudy, ASightingThatTheFilterRefusesIsNoTagSeen) {
   PadLog log = DrivenLog(kTurnRate, false);
   const PadLog seen = DrivenLog(kTurnRate, true);
-  for (const PadArrival& arrival : seen.arrivals) {
-    if (!std::holds_alternative<BelievedSighting>(arrival.measurement)) continue;
+  for (const estimation::PadArrival& arrival : seen.arrivals) {
+    if (!std::holds_alternative<estimation::BelievedSighting>(arrival.measurement)) continue;
     if (arrival.t < 4.0 || arrival.t > 4.05) continue;
-    PadArrival off = arrival;  // one image, 20 m beside the pad
-    std::get<BelievedSighting>(off.measurement).believed.p_WB.x() += 20.0;
+    estimation::PadArrival off = arrival;  // one image, 20 m beside the pad
+    std::get<estimation::BelievedSighting>(off.measurement).believed.p_WB.x() += 20.0;
     log.arrivals.push_back(off);
     break;
   }
-  std::stable_sort(log.arrivals.begin(), log.arrivals.end(),
-                   [](const PadArrival& a, const PadArrival& b) { return a.t < b.t; });
+  std::stable_sort(
+      log.arrivals.begin(), log.arrivals.end(),
+      [](const estimation::PadArrival& a, const estimation::PadArrival& b) { return a.t < b.t; });
   for (const auto model : {estimation::PadModel::kPaper, estimation::PadModel::kTurnRate}) {
     const auto rows = Replay(log, model);
     ASSERT_EQ(rows.size(), 1U);
@@ -166,11 +167,11 @@ TEST(PadStudyFlight, IsTheFlightsOwnFilterAndDoesNotDependOnJobs) {
   for (const RecordSample& sample : record.samples) {
     for (; arrived < samples.pad.arrivals.size() && samples.pad.arrivals[arrived].t <= sample.t;
          ++arrived) {
-      const PadArrival& arrival = samples.pad.arrivals[arrived];
+      const estimation::PadArrival& arrival = samples.pad.arrivals[arrived];
       if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
         filter.AddGps(*fix);
       } else {
-        const auto& seen = std::get<BelievedSighting>(arrival.measurement);
+        const auto& seen = std::get<estimation::BelievedSighting>(arrival.measurement);
         filter.AddSighting(seen.sighting, seen.believed);
       }
     }

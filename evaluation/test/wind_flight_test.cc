@@ -107,7 +107,7 @@ TEST(WindFlight, InSteadyWindTheHoverGoesOn) {
 TEST(WindFlight, TheLawLeansFartherThanStopsCountOn) {
   const Scenario scenario = Open({"limits.tilt_deg=35"});
   constexpr double kDeg = 3.14159265358979323846 / 180.0;
-  EXPECT_NEAR(TrackingTilt(scenario), 55.0 * kDeg, 1e-12);
+  EXPECT_NEAR(EnvelopeOf(scenario).TrackingTilt(), 55.0 * kDeg, 1e-12);
   const planning::ReplannerOptions options =
       PlannerOptions(scenario, estimation::VehicleModel{}, StandardRegistries().terms);
   EXPECT_NEAR(options.problem.vehicle.stop_tilt_max, 45.0 * kDeg, 1e-12);

@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -76,8 +76,8 @@ DrydenTurbulence::DrydenTurbulence(std::uint64_t seed) : noise_(seed, "turbulenc
 }
 
 Eigen::Vector3d DrydenTurbulence::Step(double dt, double airspeed, double height) {
-  CheckAbove("turbulence: time step [s]", dt, 0.0, 1e6);
-  CheckAbove("turbulence: airspeed [m/s]", airspeed, 0.0, 1e6);
+  estimation::CheckAbove("turbulence: time step [s]", dt, 0.0, 1e6);
+  estimation::CheckAbove("turbulence: airspeed [m/s]", airspeed, 0.0, 1e6);
   const DrydenScales scales = DrydenScalesAt(height);
   const double d = dt * airspeed / scales.along;
   along_ = std::exp(-d) * along_ + std::sqrt(-std::expm1(-2.0 * d)) * noise_.Normal(1.0);

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -19,14 +19,14 @@ constexpr double kLeastAirspeed = 1.0;  // [m/s]
 constexpr double kLongest = 1e6;        // [s]
 
 const WindConfig& Checked(const WindConfig& config) {
-  CheckWithin("wind.mean", config.mean, 0.0, 30.0);
-  CheckWithin("wind.max", config.max, config.mean, 40.0);
-  CheckWithin("wind.direction", config.direction, -1e3, 1e3);
-  CheckWithin("wind.gust.speed", config.gust.speed, 0.0, 30.0);
-  CheckWithin("wind.gust.start", config.gust.start, 0.0, kLongest);
-  CheckAbove("wind.gust.duration", config.gust.duration, 0.0, kLongest);
+  estimation::CheckWithin("wind.mean", config.mean, 0.0, 30.0);
+  estimation::CheckWithin("wind.max", config.max, config.mean, 40.0);
+  estimation::CheckWithin("wind.direction", config.direction, -1e3, 1e3);
+  estimation::CheckWithin("wind.gust.speed", config.gust.speed, 0.0, 30.0);
+  estimation::CheckWithin("wind.gust.start", config.gust.start, 0.0, kLongest);
+  estimation::CheckAbove("wind.gust.duration", config.gust.duration, 0.0, kLongest);
   if (config.gust.period != 0.0) {
-    CheckWithin("wind.gust.period", config.gust.period, config.gust.duration, kLongest);
+    estimation::CheckWithin("wind.gust.period", config.gust.period, config.gust.duration, kLongest);
   }
   return config;
 }

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -40,8 +40,8 @@ double RandomStream::UnitDraw() { return static_cast<double>(engine_() >> 11) * 
 
 double RandomStream::Uniform(double low, double high) {
   constexpr double kLargest = std::numeric_limits<double>::max() / 2.0;
-  CheckWithin("Uniform: low", low, -kLargest, kLargest);
-  CheckWithin("Uniform: high", high, low, kLargest);
+  estimation::CheckWithin("Uniform: low", low, -kLargest, kLargest);
+  estimation::CheckWithin("Uniform: high", high, low, kLargest);
   const double draw = low + (high - low) * UnitDraw();
   return draw < high ? draw : low;  // rounding must not reach the open end
 }
@@ -49,7 +49,7 @@ double RandomStream::Uniform(double low, double high) {
 std::uint64_t RandomStream::Seed() { return static_cast<std::uint64_t>(Uniform(0.0, 0x1.0p53)); }
 
 double RandomStream::Normal(double sigma) {
-  CheckWithin("Normal: sigma", sigma, 0.0, std::numeric_limits<double>::max());
+  estimation::CheckWithin("Normal: sigma", sigma, 0.0, std::numeric_limits<double>::max());
   if (has_spare_) {
     has_spare_ = false;
     return sigma * spare_;

@@ -7,13 +7,14 @@
 #include <cmath>
 #include <variant>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
 
 std::string YawQuaternion(double yaw) {
-  return NumberText(std::cos(0.5 * yaw)) + " 0 0 " + NumberText(std::sin(0.5 * yaw));
+  return estimation::NumberText(std::cos(0.5 * yaw)) + " 0 0 " +
+         estimation::NumberText(std::sin(0.5 * yaw));
 }
 
 std::string TextOf(const Box& box) {
@@ -22,8 +23,8 @@ std::string TextOf(const Box& box) {
 }
 
 std::string TextOf(const Cylinder& cylinder) {
-  return "type='cylinder' size='" + NumberText(cylinder.radius) + ' ' +
-         NumberText(0.5 * cylinder.height) + "' pos='" + VectorText(cylinder.center) +
+  return "type='cylinder' size='" + estimation::NumberText(cylinder.radius) + ' ' +
+         estimation::NumberText(0.5 * cylinder.height) + "' pos='" + VectorText(cylinder.center) +
          "' quat='1 0 0 0'";
 }
 
@@ -34,7 +35,8 @@ std::string TextOf(const Ring&) { return ""; }
 }  // namespace
 
 std::string VectorText(const Eigen::Vector3d& v) {
-  return NumberText(v.x()) + ' ' + NumberText(v.y()) + ' ' + NumberText(v.z());
+  return estimation::NumberText(v.x()) + ' ' + estimation::NumberText(v.y()) + ' ' +
+         estimation::NumberText(v.z());
 }
 
 std::string GeomText(const Obstacle& obstacle, const std::string& name, const std::string& user) {

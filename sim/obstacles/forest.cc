@@ -10,7 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/base/random_stream.h"
 
 namespace touchdown::sim {
@@ -39,17 +39,18 @@ double Draw(const Range& range, RandomStream* stream) {
 }
 
 void Check(const ForestConfig& config) {
-  CheckWithin("forest: size.x [m]", config.size.x(), 4.0, 1000.0);
-  CheckWithin("forest: size.y [m]", config.size.y(), 4.0, 1000.0);
-  CheckAbove("forest: height [m]", config.height, 0.0, 100.0);
-  CheckWithin("forest: cell [m]", config.cell, 0.01, 1.0);
-  CheckWithin("forest: pillars", config.pillars, 0.0, kGreatestDensity * config.size.prod());
-  CheckWithin("forest: spacing [m]", config.spacing, 0.0, 10.0);
-  CheckWithin("forest: rings", config.rings, 0.0, config.size.prod());
-  CheckWithin("forest: walls", config.walls, 0.0, config.size.prod());
+  estimation::CheckWithin("forest: size.x [m]", config.size.x(), 4.0, 1000.0);
+  estimation::CheckWithin("forest: size.y [m]", config.size.y(), 4.0, 1000.0);
+  estimation::CheckAbove("forest: height [m]", config.height, 0.0, 100.0);
+  estimation::CheckWithin("forest: cell [m]", config.cell, 0.01, 1.0);
+  estimation::CheckWithin("forest: pillars", config.pillars, 0.0,
+                          kGreatestDensity * config.size.prod());
+  estimation::CheckWithin("forest: spacing [m]", config.spacing, 0.0, 10.0);
+  estimation::CheckWithin("forest: rings", config.rings, 0.0, config.size.prod());
+  estimation::CheckWithin("forest: walls", config.walls, 0.0, config.size.prod());
   for (const KeepOut& keep : config.keep_out) {
-    CheckWithin("forest: keep_out radius [m]", keep.radius, 0.0, 1000.0);
-    CheckWithin("forest: |keep_out center| [m]", keep.center.norm(), 0.0, 1.0e4);
+    estimation::CheckWithin("forest: keep_out radius [m]", keep.radius, 0.0, 1000.0);
+    estimation::CheckWithin("forest: |keep_out center| [m]", keep.center.norm(), 0.0, 1.0e4);
   }
 }
 
@@ -69,8 +70,8 @@ std::vector<Eigen::Vector2d> DrawCenters(const ForestConfig& config, std::uint64
   std::vector<Eigen::Vector2d> centers;
   for (int draws = 0; static_cast<int>(centers.size()) < config.pillars; ++draws) {
     if (draws == kDrawsPerObstacle * config.pillars) {
-      ThrowOutOfRange("forest: pillars", config.pillars,
-                      "what fits: fewer, or at a smaller spacing");
+      estimation::ThrowOutOfRange("forest: pillars", config.pillars,
+                                  "what fits: fewer, or at a smaller spacing");
     }
     const Eigen::Vector2d p = DrawInside(config, &stream);
     const bool crowded = std::any_of(centers.begin(), centers.end(), [&](const auto& other) {
@@ -150,7 +151,8 @@ void AddWalls(const ForestConfig& config, std::uint64_t seed, std::vector<Obstac
   int standing = 0;
   for (int draws = 0; standing < config.walls; ++draws) {
     if (draws == kDrawsPerObstacle * config.walls) {
-      ThrowOutOfRange("forest: walls", config.walls, "what fits around the keep-outs: fewer");
+      estimation::ThrowOutOfRange("forest: walls", config.walls,
+                                  "what fits around the keep-outs: fewer");
     }
     const Eigen::Vector2d middle = DrawInside(config, &stream);
     const double yaw = stream.Uniform(0.0, std::numbers::pi);
@@ -204,7 +206,7 @@ ForestConfig ForestOfKind(const std::string& kind) {
 }
 
 void SetDensity(double density, ForestConfig* config) {
-  CheckWithin("forest: density [1/m^2]", density, 0.0, kGreatestDensity);
+  estimation::CheckWithin("forest: density [1/m^2]", density, 0.0, kGreatestDensity);
   constexpr double kSpacing = 1.2;  // [m]
   config->pillars = static_cast<int>(std::lround(density * config->size.prod()));
   config->spacing = density > 0.0 ? std::min(kSpacing, 0.64 / std::sqrt(density)) : kSpacing;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/obstacles/ray_intersection.h"
 
 namespace touchdown::sim {
@@ -27,45 +27,48 @@ Eigen::Vector3d TurnedBack(double yaw, const Eigen::Vector3d& v_W) {
 
 void ValidateCenter(const Eigen::Vector3d& center, const std::string& name) {
   for (int axis = 0; axis < 3; ++axis) {
-    CheckWithin(name + ": center." + "xyz"[axis], center[axis], -kMaxCoordinate, kMaxCoordinate);
+    estimation::CheckWithin(name + ": center." + "xyz"[axis], center[axis], -kMaxCoordinate,
+                            kMaxCoordinate);
   }
 }
 
 void ValidateOne(const Box& box, const std::string& name) {
   ValidateCenter(box.center, name);
   for (int axis = 0; axis < 3; ++axis) {
-    CheckAbove(name + ": half_extents." + "xyz"[axis], box.half_extents[axis], 0.0, kMaxSize);
+    estimation::CheckAbove(name + ": half_extents." + "xyz"[axis], box.half_extents[axis], 0.0,
+                           kMaxSize);
   }
-  CheckWithin(name + ": yaw", box.yaw, -1.0e3, 1.0e3);
+  estimation::CheckWithin(name + ": yaw", box.yaw, -1.0e3, 1.0e3);
 }
 
 void ValidateOne(const Cylinder& cylinder, const std::string& name) {
   ValidateCenter(cylinder.center, name);
-  CheckAbove(name + ": radius", cylinder.radius, 0.0, kMaxSize);
-  CheckAbove(name + ": height", cylinder.height, 0.0, kMaxSize);
+  estimation::CheckAbove(name + ": radius", cylinder.radius, 0.0, kMaxSize);
+  estimation::CheckAbove(name + ": height", cylinder.height, 0.0, kMaxSize);
 }
 
 void ValidateOne(const VoxelColumns& columns, const std::string& name) {
   ValidateCenter(columns.corner, name);
-  CheckAbove(name + ": cell", columns.cell, 0.0, kMaxSize);
-  CheckWithin(name + ": count_x", columns.count_x, 1, 1000);
-  CheckWithin(name + ": count_y", columns.count_y, 1, 1000);
+  estimation::CheckAbove(name + ": cell", columns.cell, 0.0, kMaxSize);
+  estimation::CheckWithin(name + ": count_x", columns.count_x, 1, 1000);
+  estimation::CheckWithin(name + ": count_y", columns.count_y, 1, 1000);
   const double wanted = static_cast<double>(columns.count_x) * columns.count_y;
-  CheckWithin(name + ": number of heights", static_cast<double>(columns.heights.size()), wanted,
-              wanted);
+  estimation::CheckWithin(name + ": number of heights", static_cast<double>(columns.heights.size()),
+                          wanted, wanted);
   for (const double height : columns.heights) {
-    CheckWithin(name + ": height", height, 0.0, kMaxSize);
+    estimation::CheckWithin(name + ": height", height, 0.0, kMaxSize);
   }
-  CheckAbove(name + ": greatest height",
-             *std::max_element(columns.heights.begin(), columns.heights.end()), 0.0, kMaxSize);
+  estimation::CheckAbove(name + ": greatest height",
+                         *std::max_element(columns.heights.begin(), columns.heights.end()), 0.0,
+                         kMaxSize);
 }
 
 void ValidateOne(const Ring& ring, const std::string& name) {
   ValidateCenter(ring.center, name);
-  CheckAbove(name + ": half_width", ring.half_width, 0.0, kMaxSize);
-  CheckAbove(name + ": half_height", ring.half_height, 0.0, kMaxSize);
-  CheckAbove(name + ": tube_radius", ring.tube_radius, 0.0, kMaxSize);
-  CheckWithin(name + ": yaw", ring.yaw, -1.0e3, 1.0e3);
+  estimation::CheckAbove(name + ": half_width", ring.half_width, 0.0, kMaxSize);
+  estimation::CheckAbove(name + ": half_height", ring.half_height, 0.0, kMaxSize);
+  estimation::CheckAbove(name + ": tube_radius", ring.tube_radius, 0.0, kMaxSize);
+  estimation::CheckWithin(name + ": yaw", ring.yaw, -1.0e3, 1.0e3);
 }
 
 double DistanceTo(const Box& box, const Eigen::Vector3d& p_W) {

@@ -27,7 +27,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -171,9 +171,9 @@ class TrueClearance::Impl {
 
 TrueClearance::TrueClearance(const ObstacleField& obstacles,
                              const estimation::VehicleModel& model) {
-  CheckAbove("hull_radius [m]", model.hull_radius, 0.0, 10.0);
-  CheckAbove("hull height (hull_top + foot_depth) [m]", model.hull_top + model.foot_depth, 0.0,
-             10.0);
+  estimation::CheckAbove("hull_radius [m]", model.hull_radius, 0.0, 10.0);
+  estimation::CheckAbove("hull height (hull_top + foot_depth) [m]",
+                         model.hull_top + model.foot_depth, 0.0, 10.0);
   impl_ = std::make_unique<Impl>(obstacles, model);
 }
 TrueClearance::TrueClearance(TrueClearance&&) noexcept = default;
@@ -188,7 +188,7 @@ Clearance TrueClearance::Nearest(const estimation::VehicleState& vehicle) const 
   if (!vehicle.p_WB.allFinite()) {
     throw std::invalid_argument("vehicle position: not finite; allowed are finite numbers");
   }
-  CheckWithin("norm of q_WB", vehicle.q_WB.norm(), 1.0 - 1e-6, 1.0 + 1e-6);
+  estimation::CheckWithin("norm of q_WB", vehicle.q_WB.norm(), 1.0 - 1e-6, 1.0 + 1e-6);
   return impl_->Nearest(vehicle);
 }
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -42,7 +42,7 @@ void AddRamp(double x, double w, double d, PacePoint* sum) {
 
 Pace::Pace(std::vector<Knot> knots, double smoothing)
     : knots_(std::move(knots)), smoothing_(smoothing) {
-  CheckAbove("smoothing of the pace [s]", smoothing, 0.0, 1e6);
+  estimation::CheckAbove("smoothing of the pace [s]", smoothing, 0.0, 1e6);
   if (knots_.size() < 2) throw std::invalid_argument("a pace needs two knots");
   for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
     if (!(knots_[i + 1].t > knots_[i].t)) {
@@ -69,7 +69,7 @@ Pace Pace::Periodic(const std::vector<Knot>& knots, double smoothing) {
   }
   three.push_back({first.t + 2.0 * period.t, first.s + 2.0 * period.s});
   Pace pace(std::move(three), smoothing);
-  CheckWithin("smoothing of the pace [s]", smoothing, 0.0, period.t / 1.5);
+  estimation::CheckWithin("smoothing of the pace [s]", smoothing, 0.0, period.t / 1.5);
   pace.period_ = period;
   return pace;
 }

@@ -3,21 +3,21 @@
 
 #include "sim/pad/pad_geometry.h"
 
+#include "estimation/base/argument_check.h"
 #include "estimation/tags/pad_sheet.h"
-#include "sim/base/argument_check.h"
 
 namespace touchdown::sim {
 
 void Validate(const PadGeometry& geometry, double deck_height) {
-  CheckWithin("pad.deck_half_size", geometry.deck_half_size, 0.1, 5.0);
-  CheckWithin("pad.deck_thickness", geometry.deck_thickness, 0.005, 0.2);
-  CheckWithin("pad.body_half_length", geometry.body_half_length, 0.05, 5.0);
-  CheckWithin("pad.body_half_width", geometry.body_half_width, 0.05, 5.0);
-  CheckWithin("pad.ground_gap", geometry.ground_gap, 0.0, 1.0);
-  CheckAbove("pad.friction", geometry.friction, 0.0, 5.0);
+  estimation::CheckWithin("pad.deck_half_size", geometry.deck_half_size, 0.1, 5.0);
+  estimation::CheckWithin("pad.deck_thickness", geometry.deck_thickness, 0.005, 0.2);
+  estimation::CheckWithin("pad.body_half_length", geometry.body_half_length, 0.05, 5.0);
+  estimation::CheckWithin("pad.body_half_width", geometry.body_half_width, 0.05, 5.0);
+  estimation::CheckWithin("pad.ground_gap", geometry.ground_gap, 0.0, 1.0);
+  estimation::CheckAbove("pad.friction", geometry.friction, 0.0, 5.0);
   // Below the board there is room for a body at least a centimetre high.
-  CheckWithin("pad deck height", deck_height, geometry.ground_gap + geometry.deck_thickness + 0.01,
-              10.0);
+  estimation::CheckWithin("pad deck height", deck_height,
+                          geometry.ground_gap + geometry.deck_thickness + 0.01, 10.0);
 }
 
 Box DeckBox(const PadGeometry& geometry, const estimation::PadState& pad) {

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/pad/path_drive.h"
 
 namespace touchdown::sim {
@@ -36,8 +36,8 @@ bool ChangesSpeed(Kind kind) {
 }
 
 void ValidatePace(const PadMotionConfig& config) {
-  CheckWithin("pad.acceleration", config.acceleration, 0.05, kMostAcceleration);
-  CheckWithin("pad.jerk", config.jerk, 0.05, 100.0);
+  estimation::CheckWithin("pad.acceleration", config.acceleration, 0.05, kMostAcceleration);
+  estimation::CheckWithin("pad.jerk", config.jerk, 0.05, 100.0);
   const bool reverses = config.kind == Kind::kReversing, stops = config.kind == Kind::kStopAndGo;
   if (reverses || stops) {
     // A change of speed takes three times the smoothing, and must be over before the next one.
@@ -45,39 +45,42 @@ void ValidatePace(const PadMotionConfig& config) {
     const double change = 3.0 * Pace::SmoothingFor(range, config.acceleration, INFINITY);
     if (change > kLongestStretch) {
       const double least = config.acceleration * change / kLongestStretch;
-      CheckWithin("pad.acceleration", config.acceleration, least, kMostAcceleration);
+      estimation::CheckWithin("pad.acceleration", config.acceleration, least, kMostAcceleration);
     }
-    CheckWithin("pad.go_time", config.go_time, change, kLongestStretch);
-    if (stops) CheckWithin("pad.stop_time", config.stop_time, change, kLongestStretch);
+    estimation::CheckWithin("pad.go_time", config.go_time, change, kLongestStretch);
+    if (stops) estimation::CheckWithin("pad.stop_time", config.stop_time, change, kLongestStretch);
   }
   if (config.kind == Kind::kRandom) {
-    CheckWithin("pad.phase", config.phase, -kFar, std::min(kFar, kLongestPhase * config.speed));
+    estimation::CheckWithin("pad.phase", config.phase, -kFar,
+                            std::min(kFar, kLongestPhase * config.speed));
   }
-  if (config.kind == Kind::kWaypoints) CheckWithin("pad.phase", config.phase, 0.0, 0.0);
+  if (config.kind == Kind::kWaypoints) estimation::CheckWithin("pad.phase", config.phase, 0.0, 0.0);
 }
 
 void ValidateConfig(const PadMotionConfig& config) {
   for (int axis = 0; axis < 3; ++axis) {
-    CheckWithin(std::string("pad.p_start.") + "xyz"[axis], config.p_start[axis], -kFar, kFar);
+    estimation::CheckWithin(std::string("pad.p_start.") + "xyz"[axis], config.p_start[axis], -kFar,
+                            kFar);
   }
-  CheckWithin("pad.heading", config.heading, -100.0, 100.0);
-  CheckWithin("pad.phase", config.phase, -kFar, kFar);
-  CheckWithin("pad.speed", config.speed, 0.0, 20.0);
+  estimation::CheckWithin("pad.heading", config.heading, -100.0, 100.0);
+  estimation::CheckWithin("pad.phase", config.phase, -kFar, kFar);
+  estimation::CheckWithin("pad.speed", config.speed, 0.0, 20.0);
   if (Turns(config.kind) || ChangesSpeed(config.kind)) {
-    CheckWithin("pad.speed", config.speed, 0.01, 20.0);
+    estimation::CheckWithin("pad.speed", config.speed, 0.01, 20.0);
   }
   if (config.kind == Kind::kCircle || config.kind == Kind::kFigureEight) {
-    CheckWithin("pad.turn_rate", std::abs(config.turn_rate), 1.0e-4, 5.0);
+    estimation::CheckWithin("pad.turn_rate", std::abs(config.turn_rate), 1.0e-4, 5.0);
   }
-  if (config.kind == Kind::kRandom) CheckWithin("pad.turn_rate", config.turn_rate, 1.0e-4, 5.0);
+  if (config.kind == Kind::kRandom)
+    estimation::CheckWithin("pad.turn_rate", config.turn_rate, 1.0e-4, 5.0);
   if (ChangesSpeed(config.kind)) ValidatePace(config);
   if (config.kind == Kind::kStraightTurn) {
-    CheckWithin("pad.turn_rate", config.turn_rate, 1.0e-4, 5.0);
-    CheckWithin("pad.turn_start", config.turn_start, 0.0, kFar);
-    CheckWithin("pad.turn_ramp_s", config.turn_ramp_s, 0.01, 10.0);
+    estimation::CheckWithin("pad.turn_rate", config.turn_rate, 1.0e-4, 5.0);
+    estimation::CheckWithin("pad.turn_start", config.turn_start, 0.0, kFar);
+    estimation::CheckWithin("pad.turn_ramp_s", config.turn_ramp_s, 0.01, 10.0);
     // Building the yaw rate up and down again turns by turn_rate * turn_ramp_s already.
-    CheckWithin("magnitude of pad.turn_angle", std::abs(config.turn_angle),
-                config.turn_rate * config.turn_ramp_s, 2.0 * std::numbers::pi);
+    estimation::CheckWithin("magnitude of pad.turn_angle", std::abs(config.turn_angle),
+                            config.turn_rate * config.turn_ramp_s, 2.0 * std::numbers::pi);
   }
 }
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/base/random_stream.h"
 
 namespace touchdown::sim {
@@ -43,7 +43,7 @@ void AddOctave(int cells, double contrast, int texels, RandomStream* random,
 }  // namespace
 
 estimation::GrayImage GroundTexture(int texels) {
-  CheckWithin("ground texture [texel]", texels, kCoarsest, 4096);
+  estimation::CheckWithin("ground texture [texel]", texels, kCoarsest, 4096);
   RandomStream random(0, "ground texture");
   std::vector<double> level(static_cast<std::size_t>(texels) * texels, kMiddle);
   double contrast = kContrast;

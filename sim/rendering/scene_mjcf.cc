@@ -9,8 +9,8 @@
 
 #include <sstream>
 
+#include "estimation/base/argument_check.h"
 #include "estimation/tags/pad_sheet.h"
-#include "sim/base/argument_check.h"
 #include "sim/mujoco/mjcf_text.h"
 
 namespace touchdown::sim {
@@ -21,7 +21,7 @@ constexpr double kPlateThickness = 0.004;   // of what covers a part of it [m]
 constexpr double kGroundPeriod = 4.0;       // the ground's texture repeats after [m]
 
 void WriteAssets(std::ostream& xml) {
-  const std::string repeat = NumberText(1.0 / kGroundPeriod);
+  const std::string repeat = estimation::NumberText(1.0 / kGroundPeriod);
   xml << "<asset>\n"
       << "<texture name='ground' type='2d' builtin='flat' rgb1='1 1 1' width='" << kGroundTexels
       << "' height='" << kGroundTexels << "'/>\n"
@@ -83,7 +83,8 @@ std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view) {
       << "<visual>\n"
       << "<global offwidth='" << view.width << "' offheight='" << view.height << "'/>\n"
       << "<quality offsamples='0' shadowsize='0' numslices='96'/>\n"
-      << "<map znear='" << NumberText(view.near) << "' zfar='" << NumberText(view.far) << "'/>\n"
+      << "<map znear='" << estimation::NumberText(view.near) << "' zfar='"
+      << estimation::NumberText(view.far) << "'/>\n"
       << "<headlight ambient='0.5 0.5 0.5' diffuse='0 0 0' specular='0 0 0'/>\n"
       << "</visual>\n";
   WriteAssets(xml);
@@ -99,7 +100,7 @@ std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view) {
   }
   WritePad(scene, xml);
   xml << "<body name='camera' mocap='true'>\n"
-      << "<camera name='camera' fovy='" << NumberText(view.fov_y_deg) << "'/>\n"
+      << "<camera name='camera' fovy='" << estimation::NumberText(view.fov_y_deg) << "'/>\n"
       << "</body>\n"
       << "</worldbody>\n"
       << "</mujoco>\n";

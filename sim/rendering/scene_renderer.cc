@@ -18,8 +18,8 @@
 
 #include <Eigen/Geometry>
 
+#include "estimation/base/argument_check.h"
 #include "estimation/tags/pad_sheet.h"
-#include "sim/base/argument_check.h"
 #include "sim/mujoco/mujoco_call.h"
 #include "sim/mujoco/mujoco_model.h"
 #include "sim/rendering/gl_context.h"
@@ -30,14 +30,14 @@ namespace {
 
 void Check(const VisualScene& scene, const ViewConfig& view) {
   Validate(scene.pad, scene.deck_height);
-  CheckWithin("pad.deck_half_size of a rendered pad", scene.pad.deck_half_size,
-              0.5 * estimation::kPadSheetSide, 5.0);
-  CheckWithin("occlusion", scene.occlusion, 0.0, 0.95);
-  CheckWithin("view.width", view.width, 1, 4096);
-  CheckWithin("view.height", view.height, 1, 4096);
-  CheckAbove("view.fov_y_deg", view.fov_y_deg, 0.0, 170.0);
-  CheckWithin("view.near", view.near, 0.005, 1.0);
-  CheckAbove("view.far", view.far, view.near, 1000.0);
+  estimation::CheckWithin("pad.deck_half_size of a rendered pad", scene.pad.deck_half_size,
+                          0.5 * estimation::kPadSheetSide, 5.0);
+  estimation::CheckWithin("occlusion", scene.occlusion, 0.0, 0.95);
+  estimation::CheckWithin("view.width", view.width, 1, 4096);
+  estimation::CheckWithin("view.height", view.height, 1, 4096);
+  estimation::CheckAbove("view.fov_y_deg", view.fov_y_deg, 0.0, 170.0);
+  estimation::CheckWithin("view.near", view.near, 0.005, 1.0);
+  estimation::CheckAbove("view.far", view.far, view.near, 1000.0);
 }
 
 void Fill(const char* name, const estimation::GrayImage& image, mjModel* model) {

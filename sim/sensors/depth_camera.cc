@@ -14,7 +14,7 @@
 #include <numbers>
 #include <string>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/obstacles/ray_intersection.h"
 
 namespace touchdown::sim {
@@ -25,13 +25,13 @@ double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 }  // namespace
 
 void Validate(const DepthCameraConfig& config) {
-  CheckWithin("depth_camera.width", config.width, 1, 4096);
-  CheckWithin("depth_camera.height", config.height, 1, 4096);
-  CheckAbove("depth_camera.fov_x_deg", config.fov_x_deg, 0.0, 170.0);
-  CheckAbove("depth_camera.max_range", config.max_range, 0.0, 100.0);
-  CheckWithin("depth_camera.pitch_deg", config.pitch_deg, -90.0, 90.0);
-  CheckWithin("depth_camera.range_noise", config.range_noise, 0.0, 0.5);
-  CheckWithin("length of depth_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
+  estimation::CheckWithin("depth_camera.width", config.width, 1, 4096);
+  estimation::CheckWithin("depth_camera.height", config.height, 1, 4096);
+  estimation::CheckAbove("depth_camera.fov_x_deg", config.fov_x_deg, 0.0, 170.0);
+  estimation::CheckAbove("depth_camera.max_range", config.max_range, 0.0, 100.0);
+  estimation::CheckWithin("depth_camera.pitch_deg", config.pitch_deg, -90.0, 90.0);
+  estimation::CheckWithin("depth_camera.range_noise", config.range_noise, 0.0, 0.5);
+  estimation::CheckWithin("length of depth_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
 }
 
 estimation::CameraIntrinsics IntrinsicsOf(const DepthCameraConfig& config) {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/base/random_stream.h"
 
 namespace touchdown::sim {
@@ -27,8 +27,8 @@ class FrameDelivery {
   /// value and range.
   FrameDelivery(const FrameDeliveryConfig& config, std::uint64_t seed, std::string_view name)
       : config_(config), random_(seed, name) {
-    CheckWithin("delivery.latency_ms", config.latency_ms, 0.0, 1.0e4);
-    CheckWithin("delivery.drop_probability", config.drop_probability, 0.0, 1.0);
+    estimation::CheckWithin("delivery.latency_ms", config.latency_ms, 0.0, 1.0e4);
+    estimation::CheckWithin("delivery.drop_probability", config.drop_probability, 0.0, 1.0);
   }
 
   /// Whether the next frame will arrive at all. Takes one draw.

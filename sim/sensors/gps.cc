@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 
@@ -16,9 +16,9 @@ PadGps::PadGps(const PadGpsConfig& config, std::uint64_t seed)
       clock_(config.rate_hz),
       noise_(seed, "gps"),
       outliers_(seed, "gps outliers") {
-  CheckWithin("gps.sigma", config.sigma, 0.0, 10.0);
-  CheckWithin("gps.outlier_probability", config.outlier_probability, 0.0, 1.0);
-  CheckWithin("gps.outlier_size", config.outlier_size, 0.0, 1.0e4);
+  estimation::CheckWithin("gps.sigma", config.sigma, 0.0, 10.0);
+  estimation::CheckWithin("gps.outlier_probability", config.outlier_probability, 0.0, 1.0);
+  estimation::CheckWithin("gps.outlier_size", config.outlier_size, 0.0, 1.0e4);
 }
 
 std::optional<estimation::PadGpsFix> PadGps::Poll(double t, const estimation::PadState& pad) {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "estimation/base/sample_clock.h"
 #include "sim/base/random_stream.h"
-#include "sim/base/sample_clock.h"
 #include "touchdown/estimation/base/measurements.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
 
@@ -32,7 +32,7 @@ class PadGps {
 
  private:
   PadGpsConfig config_;
-  SampleClock clock_;
+  estimation::SampleClock clock_;
   RandomStream noise_;
   RandomStream outliers_;
 };

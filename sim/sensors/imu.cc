@@ -8,8 +8,8 @@
 
 #include <cmath>
 
+#include "estimation/base/argument_check.h"
 #include "estimation/base/rotation_vector.h"
-#include "sim/base/argument_check.h"
 #include "touchdown/estimation/base/vehicle_model.h"
 
 namespace touchdown::sim {
@@ -23,13 +23,13 @@ Eigen::Vector3d Normal3(RandomStream& stream, double sigma) {
 }
 
 const ImuConfig& Checked(const ImuConfig& config) {
-  CheckWithin("imu.rate_hz", config.rate_hz, 10.0, 1000.0);
-  CheckWithin("imu.accelerometer_noise", config.accelerometer_noise, 0.0, 1.0);
-  CheckWithin("imu.gyro_noise", config.gyro_noise, 0.0, 0.1);
-  CheckWithin("imu.accelerometer_walk", config.accelerometer_walk, 0.0, 1.0);
-  CheckWithin("imu.gyro_walk", config.gyro_walk, 0.0, 0.1);
-  CheckWithin("imu.accelerometer_offset", config.accelerometer_offset, 0.0, 2.0);
-  CheckWithin("imu.gyro_offset", config.gyro_offset, 0.0, 0.2);
+  estimation::CheckWithin("imu.rate_hz", config.rate_hz, 10.0, 1000.0);
+  estimation::CheckWithin("imu.accelerometer_noise", config.accelerometer_noise, 0.0, 1.0);
+  estimation::CheckWithin("imu.gyro_noise", config.gyro_noise, 0.0, 0.1);
+  estimation::CheckWithin("imu.accelerometer_walk", config.accelerometer_walk, 0.0, 1.0);
+  estimation::CheckWithin("imu.gyro_walk", config.gyro_walk, 0.0, 0.1);
+  estimation::CheckWithin("imu.accelerometer_offset", config.accelerometer_offset, 0.0, 2.0);
+  estimation::CheckWithin("imu.gyro_offset", config.gyro_offset, 0.0, 0.2);
   return config;
 }
 

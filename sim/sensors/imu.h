@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "estimation/base/sample_clock.h"
 #include "sim/base/random_stream.h"
-#include "sim/base/sample_clock.h"
 #include "touchdown/estimation/base/own_measurements.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 
@@ -46,7 +46,7 @@ class Imu {
 
  private:
   ImuConfig config_;
-  SampleClock clock_;
+  estimation::SampleClock clock_;
   RandomStream noise_;
   RandomStream bias_;
   Eigen::Vector3d accelerometer_bias_;

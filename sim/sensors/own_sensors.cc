@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -30,11 +30,11 @@ OwnNoise::OwnNoise(const OwnSensorConfig& config, std::uint64_t seed, std::strin
       drift_stream_(seed, std::string(name) + " drift"),
       drift_(Eigen::Vector3d::Zero()) {
   const std::string prefix(name);
-  CheckWithin(prefix + ".rate_hz", config.rate_hz, 0.0, 1000.0);
-  CheckWithin(prefix + ".sigma", config.sigma, 0.0, 100.0);
-  CheckWithin(prefix + ".drift_sigma", config.drift_sigma, 0.0, 100.0);
-  CheckWithin(prefix + ".drift_time", config.drift_time, 0.01, 1.0e6);
-  CheckWithin(prefix + ".latency_ms", config.latency_ms, 0.0, 500.0);
+  estimation::CheckWithin(prefix + ".rate_hz", config.rate_hz, 0.0, 1000.0);
+  estimation::CheckWithin(prefix + ".sigma", config.sigma, 0.0, 100.0);
+  estimation::CheckWithin(prefix + ".drift_sigma", config.drift_sigma, 0.0, 100.0);
+  estimation::CheckWithin(prefix + ".drift_time", config.drift_time, 0.01, 1.0e6);
+  estimation::CheckWithin(prefix + ".latency_ms", config.latency_ms, 0.0, 500.0);
   drift_ = Normal3(drift_stream_, config.drift_sigma);
   if (config.rate_hz > 0.0) {
     clock_.emplace(config.rate_hz);
@@ -60,11 +60,11 @@ OwnSensors::OwnSensors(const OwnSensorsConfig& config, std::uint64_t seed)
       odometry_(config.odometry, seed, "own odometry"),
       height_(config.height, seed, "own height"),
       heading_(config.heading, seed, "own heading") {
-  CheckWithin("own gps.vertical_factor", gps_config_.vertical_factor, 0.0, 10.0);
-  CheckWithin("own gps.outage_begin", gps_config_.outage_begin, 0.0, 1.0e6);
-  CheckWithin("own gps.outage_length", gps_config_.outage_length, 0.0, 1.0e6);
-  CheckWithin("own gps.outlier_probability", gps_config_.outlier_probability, 0.0, 1.0);
-  CheckWithin("own gps.outlier_size", gps_config_.outlier_size, 0.0, 1.0e6);
+  estimation::CheckWithin("own gps.vertical_factor", gps_config_.vertical_factor, 0.0, 10.0);
+  estimation::CheckWithin("own gps.outage_begin", gps_config_.outage_begin, 0.0, 1.0e6);
+  estimation::CheckWithin("own gps.outage_length", gps_config_.outage_length, 0.0, 1.0e6);
+  estimation::CheckWithin("own gps.outlier_probability", gps_config_.outlier_probability, 0.0, 1.0);
+  estimation::CheckWithin("own gps.outlier_size", gps_config_.outlier_size, 0.0, 1.0e6);
 }
 
 void OwnSensors::Sample(const estimation::VehicleState& vehicle) {

@@ -12,8 +12,8 @@
 
 #include <Eigen/Core>
 
+#include "estimation/base/sample_clock.h"
 #include "sim/base/random_stream.h"
-#include "sim/base/sample_clock.h"
 #include "touchdown/estimation/base/own_measurements.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 
@@ -69,7 +69,7 @@ class OwnNoise {
 
  private:
   OwnSensorConfig config_;
-  std::optional<SampleClock> clock_;
+  std::optional<estimation::SampleClock> clock_;
   RandomStream white_;
   RandomStream drift_stream_;
   Eigen::Vector3d drift_;

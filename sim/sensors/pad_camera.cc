@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -18,13 +18,13 @@ namespace {
 constexpr double kMinRange = 0.1;  // for the guess of the blur [m]
 
 ViewConfig ViewOf(const PadCameraConfig& config) {
-  CheckWithin("pad_camera.width", config.width, 8, 4096);
-  CheckWithin("pad_camera.height", config.height, 8, 4096);
-  CheckAbove("pad_camera.fov_y_deg", config.fov_y_deg, 0.0, 170.0);
-  CheckWithin("pad_camera.noise_sigma", config.noise_sigma, 0.0, 100.0);
-  CheckWithin("pad_camera.exposure_ms", config.exposure_ms, 0.0, 100.0);
-  CheckWithin("pad_camera.max_subframes", config.max_subframes, 1, 64);
-  CheckWithin("length of pad_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
+  estimation::CheckWithin("pad_camera.width", config.width, 8, 4096);
+  estimation::CheckWithin("pad_camera.height", config.height, 8, 4096);
+  estimation::CheckAbove("pad_camera.fov_y_deg", config.fov_y_deg, 0.0, 170.0);
+  estimation::CheckWithin("pad_camera.noise_sigma", config.noise_sigma, 0.0, 100.0);
+  estimation::CheckWithin("pad_camera.exposure_ms", config.exposure_ms, 0.0, 100.0);
+  estimation::CheckWithin("pad_camera.max_subframes", config.max_subframes, 1, 64);
+  estimation::CheckWithin("length of pad_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
   ViewConfig view;
   view.width = config.width;
   view.height = config.height;

@@ -22,6 +22,7 @@ class RenderedDepthCamera {
                estimation::DepthFrame* frame);
 
   const DepthCameraConfig& config() const { return config_; }
+  const Eigen::Matrix3d& R_BC() const { return R_BC_; }  ///< C to B
   const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }
 
  private:

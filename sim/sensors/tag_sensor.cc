@@ -12,8 +12,8 @@
 #include <numbers>
 #include <span>
 
+#include "estimation/base/argument_check.h"
 #include "estimation/tags/pad_sheet.h"
-#include "sim/base/argument_check.h"
 #include "sim/pad/pad_geometry.h"
 #include "sim/sensors/pad_camera.h"
 #include "touchdown/estimation/tags/pad_alignment.h"
@@ -94,15 +94,15 @@ bool SheetIsAligned(const Placement& placement, const estimation::CameraIntrinsi
 TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacles,
                      std::uint64_t seed)
     : config_(config), obstacles_(obstacles), clock_(config.rate_hz), noise_(seed, "tag camera") {
-  CheckWithin("tag_camera.width", config.width, 1, 4096);
-  CheckWithin("tag_camera.height", config.height, 1, 4096);
-  CheckAbove("tag_camera.fov_y_deg", config.fov_y_deg, 0.0, 170.0);
-  CheckWithin("tag_camera.max_view_angle_deg", config.max_view_angle_deg, 0.0, 89.0);
-  CheckWithin("tag_camera.attitude_sigma_deg", config.attitude_sigma_deg, 0.01, 45.0);
-  CheckWithin("tag_camera.noise_scale", config.noise_scale, 0.0, 100.0);
-  CheckWithin("tag_camera.occlusion", config.occlusion, 0.0, 0.95);
-  CheckAbove("tag_camera.model.spread", config.model.spread, 0.0, 1000.0);
-  CheckWithin("length of tag_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
+  estimation::CheckWithin("tag_camera.width", config.width, 1, 4096);
+  estimation::CheckWithin("tag_camera.height", config.height, 1, 4096);
+  estimation::CheckAbove("tag_camera.fov_y_deg", config.fov_y_deg, 0.0, 170.0);
+  estimation::CheckWithin("tag_camera.max_view_angle_deg", config.max_view_angle_deg, 0.0, 89.0);
+  estimation::CheckWithin("tag_camera.attitude_sigma_deg", config.attitude_sigma_deg, 0.01, 45.0);
+  estimation::CheckWithin("tag_camera.noise_scale", config.noise_scale, 0.0, 100.0);
+  estimation::CheckWithin("tag_camera.occlusion", config.occlusion, 0.0, 0.95);
+  estimation::CheckAbove("tag_camera.model.spread", config.model.spread, 0.0, 1000.0);
+  estimation::CheckWithin("length of tag_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
   intrinsics_.width = config.width;
   intrinsics_.height = config.height;
   intrinsics_.focal = 0.5 * config.height / std::tan(0.5 * Radians(config.fov_y_deg));

@@ -7,9 +7,9 @@
 
 #include <Eigen/Core>
 
+#include "estimation/base/sample_clock.h"
 #include "estimation/tags/pad_tags.h"
 #include "sim/base/random_stream.h"
-#include "sim/base/sample_clock.h"
 #include "sim/obstacles/obstacle_field.h"
 #include "sim/pad/tag_model.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -73,7 +73,7 @@ class TagSensor {
   TagSensorConfig config_;
   estimation::CameraIntrinsics intrinsics_;
   ObstacleField obstacles_;
-  SampleClock clock_;
+  estimation::SampleClock clock_;
   RandomStream noise_;
 };
 

@@ -6,8 +6,8 @@
 
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/gps.h"
-#include "sim/sensors/own_state_source.h"
 #include "sim/sensors/tag_sensor.h"
+#include "sim/test/own_state_source.h"
 #include "sim/world/world.h"
 #include "touchdown/solvers/allocation_count.h"
 

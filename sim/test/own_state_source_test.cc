@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/sensors/own_state_source.h"
+#include "sim/test/own_state_source.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
 namespace {
@@ -17,11 +17,11 @@ constexpr double kMost = 2.0;
 
 estimation::VehicleModel AlteredVehicle(const estimation::VehicleModel& known,
                                         const PlantFactors& factors) {
-  CheckWithin("plant.mass", factors.mass, kLeast, kMost);
-  CheckWithin("plant.inertia", factors.inertia, kLeast, kMost);
-  CheckWithin("plant.drag", factors.drag, kLeast, kMost);
-  CheckWithin("plant.rotor_lag", factors.rotor_lag, kLeast, kMost);
-  CheckWithin("plant.thrust", factors.thrust, kLeast, kMost);
+  estimation::CheckWithin("plant.mass", factors.mass, kLeast, kMost);
+  estimation::CheckWithin("plant.inertia", factors.inertia, kLeast, kMost);
+  estimation::CheckWithin("plant.drag", factors.drag, kLeast, kMost);
+  estimation::CheckWithin("plant.rotor_lag", factors.rotor_lag, kLeast, kMost);
+  estimation::CheckWithin("plant.thrust", factors.thrust, kLeast, kMost);
   estimation::VehicleModel plant = known;
   plant.mass_kg *= factors.mass;
   plant.inertia *= factors.inertia;
@@ -31,11 +31,11 @@ estimation::VehicleModel AlteredVehicle(const estimation::VehicleModel& known,
   plant.rotor_thrust_min *= factors.thrust;
   plant.rotor_thrust_max *= factors.thrust;
   if (plant.MaxThrust() <= plant.HoverThrust()) {
-    throw std::invalid_argument("plant.mass is " + NumberText(factors.mass) +
-                                " and plant.thrust is " + NumberText(factors.thrust) +
+    throw std::invalid_argument("plant.mass is " + estimation::NumberText(factors.mass) +
+                                " and plant.thrust is " + estimation::NumberText(factors.thrust) +
                                 "; allowed is what leaves more thrust, " +
-                                NumberText(plant.MaxThrust()) + " N, than weight, " +
-                                NumberText(plant.HoverThrust()) + " N");
+                                estimation::NumberText(plant.MaxThrust()) + " N, than weight, " +
+                                estimation::NumberText(plant.HoverThrust()) + " N");
   }
   return plant;
 }

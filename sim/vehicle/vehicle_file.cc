@@ -16,7 +16,7 @@
 
 #include <Eigen/LU>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/mujoco/mujoco_model.h"
 
 namespace touchdown::sim {
@@ -116,8 +116,9 @@ void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
   const double lag = m.actuator_dynprm[mjNDYN * actuator];
   const double low = m.actuator_ctrlrange[2 * actuator];
   const double high = m.actuator_ctrlrange[2 * actuator + 1];
-  CheckWithin("vehicle file: lag of " + name, lag, 0.005, 1.0);
-  CheckWithin("vehicle file: lower end of the control range of " + name, low, 0.0, high);
+  estimation::CheckWithin("vehicle file: lag of " + name, lag, 0.005, 1.0);
+  estimation::CheckWithin("vehicle file: lower end of the control range of " + name, low, 0.0,
+                          high);
   const double torque = std::abs(gear[5]);
   if (index == 0) {
     model->rotor_lag_s = lag;
@@ -143,9 +144,11 @@ void ReadDrag(const mjModel& m, VehicleModel* model) {
   }
   model->rotor_drag = Eigen::Map<const Eigen::Vector3d>(m.numeric_data + m.numeric_adr[linear]);
   model->body_drag_area = m.numeric_data[m.numeric_adr[area]];
-  CheckWithin("vehicle file: smallest of rotor_drag", model->rotor_drag.minCoeff(), 0.0, 10.0);
-  CheckWithin("vehicle file: largest of rotor_drag", model->rotor_drag.maxCoeff(), 0.0, 10.0);
-  CheckWithin("vehicle file: body_drag_area", model->body_drag_area, 0.0, 10.0);
+  estimation::CheckWithin("vehicle file: smallest of rotor_drag", model->rotor_drag.minCoeff(), 0.0,
+                          10.0);
+  estimation::CheckWithin("vehicle file: largest of rotor_drag", model->rotor_drag.maxCoeff(), 0.0,
+                          10.0);
+  estimation::CheckWithin("vehicle file: body_drag_area", model->body_drag_area, 0.0, 10.0);
 }
 
 // The rotors' wrench is linear in their thrusts; z_B's column is thrust, then the three moments.
@@ -185,9 +188,9 @@ estimation::VehicleModel LoadVehicleModel(const std::string& mjcf) {
   CheckSteerable(model);
   constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
   if (model.MaxThrust() < kLeastThrustToWeight * model.HoverThrust()) {
-    Refuse("the rotors' largest thrust, " + NumberText(model.MaxThrust()) +
+    Refuse("the rotors' largest thrust, " + estimation::NumberText(model.MaxThrust()) +
            " N, does not carry its weight 1.2 times, " +
-           NumberText(kLeastThrustToWeight * model.HoverThrust()) + " N");
+           estimation::NumberText(kLeastThrustToWeight * model.HoverThrust()) + " N");
   }
   return model;
 }

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/mujoco/mjcf_text.h"
 #include "sim/mujoco/mujoco_call.h"
 #include "sim/mujoco/mujoco_model.h"
@@ -139,7 +139,7 @@ class Import {
     const double skew = inertia.cwiseAbs().maxCoeff() / inertia_.minCoeff();
     if (skew > kSkewInertia) {
       Refuse(
-          "its largest product of inertia is " + NumberText(skew) +
+          "its largest product of inertia is " + estimation::NumberText(skew) +
           " of its least moment about the centre of mass; allowed is 0.05: its axes must be those "
           "of its inertia");
     }
@@ -188,8 +188,8 @@ class Import {
     motor.low = std::min(scale * force[0], scale * force[1]);
     motor.high = std::max(scale * force[0], scale * force[1]);
     if (!(motor.low >= 0.0 && motor.high > motor.low)) {
-      Refuse(name + " pushes with " + NumberText(motor.low) + " to " + NumberText(motor.high) +
-             " N along z; allowed is a range above 0");
+      Refuse(name + " pushes with " + estimation::NumberText(motor.low) + " to " +
+             estimation::NumberText(motor.high) + " N along z; allowed is a range above 0");
     }
     motor.torque = gear[5] / gear[2];
     if (m_.actuator_dyntype[i] == mjDYN_NONE) {
@@ -277,26 +277,28 @@ std::string Import::Text() const {
   const double bottom = own_hull ? extras_.hull[1] : outline_.bottom;
   const double depth = own_feet ? extras_.feet[1] : -bottom + kFeetClearance * at;
   const double top = own_hull ? extras_.hull[2] : std::max(outline_.top, bottom + kLeastHullHeight);
-  CheckAbove("radius of the hull [m]", radius, 0.0, 5.0);
-  CheckAbove("top of the hull above its bottom [m]", top - bottom, 0.0, 5.0);
-  CheckWithin("radius of the feet [m]", at, 0.0, radius);
-  CheckAbove("depth of the feet below the hull [m]", depth + bottom, 0.0, 5.0);
+  estimation::CheckAbove("radius of the hull [m]", radius, 0.0, 5.0);
+  estimation::CheckAbove("top of the hull above its bottom [m]", top - bottom, 0.0, 5.0);
+  estimation::CheckWithin("radius of the feet [m]", at, 0.0, radius);
+  estimation::CheckAbove("depth of the feet below the hull [m]", depth + bottom, 0.0, 5.0);
   const double ball = std::min({0.015, 0.1 * radius, 0.5 * (depth + bottom), radius - at});
 
   std::ostringstream xml;
   xml << "<mujoco model='imported quadrotor'>\n<custom>\n<numeric name='rotor_drag' data='"
       << VectorText({extras_.rotor_drag, extras_.rotor_drag, 0.0})
-      << "'/>\n<numeric name='body_drag_area' data='" << NumberText(extras_.body_drag_area)
+      << "'/>\n<numeric name='body_drag_area' data='"
+      << estimation::NumberText(extras_.body_drag_area)
       << "'/>\n</custom>\n<worldbody>\n<body name='vehicle' pos='0 0 1'>\n"
-      << "<freejoint name='vehicle'/>\n<inertial pos='0 0 0' mass='" << NumberText(mass_)
-      << "' diaginertia='" << VectorText(inertia_) << "'/>\n"
-      << "<geom name='hull' type='cylinder' size='" << NumberText(radius) << " "
-      << NumberText(0.5 * (top - bottom)) << "' pos='0 0 " << NumberText(0.5 * (top + bottom))
+      << "<freejoint name='vehicle'/>\n<inertial pos='0 0 0' mass='"
+      << estimation::NumberText(mass_) << "' diaginertia='" << VectorText(inertia_) << "'/>\n"
+      << "<geom name='hull' type='cylinder' size='" << estimation::NumberText(radius) << " "
+      << estimation::NumberText(0.5 * (top - bottom)) << "' pos='0 0 "
+      << estimation::NumberText(0.5 * (top + bottom))
       << "' condim='3' friction='0.6 0.005 0.0001' group='3' rgba='0.5 0.5 0.5 0.3'/>\n";
   for (int i = 0; i < 4; ++i) {
     const double angle = (0.25 + 0.5 * i) * std::numbers::pi;
-    xml << "<geom name='foot" << i << "' type='sphere' size='" << NumberText(ball) << "' pos='"
-        << VectorText({at * std::cos(angle), at * std::sin(angle), ball - depth})
+    xml << "<geom name='foot" << i << "' type='sphere' size='" << estimation::NumberText(ball)
+        << "' pos='" << VectorText({at * std::cos(angle), at * std::sin(angle), ball - depth})
         << "' condim='4' friction='1 0.005 0.0001' rgba='0.1 0.1 0.1 1'/>\n";
     xml << "<site name='rotor" << i << "' pos='" << VectorText(motors_[i].p_BR) << "'/>\n";
   }
@@ -304,10 +306,11 @@ std::string Import::Text() const {
   for (int i = 0; i < 4; ++i) {
     const Motor& motor = motors_[i];
     xml << "<general name='rotor" << i << "' site='rotor" << i << "' gear='0 0 1 0 0 "
-        << NumberText(std::copysign(motors_.front().torque, motor.torque))
-        << "' ctrllimited='true' ctrlrange='" << NumberText(motors_.front().low) << " "
-        << NumberText(motors_.front().high) << "' dyntype='filter' dynprm='"
-        << NumberText(motors_.front().lag) << "' gaintype='fixed' gainprm='1' biastype='none'/>\n";
+        << estimation::NumberText(std::copysign(motors_.front().torque, motor.torque))
+        << "' ctrllimited='true' ctrlrange='" << estimation::NumberText(motors_.front().low) << " "
+        << estimation::NumberText(motors_.front().high) << "' dyntype='filter' dynprm='"
+        << estimation::NumberText(motors_.front().lag)
+        << "' gaintype='fixed' gainprm='1' biastype='none'/>\n";
   }
   xml << "</actuator>\n</mujoco>\n";
   return xml.str();
@@ -328,7 +331,7 @@ std::string ImportVehicle(const std::string& path, const AirframeExtras& extras)
   std::string text = ReadVehicleFile(path);  // names a file that is not there
   const MujocoModel model = CompileMjcfFile(path);
   if (OwnForm(*model)) return text;
-  CheckWithin("lag of the rotors [s]", extras.rotor_lag, 0.005, 1.0);
+  estimation::CheckWithin("lag of the rotors [s]", extras.rotor_lag, 0.005, 1.0);
   return Import(*model, extras).Text();
 }
 

@@ -17,9 +17,9 @@
 #include <string_view>
 #include <utility>
 
+#include "estimation/base/argument_check.h"
 #include "sim/air/drag.h"
 #include "sim/air/ground_effect.h"
-#include "sim/base/argument_check.h"
 #include "sim/mujoco/mujoco_call.h"
 #include "sim/mujoco/mujoco_model.h"
 #include "sim/vehicle/trim.h"
@@ -140,16 +140,16 @@ class World::Impl {
 };
 
 World::Impl::Impl(const WorldConfig& config) : config_(config), course_(CourseOf(config)) {
-  CheckWithin("timestep [s]", config.timestep, 1.0e-4, 0.005);
+  estimation::CheckWithin("timestep [s]", config.timestep, 1.0e-4, 0.005);
   if (config_.vehicle_mjcf.empty()) config_.vehicle_mjcf = DefaultVehicleMjcf();
   model_ = LoadVehicleModel(config_.vehicle_mjcf);
   plant_ = AlteredVehicle(model_, config_.plant);
   if (config_.ground_effect) {
-    CheckAbove("rotor radius for ground effect [m]", model_.rotor_radius, 0.0, 10.0);
+    estimation::CheckAbove("rotor radius for ground effect [m]", model_.rotor_radius, 0.0, 10.0);
   }
   double thrust = plant_.HoverThrust();
   if (config_.hover_air_W) {
-    CheckWithin("air of the start [m/s]", config_.hover_air_W->norm(), 0.0, kMaxWind);
+    estimation::CheckWithin("air of the start [m/s]", config_.hover_air_W->norm(), 0.0, kMaxWind);
     const auto trim = TrimAt(plant_, config_.start.v_WB - *config_.hover_air_W,
                              estimation::Yaw(config_.start.q_WB));
     if (trim) {
@@ -254,11 +254,11 @@ void World::Impl::Step(const std::array<double, 4>& commands, const Eigen::Vecto
   if (failed_) throw std::runtime_error("this simulation failed at an earlier step");
   for (std::size_t i = 0; i < 4; ++i) {
     if (!std::isfinite(commands[i])) {
-      ThrowOutOfRange("thrust command of rotor " + std::to_string(i) + " [N]", commands[i],
-                      "a finite number");
+      estimation::ThrowOutOfRange("thrust command of rotor " + std::to_string(i) + " [N]",
+                                  commands[i], "a finite number");
     }
   }
-  CheckWithin("wind speed [m/s]", wind_W.norm(), 0.0, kMaxWind);
+  estimation::CheckWithin("wind speed [m/s]", wind_W.norm(), 0.0, kMaxWind);
 
   mjData* d = data_.get();
   DrivePad();
@@ -293,7 +293,7 @@ void World::Impl::PushByAir(const Eigen::Vector3d& wind_W) {
 void World::Impl::ThrowOnWarning() {
   for (int warning = 0; warning < mjNWARNING; ++warning) {
     if (data_->warning[warning].number == 0) continue;
-    throw std::runtime_error("the simulation failed at t = " + NumberText(Time()) +
+    throw std::runtime_error("the simulation failed at t = " + estimation::NumberText(Time()) +
                              " s: " + WarningSentence(warning));
   }
 }
@@ -387,8 +387,9 @@ std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config) {
   if (config.pad_course) {
     const double height = config.pad_course->At(0.0).p_WP.z();
     if (!(std::abs(height - config.pad_motion.p_start.z()) <= 1e-9)) {
-      ThrowOutOfRange("height of the pad's course [m]", height,
-                      std::to_string(config.pad_motion.p_start.z()) + ", as pad_motion says");
+      estimation::ThrowOutOfRange(
+          "height of the pad's course [m]", height,
+          std::to_string(config.pad_motion.p_start.z()) + ", as pad_motion says");
     }
     return config.pad_course;
   }

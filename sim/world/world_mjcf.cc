@@ -13,7 +13,7 @@
 #include <sstream>
 #include <string>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/mujoco/mjcf_text.h"
 #include "sim/mujoco/mujoco_model.h"
 
@@ -36,13 +36,13 @@ void WritePad(const WorldConfig& config, std::ostream& xml) {
       << "<joint name='pad_y' type='slide' axis='0 1 0' limited='false'/>\n"
       << "<joint name='pad_yaw' type='hinge' axis='0 0 1' limited='false'/>\n"
       << "<inertial pos='" << VectorText(body.center - origin) << "' mass='"
-      << NumberText(PadDrive::kMass) << "' diaginertia='"
+      << estimation::NumberText(PadDrive::kMass) << "' diaginertia='"
       << VectorText(Eigen::Vector3d::Constant(PadDrive::YawInertia(config.pad)))
       << "'/>\n"
       // Priority: the deck's own friction holds, whatever the vehicle's feet say.
       << "<geom name='deck' type='box' size='" << VectorText(deck.half_extents) << "' pos='"
       << VectorText(deck.center - origin) << "' " << kEnvironment
-      << "condim='4' priority='1' friction='" << NumberText(config.pad.friction)
+      << "condim='4' priority='1' friction='" << estimation::NumberText(config.pad.friction)
       << " 0.005 0.0001'/>\n"
       << "<geom name='pad_body' type='box' size='" << VectorText(body.half_extents) << "' pos='"
       << VectorText(body.center - origin) << "' " << kEnvironment << "condim='3'/>\n"
@@ -50,8 +50,8 @@ void WritePad(const WorldConfig& config, std::ostream& xml) {
 }
 
 void WriteDrive(const char* joint, double gain, std::ostream& xml) {
-  xml << "<velocity name='" << joint << "' joint='" << joint << "' kv='" << NumberText(gain)
-      << "' ctrllimited='false' forcelimited='false'/>\n";
+  xml << "<velocity name='" << joint << "' joint='" << joint << "' kv='"
+      << estimation::NumberText(gain) << "' ctrllimited='false' forcelimited='false'/>\n";
 }
 
 }  // namespace
@@ -77,8 +77,8 @@ std::string WorldMjcf(const WorldConfig& config) {
       << "<include file='" << kVehicleIncludeName
       << "'/>\n"
       // After the include: these hold against whatever the vehicle file says.
-      << "<option timestep='" << NumberText(config.timestep) << "' gravity='0 0 -"
-      << NumberText(estimation::kGravity) << "' integrator='Euler' solver='Newton' "
+      << "<option timestep='" << estimation::NumberText(config.timestep) << "' gravity='0 0 -"
+      << estimation::NumberText(estimation::kGravity) << "' integrator='Euler' solver='Newton' "
       << "cone='elliptic' impratio='10' density='0' viscosity='0' wind='0 0 0'/>\n"
       << "<size nconmax='100' njmax='500'/>\n"
       << "</mujoco>\n";

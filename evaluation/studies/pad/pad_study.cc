@@ -24,7 +24,7 @@
 #include "evaluation/base/work_sharing.h"
 #include "evaluation/campaign/sweep.h"
 #include "evaluation/flight/closed_loop.h"
-#include "evaluation/flight/perception.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/scenario/scenario_value.h"
 #include "touchdown/estimation/pad/pad_predictor.h"
 #include "touchdown/evaluation/base/shipped_files.h"
@@ -81,11 +81,11 @@ PadSums Compare(const estimation::PadFilter& filter, const PadTruth& now, const 
   return sums;
 }
 
-void Give(const PadArrival& arrival, estimation::PadFilter* filter) {
+void Give(const estimation::PadArrival& arrival, estimation::PadFilter* filter) {
   if (const auto* fix = std::get_if<estimation::PadGpsFix>(&arrival.measurement)) {
     filter->AddGps(*fix);
   } else {
-    const auto& seen = std::get<BelievedSighting>(arrival.measurement);
+    const auto& seen = std::get<estimation::BelievedSighting>(arrival.measurement);
     filter->AddSighting(seen.sighting, seen.believed);
   }
 }

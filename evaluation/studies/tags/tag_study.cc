@@ -13,7 +13,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 #include "sim/base/random_stream.h"
 #include "touchdown/solvers/backend/thread_clock.h"
 
@@ -138,10 +138,10 @@ bool TagStudyRow::InView() const {
 std::vector<TagStudyRow> RunTagStudy(const TagStudyOptions& options,
                                      const std::function<void(int, int)>& progress,
                                      const ViewObserver& observer) {
-  sim::CheckWithin("poses", options.poses, 1, 1e6);
-  sim::CheckWithin("attitude_sigma_deg", options.attitude_sigma_deg, 0.01, 10.0);
-  sim::CheckWithin("speed", options.speed, 0.0, 20.0);
-  sim::CheckWithin("fov_y_deg of the study", options.camera.fov_y_deg, 10.0, kMaxFov);
+  estimation::CheckWithin("poses", options.poses, 1, 1e6);
+  estimation::CheckWithin("attitude_sigma_deg", options.attitude_sigma_deg, 0.01, 10.0);
+  estimation::CheckWithin("speed", options.speed, 0.0, 20.0);
+  estimation::CheckWithin("fov_y_deg of the study", options.camera.fov_y_deg, 10.0, kMaxFov);
   sim::PadCamera camera(options.camera, {}, options.seed);
   estimation::PadFinder finder(options.finder);
   sim::RandomStream random(options.seed, "tag study");

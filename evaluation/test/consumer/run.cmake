@@ -97,6 +97,17 @@ if(NOT output MATCHES "^there after 5")
   message(FATAL_ERROR "go_to_goal: ${output}")
 endif()
 
+# The part that would fly: it lands, and needs neither simulator nor files.
+build("${EXAMPLES}/onboard" onboard)
+run(0 "${WORK_DIR}/onboard/onboard")
+if(NOT output MATCHES "landed 0.0")
+  message(FATAL_ERROR "onboard: ${output}")
+endif()
+run(0 ldd "${WORK_DIR}/onboard/onboard")
+if(output MATCHES "mujoco|fcl|OSMesa|sqlite|yaml|mpi")
+  message(FATAL_ERROR "onboard is linked with more than it needs:\n${output}")
+endif()
+
 # `compare` judges the example backend: by the best cost that any backend found.
 build("${EXAMPLES}/own_backend" own_backend)
 set(own "${WORK_DIR}/own_backend/own_backend")

@@ -29,6 +29,16 @@ struct DepthFrame {
       depth;  ///< height x width, row-major, along the optical axis [m]; inf: no return
 };
 
+/// One depth image from a camera that is fixed to the vehicle.
+struct DepthImage {
+  double t = 0.0;  ///< time stamp [s]
+  CameraIntrinsics intrinsics;
+  Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();      ///< camera in B [m]
+  Eigen::Matrix3d R_BC = Eigen::Matrix3d::Identity();  ///< C to B
+  double max_range = 6.0;                              ///< as in DepthFrame [m]
+  std::vector<float> depth;                            ///< as in DepthFrame [m]
+};
+
 /// Position of the pad by GPS (horizontal, in W). The paper's eq. 11 without its heading.
 struct PadGpsFix {
   double t = 0.0;                                  ///< time stamp [s]

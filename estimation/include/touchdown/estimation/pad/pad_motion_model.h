@@ -20,6 +20,8 @@ enum class PadMotion {
 
 /// Number of leading entries that the motion uses: 4, 4 or 5.
 int StateSize(PadMotion motion);
+/// "velocity", "heading" or "turn".
+const char* ToString(PadMotion motion);
 
 /// One-sided spectral densities of the white noise that drives the pad's motion.
 struct PadNoise {

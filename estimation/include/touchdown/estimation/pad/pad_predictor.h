@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "touchdown/estimation/pad/pad_filter.h"
 #include "touchdown/estimation/pad/pad_motion_model.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
 
 namespace touchdown::estimation {
+
+/// What is known of the pad when a plan is asked for.
+struct PadKnowledge {
+  PadBelief belief;
+  double height = 0.0;  ///< of the deck in W [m]
+  PadNoise noise;
+};
+
+/// Foretells the pad from what is known of it.
+class PadPredictor {
+ public:
+  virtual ~PadPredictor() = default;
+
+  /// Valid until the next call. The same for the same knowledge, whatever was asked before: a replay asks other
+  /// questions in between. Does not allocate.
+  virtual const PadPrediction& Predict(const PadKnowledge& known) = 0;
+};
 
 /// The future of the pad as one belief foretells it: straight for kVelocity and kHeading, a
 /// circular arc for kTurn. A snapshot by value: later measurements do not change it.
@@ -26,6 +45,21 @@ class BeliefPrediction final : public PadPrediction {
   PadBelief belief_;
   double height_;
   PadNoise noise_;
+};
+
+/// As the filter's model goes on.
+class BeliefPredictor : public PadPredictor {
+ public:
+  const PadPrediction& Predict(const PadKnowledge& known) override;
+
+ private:
+  std::optional<BeliefPrediction> prediction_;
+};
+
+/// The paper extrapolates along the heading: a turn that the filter knows of is left out.
+class StraightPredictor final : public BeliefPredictor {
+ public:
+  const PadPrediction& Predict(const PadKnowledge& known) override;
 };
 
 /// Prediction from the filter's present belief. Throws std::invalid_argument before the filter's

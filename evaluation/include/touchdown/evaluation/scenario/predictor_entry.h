@@ -4,29 +4,11 @@
 #include <functional>
 #include <memory>
 
-#include "touchdown/estimation/pad/pad_filter.h"
-#include "touchdown/estimation/pad/pad_prediction.h"
+#include "touchdown/estimation/pad/pad_predictor.h"
 #include "touchdown/evaluation/scenario/part.h"
 #include "touchdown/sim/pad/pad_course.h"
 
 namespace touchdown::evaluation {
-
-/// What is known of the pad when a plan is asked for.
-struct PadKnowledge {
-  estimation::PadBelief belief;
-  double height = 0.0;  ///< of the deck in W [m]
-  estimation::PadNoise noise;
-};
-
-/// Foretells the pad from what is known of it.
-class PadPredictor {
- public:
-  virtual ~PadPredictor() = default;
-
-  /// Valid until the next call. The same for the same knowledge, whatever was asked before: a replay asks other
-  /// questions in between. Does not allocate.
-  virtual const estimation::PadPrediction& Predict(const PadKnowledge& known) = 0;
-};
 
 /// What a predictor is made from.
 struct PredictorSetup : PartSetup {
@@ -35,7 +17,7 @@ struct PredictorSetup : PartSetup {
 
 /// How a predictor gets into the program.
 struct PredictorEntry : Part {
-  std::function<std::unique_ptr<PadPredictor>(const PredictorSetup&)> make;
+  std::function<std::unique_ptr<estimation::PadPredictor>(const PredictorSetup&)> make;
 };
 
 /// The predictors of the library.

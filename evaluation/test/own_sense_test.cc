@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/flight/own_estimate.h"
+#include "evaluation/flight/own_sense.h"
+
+#include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "evaluation/flight/closed_loop.h"
-#include "evaluation/flight/depth_eye.h"
+#include "evaluation/flight/onboard_setup.h"
 #include "evaluation/record/trial_json.h"
 #include "evaluation/scenario/scenario_world.h"
+#include "sim/vehicle/vehicle_file.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
@@ -31,23 +34,36 @@ estimation::VehicleState Start() {
   return start;
 }
 
-TEST(OwnEstimate, TheTruthIsKnownExactly) {
-  OwnEstimate own(Scenario{}, Start(), 0.002, 1);
-  EXPECT_FALSE(own.estimated());
+// A vehicle that stands at its start, told of itself for `seconds`; `look` is called after each step.
+template <typename Look>
+void Stand(const Scenario& scenario, double seconds, Look&& look) {
+  const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(scenario));
+  const Registries registries = StandardRegistries();
+  const auto course = PadCourseOf(scenario, registries, 0.0, 1);
+  control::Onboard onboard = MakeOnboard(scenario, model, course, registries);
+  OwnSense own(scenario, 3);
+  own.Hover(Start(), 0.002, &onboard);
+  onboard.Begin(Eigen::Vector4d::Constant(0.25 * model.HoverThrust()));
   estimation::VehicleState truth = Start();
-  truth.t = 0.4;
-  truth.p_WB.x() = 7.0;
-  own.Sense(truth);
-  EXPECT_EQ(own.now().t, 0.4);
-  EXPECT_EQ(own.now().p_WB, truth.p_WB);
-  EXPECT_EQ(own.At(Start()).p_WB, Start().p_WB);
-  EXPECT_EQ(own.status(), estimation::OwnStatus::kGood);
-  EXPECT_EQ(own.HorizontalSigma(), 0.0);
+  for (int k = 0; k <= std::lround(seconds / 0.002); ++k) {
+    truth.t = 0.002 * k;
+    own.Sense(truth, &onboard);
+    onboard.Step(truth.t);
+    look(k, truth, onboard);
+  }
 }
 
-TEST(OwnEstimate, TheDefaultsAreThoseOfTheSensors) {
-  const sim::OwnStateSourceConfig config = OwnSourceConfig(Scenario{});
-  const sim::OwnStateSourceConfig defaults;
+TEST(OwnSense, TheTruthIsKnownExactly) {
+  Stand(Shipped("open", {}), 0.1, [](int, const auto& truth, const control::Onboard& onboard) {
+    EXPECT_EQ(onboard.own().t, truth.t);
+    EXPECT_EQ(onboard.own().p_WB, truth.p_WB);
+    EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood);
+  });
+}
+
+TEST(OwnSense, TheDefaultsAreThoseOfTheSensors) {
+  const sim::OwnSensorRigConfig config = OwnSensorsOf(Scenario{});
+  const sim::OwnSensorRigConfig defaults;
   const auto same = [](const sim::OwnSensorConfig& a, const sim::OwnSensorConfig& b) {
     EXPECT_EQ(a.rate_hz, b.rate_hz);
     EXPECT_NEAR(a.sigma, b.sigma, 1e-4);  // 2 deg, 0.035 rad
@@ -62,49 +78,20 @@ TEST(OwnEstimate, TheDefaultsAreThoseOfTheSensors) {
   EXPECT_EQ(config.imu.gyro_noise, defaults.imu.gyro_noise);
 }
 
-// A vehicle that stands still: what is known of a past time, and how far, with and without fixes.
-TEST(OwnEstimate, AnOutageIsToldAndItsDoubtGrows) {
-  Scenario scenario = Shipped("open", {"own_state=estimated", "own.gps.outage=[1, 4]"});
-  OwnEstimate own(scenario, Start(), 0.002, 3);
-  ASSERT_TRUE(own.estimated());
-  estimation::VehicleState truth = Start();
-  double sigma_before = 0.0;
-  for (int k = 0; k <= 2500; ++k) {
-    truth.t = 0.002 * k;
-    own.Sense(truth);
-    ASSERT_EQ(own.now().t, truth.t);
-    if (k == 500) sigma_before = own.HorizontalSigma();
+// What is known of a past time, and how far, with and without fixes.
+TEST(OwnSense, AnOutageIsTold) {
+  const Scenario scenario = Shipped("open", {"own_state=estimated", "own.gps.outage=[1, 4]"});
+  Stand(scenario, 5.0, [](int k, const auto& truth, const control::Onboard& onboard) {
+    ASSERT_EQ(onboard.own().t, truth.t);
     if (k == 1900) {
-      EXPECT_EQ(own.status(), estimation::OwnStatus::kOutage);
-      EXPECT_GT(own.HorizontalSigma(), 3.0 * sigma_before);
+      EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kOutage);
     }
-  }
-  EXPECT_EQ(own.status(), estimation::OwnStatus::kGood);
-  EXPECT_LT((own.now().p_WB - truth.p_WB).norm(), 0.1);
-  truth.t = 4.7;
-  EXPECT_NEAR(own.At(truth).t, 4.7, 1e-9);
-  EXPECT_LT((own.At(truth).p_WB - truth.p_WB).norm(), 0.1);
-}
-
-// A frame that is moved to the believed state is the frame that a camera there would have been at.
-TEST(OwnEstimate, AFrameIsPlacedWhereTheVehicleBelievesItselfToBe) {
-  const Scenario scenario = Shipped("open", {});
-  const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries());
-  const estimation::VehicleState truth = Start();
-  estimation::VehicleState believed = truth;
-  believed.p_WB += Eigen::Vector3d(0.3, -0.2, 0.1);
-  believed.q_WB = truth.q_WB * Eigen::AngleAxisd(0.1, Eigen::Vector3d(0.6, 0.0, 0.8));
-  const auto frame_at = [&](const estimation::VehicleState& vehicle) {
-    const auto eye = MakeDepthEye(scenario, world, 1);
-    SensingTimes times;
-    eye->Look(vehicle, {}, &times);
-    return eye->Poll(vehicle.t)->frame;
-  };
-  estimation::DepthFrame frame = frame_at(truth);
-  PlaceFrame(truth, believed, &frame);
-  const estimation::DepthFrame there = frame_at(believed);
-  EXPECT_LT((frame.p_WC - there.p_WC).norm(), 1e-12);
-  EXPECT_LT((frame.R_WC - there.R_WC).norm(), 1e-12);
+    if (k < 2500) return;
+    EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood);
+    EXPECT_LT((onboard.own().p_WB - truth.p_WB).norm(), 0.1);
+    EXPECT_NEAR(onboard.OwnAt(4.7).t, 4.7, 1e-9);
+    EXPECT_LT((onboard.OwnAt(4.7).p_WB - truth.p_WB).norm(), 0.1);
+  });
 }
 
 TEST(OwnFlight, BothOfThePapersCasesLandByTheEstimateAndRepeatBitByBit) {

@@ -6,30 +6,21 @@
 #include <memory>
 #include <optional>
 
-#include "control/mission/landing_state_machine.h"
+#include "control/onboard/own_state.h"
 #include "control/tracking/disturbance_observer.h"
 #include "control/tracking/mixer.h"
 #include "control/tracking/rotor_lead.h"
 #include "control/tracking/settling.h"
 #include "control/tracking/yaw_planner.h"
-#include "evaluation/flight/own_estimate.h"
-#include "evaluation/flight/replan_request.h"
+#include "touchdown/control/mission/landing_state_machine.h"
+#include "touchdown/control/onboard/onboard_options.h"
+#include "touchdown/control/onboard/replan_request.h"
 #include "touchdown/control/tracking/controller.h"
 #include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/estimation/pad/pad_filter.h"
-#include "touchdown/evaluation/scenario/scenario.h"
 #include "touchdown/planning/replan/planner.h"
-#include "touchdown/sim/pad/pad_course.h"
 
-namespace touchdown::evaluation {
-
-/// A replanning step, as the pilot asked for it.
-struct PilotReplan {
-  ReplanRequest request;
-  estimation::PadState pad;  ///< the prediction at t_now
-  double latency_s = 0.0;    ///< with which the plan is flown
-  bool late = false;         ///< a new pair took over later than that
-};
+namespace touchdown::control {
 
 /// A plan that is to end in contact: `level_time` before it [s], level, sinking with `touchdown_rate` [m/s].
 planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, double touchdown_rate,
@@ -37,46 +28,51 @@ planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, do
 /// Between a plan's end and contact in still air, in which the tilt dies away [s].
 inline constexpr double kLevelTime = 0.15;
 
-/// The vehicle's own software: mission, replanning, heading, tracking. Knows only estimates; an
-/// oracle prediction is the one exception, on request of the scenario.
+/// Of one control step.
+struct PilotCommand {
+  ControlOutput law;
+  MixerOutput mix;                ///< rotor thrusts [N]
+  planning::FlatState reference;  ///< as committed
+};
+
+/// What an Onboard does with what it knows: mission, replanning, heading, tracking.
 class Pilot {
  public:
   /// The flight begins with a hover at `start`, for which the rotors are told `start_thrusts` [N].
-  /// @throws std::invalid_argument if the backend cannot do what the scenario asks.
-  Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
-        std::shared_ptr<const sim::PadCourse> truth, const Registries& registries,
+  /// `parts` and `options` are to outlive it. @throws std::invalid_argument if the feet have no room on the deck.
+  Pilot(const OnboardOptions& options, const OnboardParts& parts,
         const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
         const planning::OccupancyMap& map);
 
   /// Mission and heading, by what the vehicle knows of itself. Call at a fixed rate.
-  void StepMission(const OwnEstimate& own, const estimation::PadFilter& filter, double foot_force,
+  void StepMission(const OwnState& own, const estimation::PadFilter& filter, double foot_force,
                    double dt);
 
   /// One replanning step while flying, to the pad or to rest as the mission wants; nullptr while
   /// hovering or disarmed, and where the planner had nothing to do. Call at
-  /// PlannerRate, or at ClosePlannerRate where it `plans_often`. The result
+  /// replan_rate, or at close_rate where it `plans_often`. The result
   /// is the planner's until the next.
   const planning::ReplanResult* Replan(const estimation::VehicleState& vehicle,
                                        const estimation::PadFilter& filter,
                                        const planning::OccupancyMap& map);
 
-  /// Rotor thrusts for this control step [N]. Once per step: the disturbance is estimated from it.
-  control::MixerOutput Control(const estimation::VehicleState& vehicle);
+  /// What is commanded in this control step. Once per step: the disturbance is estimated from it.
+  PilotCommand Control(const estimation::VehicleState& vehicle);
 
   /// What the tracking law compensates; nothing where it is not estimated.
-  control::Disturbance disturbance() const;
+  Disturbance disturbance() const;
 
   /// Committed reference with heading at time t.
   planning::FlatState Reference(double t) const;
 
-  const control::MissionOutputs& mission() const { return mission_; }
-  const PilotReplan& last_replan() const { return replan_; }
+  const MissionOutputs& mission() const { return mission_; }
+  const OnboardReplan& last_replan() const { return replan_; }
   /// What the landing planner remembers before its next step; empty with any other. Allocates.
   planning::ReplannerState replanner_state() const;
   bool plan_valid(double t) const;
   /// The planner was asked in the last Replan, and had nothing to do.
   bool idle() const { return idle_; }
-  /// To contact, or away from a deck that is near: Replan is to be called at ClosePlannerRate.
+  /// To contact, or away from a deck that is near: Replan is to be called at close_rate.
   bool plans_often() const;
 
  private:
@@ -103,21 +99,17 @@ class Pilot {
   const planning::ReplanResult& Ask(bool for_plan, const estimation::PadFilter& filter,
                                     const planning::OccupancyMap& map);
 
-  Scenario scenario_;
-  estimation::VehicleModel model_;
-  double shortest_contact_plan_;  ///< that the replanner makes [s]
-  std::unique_ptr<PadPredictor> predictor_;
-  PlannerEntry planner_entry_;
-  std::unique_ptr<planning::Planner> planner_;
-  std::unique_ptr<control::Controller> controller_;
-  control::Mixer mixer_;
-  std::optional<control::RotorLead> lead_;  ///< the paper's law has none
-  std::optional<control::DisturbanceObserver> observer_;
-  control::Settling settling_;
-  control::MissionParameters parameters_;
-  control::MissionState mission_state_;
-  control::MissionOutputs mission_;
-  control::YawState yaw_;
+  const OnboardOptions& options_;
+  const OnboardParts& parts_;
+  const estimation::VehicleModel& model_;
+  Mixer mixer_;
+  std::optional<RotorLead> lead_;  ///< the paper's law has none
+  std::optional<DisturbanceObserver> observer_;
+  Settling settling_;
+  MissionParameters parameters_;
+  MissionState mission_state_;
+  MissionOutputs mission_;
+  YawState yaw_;
   double yaw_t_ = 0.0;                     ///< time of yaw_
   double foot_force_ = 0.0;                ///< as it was last told [N]
   double foot_height_ = 0.0;               ///< of the feet above the deck, as last estimated [m]
@@ -127,7 +119,7 @@ class Pilot {
   std::optional<Eigen::Vector3d> look_W_;  ///< what the next stops need to have seen
   double heading_ = 0.0;                   ///< that is steered for [rad]
   bool leans_ = false;                     ///< the heading is chosen by the wind
-  PilotReplan replan_;
+  OnboardReplan replan_;
   bool own_usable_ = true;  ///< the own state is good enough to fly to the pad by
   bool has_plan_ = false;
   bool idle_ = false;
@@ -148,4 +140,4 @@ class Pilot {
   double busy_until_ = -std::numeric_limits<double>::infinity();  ///< with a late step [s]
 };
 
-}  // namespace touchdown::evaluation
+}  // namespace touchdown::control

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 
 /// Says when a sensor of a given rate takes a sample: at first_s, first_s + 1/rate, ... counted,
 /// not accumulated, so that no drift builds up.
@@ -21,4 +21,4 @@ class SampleClock {
   long next_ = 0;
 };
 
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

@@ -2,13 +2,13 @@
 // Sample k is due at first + k / rate. A tolerance far below any time step keeps a sample on the
 // step it belongs to although neither time is exact in binary.
 
-#include "sim/base/sample_clock.h"
+#include "estimation/base/sample_clock.h"
 
 #include <cmath>
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 
 SampleClock::SampleClock(double rate_hz, double first_s) : rate_hz_(rate_hz), first_s_(first_s) {
   CheckAbove("sample rate [Hz]", rate_hz, 0.0, 1000.0);
@@ -23,4 +23,4 @@ bool SampleClock::Due(double t) {
   return true;
 }
 
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/base/sample_clock.h"
+#include "estimation/base/sample_clock.h"
 
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 namespace {
 
 TEST(SampleClock, KeepsItsRateForAnHourWithoutDrift) {
@@ -42,4 +42,4 @@ TEST(SampleClock, RefusesBadRates) {
 }
 
 }  // namespace
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

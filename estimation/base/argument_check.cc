@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The one sentence a wrong argument is answered with: the thing, its value, the allowed range.
 
-#include "sim/base/argument_check.h"
+#include "estimation/base/argument_check.h"
 
 #include <array>
 #include <charconv>
 #include <stdexcept>
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 
 std::string NumberText(double value) {
   std::array<char, 32> text;
@@ -42,4 +42,4 @@ void CheckAbove(std::string_view name, double value, double low, double high) {
   ThrowOutOfRange(name, value, "(" + SentenceNumber(low) + ", " + SentenceNumber(high) + "]");
 }
 
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchdown::sim {
+namespace touchdown::estimation {
 
 /// Shortest decimal text that reads back as the same number; independent of the locale.
 std::string NumberText(double value);
@@ -18,4 +18,4 @@ void CheckWithin(std::string_view name, double value, double low, double high);
 /// The same with the lower end excluded: low < value <= high.
 void CheckAbove(std::string_view name, double value, double low, double high);
 
-}  // namespace touchdown::sim
+}  // namespace touchdown::estimation

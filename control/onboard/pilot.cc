@@ -3,7 +3,7 @@
 // fly there from the committed trajectory, the heading follows the way ahead so that the depth
 // camera sees where the vehicle is going, and the tracking law turns the reference into rotor
 // thrusts.
-#include "evaluation/flight/pilot.h"
+#include "control/onboard/pilot.h"
 
 #include <algorithm>
 #include <chrono>
@@ -12,14 +12,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "control/tracking/lean.h"
 #include "control/tracking/tracking_law.h"
-#include "evaluation/scenario/planner_options.h"
-#include "evaluation/scenario/scenario_world.h"
+#include "touchdown/planning/replan/replanner.h"
 
-namespace touchdown::evaluation {
+namespace touchdown::control {
 namespace {
 
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
@@ -44,34 +41,12 @@ constexpr double kMeasuredMargin = 1.2;   // a measured latency is flown with th
 constexpr double kAttitudeLag = 0.1;      // of the vehicle behind its plans [s]
 constexpr double kTurning = 0.8;  // and then it takes so long to turn away from the deck [s]
 
-control::DescentStyle StyleOf(const Scenario& scenario) {
-  if (scenario.task != TaskKind::kLand) return control::DescentStyle::kNone;
-  return PlansContact(scenario) ? control::DescentStyle::kPlanned
-                                : control::DescentStyle::kVertical;
-}
-
-std::optional<PadKnowledge> KnowledgeOf(const Scenario& scenario,
-                                        const estimation::PadFilter& filter) {
-  if (scenario.task == TaskKind::kGoTo) return PadKnowledge();  // a goal needs none
+std::optional<estimation::PadKnowledge> KnowledgeOf(const OnboardOptions& options,
+                                                    const estimation::PadFilter& filter) {
+  if (options.to_goal) return estimation::PadKnowledge();  // a goal needs none
   if (!filter.initialized()) return std::nullopt;
-  return PadKnowledge{filter.belief(), filter.options().pad_height, filter.options().noise};
-}
-
-control::ControllerOptions TrackingOptions(const Scenario& scenario) {
-  control::ControllerOptions options;
-  options.tilt_max = TrackingTilt(scenario);
-  return options;
-}
-
-const ControllerEntry& LawOf(const Scenario& scenario, const Registries& registries) {
-  return PartNamed(registries.controllers, scenario.controller, "controller");
-}
-
-std::unique_ptr<control::Controller> MakeLaw(const Scenario& scenario,
-                                             const estimation::VehicleModel& model,
-                                             const ControllerEntry& entry) {
-  const ControllerSetup setup{{scenario, entry.parameters}, model, TrackingOptions(scenario)};
-  return MadeBy(entry, setup, "controller");
+  return estimation::PadKnowledge{filter.belief(), filter.options().pad_height,
+                                  filter.options().noise};
 }
 
 }  // namespace
@@ -84,55 +59,41 @@ planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, do
   return target;
 }
 
-Pilot::Pilot(const Scenario& scenario, const estimation::VehicleModel& model,
-             std::shared_ptr<const sim::PadCourse> truth, const Registries& registries,
+Pilot::Pilot(const OnboardOptions& options, const OnboardParts& parts,
              const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
              const planning::OccupancyMap& map)
-    : scenario_(scenario),
-      model_(model),
-      shortest_contact_plan_(
-          PlannerOptions(scenario, model, registries.terms).min_contact_duration),
-      predictor_(PredictorOf(scenario, registries, std::move(truth))),
-      planner_entry_(PlannerOf(scenario, registries)),
-      planner_(MakePlanner(scenario, model, registries)),
-      controller_(MakeLaw(scenario, model, LawOf(scenario, registries))),
-      mixer_(model) {
-  parameters_.foothold = 0.5 * scenario.pad.deck_size - model.foot_radius;
-  if (!(parameters_.foothold > 0.0)) {
-    throw std::invalid_argument(fmt::format("pad.deck_size is {:g}, it must be > {:g} for the feet",
-                                            scenario.pad.deck_size, 2.0 * model.foot_radius));
-  }
+    : options_(options), parts_(parts), model_(options.model), mixer_(options.model) {
+  parameters_.foothold = 0.5 * options.deck_size - model_.foot_radius;
   // The pad off by three standard deviations, and feet led to its middle are still on the deck.
   parameters_.bridge_sigma = parameters_.foothold / 3.0;
   // What TiltMost leaves towards a foot, which the heading turns there.
-  const double lean = control::FeetFirstTilt(model) - kFlareMargin;
+  const double lean = FeetFirstTilt(model_) - kFlareMargin;
   if (lean > 0.0) parameters_.lean_max = lean;
   parameters_.gate_sigma = std::min(parameters_.gate_sigma, parameters_.bridge_sigma);
   // A light vehicle never presses as hard as the default asks.
   parameters_.contact_force =
-      std::min(parameters_.contact_force, kContactShare * model.HoverThrust());
-  parameters_.corridor_radius = scenario.mission.corridor_radius;
-  parameters_.contact_distance = scenario.pad.deck_size * std::sqrt(0.5) + model.foot_radius;
+      std::min(parameters_.contact_force, kContactShare * model_.HoverThrust());
+  parameters_.corridor_radius = options.corridor_radius;
+  parameters_.contact_distance = options.deck_size * std::sqrt(0.5) + model_.foot_radius;
   // A plan that turns away from the deck is made at the next step, flown a latency later and followed when
   // the attitude is there.
-  const double latency = scenario.planning.latency.measured ? LongestLatency(scenario) : Latency();
-  parameters_.turn_time = 1.0 / PlannerRate(scenario, planner_entry_) + latency + kAttitudeLag;
-  parameters_.climb_time =
-      1.0 / ClosePlannerRate(scenario, planner_entry_) + latency + kAttitudeLag;
+  const double latency = options.latency.measured ? options.latency.longest : Latency();
+  parameters_.turn_time = 1.0 / options.replan_rate + latency + kAttitudeLag;
+  parameters_.climb_time = 1.0 / options.close_rate + latency + kAttitudeLag;
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
-  if (LawOf(scenario, registries).compensates) {
-    lead_.emplace(model).Hover(start_thrusts);
-    if (scenario.control.disturbance) observer_.emplace(model).Hover(start, start_thrusts);
+  if (parts.law_compensates) {
+    lead_.emplace(model_).Hover(start_thrusts);
+    if (options.estimate_disturbance) observer_.emplace(model_).Hover(start, start_thrusts);
   }
-  planner_->Prepare(map);
-  planner_->CommitHover(start.p_WB, start.t);
+  parts_.planner->Prepare(map);
+  parts_.planner->CommitHover(start.p_WB, start.t);
   yaw_.yaw = estimation::Yaw(start.q_WB);
   yaw_t_ = start.t;
   heading_ = heading_ahead_ = yaw_.yaw;
 }
 
-void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& filter,
-                        double foot_force, double dt) {
+void Pilot::StepMission(const OwnState& own, const estimation::PadFilter& filter, double foot_force,
+                        double dt) {
   const estimation::VehicleState& vehicle = own.now();
   const double t = vehicle.t;
   own_position_sigma_ = own.PositionSigma();
@@ -141,8 +102,8 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     recent_error_ = {};
     meets_vehicle_at_.reset();
   }
-  recent_error_.Note(t, (planner_->Reference(t).p_WB - vehicle.p_WB).norm());
-  control::MissionInputs inputs;
+  recent_error_.Note(t, (parts_.planner->Reference(t).p_WB - vehicle.p_WB).norm());
+  MissionInputs inputs;
   inputs.t = t;
   inputs.pad_available = KnowsTarget(filter);
   inputs.pad_converged = IsSureOfTarget(filter, t);
@@ -150,19 +111,19 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
     const estimation::PadState pad = TargetAt(filter, t);
     inputs.horizontal_distance = (vehicle.p_WB - pad.p_WP).head<2>().norm();
     inputs.height = vehicle.p_WB.z() - model_.foot_depth - pad.p_WP.z();
-    inputs.foot_drop = control::FootDrop(model_, vehicle.q_WB);
+    inputs.foot_drop = FootDrop(model_, vehicle.q_WB);
     inputs.horizontal_speed = (vehicle.v_WB - pad.v_WP).head<2>().norm();
     inputs.sink_rate = pad.v_WP.z() - vehicle.v_WB.z();
   }
   foot_height_ = inputs.height;
-  inputs.lean = control::LeanUnder(model_.HoverThrust(), disturbance().force_W);
+  inputs.lean = LeanUnder(model_.HoverThrust(), disturbance().force_W);
   inputs.tag_age = to_goal() ? 0.0 : filter.TagAge(t);
   inputs.pad_sigma = to_goal() ? 0.0 : filter.PositionSigma(t);
-  inputs.descent = StyleOf(scenario_);
+  inputs.descent = options_.descent;
   inputs.arrival_in = plan_end_t_ + level_time_ - t;
-  const double contact_in = control::ContactIn(mission_state_, inputs, parameters_);
+  const double contact_in = ContactIn(mission_state_, inputs, parameters_);
   if (std::isfinite(contact_in)) inputs.contact_sigma = filter.PositionSigma(t + contact_in);
-  const estimation::OwnStatus status = own.status();
+  const estimation::OwnStatus status = own.Status(t);
   inputs.own_fresh = status == estimation::OwnStatus::kGood;
   inputs.own_usable = inputs.own_fresh || status == estimation::OwnStatus::kOutage;
   own_usable_ = inputs.own_usable;
@@ -177,9 +138,9 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   }
   heading_ahead_ = HeadingAhead(vehicle, filter);
   const double heading = DesiredHeading();
-  inputs.yaw_aligned = control::YawAligned(yaw_.yaw, heading, kAlignTolerance);
+  inputs.yaw_aligned = YawAligned(yaw_.yaw, heading, kAlignTolerance);
 
-  const control::MissionStep step = control::Step(mission_state_, inputs, parameters_);
+  const MissionStep step = Step(mission_state_, inputs, parameters_);
   mission_state_ = step.state;
   mission_ = step.outputs;
   if (mission_.plan_requested && !requested_t_) requested_t_ = t;
@@ -188,11 +149,11 @@ void Pilot::StepMission(const OwnEstimate& own, const estimation::PadFilter& fil
   at_deck_ = inputs.pad_available && !to_goal() &&
              std::abs(foot_height_) <= parameters_.contact_height &&
              inputs.horizontal_distance <= parameters_.contact_distance;
-  const double off = (planner_->Reference(t).p_WB - vehicle.p_WB).head<2>().norm();
+  const double off = (parts_.planner->Reference(t).p_WB - vehicle.p_WB).head<2>().norm();
   blown_off_ = at_deck_ && !landing && (blown_off_ || off > kBlownOff);
   settling_.Note(t, at_deck_ && foot_force > kTouchForce, landing);
 
-  yaw_ = control::StepYaw(yaw_, heading, dt);
+  yaw_ = StepYaw(yaw_, heading, dt);
   yaw_t_ = t + dt;
 }
 
@@ -200,7 +161,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
                                             const estimation::PadFilter& filter,
                                             const planning::OccupancyMap& map) {
   idle_ = false;
-  if (mission_.mode == control::MissionMode::kHovering || !mission_.motors_armed) {
+  if (mission_.mode == MissionMode::kHovering || !mission_.motors_armed) {
     has_plan_ = false;
     return nullptr;
   }
@@ -234,7 +195,7 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   replan_.late = DeliverLate(vehicle.t) && result.committed;
   // Where there is nothing left to plan, or what is flown lands, no plan is missing.
   const bool kept = result.status == planning::ReplanStatus::kKept;
-  lands_ = planner_entry_.lands && result.Lands();
+  lands_ = parts_.planner_lands && result.Lands();
   const bool lands_as_wanted = wants_plan && input.endpoint.leads_to_contact() && kept && lands_ &&
                                result.reason != planning::ReplanReason::kInvalidInput;
   at_goal_ = result.reason == planning::ReplanReason::kAtGoal;
@@ -251,9 +212,9 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
 // A measured step that took longer than was reckoned with: its plan is flown from when it was there, and
 // no other step is begun before.
 bool Pilot::DeliverLate(double t) {
-  if (!scenario_.planning.latency.measured || measured_latency_ <= replan_.latency_s) return false;
+  if (!options_.latency.measured || measured_latency_ <= replan_.latency_s) return false;
   busy_until_ = t + measured_latency_;
-  planner_->TakeOverAt(busy_until_);
+  parts_.planner->TakeOverAt(busy_until_);
   return true;
 }
 
@@ -269,11 +230,11 @@ double Pilot::LevelTime(const Eigen::Vector3d& pull_W) const {
   const double gusts = kLevelTimeInPull * pull_W.head<2>().norm();
   const double errors = recent_error_.value() / touchdown_rate_;
   return std::min(kLevelTime + std::max(gusts, errors),
-                  parameters_.decide_time - 1.3 * shortest_contact_plan_);
+                  parameters_.decide_time - 1.3 * options_.shortest_contact_plan);
 }
 
 // A goal is known from the beginning, and for sure.
-bool Pilot::to_goal() const { return scenario_.task == TaskKind::kGoTo; }
+bool Pilot::to_goal() const { return options_.to_goal; }
 
 bool Pilot::KnowsTarget(const estimation::PadFilter& filter) const {
   return to_goal() || filter.initialized();
@@ -284,22 +245,21 @@ bool Pilot::IsSureOfTarget(const estimation::PadFilter& filter, double t) const 
 }
 
 estimation::PadState Pilot::TargetAt(const estimation::PadFilter& filter, double t) const {
-  return to_goal() ? predictor_->Predict({}).At(t) : filter.Estimate(t);
+  return to_goal() ? parts_.predictor->Predict({}).At(t) : filter.Estimate(t);
 }
 
 bool Pilot::WantsPlan(const estimation::PadFilter& filter, double t) const {
   if (!KnowsTarget(filter)) return false;
-  if (mission_.guidance == control::Guidance::kFollowPad ||
-      mission_.guidance == control::Guidance::kTouchDown) {
+  if (mission_.guidance == Guidance::kFollowPad || mission_.guidance == Guidance::kTouchDown) {
     return true;
   }
   // Holding ends with a plan to a known pad, so one is tried; without the pad, or without knowing
   // where it is itself, the vehicle rests.
-  return mission_.mode == control::MissionMode::kHold && own_usable_ && IsSureOfTarget(filter, t);
+  return mission_.mode == MissionMode::kHold && own_usable_ && IsSureOfTarget(filter, t);
 }
 
 double Pilot::RestClimb() const {
-  return mission_.guidance == control::Guidance::kClimb ? parameters_.follow_height : 0.0;
+  return mission_.guidance == Guidance::kClimb ? parameters_.follow_height : 0.0;
 }
 
 // Who comes to rest may start above the deck, and is told where that is, too.
@@ -308,52 +268,56 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   ReplanRequest& request = replan_.request;
   request.rest_climb.reset();
   if (!for_plan) request.rest_climb = RestClimb();
-  request.pad = KnowledgeOf(scenario_, filter);
+  request.pad = KnowledgeOf(options_, filter);
   planning::ReplanInput& input = request.input;
-  if (request.pad) input.pad = &predictor_->Predict(*request.pad);
+  if (request.pad) input.pad = &parts_.predictor->Predict(*request.pad);
   if (input.pad != nullptr) replan_.pad = input.pad->At(input.t_now);
   const planning::ReplanResult& result =
-      for_plan ? planner_->Replan(input, map) : planner_->Rest(input, *request.rest_climb, map);
+      for_plan ? parts_.planner->Replan(input, map)
+               : parts_.planner->Rest(input, *request.rest_climb, map);
   input.pad = nullptr;  // the prediction is the predictor's own
   return result;
 }
 
-control::MixerOutput Pilot::Control(const estimation::VehicleState& vehicle) {
-  if (!mission_.motors_armed) return {};
+PilotCommand Pilot::Control(const estimation::VehicleState& vehicle) {
+  PilotCommand command;
+  command.reference = Reference(vehicle.t);
+  if (!mission_.motors_armed) return command;
   if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
   estimation::VehicleState told = vehicle;
-  planning::FlatState reference = Reference(vehicle.t);
-  control::Disturbance compensated = disturbance();
+  planning::FlatState reference = command.reference;
+  Disturbance compensated = disturbance();
   const bool landing = Landing();
   // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
   // errors of position are what holds the vehicle against it.
   if (landing && observer_) {
     const double share =
         (kFlareBegins - foot_height_) / (kFlareBegins - parameters_.contact_height);
-    control::SoftenHorizontally(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told,
-                                &reference);
+    SoftenHorizontally(1.0 - (1.0 - kFlareSoftness) * std::clamp(share, 0.0, 1.0), told,
+                       &reference);
   }
   settling_.Apply(&told, &reference, &compensated);
-  control::MixerOutput mix =
-      mixer_.Mix(controller_->Update(told, reference, compensated, TiltMost(vehicle)).wrench);
+  command.law = parts_.controller->Update(told, reference, compensated, TiltMost(vehicle));
+  MixerOutput& mix = command.mix;
+  mix = mixer_.Mix(command.law.wrench);
   if (lead_) mix.thrusts = lead_->Command(mix.thrusts, vehicle.t);
   if (observer_) observer_->Command(mix.thrusts);
-  return mix;
+  return command;
 }
 
 // Leaning farther so close to the deck, the hull's rim would touch it before the feet do. But who is blown off
 // a way that is not to end there needs all the lean there is. The margin is also for a lean that turns meanwhile.
 double Pilot::TiltMost(const estimation::VehicleState& vehicle) const {
-  const double lean = control::FeetFirstTilt(model_, vehicle.q_WB) - kFlareMargin;
+  const double lean = FeetFirstTilt(model_, vehicle.q_WB) - kFlareMargin;
   return at_deck_ && lean > 0.0 && !blown_off_ ? lean : std::numeric_limits<double>::infinity();
 }
 
-control::Disturbance Pilot::disturbance() const {
-  return observer_ ? observer_->disturbance() : control::Disturbance{};
+Disturbance Pilot::disturbance() const {
+  return observer_ ? observer_->disturbance() : Disturbance{};
 }
 
 planning::FlatState Pilot::Reference(double t) const {
-  planning::FlatState reference = planner_->Reference(t);
+  planning::FlatState reference = parts_.planner->Reference(t);
   // The heading was stepped to the end of the mission's period: go back from there.
   reference.yaw = estimation::WrapAngle(yaw_.yaw - yaw_.rate * (yaw_t_ - t));
   reference.yaw_rate = yaw_.rate;
@@ -364,26 +328,25 @@ planning::FlatState Pilot::Reference(double t) const {
 // planned, along the pad's way as it is known by now.
 bool Pilot::Levelled(double t) const {
   const double left = plan_end_t_ - (t + replan_.latency_s);
-  return arriving() && left < shortest_contact_plan_;
+  return arriving() && left < options_.shortest_contact_plan;
 }
 
 // Whatever the mission wants: where nothing else is proven, a landing that has begun is flown to its end.
-bool Pilot::Landing() const { return mission_.mode == control::MissionMode::kLanding || lands_; }
+bool Pilot::Landing() const { return mission_.mode == MissionMode::kLanding || lands_; }
 
 // A landing that is given up is turned away from the deck at once.
 bool Pilot::plans_often() const {
-  return arriving() || (mission_.mode == control::MissionMode::kGoAround &&
-                        foot_height_ < parameters_.gate_height);
+  return arriving() ||
+         (mission_.mode == MissionMode::kGoAround && foot_height_ < parameters_.gate_height);
 }
 
 // A planned landing that is decided.
 bool Pilot::arriving() const {
-  return mission_.mode == control::MissionMode::kLanding &&
-         mission_.guidance == control::Guidance::kTouchDown;
+  return mission_.mode == MissionMode::kLanding && mission_.guidance == Guidance::kTouchDown;
 }
 
 planning::ReplannerState Pilot::replanner_state() const {
-  const auto* replanner = dynamic_cast<const planning::Replanner*>(planner_.get());
+  const auto* replanner = dynamic_cast<const planning::Replanner*>(parts_.planner.get());
   return replanner != nullptr ? replanner->state() : planning::ReplannerState{};
 }
 
@@ -401,7 +364,7 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
     return Seeing(std::atan2(ahead.y(), ahead.x()), vehicle.p_WB);
   }
   if (look_W_) return Seeing(heading_ahead_, vehicle.p_WB);
-  if (mission_.mode != control::MissionMode::kHovering || !KnowsTarget(filter)) {
+  if (mission_.mode != MissionMode::kHovering || !KnowsTarget(filter)) {
     return heading_ahead_;
   }
   const Eigen::Vector3d p_BP = TargetAt(filter, vehicle.t).p_WP - vehicle.p_WB;
@@ -409,7 +372,7 @@ double Pilot::HeadingAhead(const estimation::VehicleState& vehicle,
 }
 
 Eigen::Vector3d Pilot::WayAt(double t) const {
-  return way_ != nullptr ? way_->EvaluateOnward(t).p_WB : planner_->Reference(t).p_WB;
+  return way_ != nullptr ? way_->EvaluateOnward(t).p_WB : parts_.planner->Reference(t).p_WB;
 }
 
 // The heading nearest to the given one at which the camera sees what the next stops need.
@@ -427,18 +390,17 @@ double Pilot::DesiredHeading() {
   const Eigen::Vector3d force_W =
       observer_ ? observer_->steady_force_W() : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const double share = force_W.head<2>().norm() / model_.HoverThrust();
-  const bool lands =
-      mission_.mode == control::MissionMode::kLanding || plan_end_t_ - yaw_t_ < kTurnTime;
+  const bool lands = mission_.mode == MissionMode::kLanding || plan_end_t_ - yaw_t_ < kTurnTime;
   leans_ = lands && share > (leans_ ? kUpright : kLeaning);
   if (!leans_) return heading_ = heading_ahead_;
-  heading_ = control::HeadingIntoWind(model_, force_W, heading_);
+  heading_ = HeadingIntoWind(model_, force_W, heading_);
   const bool aside = foot_height_ > parameters_.gate_height &&
                      std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kFarAside;
-  return heading_ = aside ? control::HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
+  return heading_ = aside ? HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 
 planning::EndpointTarget Pilot::Endpoint(double t) const {
-  const bool contact = mission_.guidance == control::Guidance::kTouchDown;
+  const bool contact = mission_.guidance == Guidance::kTouchDown;
   planning::EndpointTarget target;
   if (contact) target = ContactTarget(model_, touchdown_rate_, level_time_);
   target.t_reference = t;
@@ -446,7 +408,7 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
     target.height = 0.0;
     return target;
   }
-  target.at_rest = scenario_.planning.endpoint_velocity == EndpointVelocityKind::kRest;
+  target.at_rest = options_.end_at_rest;
   if (contact) {
     if (!Levelled(t)) return target;
     target.t_reference = plan_end_t_;
@@ -456,15 +418,15 @@ planning::EndpointTarget Pilot::Endpoint(double t) const {
   }
   target.height = mission_.foot_height + model_.foot_depth;
   target.sink_rate = std::max(0.0, -mission_.foot_height_rate);
-  const bool landing = mission_.mode == control::MissionMode::kLanding;
+  const bool landing = mission_.mode == MissionMode::kLanding;
   const double lowest = landing ? -parameters_.press_depth : mission_.foot_height;
   target.height_floor = std::min(lowest, mission_.foot_height) + model_.foot_depth;
   return target;
 }
 
 double Pilot::Latency() const {
-  if (!scenario_.planning.latency.measured) return 1e-3 * scenario_.planning.latency.ms;
-  return std::clamp(kMeasuredMargin * measured_latency_, 1e-3, LongestLatency(scenario_));
+  if (!options_.latency.measured) return options_.latency.time;
+  return std::clamp(kMeasuredMargin * measured_latency_, 1e-3, options_.latency.longest);
 }
 
-}  // namespace touchdown::evaluation
+}  // namespace touchdown::control

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The part that would fly: measurements in, set-points out.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "touchdown/control/mission/landing_state_machine.h"
+#include "touchdown/control/onboard/onboard_options.h"
+#include "touchdown/control/onboard/replan_request.h"
+#include "touchdown/control/onboard/taken.h"
+#include "touchdown/control/tracking/controller.h"
+#include "touchdown/estimation/base/measurements.h"
+#include "touchdown/estimation/base/own_measurements.h"
+#include "touchdown/estimation/base/vehicle_state.h"
+#include "touchdown/estimation/pad/pad_arrival.h"
+#include "touchdown/planning/spline/flatness.h"
+
+namespace touchdown::control {
+
+/// What the vehicle is to do from now on, at three depths: whoever has an autopilot takes the middle or the last.
+struct Setpoint {
+  double t = 0.0;                                      ///< [s]
+  bool armed = true;                                   ///< false: the rotors are to stand still
+  Eigen::Vector4d thrusts = Eigen::Vector4d::Zero();   ///< of the rotors, in the model's order [N]
+  bool saturated = false;                              ///< of those, one is at a limit
+  Wrench wrench;                                       ///< collective thrust and moment
+  Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< the attitude that the law wants
+  planning::FlatState reference;                       ///< p, v, a, j, yaw of the committed plan
+};
+
+/// How it stands at the end of the last Step.
+struct OnboardStatus {
+  MissionOutputs mission;     ///< mode, and of the last step of the mission why it changed
+  bool mission_step = false;  ///< ... which was in the last Step
+  estimation::OwnStatus own = estimation::OwnStatus::kAligning;
+  bool pad_known = false;   ///< it has been measured; a goal always is
+  bool pad_sure = false;    ///< ... well enough to land by
+  bool plan_valid = false;  ///< what is flown is no older than the mission allows
+};
+
+/// What was asked of the planner in the last Step; nullptr: nothing.
+struct OnboardPlan {
+  const OnboardReplan* asked = nullptr;
+  const planning::ReplanResult* answer = nullptr;  ///< the planner's own, until its next
+  planning::ReplannerState
+      before;         ///< what a Replanner remembered before, where it is asked to be kept
+  bool idle = false;  ///< asked, and it had nothing to do: there is no answer
+};
+
+/// Thread CPU time since the beginning [s].
+struct OnboardTimes {
+  double control = 0.0, planning = 0.0;
+};
+
+/// A vehicle's own software: own state, pad filter, map, mission, planner, tracking law. It knows no clock but the
+/// time stamps, no file, no thread and no simulator. One instance per vehicle; the thread may change between calls.
+///
+/// Take() whatever has come, in any order; Step() at the rate of the tracking law, 500 Hz by default of the
+/// laws' gains. The first state is to be a hover: Begin() takes it over. The same calls give the same bits (but with
+/// PlanLatency::measured). After set-up nothing allocates but what the planner does (docs/architecture.md).
+class Onboard {
+ public:
+  /// @throws std::invalid_argument naming the first option out of its range, or the part that is missing.
+  Onboard(OnboardOptions options, OnboardParts parts);
+  ~Onboard();
+  Onboard(Onboard&&) noexcept;
+  Onboard& operator=(Onboard&&) noexcept;
+
+  /// The own state, given; where it is estimated, its measurements.
+  Taken Take(const estimation::VehicleState& state);
+  Taken Take(const estimation::ImuSample& sample);
+  Taken Take(const estimation::OwnPositionFix& fix);
+  Taken Take(const estimation::OwnVelocityFix& fix);
+  Taken Take(const estimation::HeightSample& sample);
+  Taken Take(const estimation::HeadingSample& sample);
+  /// The pad, by its GPS and by its tags.
+  Taken Take(const estimation::PadGpsFix& fix);
+  Taken Take(const estimation::PadSighting& sighting);
+  /// Obstacles. Returns from the pad are told apart.
+  Taken Take(const estimation::DepthImage& image);
+  Taken Take(const estimation::FootForce& force);
+
+  /// How many measurements became what, by Taken.
+  const std::array<int, kTakenKinds>& taken() const;
+
+  /// The vehicle hovers, with these rotor thrusts [N]: the flight begins. The own state is to be known.
+  /// @throws std::invalid_argument if it is not.
+  void Begin(const Eigen::Vector4d& thrusts);
+
+  /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one
+  /// again. Before Begin: the rotors stand still.
+  const Setpoint& Step(double t);
+
+  const OnboardStatus& status() const;
+  const OnboardPlan& plan() const;
+  const OnboardTimes& times() const;
+  /// Committed reference with heading at time t.
+  planning::FlatState Reference(double t) const;
+  /// Estimated, and compensated where the law does so.
+  Disturbance disturbance() const;
+
+  /// What it takes for its own state now, and how that was at t [s].
+  const estimation::VehicleState& own() const;
+  estimation::VehicleState OwnAt(double t) const;
+  bool own_estimated() const;
+  const estimation::PadFilter& pad() const;
+  const planning::OccupancyMap& map() const;
+  const OnboardOptions& options() const;
+
+  /// Keep what a Replanner remembered before each question, for records. Allocates then.
+  void KeepBefore(bool keep);
+  /// Keeps a copy of whatever comes to the pad filter from now on.
+  void LogPadTo(std::vector<estimation::PadArrival>* log);
+  /// The map itself, for those who know more than the sensors.
+  planning::OccupancyMap* mutable_map();
+  /// Hands over all that was ever observed; the last call.
+  planning::PersistentMap TakeMemory();
+
+ private:
+  struct Parts;
+  Taken Counted(Taken taken);
+  std::unique_ptr<Parts> it_;
+};
+
+}  // namespace touchdown::control

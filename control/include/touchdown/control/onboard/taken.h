@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+
+namespace touchdown::control {
+
+/// What became of a measurement.
+enum class Taken {
+  kUsed,     ///< in its place in time, also where it came late or out of order
+  kWaiting,  ///< kept for the start of the filter
+  kGated,    ///< too unlikely, or of no use to the filter now; nothing changed
+  kIgnored,  ///< the pad's GPS, while its tags are seen and the own state is estimated
+  kDoubled,  ///< this sensor's measurement of that time has been taken already
+  kTooOld,   ///< older than the history reaches
+  kInvalid,  ///< not finite, out of range, or ahead of time
+  kUnasked,  ///< this vehicle has no such sensor, or its own state is not known yet
+};
+inline constexpr int kTakenKinds = 8;
+std::string_view ToString(Taken taken);
+
+}  // namespace touchdown::control

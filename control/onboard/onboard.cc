@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Senses make of measurements what is known, the pilot decides by it: mission, plan, control, each at its rate.
+#include "touchdown/control/onboard/onboard.h"
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "control/onboard/pilot.h"
+#include "control/onboard/senses.h"
+#include "estimation/base/sample_clock.h"
+#include "touchdown/solvers/backend/thread_clock.h"
+
+namespace touchdown::control {
+namespace {
+
+using solvers::ThreadCpuSeconds;
+
+const OnboardParts& Whole(const OnboardParts& parts) {
+  if (!parts.planner) throw std::invalid_argument("OnboardParts::planner is missing");
+  if (!parts.controller) throw std::invalid_argument("OnboardParts::controller is missing");
+  if (!parts.predictor) throw std::invalid_argument("OnboardParts::predictor is missing");
+  return parts;
+}
+
+}  // namespace
+
+std::string_view ToString(Taken taken) {
+  switch (taken) {
+    case Taken::kUsed:
+      return "used";
+    case Taken::kWaiting:
+      return "waiting";
+    case Taken::kGated:
+      return "gated";
+    case Taken::kIgnored:
+      return "ignored";
+    case Taken::kDoubled:
+      return "doubled";
+    case Taken::kTooOld:
+      return "too_old";
+    case Taken::kInvalid:
+      return "invalid";
+    case Taken::kUnasked:
+      return "unasked";
+  }
+  return "invalid";
+}
+
+struct Onboard::Parts {
+  Parts(OnboardOptions given, OnboardParts made)
+      : options(std::move(given)),
+        parts(std::move(made)),
+        senses(options, std::move(parts.memory)),
+        mission_clock(options.mission_rate),
+        replan_clock(options.replan_rate),
+        close_clock(options.close_rate) {}
+
+  // Runs a stage and adds its thread CPU time to `stage`.
+  template <typename Stage>
+  static void Timed(double* stage, Stage&& run) {
+    const double begin = ThreadCpuSeconds();
+    run();
+    *stage += ThreadCpuSeconds() - begin;
+  }
+
+  void Mission() {
+    pilot->StepMission(senses.own(), senses.pad(), foot_force, 1.0 / options.mission_rate);
+  }
+
+  void Plan(double t) {
+    plan.asked = nullptr;
+    plan.answer = nullptr;
+    plan.idle = false;
+    const bool usual = replan_clock.Due(t), close = close_clock.Due(t);
+    if (!(pilot->plans_often() ? close : usual)) return;
+    if (keep_before) plan.before = pilot->replanner_state();
+    Timed(&times.planning,
+          [&] { plan.answer = pilot->Replan(senses.own().now(), senses.pad(), senses.map()); });
+    plan.idle = pilot->idle();
+    if (plan.answer != nullptr) plan.asked = &pilot->last_replan();
+  }
+
+  Taken TakeForce(const estimation::FootForce& force) {
+    if (!std::isfinite(force.t) || !std::isfinite(force.force)) return Taken::kInvalid;
+    if (force.t == force_t) return Taken::kDoubled;
+    if (force.t < force_t) return Taken::kTooOld;
+    force_t = force.t;
+    foot_force = force.force;
+    return Taken::kUsed;
+  }
+
+  void Control(double t) {
+    const PilotCommand command = pilot->Control(senses.own().now());
+    setpoint.t = t;
+    setpoint.armed = pilot->mission().motors_armed;
+    setpoint.thrusts = command.mix.thrusts;
+    setpoint.saturated = command.mix.saturated;
+    setpoint.wrench = command.law.wrench;
+    setpoint.R_WB = command.law.R_WB_desired;
+    setpoint.reference = command.reference;
+  }
+
+  void Report(double t) {
+    status.mission = pilot->mission();
+    status.own = senses.own().Status(t);
+    status.pad_known = options.to_goal || senses.pad().initialized();
+    status.pad_sure = options.to_goal || senses.pad().Converged(t);
+    status.plan_valid = pilot->plan_valid(t);
+  }
+
+  OnboardOptions options;
+  OnboardParts parts;
+  Senses senses;
+  std::optional<Pilot> pilot;  ///< since Begin
+  estimation::SampleClock mission_clock, replan_clock, close_clock;
+  double foot_force = 0.0;  ///< [N]
+  double force_t = -std::numeric_limits<double>::infinity();
+  std::optional<double> stepped;  ///< the time of the last step [s]
+  bool keep_before = false;
+  Setpoint setpoint;
+  OnboardStatus status;
+  OnboardPlan plan;
+  OnboardTimes times;
+  std::array<int, kTakenKinds> taken{};
+};
+
+Onboard::Onboard(OnboardOptions options, OnboardParts parts) {
+  Validate(options);
+  Whole(parts);
+  it_ = std::make_unique<Parts>(std::move(options), std::move(parts));
+  it_->setpoint.armed = false;
+}
+
+Onboard::~Onboard() = default;
+Onboard::Onboard(Onboard&&) noexcept = default;
+Onboard& Onboard::operator=(Onboard&&) noexcept = default;
+
+Taken Onboard::Counted(Taken taken) {
+  ++it_->taken[static_cast<std::size_t>(taken)];
+  return taken;
+}
+
+Taken Onboard::Take(const estimation::VehicleState& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::ImuSample& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::OwnPositionFix& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::OwnVelocityFix& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::HeightSample& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::HeadingSample& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::PadGpsFix& s) { return Counted(it_->senses.Take(s)); }
+Taken Onboard::Take(const estimation::PadSighting& s) { return Counted(it_->senses.Take(s)); }
+Taken Onboard::Take(const estimation::DepthImage& s) { return Counted(it_->senses.Take(s)); }
+
+Taken Onboard::Take(const estimation::FootForce& force) { return Counted(it_->TakeForce(force)); }
+
+const std::array<int, kTakenKinds>& Onboard::taken() const { return it_->taken; }
+
+void Onboard::Begin(const Eigen::Vector4d& thrusts) {
+  if (!it_->senses.own().known()) {
+    throw std::invalid_argument("Onboard::Begin: the own state is not known yet");
+  }
+  it_->senses.Begin();
+  it_->pilot.emplace(it_->options, it_->parts, it_->senses.own().now(), thrusts, it_->senses.map());
+}
+
+const Setpoint& Onboard::Step(double t) {
+  if (!it_->pilot || !std::isfinite(t) || (it_->stepped && t <= *it_->stepped)) {
+    return it_->setpoint;
+  }
+  it_->stepped = t;
+  it_->senses.Advance(t);
+  Parts::Timed(&it_->times.control, [&] {
+    it_->status.mission_step = it_->mission_clock.Due(t);
+    if (it_->status.mission_step) it_->Mission();
+  });
+  it_->Plan(t);
+  Parts::Timed(&it_->times.control, [&] { it_->Control(t); });
+  it_->Report(t);
+  return it_->setpoint;
+}
+
+const OnboardStatus& Onboard::status() const { return it_->status; }
+const OnboardPlan& Onboard::plan() const { return it_->plan; }
+const OnboardTimes& Onboard::times() const { return it_->times; }
+
+planning::FlatState Onboard::Reference(double t) const {
+  return it_->pilot ? it_->pilot->Reference(t) : planning::FlatState{};
+}
+Disturbance Onboard::disturbance() const {
+  return it_->pilot ? it_->pilot->disturbance() : Disturbance{};
+}
+
+const estimation::VehicleState& Onboard::own() const { return it_->senses.own().now(); }
+estimation::VehicleState Onboard::OwnAt(double t) const { return it_->senses.own().At(t); }
+bool Onboard::own_estimated() const { return it_->senses.own().estimated(); }
+const estimation::PadFilter& Onboard::pad() const { return it_->senses.pad(); }
+const planning::OccupancyMap& Onboard::map() const { return it_->senses.map(); }
+const OnboardOptions& Onboard::options() const { return it_->options; }
+
+void Onboard::KeepBefore(bool keep) { it_->keep_before = keep; }
+void Onboard::LogPadTo(std::vector<estimation::PadArrival>* log) { it_->senses.LogPadTo(log); }
+planning::OccupancyMap* Onboard::mutable_map() { return it_->senses.mutable_map(); }
+planning::PersistentMap Onboard::TakeMemory() { return it_->senses.TakeMemory(); }
+
+}  // namespace touchdown::control

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/control/onboard/onboard_options.h"
+
+#include "estimation/base/argument_check.h"
+
+namespace touchdown::control {
+
+using estimation::CheckAbove;
+using estimation::CheckWithin;
+
+void Validate(const OnboardOptions& options) {
+  Validate(options.model);
+  CheckAbove("deck_size", options.deck_size, 2.0 * options.model.foot_radius,
+             100.0);  // for the feet
+  CheckAbove("corridor_radius", options.corridor_radius, 0.0, 100.0);
+  CheckAbove("mission_rate", options.mission_rate, 0.0, 1000.0);
+  CheckAbove("replan_rate", options.replan_rate, 0.0, 1000.0);
+  CheckAbove("close_rate", options.close_rate, 0.0, 1000.0);
+  CheckWithin("latency.time", options.latency.time, 0.0, 10.0);
+  CheckAbove("latency.longest", options.latency.longest, 0.0, 10.0);
+  CheckAbove("shortest_contact_plan", options.shortest_contact_plan, 0.0, 100.0);
+  CheckAbove("history", options.history, 0.0, 100.0);
+  CheckWithin("start_free", options.start_free, 0.0, 100.0);
+}
+
+}  // namespace touchdown::control

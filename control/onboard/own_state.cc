@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A given state is kept in a ring, so that what comes late can be told where the vehicle was. Between two of
+// them, and for a moment after the newest, it is carried on with constant velocity and turn rate.
+#include "control/onboard/own_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/base/covariance.h"
+#include "estimation/base/rotation_vector.h"
+
+namespace touchdown::control {
+namespace {
+
+using estimation::OwnUpdate;
+using estimation::VehicleState;
+
+constexpr double kDensest = 1000.0;  // given states are kept [Hz]
+constexpr double kCarriedOn = 0.1;   // a given state is good for so long without a newer one [s]
+
+bool Valid(const VehicleState& s) {
+  return std::isfinite(s.t) && s.p_WB.allFinite() && s.v_WB.allFinite() && s.w_WB_B.allFinite() &&
+         std::abs(s.q_WB.norm() - 1.0) < 1e-3;
+}
+
+VehicleState CarriedTo(double t, const VehicleState& from) {
+  const double dt = t - from.t;
+  if (dt == 0.0) return from;
+  VehicleState state = from;
+  state.t = t;
+  state.p_WB += dt * from.v_WB;
+  state.q_WB = from.q_WB * estimation::ExpRotation(dt * from.w_WB_B);
+  return state;
+}
+
+Taken TakenAs(OwnUpdate update) {
+  switch (update) {
+    case OwnUpdate::kWaiting:
+      return Taken::kWaiting;
+    case OwnUpdate::kStarted:
+    case OwnUpdate::kAccepted:
+    case OwnUpdate::kAcceptedLate:
+    case OwnUpdate::kReset:
+      return Taken::kUsed;
+    case OwnUpdate::kGated:
+      return Taken::kGated;
+    case OwnUpdate::kTooOld:
+      return Taken::kTooOld;
+    case OwnUpdate::kInvalid:
+      break;
+  }
+  return Taken::kInvalid;
+}
+
+}  // namespace
+
+OwnState::OwnState(const OnboardOptions& options)
+    : ahead_(options.own_clock_ahead), span_(options.history) {
+  if (options.own_state) {
+    filter_.emplace(*options.own_state);
+  } else {
+    given_.resize(static_cast<std::size_t>(std::ceil(span_ * kDensest)) + 2);
+  }
+}
+
+bool OwnState::known() const { return filter_ ? filter_->started() : size_ > 0; }
+
+Taken OwnState::Take(const VehicleState& state) {
+  if (filter_) return Taken::kUnasked;
+  if (!Valid(state)) return Taken::kInvalid;
+  int at = size_;  // in front of which it belongs
+  while (at > 0 && given(at - 1).t > state.t) --at;
+  if (at > 0 && given(at - 1).t == state.t) return Taken::kDoubled;
+  if (size_ > 0 && state.t < given(size_ - 1).t - span_) return Taken::kTooOld;
+  const int room = static_cast<int>(given_.size());
+  if (size_ == room) {
+    if (at == 0) return Taken::kTooOld;
+    first_ = (first_ + 1) % room;
+    --size_;
+    --at;
+  }
+  ++size_;
+  for (int i = size_ - 1; i > at; --i) given_[Slot(i)] = given(i - 1);
+  given_[Slot(at)] = state;
+  if (at == size_ - 1) now_ = state;
+  return Taken::kUsed;
+}
+
+template <typename Add>
+Taken OwnState::Added(Add&& add) {
+  if (!filter_) return Taken::kUnasked;
+  const Taken taken = TakenAs(add());
+  if (filter_->started()) {
+    now_ = filter_->Estimate();
+    now_.t -= ahead_;
+  }
+  return taken;
+}
+
+Taken OwnState::Take(const estimation::ImuSample& sample) {
+  return Added([&] { return filter_->AddImu(sample); });
+}
+Taken OwnState::Take(const estimation::OwnPositionFix& fix) {
+  return Added([&] { return filter_->AddPosition(fix); });
+}
+Taken OwnState::Take(const estimation::OwnVelocityFix& fix) {
+  return Added([&] { return filter_->AddVelocity(fix); });
+}
+Taken OwnState::Take(const estimation::HeightSample& sample) {
+  return Added([&] { return filter_->AddHeight(sample); });
+}
+Taken OwnState::Take(const estimation::HeadingSample& sample) {
+  return Added([&] { return filter_->AddHeading(sample); });
+}
+
+void OwnState::Advance(double t) {
+  if (filter_) {
+    now_ = filter_->Estimate(t + ahead_);
+    now_.t = t;
+  } else {
+    const VehicleState& newest = given(size_ - 1);
+    now_ = CarriedTo(std::clamp(t, newest.t, newest.t + kCarriedOn), newest);
+    now_.t = std::max(t, newest.t);
+  }
+}
+
+VehicleState OwnState::At(double t) const {
+  if (filter_) {
+    VehicleState state = filter_->Estimate(t + ahead_);
+    state.t -= ahead_;
+    return state;
+  }
+  int at = size_ - 1;
+  while (at > 0 && given(at).t > t) --at;
+  return CarriedTo(std::clamp(t, given(at).t, given(size_ - 1).t + kCarriedOn), given(at));
+}
+
+bool OwnState::Reaches(double t) const {
+  if (!known()) return false;
+  if (filter_) return t >= now_.t - filter_->options().max_delay;
+  return t >= std::max(given(0).t, given(size_ - 1).t - span_);
+}
+
+estimation::OwnStatus OwnState::Status(double t) const {
+  if (filter_) return filter_->Status(t + ahead_);
+  if (size_ == 0) return estimation::OwnStatus::kAligning;
+  return t - given(size_ - 1).t <= kCarriedOn ? estimation::OwnStatus::kGood
+                                              : estimation::OwnStatus::kImuStale;
+}
+
+double OwnState::HorizontalSigma() const {
+  if (!filter_) return 0.0;
+  return std::sqrt(estimation::LargestVariance(filter_->belief().cov.topLeftCorner<2, 2>()));
+}
+
+double OwnState::PositionSigma() const { return LargestSigma(estimation::kPositionError); }
+double OwnState::AttitudeSigma() const { return LargestSigma(estimation::kAttitudeError); }
+
+double OwnState::LargestSigma(int first) const {
+  if (!filter_) return 0.0;
+  return std::sqrt(filter_->belief().cov.diagonal().segment<3>(first).maxCoeff());
+}
+
+}  // namespace touchdown::control

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Returns from the pad vehicle are no obstacles, or the goal of the flight would be one; those that may be from
+// it are kept in doubt until the tags tell where it was (touchdown/planning/map/pad_outline.h).
+// In the frame of an estimated own state a sighting is good to the tags' accuracy, but the frame wanders as the
+// estimate does, which the pad filter takes for a motion of the pad; and the pad's GPS is off by the estimate's
+// whole error. So GPS leads to the pad, with the estimate's doubt added to its own, and tags, once seen, guide
+// alone: what the vehicle lands by, the place relative to it, does not suffer from an estimate that has drifted.
+#include "control/onboard/senses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kTagsGuide = 0.5;     // GPS is left out while tags are younger than this [s]
+constexpr double kAheadOfTime = 0.05;  // of the newest own state: no measurement is [s]
+
+Taken TakenAs(estimation::PadUpdate update) {
+  switch (update) {
+    case estimation::PadUpdate::kInitialized:
+    case estimation::PadUpdate::kAccepted:
+    case estimation::PadUpdate::kAcceptedLate:
+      return Taken::kUsed;
+    case estimation::PadUpdate::kGated:
+    case estimation::PadUpdate::kNotUsed:
+      return Taken::kGated;
+    case estimation::PadUpdate::kTooOld:
+      return Taken::kTooOld;
+    case estimation::PadUpdate::kInvalid:
+      break;
+  }
+  return Taken::kInvalid;
+}
+
+bool Valid(const estimation::DepthImage& image) {
+  const estimation::CameraIntrinsics& camera = image.intrinsics;
+  const auto pixels = static_cast<std::size_t>(std::max(0, camera.width)) *
+                      static_cast<std::size_t>(std::max(0, camera.height));
+  return std::isfinite(image.t) && image.p_BC.allFinite() && image.R_BC.allFinite() &&
+         image.max_range > 0.0 && camera.focal > 0.0 && pixels > 0 && image.depth.size() == pixels;
+}
+
+}  // namespace
+
+bool Senses::Stamps::Has(double t) const {
+  return std::find(stamps_.begin(), stamps_.begin() + std::min(count_, kKept), t) !=
+         stamps_.begin() + std::min(count_, kKept);
+}
+
+void Senses::Stamps::Add(double t) { stamps_[count_++ % kKept] = t; }
+
+Senses::Senses(const OnboardOptions& options, std::optional<planning::PersistentMap> memory)
+    : own_(options),
+      pad_(options.pad),
+      map_(options.map),
+      memory_(memory ? std::move(*memory) : planning::PersistentMap(options.map)),
+      deck_half_size_(0.5 * options.deck_size),
+      start_free_(options.start_free),
+      pad_is_obstacle_(options.to_goal) {}
+
+void Senses::Begin() {
+  map_.Recentre(own_.now().p_WB);
+  memory_.Refill(&map_);
+  map_.MarkFree(own_.now().p_WB, start_free_);
+}
+
+std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {
+  if (!own_.known()) return Taken::kUnasked;
+  if (!std::isfinite(t) || t > own_.now().t + kAheadOfTime) return Taken::kInvalid;
+  if (used.Has(t)) return Taken::kDoubled;
+  return std::nullopt;
+}
+
+bool Senses::TagsGuide(double t) const { return own_.estimated() && pad_.TagAge(t) < kTagsGuide; }
+
+Taken Senses::Take(const estimation::PadGpsFix& fix) {
+  if (const auto refused = Refused(fix.t, fixes_)) return *refused;
+  if (TagsGuide(own_.now().t)) return Taken::kIgnored;
+  estimation::PadGpsFix doubted = fix;
+  doubted.sigma = std::hypot(fix.sigma, own_.HorizontalSigma());
+  if (pad_log_ != nullptr) pad_log_->push_back({own_.now().t, doubted});
+  const Taken taken = TakenAs(pad_.AddGps(doubted));
+  fixes_.Add(fix.t);
+  return taken;
+}
+
+Taken Senses::Take(const estimation::PadSighting& sighting) {
+  if (const auto refused = Refused(sighting.t, sightings_)) return *refused;
+  const estimation::VehicleState believed = own_.At(sighting.t);
+  if (pad_log_ != nullptr) {
+    pad_log_->push_back({own_.now().t, estimation::BelievedSighting{sighting, believed}});
+  }
+  const Taken taken = TakenAs(pad_.AddSighting(sighting, believed));
+  sightings_.Add(sighting.t);
+  return taken;
+}
+
+Taken Senses::Take(const estimation::DepthImage& image) {
+  if (!Valid(image)) return Taken::kInvalid;
+  if (const auto refused = Refused(image.t, images_)) return *refused;
+  if (!own_.Reaches(image.t)) return Taken::kTooOld;
+  const estimation::VehicleState from = own_.At(image.t);
+  const Eigen::Matrix3d R_WB = from.q_WB.toRotationMatrix();
+  frame_.t = image.t;
+  frame_.intrinsics = image.intrinsics;
+  frame_.max_range = image.max_range;
+  frame_.R_WC = R_WB * image.R_BC;
+  frame_.p_WC = from.p_WB + R_WB * image.p_BC;
+  frame_.depth = image.depth;
+  const double t = own_.now().t;
+  memory_.Recentre(own_.now().p_WB, &map_);
+  map_.Integrate(frame_, Outline(t, image.t));
+  const planning::PadOutline now = Outline(t, t);
+  if (pad_.initialized() && now.Known()) {
+    map_.ExplainDoubts([&](double at) { return Outline(t, at); });
+  }
+  images_.Add(image.t);
+  return Taken::kUsed;
+}
+
+// Where the pad was at `stamp`, with the doubt of then and of today.
+planning::PadOutline Senses::Outline(double t, double stamp) const {
+  if (pad_is_obstacle_ || !pad_.initialized()) return {};
+  planning::PadOutline outline = planning::OutlineOf(pad_.Estimate(stamp), deck_half_size_);
+  outline.sigma = std::max(outline.sigma, pad_.PositionSigma(t));
+  return outline;
+}
+
+planning::PersistentMap Senses::TakeMemory() {
+  memory_.Flush(&map_);
+  return std::move(memory_);
+}
+
+}  // namespace touchdown::control

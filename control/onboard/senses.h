@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "control/onboard/own_state.h"
+#include "touchdown/control/onboard/onboard_options.h"
+#include "touchdown/control/onboard/taken.h"
+#include "touchdown/estimation/base/measurements.h"
+#include "touchdown/estimation/pad/pad_arrival.h"
+#include "touchdown/estimation/pad/pad_filter.h"
+#include "touchdown/planning/map/occupancy_map.h"
+#include "touchdown/planning/map/persistent_map.h"
+
+namespace touchdown::control {
+
+/// What an Onboard makes of its measurements: its own state, the pad filter, the map with its memory. Map and pad
+/// filter live in the frame of the own state: where the vehicle takes W to be.
+class Senses {
+ public:
+  /// @throws std::invalid_argument naming the first option out of its range.
+  Senses(const OnboardOptions& options, std::optional<planning::PersistentMap> memory);
+
+  template <typename OwnMeasurement>
+  Taken TakeOwn(const OwnMeasurement& measurement) {
+    return own_.Take(measurement);
+  }
+  Taken Take(const estimation::PadGpsFix& fix);
+  Taken Take(const estimation::PadSighting& sighting);
+  Taken Take(const estimation::DepthImage& image);
+
+  /// The flight begins here: the space around the vehicle is free.
+  void Begin();
+  void Advance(double t) { own_.Advance(t); }
+
+  const OwnState& own() const { return own_; }
+  const estimation::PadFilter& pad() const { return pad_; }
+  const planning::OccupancyMap& map() const { return map_; }
+  planning::OccupancyMap* mutable_map() { return &map_; }
+  planning::PersistentMap TakeMemory();
+
+  void LogPadTo(std::vector<estimation::PadArrival>* log) { pad_log_ = log; }
+
+ private:
+  /// The time stamps of what was looked at, the newest: a ring.
+  class Stamps {
+   public:
+    bool Has(double t) const;
+    void Add(double t);
+
+   private:
+    static constexpr std::size_t kKept = 64;
+    std::array<double, kKept> stamps_;
+    std::size_t count_ = 0;
+  };
+
+  std::optional<Taken> Refused(double t, const Stamps& used) const;
+  bool TagsGuide(double t) const;
+  planning::PadOutline Outline(double t, double stamp) const;
+
+  OwnState own_;
+  estimation::PadFilter pad_;
+  planning::OccupancyMap map_;
+  planning::PersistentMap memory_;
+  double deck_half_size_;
+  double start_free_;
+  bool pad_is_obstacle_;  // the goal is another than the pad
+  Stamps fixes_, sightings_, images_;
+  estimation::DepthFrame frame_;
+  std::vector<estimation::PadArrival>* pad_log_ = nullptr;
+};
+
+}  // namespace touchdown::control

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Landings in the toy world whose measurements come late, twice, in another order, or not at all.
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "control/test/toy_world.h"
+#include "touchdown/control/onboard/envelope.h"
+#include "touchdown/control/onboard/onboard.h"
+
+namespace touchdown::control {
+namespace {
+
+/// What the way from a sensor to the vehicle does.
+struct Mess {
+  double delay = 0.0;      ///< each measurement comes later by up to this [s] ...
+  double own_delay = 0.0;  ///< ... and a given state by this [s]
+  double doubled = 0.0;    ///< share that comes twice, the second time by a delay of its own
+  double lost = 0.0;       ///< share that never comes
+};
+constexpr Mess kMess = {0.15, 0.01, 0.2, 0.1};
+
+/// Holds measurements until they come.
+class Post {
+ public:
+  Post(const Mess& mess, std::uint64_t seed) : mess_(mess), random_(seed) {}
+
+  template <typename Measurement>
+  void Send(double t, const Measurement& measurement, double longest) {
+    if (Draw() < mess_.lost) return;
+    const int copies = Draw() < mess_.doubled ? 2 : 1;
+    for (int i = 0; i < copies; ++i) {
+      held_.emplace(t + longest * Draw(), [measurement](Onboard* to) { to->Take(measurement); });
+    }
+  }
+
+  void Deliver(double t, Onboard* to) {
+    while (!held_.empty() && held_.begin()->first <= t) {
+      held_.begin()->second(to);
+      held_.erase(held_.begin());
+    }
+  }
+
+  double Draw() { return static_cast<double>(random_() >> 11) * 0x1.0p-53; }
+  double Draw(double lo, double hi) { return lo + (hi - lo) * Draw(); }
+
+ private:
+  Mess mess_;
+  std::mt19937_64 random_;
+  std::multimap<double, std::function<void(Onboard*)>> held_;
+};
+
+struct Landing {
+  bool landed = false;
+  double off = 0.0;           ///< from the middle of the pad, at the end [m]
+  double nearest_wall = 1e9;  ///< of the vehicle's axis [m]
+  double meets = 0.0;         ///< vertical speed at first contact [m/s]
+  std::array<int, kTakenKinds> taken{};
+  std::string mode;
+};
+
+double DistanceTo(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
+  return box.exteriorDistance(p);
+}
+
+/// A pad that drives up to 1 m/s in any direction, a wall of 2.5 m on the way.
+Landing Fly(std::uint64_t seed, const Mess& mess) {
+  Post draws({}, seed);
+  ToyWorld world;
+  world.vehicle.p_WB = {0.0, 0.0, draws.Draw(1.5, 3.0)};
+  const double heading = draws.Draw(-3.14, 3.14), speed = draws.Draw(0.0, 1.0);
+  world.pad_start = {draws.Draw(6.0, 9.0), draws.Draw(-3.0, 3.0), ToyWorld::kDeck};
+  world.pad_velocity = speed * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
+  const double wall = draws.Draw(-1.5, 1.5);
+  world.wall = {Eigen::Vector3d(3.0, wall - 1.25, 0.0), Eigen::Vector3d(3.3, wall + 1.25, 3.5)};
+  // A pad that drives through the wall is nobody's to land on.
+  if (world.pad_velocity.x() < 0.0) world.pad_velocity.x() *= -1.0;
+
+  Post post(mess, seed + 1000000);
+  const OnboardOptions options = LandingOptions(world.model, ToyWorld::kDeck);
+  Onboard onboard(options, LandingParts(options));
+  onboard.Take(world.vehicle);
+  onboard.Begin(world.thrusts);
+  Landing landing;
+  bool met = false;
+  for (int k = 0; k < 20000; ++k) {
+    const double t = world.vehicle.t;
+    post.Send(t, world.vehicle, mess.own_delay);
+    if (k % 5 == 0) post.Send(t, estimation::FootForce{t, world.foot_force}, mess.own_delay);
+    if (k % 50 == 0) post.Send(t, world.PadGps(), mess.delay);
+    if (k % 50 == 0) post.Send(t, world.Depth(), mess.delay);
+    if (k % 25 == 0 && world.SeesTags()) post.Send(t, world.Sighting(), mess.delay);
+    post.Deliver(t, &onboard);
+    const Setpoint& setpoint = onboard.Step(t);
+    landing.nearest_wall =
+        std::min(landing.nearest_wall, DistanceTo(world.wall, world.vehicle.p_WB));
+    if (!met && world.foot_force > 0.0) landing.meets = world.vehicle.v_WB.z();
+    met = met || world.foot_force > 0.0;
+    if (!setpoint.armed) {
+      landing.landed = true;
+      break;
+    }
+    world.Step(setpoint.thrusts);
+  }
+  landing.off = (world.vehicle.p_WB - world.Pad()).head<2>().norm();
+  landing.taken = onboard.taken();
+  landing.mode = ToString(onboard.status().mission.mode);
+  return landing;
+}
+
+void ExpectGood(const Landing& landing, const std::string& what) {
+  EXPECT_TRUE(landing.landed) << what << ": " << landing.mode;
+  EXPECT_LT(landing.off, 0.3) << what;
+  EXPECT_GT(landing.nearest_wall, HullAtEveryTilt(ToyQuadrotor())) << what;
+  EXPECT_GT(landing.meets, -0.5) << what;
+}
+
+TEST(OnboardFlights, LandWhereAllComesInTime) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    ExpectGood(Fly(seed, {}), "seed " + std::to_string(seed));
+  }
+}
+
+TEST(OnboardFlights, LandThoughMeasurementsComeLateTwiceAndInAnyOrder) {
+  std::array<int, kTakenKinds> taken{};
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Landing landing = Fly(seed, kMess);
+    ExpectGood(landing, "seed " + std::to_string(seed));
+    for (int i = 0; i < kTakenKinds; ++i) taken[i] += landing.taken[i];
+  }
+  EXPECT_GT(taken[static_cast<int>(Taken::kDoubled)], 1000);
+  EXPECT_EQ(taken[static_cast<int>(Taken::kInvalid)], 0);
+}
+
+// What comes twice is as if it had come once.
+TEST(OnboardFlights, DoublesChangeNoBit) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Landing once = Fly(seed, {}), twice = Fly(seed, {0.0, 0.0, 1.0, 0.0});
+    EXPECT_EQ(once.off, twice.off) << seed;
+    EXPECT_EQ(once.nearest_wall, twice.nearest_wall) << seed;
+    EXPECT_GT(twice.taken[static_cast<int>(Taken::kDoubled)], 1000);
+  }
+}
+
+TEST(OnboardFlights, SameSeedSameBits) {
+  const Landing a = Fly(5, kMess), b = Fly(5, kMess);
+  EXPECT_EQ(a.off, b.off);
+  EXPECT_EQ(a.taken, b.taken);
+}
+
+}  // namespace
+}  // namespace touchdown::control

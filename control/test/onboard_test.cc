@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What becomes of a measurement, whenever and however often it comes.
+#include "touchdown/control/onboard/onboard.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "control/test/toy_world.h"
+#include "touchdown/control/onboard/envelope.h"
+
+namespace touchdown::control {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+OnboardOptions Options() { return LandingOptions(ToyQuadrotor(), ToyWorld::kDeck); }
+
+Onboard Made(const OnboardOptions& options) { return {options, LandingParts(options)}; }
+
+estimation::VehicleState At(double t, const Eigen::Vector3d& p_WB = {0.0, 0.0, 2.0}) {
+  estimation::VehicleState state;
+  state.t = t;
+  state.p_WB = p_WB;
+  return state;
+}
+
+/// At (0, 0, 2) for so long, in steps of 10 ms; then its flight begins.
+Onboard Hovering(double seconds) {
+  Onboard onboard = Made(Options());
+  for (int k = 0; k <= std::lround(100 * seconds); ++k) onboard.Take(At(0.01 * k));
+  onboard.Begin(Eigen::Vector4d::Constant(0.25 * ToyQuadrotor().HoverThrust()));
+  return onboard;
+}
+
+std::string Sentence(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Onboard, WhatIsMissingOrOutOfRangeIsNamed) {
+  struct Slip {
+    std::function<void(OnboardOptions*, OnboardParts*)> make;
+    const char* said;
+  };
+  const Slip slips[] = {
+      {[](auto*, auto* parts) { parts->planner.reset(); }, "planner is missing"},
+      {[](auto*, auto* parts) { parts->controller.reset(); }, "controller is missing"},
+      {[](auto*, auto* parts) { parts->predictor.reset(); }, "predictor is missing"},
+      {[](auto* options, auto*) { options->deck_size = 0.3; }, "deck_size is 0.3"},
+      {[](auto* options, auto*) { options->replan_rate = 0.0; }, "replan_rate is 0"},
+      {[](auto* options, auto*) { options->close_rate = kNan; }, "close_rate is nan"},
+      {[](auto* options, auto*) { options->mission_rate = 2000.0; }, "mission_rate is 2000"},
+      {[](auto* options, auto*) { options->latency.time = -1.0; }, "latency.time is -1"},
+      {[](auto* options, auto*) { options->latency.longest = 0.0; }, "latency.longest is 0"},
+      {[](auto* options, auto*) { options->corridor_radius = 0.0; }, "corridor_radius is 0"},
+      {[](auto* options, auto*) { options->history = 0.0; }, "history is 0"},
+      {[](auto* options, auto*) { options->start_free = -1.0; }, "start_free is -1"},
+      {[](auto* options, auto*) { options->model.mass_kg = 0.0; }, "mass"},
+      {[](auto* options, auto*) { options->pad.max_delay = -1.0; }, "max_delay"},
+  };
+  for (const Slip& slip : slips) {
+    OnboardOptions options = Options();
+    OnboardParts parts = LandingParts(options);
+    slip.make(&options, &parts);
+    EXPECT_THAT(Sentence([&] { Onboard(options, std::move(parts)); }),
+                ::testing::HasSubstr(slip.said));
+  }
+}
+
+TEST(Onboard, NothingTurnsBeforeTheFlightBegins) {
+  Onboard onboard = Made(Options());
+  EXPECT_THAT(Sentence([&] { onboard.Begin(Eigen::Vector4d::Zero()); }),
+              ::testing::HasSubstr("own state is not known"));
+  onboard.Take(At(0.0));
+  EXPECT_FALSE(onboard.Step(0.0).armed);
+  EXPECT_EQ(onboard.Step(0.1).thrusts, Eigen::Vector4d::Zero());
+  onboard.Begin(Eigen::Vector4d::Constant(2.9));
+  EXPECT_TRUE(onboard.Step(0.2).armed);
+}
+
+TEST(Onboard, TimeThatStandsGivesTheLastSetpointAgain) {
+  Onboard onboard = Hovering(0.1);
+  const Setpoint first = onboard.Step(0.1);
+  for (const double t : {0.1, 0.05, kNan, std::numeric_limits<double>::infinity()}) {
+    const Setpoint again = onboard.Step(t);
+    EXPECT_EQ(again.t, first.t) << t;
+    EXPECT_EQ(again.thrusts, first.thrusts) << t;
+  }
+}
+
+TEST(Onboard, GivenStatesComeInAnyOrder) {
+  Onboard onboard = Made(Options());
+  EXPECT_EQ(onboard.Take(At(1.0, {1, 0, 2})), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(At(1.2, {3, 0, 2})), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(At(1.1, {2, 0, 2})), Taken::kUsed);  // fills in how it was
+  EXPECT_EQ(onboard.Take(At(1.1, {9, 0, 2})), Taken::kDoubled);
+  EXPECT_EQ(onboard.own().p_WB.x(), 3.0);
+  EXPECT_EQ(onboard.OwnAt(1.1).p_WB.x(), 2.0);
+  EXPECT_EQ(onboard.Take(At(0.1)), Taken::kTooOld);
+  EXPECT_EQ(onboard.Take(At(kNan)), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(At(1.3, {kNan, 0, 2})), Taken::kInvalid);
+  estimation::VehicleState turned = At(1.3);
+  turned.q_WB.coeffs() *= 2.0;
+  EXPECT_EQ(onboard.Take(turned), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(estimation::ImuSample{1.3, {0, 0, 9.81}, {}}), Taken::kUnasked);
+  EXPECT_EQ(onboard.taken()[static_cast<int>(Taken::kUsed)], 3);
+  EXPECT_EQ(onboard.taken()[static_cast<int>(Taken::kInvalid)], 3);
+}
+
+TEST(Onboard, BetweenGivenStatesAndShortlyAfterItGoesOnAsItWent) {
+  Onboard onboard = Made(Options());
+  estimation::VehicleState state = At(1.0);
+  state.v_WB = {2.0, 0.0, 0.0};
+  state.w_WB_B = {0.0, 0.0, 1.0};
+  onboard.Take(state);
+  EXPECT_NEAR(onboard.OwnAt(1.05).p_WB.x(), 0.1, 1e-12);
+  EXPECT_NEAR(estimation::Yaw(onboard.OwnAt(1.05).q_WB), 0.05, 1e-12);
+  EXPECT_NEAR(onboard.OwnAt(9.0).p_WB.x(), 0.2, 1e-12);  // no longer than 0.1 s
+}
+
+// Without a newer state the vehicle does not know where it is: it holds.
+TEST(Onboard, AStateThatStopsComingIsSaid) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.15);
+  EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood);
+  onboard.Step(0.25);
+  EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kImuStale);
+}
+
+TEST(Onboard, AnEstimatedStateIsNotGiven) {
+  OnboardOptions options = Options();
+  options.own_state.emplace();
+  Onboard onboard = Made(options);
+  EXPECT_EQ(onboard.Take(At(0.0)), Taken::kUnasked);
+  EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.0, {1, 2}, 0.1}), Taken::kUnasked);
+  EXPECT_EQ(onboard.Take(estimation::ImuSample{0.0, {0, 0, 9.81}, {}}), Taken::kWaiting);
+}
+
+TEST(Onboard, ThePadsMeasurementsComeInAnyOrder) {
+  const auto fix = [](double t) { return estimation::PadGpsFix{t, {5.0 + t, 1.0}, 0.05}; };
+  Onboard straight = Hovering(1.0), mixed = Hovering(1.0);
+  for (const double t : {0.5, 0.6, 0.7, 0.8, 0.9}) EXPECT_EQ(straight.Take(fix(t)), Taken::kUsed);
+  for (const double t : {0.5, 0.7, 0.6, 0.9, 0.8}) EXPECT_EQ(mixed.Take(fix(t)), Taken::kUsed);
+  EXPECT_EQ(straight.pad().belief().mean, mixed.pad().belief().mean);
+  EXPECT_EQ(straight.pad().belief().cov, mixed.pad().belief().cov);
+  EXPECT_EQ(mixed.Take(fix(0.7)), Taken::kDoubled);
+  EXPECT_EQ(mixed.Take(fix(0.9)), Taken::kDoubled);
+  EXPECT_EQ(straight.pad().belief().cov, mixed.pad().belief().cov);
+  EXPECT_EQ(mixed.Take(fix(5.0)), Taken::kInvalid);  // ahead of time
+  EXPECT_EQ(mixed.Take(fix(kNan)), Taken::kInvalid);
+  EXPECT_EQ(mixed.Take(fix(0.01)), Taken::kTooOld);
+}
+
+TEST(Onboard, AnImageIsPlacedWhereTheVehicleWasThen) {
+  Onboard onboard = Made(Options());
+  ToyWorld world;
+  world.wall = {Eigen::Vector3d(3.0, -1.0, 0.0), Eigen::Vector3d(3.4, 1.0, 3.0)};
+  world.vehicle = At(0.0);
+  onboard.Take(world.vehicle);
+  const estimation::DepthImage image = world.Depth();
+  onboard.Take(At(0.3, {1.5, 0.0, 2.0}));
+  onboard.Begin(Eigen::Vector4d::Constant(2.9));
+  EXPECT_EQ(onboard.Take(image), Taken::kUsed);
+  const auto occupied = [&](double x) {
+    return onboard.map().IsOccupied(onboard.map().CellOf({x, 0.05, 2.05}));
+  };
+  EXPECT_TRUE(occupied(3.05));
+  EXPECT_FALSE(occupied(4.55));
+  EXPECT_EQ(onboard.Take(image), Taken::kDoubled);
+}
+
+TEST(Onboard, AnImageThatIsNoneIsRefused) {
+  Onboard onboard = Hovering(2.0);
+  ToyWorld world;
+  world.vehicle = At(2.0);
+  const estimation::DepthImage good = world.Depth();
+  const auto taken = [&](const std::function<void(estimation::DepthImage*)>& spoil) {
+    estimation::DepthImage image = good;
+    spoil(&image);
+    return onboard.Take(image);
+  };
+  EXPECT_EQ(taken([](auto* i) { i->depth.pop_back(); }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->depth.clear(); }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->intrinsics.width = -80; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->intrinsics.focal = 0.0; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->max_range = kNan; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->p_BC.x() = kNan; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->t = kNan; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->t = 2.2; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->t = 0.5; }), Taken::kTooOld);
+  EXPECT_EQ(taken([](auto*) {}), Taken::kUsed);
+}
+
+TEST(Onboard, AForceIsOfItsTime) {
+  Onboard onboard = Hovering(0.1);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{0.05, 1.0}), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{0.05, 2.0}), Taken::kDoubled);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{0.04, 2.0}), Taken::kTooOld);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{0.06, kNan}), Taken::kInvalid);
+}
+
+TEST(Taken, EveryOneHasItsName) {
+  std::set<std::string_view> names;
+  for (int i = 0; i < kTakenKinds; ++i) names.insert(ToString(static_cast<Taken>(i)));
+  EXPECT_EQ(names.size(), static_cast<std::size_t>(kTakenKinds));
+}
+
+}  // namespace
+}  // namespace touchdown::control
