@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what is missing, builds everything and runs the whole test suite: C++ and Python.
 #   ./test.sh           the suite
+#   ./test.sh quick     the unit tests: minutes, for who changes the code
 #   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two; parts by name: address, tidy, threads
 #   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
 set -euo pipefail
@@ -10,15 +11,17 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/.ci/setup.sh"
 cd "$TOUCHDOWN_ROOT"
 
+selection=()
 case ${1:-} in
   '') ;;
+  quick) selection=(-L unit -LE 'python|docs') ;;
   deep) exec .ci/deep "${@:2}" ;;
   mutants)
     install_tiers build test
     exec .ci/mutants.py "${@:2}"
     ;;
   *)
-    echo "./test.sh $1: there is ./test.sh, ./test.sh deep and ./test.sh mutants." >&2
+    echo "./test.sh $1: there is ./test.sh, and with it quick, deep and mutants." >&2
     exit 2
     ;;
 esac
@@ -27,4 +30,4 @@ install_tiers build report study notebooks test
 build_release ON
 
 say "Testing"
-ctest --test-dir build/release --output-on-failure -j2
+ctest --test-dir build/release --output-on-failure -j2 "${selection[@]}"

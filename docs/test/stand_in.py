@@ -98,8 +98,11 @@ def run_program(program, arguments):
 def look_at_script(name, arguments):
     """./demo.sh and ./test.sh install and build. What demo.sh flies runs before every document."""
     script = ROOT / name
-    if not os.access(script, os.X_OK) or arguments:
-        raise Wrong(f"{name} is no program without options at the top of the repository")
+    if not os.access(script, os.X_OK):
+        raise Wrong(f"{name} is no program at the top of the repository")
+    for word in arguments:
+        if not re.search(rf"^  {re.escape(word)}\)", script.read_text(), re.M):
+            raise Wrong(f"{name} knows no {word}")
     if subprocess.run(["/bin/bash", "-n", script], check=False).returncode != 0:
         raise Wrong(f"{name} is not valid bash")
 
