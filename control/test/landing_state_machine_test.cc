@@ -92,6 +92,36 @@ TEST(LandingStateMachine, TrackingHoldsAndRecovers) {
 }
 
 // Committed, a descent goes on without a sighting. So both the command and the vehicle have to be low, and the gate open.
+// Pad and plan, both, and for as long as it takes.
+TEST(LandingStateMachine, HalfOfWhatItNeedsIsNoRecovery) {
+  const Mission::Change lacks[] = {
+      [](MissionInputs& in) { in.has_plan = false; },
+      [](MissionInputs& in) { in.plan_failed_for = 0.5; },
+      [](MissionInputs& in) { in.pad_converged = false; },
+  };
+  for (const Mission::Change& lack : lacks) {
+    Mission mission;
+    mission.GoTo(MissionMode::kTracking);
+    mission.in.pad_available = false;
+    ASSERT_EQ(mission.RunUntil(MissionMode::kHold), TransitionReason::kPadLost);
+    mission.in.pad_available = true;
+    lack(mission.in);
+    mission.Run(3.0);
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kHold);
+    // What it lacked comes for a moment less than is asked for, and goes again.
+    const MissionInputs lacking = mission.in;
+    mission.in = Fine();
+    mission.in.t = lacking.t;
+    mission.Run(mission.parameters.hold_time - 0.1);
+    lack(mission.in);
+    mission.Run(0.5);
+    EXPECT_EQ(mission.outputs.mode, MissionMode::kHold);
+    mission.in = Fine();
+    mission.in.t = mission.state.t;
+    EXPECT_EQ(mission.RunUntil(MissionMode::kTracking), TransitionReason::kRecovered);
+  }
+}
+
 TEST(LandingStateMachine, CommitsWhereCommandAndVehicleAreLowAndTheGateIsOpen) {
   const MissionParameters parameters;
   const auto committed = [&](double vehicle, bool sees) {

@@ -10,6 +10,7 @@
 #include "control/test/toy_world.h"
 #include "touchdown/control/onboard/envelope.h"
 #include "touchdown/control/onboard/onboard.h"
+#include "touchdown/solvers/allocation_count.h"
 
 namespace touchdown::control {
 namespace {
@@ -143,6 +144,42 @@ TEST(OnboardFlights, DoublesChangeNoBit) {
     EXPECT_EQ(once.nearest_wall, twice.nearest_wall) << seed;
     EXPECT_GT(twice.taken[static_cast<int>(Taken::kDoubled)], 1000);
   }
+}
+
+// A whole flight: measurements and set-points, plans and all. What the first seconds allocate is room that is kept.
+TEST(OnboardFlights, NothingIsAllocatedOnceItFlies) {
+  if (solvers::AllocationCount() < 0) GTEST_SKIP() << "a sanitizer owns the heap";
+  ToyWorld world;
+  world.vehicle.p_WB = {0.0, 0.0, 2.0};
+  world.pad_start.x() = 12.0;
+  const OnboardOptions options = LandingOptions(world.model, ToyWorld::kDeck);
+  Onboard onboard(options, LandingParts(options));
+  onboard.Take(world.vehicle);
+  onboard.Begin(world.thrusts);
+  long taking = 0, stepping = 0;
+  int steps = 0;
+  for (bool armed = true; armed && world.vehicle.t < 30.0; ++steps) {
+    const double t = world.vehicle.t;
+    const estimation::DepthImage image = steps % 50 == 0 ? world.Depth() : estimation::DepthImage{};
+    const long before = solvers::AllocationCount();
+    onboard.Take(world.vehicle);
+    onboard.Take(estimation::FootForce{t, world.foot_force});
+    if (steps % 50 == 0) onboard.Take(world.PadGps());
+    if (steps % 50 == 0) onboard.Take(image);
+    if (steps % 25 == 0 && world.SeesTags()) onboard.Take(world.Sighting());
+    const long taken = solvers::AllocationCount();
+    const Setpoint& setpoint = onboard.Step(t);
+    const long stepped = solvers::AllocationCount();
+    if (t > 2.0) {
+      taking += taken - before;
+      stepping += stepped - taken;
+    }
+    armed = setpoint.armed;
+    world.Step(setpoint.thrusts);
+  }
+  EXPECT_FALSE(onboard.Step(100.0).armed);
+  EXPECT_EQ(taking, 0);
+  EXPECT_EQ(stepping, 0);
 }
 
 TEST(OnboardFlights, SameSeedSameBits) {

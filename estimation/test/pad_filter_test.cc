@@ -211,6 +211,14 @@ TEST_P(BothModels, TooOldIsRefusedWithoutEffect) {
   EXPECT_EQ(filter.diagnostics().too_old, 1);
 }
 
+// Also while the buffer has room.
+TEST_P(BothModels, TooOldIsRefusedFromTheFirstFixesOn) {
+  PadFilter filter(With(GetParam()));
+  for (int k = 0; k < 5; ++k) filter.AddGps({10.0 + 0.1 * k, Eigen::Vector2d(1.0, 2.0), 0.1});
+  EXPECT_EQ(filter.AddGps({9.0, Eigen::Vector2d(1.0, 2.0), 0.1}), PadUpdate::kTooOld);
+  EXPECT_EQ(filter.diagnostics().too_old, 1);
+}
+
 TEST_P(BothModels, LateAtHighRateIsRefusedBeyondTheBuffer) {
   PadFilter filter(With(GetParam()));
   for (int k = 0; k < 500; ++k) filter.AddGps({0.001 * k, Eigen::Vector2d(1.0, 2.0), 0.1});

@@ -92,6 +92,30 @@ TEST(BorderedCholesky, MatchesTheDenseFactor) {
   }
 }
 
+// The last blocks have room for neighbours that are none.
+TEST(BorderedCholesky, WhatLiesBeyondTheEndIsNotRead) {
+  std::mt19937_64 random(4);
+  for (const Shape shape : {Shape{9, 3, 3, false}, Shape{9, 3, 5, true}, Shape{8, 2, 4, true},
+                            Shape{12, 1, 7, false}, Shape{7, 4, 3, true}}) {
+    BorderedBandMatrix A = RandomDefinite(shape, &random);
+    BorderedCholesky clean, spoilt;
+    clean.Prepare(A);
+    spoilt.Prepare(A);
+    ASSERT_EQ(clean.Factor(A), BorderedCholesky::Status::kDefinite);
+    const int d = shape.block_size;
+    for (int i = 0; i < shape.blocks; ++i) {
+      for (int k = shape.blocks - i; k <= shape.half; ++k) {
+        std::fill_n(A.block(i, k), d * d, std::numeric_limits<double>::quiet_NaN());
+      }
+    }
+    ASSERT_EQ(spoilt.Factor(A), BorderedCholesky::Status::kDefinite);
+    Eigen::VectorXd x = Eigen::VectorXd::Ones(A.size()), y = x;
+    clean.Solve(x.data());
+    spoilt.Solve(y.data());
+    EXPECT_EQ(x, y);
+  }
+}
+
 TEST(BorderedCholesky, SaysWhatIsIndefinite) {
   std::mt19937_64 random(4);
   BorderedBandMatrix A = RandomDefinite({6, 3, 3, true}, &random);

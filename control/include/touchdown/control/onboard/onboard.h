@@ -61,7 +61,8 @@ struct OnboardTimes {
 ///
 /// Take() whatever has come, in any order; Step() at the rate of the tracking law, 500 Hz by default of the
 /// laws' gains. The first state is to be a hover: Begin() takes it over. The same calls give the same bits (but with
-/// PlanLatency::measured). After set-up nothing allocates but what the planner does (docs/architecture.md).
+/// PlanLatency::measured). Once it flies nothing
+/// allocates: the first steps make the room that is kept.
 class Onboard {
  public:
   /// @throws std::invalid_argument naming the first option out of its range, or the part that is missing.
