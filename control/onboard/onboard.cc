@@ -18,6 +18,9 @@ namespace {
 
 using solvers::ThreadCpuSeconds;
 
+// Of the last step: an own state from later would make all that come in time too old [s].
+constexpr double kAheadOfStep = 1.0;
+
 const OnboardParts& Whole(const OnboardParts& parts) {
   if (!parts.planner) throw std::invalid_argument("OnboardParts::planner is missing");
   if (!parts.controller) throw std::invalid_argument("OnboardParts::controller is missing");
@@ -64,6 +67,13 @@ struct Onboard::Parts {
     const double begin = ThreadCpuSeconds();
     run();
     *stage += ThreadCpuSeconds() - begin;
+  }
+
+  // `t` on the clock of Step.
+  template <typename OwnMeasurement>
+  Taken TakeOwn(const OwnMeasurement& measurement, double t) {
+    if (stepped && !(t <= *stepped + kAheadOfStep)) return Taken::kInvalid;
+    return senses.TakeOwn(measurement);
   }
 
   void Mission() {
@@ -143,12 +153,22 @@ Taken Onboard::Counted(Taken taken) {
   return taken;
 }
 
-Taken Onboard::Take(const estimation::VehicleState& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::ImuSample& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::OwnPositionFix& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::OwnVelocityFix& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::HeightSample& s) { return Counted(it_->senses.TakeOwn(s)); }
-Taken Onboard::Take(const estimation::HeadingSample& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::VehicleState& s) { return Counted(it_->TakeOwn(s, s.t)); }
+Taken Onboard::Take(const estimation::ImuSample& s) {
+  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
+}
+Taken Onboard::Take(const estimation::OwnPositionFix& s) {
+  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
+}
+Taken Onboard::Take(const estimation::OwnVelocityFix& s) {
+  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
+}
+Taken Onboard::Take(const estimation::HeightSample& s) {
+  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
+}
+Taken Onboard::Take(const estimation::HeadingSample& s) {
+  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
+}
 Taken Onboard::Take(const estimation::PadGpsFix& s) { return Counted(it_->senses.Take(s)); }
 Taken Onboard::Take(const estimation::PadSighting& s) { return Counted(it_->senses.Take(s)); }
 Taken Onboard::Take(const estimation::DepthImage& s) { return Counted(it_->senses.Take(s)); }

@@ -129,6 +129,15 @@ TEST(Onboard, BetweenGivenStatesAndShortlyAfterItGoesOnAsItWent) {
   EXPECT_NEAR(onboard.OwnAt(9.0).p_WB.x(), 0.2, 1e-12);  // no longer than 0.1 s
 }
 
+// One state from far ahead must not make all that follow too old.
+TEST(Onboard, AStateFromTheFutureIsRefused) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.1);
+  EXPECT_EQ(onboard.Take(At(100.0)), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(At(0.2)), Taken::kUsed);
+  EXPECT_EQ(onboard.own().t, 0.2);
+}
+
 // Without a newer state the vehicle does not know where it is: it holds.
 TEST(Onboard, AStateThatStopsComingIsSaid) {
   Onboard onboard = Hovering(0.1);
