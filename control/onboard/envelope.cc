@@ -21,7 +21,7 @@ constexpr double kSteepest = 1.3;          // [rad]
 constexpr double kFeetAboveGround = 0.3;   // away from the pad [m]
 constexpr double kCorridorWeight = 300.0;  // of a planned landing ...
 constexpr double kHurry = 100.0;           // ... and of the arrival time in it
-constexpr double kSpeedPrior = 0.5;        // of the speed limit: 1 sigma of the pad's velocity
+constexpr double kSpeedPrior = 0.5;        // of the pad, share of the speed limit
 
 double Beyond(const Envelope& envelope, double reserve_deg) {
   return std::min(kSteepest, (envelope.tilt_deg + reserve_deg) * kRadPerDeg);
@@ -47,6 +47,8 @@ planning::Limits Envelope::limits() const {
 }
 
 double Envelope::StopTilt() const { return Beyond(*this, kTiltReserve_deg); }
+
+double Envelope::PadSpeedPrior() const { return kSpeedPrior * speed; }
 
 double Envelope::TrackingTilt() const { return Beyond(*this, kTiltReserve_deg + kGustReserve_deg); }
 
@@ -88,7 +90,7 @@ OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck
   OnboardOptions options;
   options.model = model;
   options.pad.pad_height = deck_height;
-  options.pad.speed_prior = std::max(options.pad.speed_prior, kSpeedPrior * Envelope{}.speed);
+  options.pad.speed_prior = std::max(options.pad.speed_prior, Envelope{}.PadSpeedPrior());
   options.shortest_contact_plan = planning::ReplannerOptions{}.min_contact_duration;
   options.map.inflation_radius = LeastClearance(model);
   return options;

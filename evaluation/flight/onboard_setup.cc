@@ -13,8 +13,6 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kPriorShare = 0.5;  // of the vehicle's speed limit: 1 sigma of the pad's velocity
-
 // With an estimated own state; docs/own_state.md says what they are read off.
 constexpr double kOwnPositionSigma = 0.01;  // what the estimate jumps by between images [m]
 constexpr double kOwnAttitudeSigma = 0.01;  // [rad]
@@ -76,8 +74,7 @@ estimation::PadFilterOptions PadFilterOptionsOf(const Scenario& scenario) {
                       ? estimation::PadModel::kPaper
                       : estimation::PadModel::kTurnRate;
   options.pad_height = scenario.pad.deck_height;
-  // A pad may be nearly as fast as the vehicle: a narrow prior would gate its first fixes for ever.
-  options.speed_prior = std::max(options.speed_prior, kPriorShare * scenario.limits.speed);
+  options.speed_prior = std::max(options.speed_prior, EnvelopeOf(scenario).PadSpeedPrior());
   if (scenario.own_state == OwnStateKind::kEstimated) {
     options.own_position_sigma = kOwnPositionSigma;
     options.own_attitude_sigma = kOwnAttitudeSigma;

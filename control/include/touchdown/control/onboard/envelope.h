@@ -21,6 +21,9 @@ struct Envelope {
   planning::Limits limits() const;
   /// Of stops: gusts and steady wind are not to be paid for by the way to rest [rad].
   double StopTilt() const;
+  /// 1 sigma of the pad's velocity before it is measured [m/s]: a pad may be nearly as fast as the vehicle, and a
+  /// narrow prior would gate its first fixes for ever.
+  double PadSpeedPrior() const;
   /// Of the tracking law [rad].
   double TrackingTilt() const;
 };
