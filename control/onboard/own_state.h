@@ -47,8 +47,6 @@ class OwnState {
   double PositionSigma() const;
   double AttitudeSigma() const;
 
-  const estimation::OwnStateFilter* filter() const { return filter_ ? &*filter_ : nullptr; }
-
  private:
   template <typename Add>
   Taken Added(Add&& add);
