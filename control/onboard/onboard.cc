@@ -16,7 +16,7 @@
 namespace touchdown::control {
 namespace {
 
-using solvers::ThreadCpuSeconds;
+using solvers::AddThreadCpu;
 
 // Of the last step: an own state from later would make all that come in time too old [s].
 constexpr double kAheadOfStep = 1.0;
@@ -61,14 +61,6 @@ struct Onboard::Parts {
         replan_clock(options.replan_rate),
         close_clock(options.close_rate) {}
 
-  // Runs a stage and adds its thread CPU time to `stage`.
-  template <typename Stage>
-  static void Timed(double* stage, Stage&& run) {
-    const double begin = ThreadCpuSeconds();
-    run();
-    *stage += ThreadCpuSeconds() - begin;
-  }
-
   // `t` on the clock of Step.
   template <typename OwnMeasurement>
   Taken TakeOwn(const OwnMeasurement& measurement, double t) {
@@ -87,8 +79,9 @@ struct Onboard::Parts {
     const bool usual = replan_clock.Due(t), close = close_clock.Due(t);
     if (!(pilot->plans_often() ? close : usual)) return;
     if (keep_before) plan.before = pilot->replanner_state();
-    Timed(&times.planning,
-          [&] { plan.answer = pilot->Replan(senses.own().now(), senses.pad(), senses.map()); });
+    AddThreadCpu(&times.planning, [&] {
+      plan.answer = pilot->Replan(senses.own().now(), senses.pad(), senses.map());
+    });
     plan.idle = pilot->idle();
     if (plan.answer != nullptr) plan.asked = &pilot->last_replan();
   }
@@ -191,12 +184,12 @@ const Setpoint& Onboard::Step(double t) {
   }
   it_->stepped = t;
   it_->senses.Advance(t);
-  Parts::Timed(&it_->times.control, [&] {
+  AddThreadCpu(&it_->times.control, [&] {
     it_->status.mission_step = it_->mission_clock.Due(t);
     if (it_->status.mission_step) it_->Mission();
   });
   it_->Plan(t);
-  Parts::Timed(&it_->times.control, [&] { it_->Control(t); });
+  AddThreadCpu(&it_->times.control, [&] { it_->Control(t); });
   it_->Report(t);
   return it_->setpoint;
 }

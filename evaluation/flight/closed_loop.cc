@@ -133,14 +133,6 @@ class Trial {
     }
   }
 
-  // Runs a stage and adds its thread CPU time to `stage`.
-  template <typename Stage>
-  static void Timed(double* stage, Stage&& run) {
-    const double begin = solvers::ThreadCpuSeconds();
-    run();
-    *stage += solvers::ThreadCpuSeconds() - begin;
-  }
-
   void Step() {
     perception_.Sense(world_, &onboard_);
     if (perception_.image_taken()) stand_watch_.Image();
@@ -154,8 +146,9 @@ class Trial {
     NotePlan(vehicle.t);
     std::array<double, 4> command;
     for (int i = 0; i < 4; ++i) command[i] = setpoint.thrusts[i];
-    Timed(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
-    Timed(&result_.timing.judging_cpu_s, [&] { Judge(vehicle, pad, setpoint.saturated); });
+    solvers::AddThreadCpu(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
+    solvers::AddThreadCpu(&result_.timing.judging_cpu_s,
+                          [&] { Judge(vehicle, pad, setpoint.saturated); });
   }
 
   // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
@@ -352,7 +345,7 @@ class Trial {
     result_.within_limits = result_.max_speed_mps <= limits_.speed &&
                             result_.max_acceleration_mps2 <= limits_.acceleration;
     if (task_ == TaskKind::kLand) {
-      Timed(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
+      solvers::AddThreadCpu(&result_.timing.judging_cpu_s, [&] { BoundLandingTime(); });
     }
     if (task_ == TaskKind::kFollow) result_.following = metrics_.LastFollowing();
     if (safety_watch_) result_.safety = safety_watch_->figures();

@@ -50,9 +50,9 @@ class FastPadEye final : public PadEye {
                                                const estimation::PadState& pad,
                                                const estimation::PadFilter& /*expected*/,
                                                SensingTimes* times) override {
-    const double begin = solvers::ThreadCpuSeconds();
-    auto sighting = tags_.Sight(vehicle.t, vehicle, pad, believed.q_WB);
-    times->pad_finding += solvers::ThreadCpuSeconds() - begin;
+    std::optional<estimation::PadSighting> sighting;
+    solvers::AddThreadCpu(&times->pad_finding,
+                          [&] { sighting = tags_.Sight(vehicle.t, vehicle, pad, believed.q_WB); });
     return sighting;
   }
 

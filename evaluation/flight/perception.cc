@@ -51,9 +51,7 @@ void Perception::Sense(const sim::World& world, control::Onboard* onboard) {
 
 void Perception::SenseOwn(const estimation::VehicleState& vehicle, control::Onboard* onboard) {
   if (!onboard->own_estimated()) return own_.Sense(vehicle, onboard);
-  const double begin = solvers::ThreadCpuSeconds();
-  own_.Sense(vehicle, onboard);
-  sensing_times_.own_state += solvers::ThreadCpuSeconds() - begin;
+  solvers::AddThreadCpu(&sensing_times_.own_state, [&] { own_.Sense(vehicle, onboard); });
 }
 
 void Perception::SensePad(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
@@ -62,9 +60,9 @@ void Perception::SensePad(const estimation::VehicleState& vehicle, const estimat
   pad_measured_ = false;
   // Most steps bring nothing: the clock is read only if something has arrived.
   const auto take = [this, onboard](const auto& measurement) {
-    const double begin = solvers::ThreadCpuSeconds();
-    if (onboard->Take(measurement) != control::Taken::kIgnored) pad_measured_ = true;
-    sensing_times_.pad_filter += solvers::ThreadCpuSeconds() - begin;
+    solvers::AddThreadCpu(&sensing_times_.pad_filter, [&] {
+      if (onboard->Take(measurement) != control::Taken::kIgnored) pad_measured_ = true;
+    });
   };
   if (const auto fix = gps_.Poll(t, pad)) take(*fix);
   pad_eye_->Look(vehicle, onboard->own(), pad, onboard->pad(), &sensing_times_);

@@ -12,4 +12,12 @@ inline double ThreadCpuSeconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// Runs `stage` and adds its thread CPU time to `*sum` [s].
+template <typename Stage>
+void AddThreadCpu(double* sum, Stage&& stage) {
+  const double begin = ThreadCpuSeconds();
+  stage();
+  *sum += ThreadCpuSeconds() - begin;
+}
+
 }  // namespace touchdown::solvers
