@@ -34,12 +34,9 @@ Taken TakenAs(estimation::PadUpdate update) {
   return Taken::kInvalid;
 }
 
-bool Valid(const estimation::DepthImage& image) {
-  const estimation::CameraIntrinsics& camera = image.intrinsics;
-  const auto pixels = static_cast<std::size_t>(std::max(0, camera.width)) *
-                      static_cast<std::size_t>(std::max(0, camera.height));
-  return std::isfinite(image.t) && image.p_BC.allFinite() && image.R_BC.allFinite() &&
-         image.max_range > 0.0 && camera.focal > 0.0 && pixels > 0 && image.depth.size() == pixels;
+bool HasItsPixels(const estimation::DepthImage& image) {
+  const auto side = [](int pixels) { return static_cast<std::size_t>(std::max(0, pixels)); };
+  return image.depth.size() == side(image.intrinsics.width) * side(image.intrinsics.height);
 }
 
 }  // namespace
@@ -98,7 +95,7 @@ Taken Senses::Take(const estimation::PadSighting& sighting) {
 }
 
 Taken Senses::Take(const estimation::DepthImage& image) {
-  if (!Valid(image)) return Taken::kInvalid;
+  if (!HasItsPixels(image)) return Taken::kInvalid;
   if (const auto refused = Refused(image.t, images_)) return *refused;
   if (!own_.Reaches(image.t)) return Taken::kTooOld;
   const estimation::VehicleState from = own_.At(image.t);
@@ -108,6 +105,7 @@ Taken Senses::Take(const estimation::DepthImage& image) {
   frame_.max_range = image.max_range;
   frame_.R_WC = R_WB * image.R_BC;
   frame_.p_WC = from.p_WB + R_WB * image.p_BC;
+  if (!estimation::IsPossible(frame_)) return Taken::kInvalid;
   frame_.depth = image.depth;
   const double t = own_.now().t;
   memory_.Recentre(own_.now().p_WB, &map_);

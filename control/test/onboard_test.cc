@@ -205,6 +205,11 @@ TEST(Onboard, AnImageThatIsNoneIsRefused) {
   EXPECT_EQ(taken([](auto* i) { i->intrinsics.focal = 0.0; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->max_range = kNan; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->p_BC.x() = kNan; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->p_BC.x() = 1e10; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->intrinsics.cx = kNan; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->intrinsics.cy = 1e308; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->R_BC.setZero(); }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* i) { i->R_BC.col(0) *= -1.0; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->t = kNan; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->t = 2.2; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->t = 0.5; }), Taken::kTooOld);

@@ -167,8 +167,8 @@ std::int64_t OccupancyMap::CountObservedFree() const {
 void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutline& pad) {
   const estimation::CameraIntrinsics& k = frame.intrinsics;
   CheckDepths(frame);
-  const bool pose_known = frame.p_WC.allFinite() && frame.R_WC.allFinite();
-  if (!pose_known || !InWindow(CellOf(frame.p_WC))) return;
+  if (!estimation::IsPossible(frame) || !HasIndex(frame.p_WC)) return;
+  if (!InWindow(CellOf(frame.p_WC))) return;
   const double cells_per_metre = 1.0 / options_.resolution;
   const Eigen::Vector3d corner = origin_.cast<double>();
   const auto in_window = [&](const Eigen::Vector3d& p_W) -> Eigen::Vector3d {

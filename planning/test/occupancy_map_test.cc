@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -512,6 +513,33 @@ TEST(OccupancyMap, RefusesBadOptions) {
   options = {};
   options.size_log2.x() = 2;
   EXPECT_THROW(OccupancyMap{options}, std::invalid_argument);
+}
+
+// A camera that is none must not reach beyond the grid.
+TEST(OccupancyMap, AnImpossibleCameraSaysNothing) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::function<void(estimation::DepthFrame*)> slips[] = {
+      [](auto* f) { f->intrinsics.cx = kNan; },   [](auto* f) { f->intrinsics.cy = 1e308; },
+      [](auto* f) { f->intrinsics.cx = -1e308; }, [](auto* f) { f->intrinsics.focal = kNan; },
+      [](auto* f) { f->intrinsics.focal = 0.0; }, [](auto* f) { f->intrinsics.focal = 1e-300; },
+      [](auto* f) { f->max_range = kNan; },       [](auto* f) { f->R_WC.setZero(); },
+      [](auto* f) { f->R_WC *= 1e200; },          [](auto* f) { f->R_WC.col(0) *= -1.0; },
+      [](auto* f) { f->p_WC.x() = 1e10; },        [](auto* f) { f->p_WC.y() = -1e300; },
+      [](auto* f) { f->p_WC.z() = kNan; },
+  };
+  for (const float depth : {2.0F, std::numeric_limits<float>::infinity()}) {
+    for (const auto& slip : slips) {
+      OccupancyMap map{OccupancyMapOptions{}};
+      map.Recentre({0.0, 0.0, 2.0});
+      estimation::DepthFrame frame;
+      frame.p_WC = {0.0, 0.0, 2.0};
+      frame.R_WC << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+      frame.depth.assign(80 * 60, depth);
+      slip(&frame);
+      map.Integrate(frame, {});
+      EXPECT_EQ(map.CountObservedFree(), 0);
+    }
+  }
 }
 
 }  // namespace

@@ -29,6 +29,10 @@ struct DepthFrame {
       depth;  ///< height x width, row-major, along the optical axis [m]; inf: no return
 };
 
+/// Whether a camera can have taken it: positive focal length, an image plane that is no wider than 1e4 focal lengths,
+/// a pose that is one, within 1e7 m, and a range. Says nothing of the depths.
+bool IsPossible(const DepthFrame& frame);
+
 /// One depth image from a camera that is fixed to the vehicle.
 struct DepthImage {
   double t = 0.0;  ///< time stamp [s]

@@ -94,7 +94,8 @@ class OccupancyMap {
   /// Fuses one depth frame. Every cell is updated at most once: as hit if a return ends in it, else
   /// as miss if a ray frees it. A return from the ground hits nothing; one from `pad`, which is where the
   /// pad was when the frame was taken, makes its cell unknown, one that may be from it makes it
-  /// doubtful. A camera out of the window or at a pose that is not finite says nothing.
+  /// doubtful. A camera out of the window says nothing, nor does
+  /// one that cannot be (estimation::IsPossible).
   /// @throws std::invalid_argument if the frame has not width x height depths.
   void Integrate(const estimation::DepthFrame& frame, const PadOutline& pad);
 
