@@ -163,7 +163,7 @@ def test_keys_named_in_prose_exist():
         ("touchdown list terms", "touchdown: command not found"),
         ("mv out out2", "mv: command not found"),
         ("build/release/bin/no_such_program", "No such file"),
-        ("./demo.sh --fast", "without options"),
+        ("./demo.sh --fast", "demo.sh knows no --fast"),
         ("cmake --preset fast", "no preset fast"),
         ("cmake -S docs/nowhere -B build/x", "docs/nowhere"),
         ("cmake --preset release -DTOUCHDOWN_WITH_MAGIC=ON", "TOUCHDOWN_WITH_MAGIC"),
