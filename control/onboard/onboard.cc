@@ -10,6 +10,7 @@
 
 #include "control/onboard/pilot.h"
 #include "control/onboard/senses.h"
+#include "estimation/base/argument_check.h"
 #include "estimation/base/sample_clock.h"
 #include "touchdown/solvers/backend/thread_clock.h"
 
@@ -17,9 +18,6 @@ namespace touchdown::control {
 namespace {
 
 using solvers::AddThreadCpu;
-
-// Of the last step: an own state from later would make all that come in time too old [s].
-constexpr double kAheadOfStep = 1.0;
 
 const OnboardParts& Whole(const OnboardParts& parts) {
   if (!parts.planner) throw std::invalid_argument("OnboardParts::planner is missing");
@@ -61,13 +59,6 @@ struct Onboard::Parts {
         replan_clock(options.replan_rate),
         close_clock(options.close_rate) {}
 
-  // `t` on the clock of Step.
-  template <typename OwnMeasurement>
-  Taken TakeOwn(const OwnMeasurement& measurement, double t) {
-    if (stepped && !(t <= *stepped + kAheadOfStep)) return Taken::kInvalid;
-    return senses.TakeOwn(measurement);
-  }
-
   void Mission() {
     pilot->StepMission(senses.own(), senses.pad(), foot_force, 1.0 / options.mission_rate);
   }
@@ -87,7 +78,7 @@ struct Onboard::Parts {
   }
 
   Taken TakeForce(const estimation::FootForce& force) {
-    if (!std::isfinite(force.t) || !std::isfinite(force.force)) return Taken::kInvalid;
+    if (senses.IsAhead(force.t) || !std::isfinite(force.force)) return Taken::kInvalid;
     if (force.t == force_t) return Taken::kDoubled;
     if (force.t < force_t) return Taken::kTooOld;
     force_t = force.t;
@@ -146,22 +137,12 @@ Taken Onboard::Counted(Taken taken) {
   return taken;
 }
 
-Taken Onboard::Take(const estimation::VehicleState& s) { return Counted(it_->TakeOwn(s, s.t)); }
-Taken Onboard::Take(const estimation::ImuSample& s) {
-  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
-}
-Taken Onboard::Take(const estimation::OwnPositionFix& s) {
-  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
-}
-Taken Onboard::Take(const estimation::OwnVelocityFix& s) {
-  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
-}
-Taken Onboard::Take(const estimation::HeightSample& s) {
-  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
-}
-Taken Onboard::Take(const estimation::HeadingSample& s) {
-  return Counted(it_->TakeOwn(s, s.t - it_->options.own_clock_ahead));
-}
+Taken Onboard::Take(const estimation::VehicleState& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::ImuSample& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::OwnPositionFix& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::OwnVelocityFix& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::HeightSample& s) { return Counted(it_->senses.TakeOwn(s)); }
+Taken Onboard::Take(const estimation::HeadingSample& s) { return Counted(it_->senses.TakeOwn(s)); }
 Taken Onboard::Take(const estimation::PadGpsFix& s) { return Counted(it_->senses.Take(s)); }
 Taken Onboard::Take(const estimation::PadSighting& s) { return Counted(it_->senses.Take(s)); }
 Taken Onboard::Take(const estimation::DepthImage& s) { return Counted(it_->senses.Take(s)); }
@@ -173,6 +154,12 @@ const std::array<int, kTakenKinds>& Onboard::taken() const { return it_->taken; 
 void Onboard::Begin(const Eigen::Vector4d& thrusts) {
   if (!it_->senses.own().known()) {
     throw std::invalid_argument("Onboard::Begin: the own state is not known yet");
+  }
+  if (it_->pilot) throw std::invalid_argument("Onboard::Begin: the flight has begun");
+  const estimation::VehicleModel& model = it_->options.model;
+  for (int i = 0; i < 4; ++i) {
+    estimation::CheckWithin("Onboard::Begin: one of the thrusts [N]", thrusts[i],
+                            model.rotor_thrust_min, model.rotor_thrust_max);
   }
   it_->senses.Begin();
   it_->pilot.emplace(it_->options, it_->parts, it_->senses.own().now(), thrusts, it_->senses.map());

@@ -17,8 +17,9 @@ void Validate(const OnboardOptions& options) {
   CheckAbove("replan_rate", options.replan_rate, 0.0, 1000.0);
   CheckAbove("close_rate", options.close_rate, 0.0, 1000.0);
   CheckWithin("latency.time", options.latency.time, 0.0, 10.0);
-  CheckAbove("latency.longest", options.latency.longest, 0.0, 10.0);
+  CheckWithin("latency.longest", options.latency.longest, 1e-3, 10.0);
   CheckAbove("shortest_contact_plan", options.shortest_contact_plan, 0.0, 100.0);
+  CheckWithin("own_clock_ahead", options.own_clock_ahead, -1e6, 1e6);
   CheckAbove("history", options.history, 0.0, 100.0);
   CheckWithin("start_free", options.start_free, 0.0, 100.0);
 }

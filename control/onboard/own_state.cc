@@ -17,6 +17,7 @@ using estimation::VehicleState;
 
 constexpr double kDensest = 1000.0;  // given states are kept [Hz]
 constexpr double kCarriedOn = 0.1;   // a given state is good for so long without a newer one [s]
+constexpr double kAhead = 0.1;       // of the time that was advanced to: no measurement is [s]
 
 bool Valid(const VehicleState& s) {
   return std::isfinite(s.t) && s.p_WB.allFinite() && s.v_WB.allFinite() && s.w_WB_B.allFinite() &&
@@ -67,7 +68,7 @@ bool OwnState::known() const { return filter_ ? filter_->started() : size_ > 0; 
 
 Taken OwnState::Take(const VehicleState& state) {
   if (filter_) return Taken::kUnasked;
-  if (!Valid(state)) return Taken::kInvalid;
+  if (!Valid(state) || IsAhead(state.t)) return Taken::kInvalid;
   int at = size_;  // in front of which it belongs
   while (at > 0 && given(at - 1).t > state.t) --at;
   if (at > 0 && given(at - 1).t == state.t) return Taken::kDoubled;
@@ -86,42 +87,59 @@ Taken OwnState::Take(const VehicleState& state) {
   return Taken::kUsed;
 }
 
-template <typename Add>
-Taken OwnState::Added(Add&& add) {
+bool OwnState::IsAhead(double t) const { return advanced_ && !(t <= *advanced_ + kAhead); }
+
+template <typename Measurement>
+Taken OwnState::Added(const Measurement& measured, Stamps* stamps,
+                      OwnUpdate (estimation::OwnStateFilter::*add)(const Measurement&)) {
   if (!filter_) return Taken::kUnasked;
-  const Taken taken = TakenAs(add());
-  if (filter_->started()) {
-    now_ = filter_->Estimate();
+  if (IsAhead(measured.t - ahead_)) return Taken::kInvalid;
+  if (stamps->Has(measured.t)) return Taken::kDoubled;
+  const Taken taken = TakenAs((*filter_.*add)(measured));
+  if (IsLookedAt(taken)) stamps->Add(measured.t);
+  if (taken != Taken::kUsed) return taken;
+  const VehicleState newest = filter_->Estimate();
+  if (advanced_ && newest.t - ahead_ < *advanced_) {
+    Advance(*advanced_);
+  } else {
+    now_ = newest;
     now_.t -= ahead_;
   }
   return taken;
 }
 
 Taken OwnState::Take(const estimation::ImuSample& sample) {
-  return Added([&] { return filter_->AddImu(sample); });
+  return Added(sample, &imu_, &estimation::OwnStateFilter::AddImu);
 }
 Taken OwnState::Take(const estimation::OwnPositionFix& fix) {
-  return Added([&] { return filter_->AddPosition(fix); });
+  return Added(fix, &positions_, &estimation::OwnStateFilter::AddPosition);
 }
 Taken OwnState::Take(const estimation::OwnVelocityFix& fix) {
-  return Added([&] { return filter_->AddVelocity(fix); });
+  return Added(fix, &velocities_, &estimation::OwnStateFilter::AddVelocity);
 }
 Taken OwnState::Take(const estimation::HeightSample& sample) {
-  return Added([&] { return filter_->AddHeight(sample); });
+  return Added(sample, &heights_, &estimation::OwnStateFilter::AddHeight);
 }
 Taken OwnState::Take(const estimation::HeadingSample& sample) {
-  return Added([&] { return filter_->AddHeading(sample); });
+  return Added(sample, &headings_, &estimation::OwnStateFilter::AddHeading);
 }
 
 void OwnState::Advance(double t) {
+  advanced_ = t;
   if (filter_) {
     now_ = filter_->Estimate(t + ahead_);
-    now_.t = t;
   } else {
-    const VehicleState& newest = given(size_ - 1);
-    now_ = CarriedTo(std::clamp(t, newest.t, newest.t + kCarriedOn), newest);
-    now_.t = std::max(t, newest.t);
+    while (size_ > 0 && IsAhead(given(size_ - 1).t)) --size_;
+    if (size_ > 0) now_ = At(t);
   }
+  now_.t = t;
+}
+
+// Of the given ones, the newest that is no later than t; the oldest where all are.
+const VehicleState& OwnState::LatestAt(double t) const {
+  int at = size_ - 1;
+  while (at > 0 && given(at).t > t) --at;
+  return given(at);
 }
 
 VehicleState OwnState::At(double t) const {
@@ -130,9 +148,9 @@ VehicleState OwnState::At(double t) const {
     state.t -= ahead_;
     return state;
   }
-  int at = size_ - 1;
-  while (at > 0 && given(at).t > t) --at;
-  return CarriedTo(std::clamp(t, given(at).t, given(size_ - 1).t + kCarriedOn), given(at));
+  if (size_ == 0) return now_;
+  const VehicleState& from = LatestAt(t);
+  return CarriedTo(std::clamp(t, from.t, from.t + kCarriedOn), from);
 }
 
 bool OwnState::Reaches(double t) const {
@@ -144,8 +162,8 @@ bool OwnState::Reaches(double t) const {
 estimation::OwnStatus OwnState::Status(double t) const {
   if (filter_) return filter_->Status(t + ahead_);
   if (size_ == 0) return estimation::OwnStatus::kAligning;
-  return t - given(size_ - 1).t <= kCarriedOn ? estimation::OwnStatus::kGood
-                                              : estimation::OwnStatus::kImuStale;
+  return std::abs(t - LatestAt(t).t) <= kCarriedOn ? estimation::OwnStatus::kGood
+                                                   : estimation::OwnStatus::kImuStale;
 }
 
 double OwnState::HorizontalSigma() const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "control/onboard/stamps.h"
 #include "touchdown/control/onboard/onboard_options.h"
 #include "touchdown/control/onboard/taken.h"
 #include "touchdown/estimation/base/own_measurements.h"
@@ -30,7 +31,8 @@ class OwnState {
   /// It can be asked for a state.
   bool known() const;
 
-  /// Brings now() to the time t [s].
+  /// Brings now() to the time t [s]. Given states from later than that, by more than a moment, are forgotten: before
+  /// the first call nobody knew the time.
   void Advance(double t);
   /// The state by the newest measurement, or at the time of Advance if that is later.
   const estimation::VehicleState& now() const { return now_; }
@@ -48,8 +50,11 @@ class OwnState {
   double AttitudeSigma() const;
 
  private:
-  template <typename Add>
-  Taken Added(Add&& add);
+  template <typename Measurement>
+  Taken Added(const Measurement& measured, Stamps* stamps,
+              estimation::OwnUpdate (estimation::OwnStateFilter::*add)(const Measurement&));
+  bool IsAhead(double t) const;
+  const estimation::VehicleState& LatestAt(double t) const;
   std::size_t Slot(int i) const { return static_cast<std::size_t>(first_ + i) % given_.size(); }
   const estimation::VehicleState& given(int i) const { return given_[Slot(i)]; }
   double LargestSigma(int first) const;
@@ -58,7 +63,8 @@ class OwnState {
   double ahead_;
   double span_;
   estimation::VehicleState now_;
-  bool has_now_ = false;
+  std::optional<double> advanced_;  ///< to this time [s]
+  Stamps imu_, positions_, velocities_, heights_, headings_;
 
   std::vector<estimation::VehicleState> given_;  // a ring in time order, the newest last
   int first_ = 0;

@@ -41,13 +41,6 @@ bool HasItsPixels(const estimation::DepthImage& image) {
 
 }  // namespace
 
-bool Senses::Stamps::Has(double t) const {
-  return std::find(stamps_.begin(), stamps_.begin() + std::min(count_, kKept), t) !=
-         stamps_.begin() + std::min(count_, kKept);
-}
-
-void Senses::Stamps::Add(double t) { stamps_[count_++ % kKept] = t; }
-
 Senses::Senses(const OnboardOptions& options, std::optional<planning::PersistentMap> memory)
     : own_(options),
       pad_(options.pad),
@@ -63,10 +56,15 @@ void Senses::Begin() {
   map_.MarkFree(own_.now().p_WB, start_free_);
 }
 
+bool Senses::IsAhead(double t) const {
+  return !std::isfinite(t) || (own_.known() && t > own_.now().t + kAheadOfTime);
+}
+
 std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {
   if (!own_.known()) return Taken::kUnasked;
-  if (!std::isfinite(t) || t > own_.now().t + kAheadOfTime) return Taken::kInvalid;
+  if (IsAhead(t)) return Taken::kInvalid;
   if (used.Has(t)) return Taken::kDoubled;
+  if (!own_.Reaches(t)) return Taken::kTooOld;
   return std::nullopt;
 }
 
@@ -79,7 +77,7 @@ Taken Senses::Take(const estimation::PadGpsFix& fix) {
   doubted.sigma = std::hypot(fix.sigma, own_.HorizontalSigma());
   if (pad_log_ != nullptr) pad_log_->push_back({own_.now().t, doubted});
   const Taken taken = TakenAs(pad_.AddGps(doubted));
-  fixes_.Add(fix.t);
+  if (IsLookedAt(taken)) fixes_.Add(fix.t);
   return taken;
 }
 
@@ -90,14 +88,13 @@ Taken Senses::Take(const estimation::PadSighting& sighting) {
     pad_log_->push_back({own_.now().t, estimation::BelievedSighting{sighting, believed}});
   }
   const Taken taken = TakenAs(pad_.AddSighting(sighting, believed));
-  sightings_.Add(sighting.t);
+  if (IsLookedAt(taken)) sightings_.Add(sighting.t);
   return taken;
 }
 
 Taken Senses::Take(const estimation::DepthImage& image) {
   if (!HasItsPixels(image)) return Taken::kInvalid;
   if (const auto refused = Refused(image.t, images_)) return *refused;
-  if (!own_.Reaches(image.t)) return Taken::kTooOld;
   const estimation::VehicleState from = own_.At(image.t);
   const Eigen::Matrix3d R_WB = from.q_WB.toRotationMatrix();
   frame_.t = image.t;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
 #include "control/onboard/own_state.h"
+#include "control/onboard/stamps.h"
 #include "touchdown/control/onboard/onboard_options.h"
 #include "touchdown/control/onboard/taken.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -31,6 +31,9 @@ class Senses {
   Taken Take(const estimation::PadSighting& sighting);
   Taken Take(const estimation::DepthImage& image);
 
+  /// The time stamp is ahead of all that is known of the time, or no number.
+  bool IsAhead(double t) const;
+
   /// The flight begins here: the space around the vehicle is free.
   void Begin();
   void Advance(double t) { own_.Advance(t); }
@@ -44,18 +47,6 @@ class Senses {
   void LogPadTo(std::vector<estimation::PadArrival>* log) { pad_log_ = log; }
 
  private:
-  /// The time stamps of what was looked at, the newest: a ring.
-  class Stamps {
-   public:
-    bool Has(double t) const;
-    void Add(double t);
-
-   private:
-    static constexpr std::size_t kKept = 64;
-    std::array<double, kKept> stamps_;
-    std::size_t count_ = 0;
-  };
-
   std::optional<Taken> Refused(double t, const Stamps& used) const;
   bool TagsGuide(double t) const;
   planning::PadOutline Outline(double t, double stamp) const;

@@ -63,6 +63,8 @@ TEST(Onboard, WhatIsMissingOrOutOfRangeIsNamed) {
       {[](auto* options, auto*) { options->mission_rate = 2000.0; }, "mission_rate is 2000"},
       {[](auto* options, auto*) { options->latency.time = -1.0; }, "latency.time is -1"},
       {[](auto* options, auto*) { options->latency.longest = 0.0; }, "latency.longest is 0"},
+      {[](auto* options, auto*) { options->latency.longest = 1e-4; }, "latency.longest is 0.0001"},
+      {[](auto* options, auto*) { options->own_clock_ahead = kNan; }, "own_clock_ahead is nan"},
       {[](auto* options, auto*) { options->corridor_radius = 0.0; }, "corridor_radius is 0"},
       {[](auto* options, auto*) { options->history = 0.0; }, "history is 0"},
       {[](auto* options, auto*) { options->start_free = -1.0; }, "start_free is -1"},
@@ -113,7 +115,7 @@ TEST(Onboard, GivenStatesComeInAnyOrder) {
   estimation::VehicleState turned = At(1.3);
   turned.q_WB.coeffs() *= 2.0;
   EXPECT_EQ(onboard.Take(turned), Taken::kInvalid);
-  EXPECT_EQ(onboard.Take(estimation::ImuSample{1.3, {0, 0, 9.81}, {}}), Taken::kUnasked);
+  EXPECT_EQ(onboard.Take(estimation::ImuSample{1.3, {0, 0, 9.81}, {0, 0, 0}}), Taken::kUnasked);
   EXPECT_EQ(onboard.taken()[static_cast<int>(Taken::kUsed)], 3);
   EXPECT_EQ(onboard.taken()[static_cast<int>(Taken::kInvalid)], 3);
 }
@@ -138,6 +140,89 @@ TEST(Onboard, AStateFromTheFutureIsRefused) {
   EXPECT_EQ(onboard.own().t, 0.2);
 }
 
+// Before the first step nobody knows the time: what is far ahead then is forgotten at the first step.
+TEST(Onboard, AWrongStateBeforeTheFirstStepDoesNotBlindIt) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Take(At(1e6, {9, 9, 9}));
+  onboard.Step(0.12);
+  EXPECT_EQ(onboard.Take(At(0.13)), Taken::kUsed);
+  onboard.Step(0.13);
+  EXPECT_EQ(onboard.own().p_WB.x(), 0.0);
+  EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood);
+}
+
+// A state from a little ahead waits for its time; the true ones are flown by until then.
+TEST(Onboard, AStateFromALittleAheadDoesNotStandForNow) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.1);
+  onboard.Take(At(0.19, {5, 0, 2}));
+  onboard.Take(At(0.12, {0.1, 0, 2}));
+  onboard.Step(0.12);
+  EXPECT_EQ(onboard.own().t, 0.12);
+  EXPECT_EQ(onboard.own().p_WB.x(), 0.1);
+  EXPECT_EQ(onboard.Take(At(0.3)), Taken::kInvalid);
+}
+
+TEST(Onboard, AForceFromTheFutureIsRefused) {
+  Onboard onboard = Hovering(0.1);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{1e9, 9.0}), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{0.1, 0.0}), Taken::kUsed);
+}
+
+// A corrupt copy does not stand for the good one.
+TEST(Onboard, WhatWasInvalidMayComeAgain) {
+  Onboard onboard = Hovering(1.0);
+  EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.5, {kNan, 1.0}, 0.05}), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.5, {5.0, 1.0}, 0.05}), Taken::kUsed);
+  EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.5, {5.0, 1.0}, 0.05}), Taken::kDoubled);
+}
+
+TEST(Onboard, ASightingFromBeforeTheHistoryIsTooOld) {
+  Onboard onboard = Made(Options());
+  onboard.Take(At(5.0));
+  estimation::PadSighting sighting{4.8, {0, 0, -1}, 0.0, Eigen::Vector3d::Constant(0.01), 0.01, 5};
+  EXPECT_EQ(onboard.Take(sighting), Taken::kTooOld);
+  sighting.t = 5.0;
+  EXPECT_EQ(onboard.Take(sighting), Taken::kUsed);
+}
+
+// Of sensors that are no IMU: fused once, however often they come.
+TEST(Onboard, DoublesOfTheOwnSensorsChangeNothing) {
+  OnboardOptions options = Options();
+  options.own_state.emplace();
+  Onboard once = Made(options), twice = Made(options);
+  const auto feed = [](Onboard* onboard, int copies) {
+    for (int k = 0; k <= 1500; ++k) {
+      const double t = 0.002 * k;
+      for (int i = 0; i < copies; ++i) {
+        onboard->Take(estimation::ImuSample{t, {0, 0, 9.81}, {0, 0, 0}});
+        if (k % 50 == 0) onboard->Take(estimation::OwnPositionFix{t, {1, 2, 3}, 0.05, 0.05});
+        if (k % 20 == 0) onboard->Take(estimation::HeightSample{t, 3.0, 0.1});
+        if (k % 20 == 0) onboard->Take(estimation::HeadingSample{t, 0.1, 0.03});
+      }
+    }
+  };
+  feed(&once, 1);
+  feed(&twice, 2);
+  EXPECT_EQ(once.own().p_WB, twice.own().p_WB);
+  EXPECT_EQ(once.own().q_WB.coeffs(), twice.own().q_WB.coeffs());
+  EXPECT_EQ(once.taken()[static_cast<int>(Taken::kDoubled)], 0);
+  EXPECT_EQ(twice.taken()[static_cast<int>(Taken::kDoubled)], 1501 + 31 + 76 + 76);
+}
+
+TEST(Onboard, AFlightBeginsOnceAndWithThrusts) {
+  Onboard onboard = Made(Options());
+  onboard.Take(At(0.0));
+  for (const double wrong : {kNan, -1.0, 100.0}) {
+    EXPECT_THAT(Sentence([&] { onboard.Begin(Eigen::Vector4d(2.9, wrong, 2.9, 2.9)); }),
+                ::testing::HasSubstr("thrusts"));
+  }
+  EXPECT_FALSE(onboard.Step(0.1).armed);
+  onboard.Begin(Eigen::Vector4d::Constant(2.9));
+  EXPECT_THAT(Sentence([&] { onboard.Begin(Eigen::Vector4d::Constant(2.9)); }),
+              ::testing::HasSubstr("has begun"));
+}
+
 // Without a newer state the vehicle does not know where it is: it holds.
 TEST(Onboard, AStateThatStopsComingIsSaid) {
   Onboard onboard = Hovering(0.1);
@@ -153,7 +238,7 @@ TEST(Onboard, AnEstimatedStateIsNotGiven) {
   Onboard onboard = Made(options);
   EXPECT_EQ(onboard.Take(At(0.0)), Taken::kUnasked);
   EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.0, {1, 2}, 0.1}), Taken::kUnasked);
-  EXPECT_EQ(onboard.Take(estimation::ImuSample{0.0, {0, 0, 9.81}, {}}), Taken::kWaiting);
+  EXPECT_EQ(onboard.Take(estimation::ImuSample{0.0, {0, 0, 9.81}, {0, 0, 0}}), Taken::kWaiting);
 }
 
 TEST(Onboard, ThePadsMeasurementsComeInAnyOrder) {

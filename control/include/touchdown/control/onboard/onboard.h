@@ -88,8 +88,8 @@ class Onboard {
   /// How many measurements became what, by Taken.
   const std::array<int, kTakenKinds>& taken() const;
 
-  /// The vehicle hovers, with these rotor thrusts [N]: the flight begins. The own state is to be known.
-  /// @throws std::invalid_argument if it is not.
+  /// The vehicle hovers, with these rotor thrusts [N]: the flight begins, once. The own state is to be known.
+  /// @throws std::invalid_argument if it is not, if the flight has begun, or for a thrust out of the model's range.
   void Begin(const Eigen::Vector4d& thrusts);
 
   /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one

@@ -23,7 +23,7 @@ struct PlanLatency {
   bool measured =
       false;  ///< instead: as long as the last answer took by the wall clock, and a fifth more.
               ///< Then flights do not repeat bit by bit
-  double longest = 0.1;  ///< ... but no longer than this, > 0 [s]
+  double longest = 0.1;  ///< ... but no longer than this, >= 1 ms [s]
 };
 
 /// Numbers and switches. The defaults land the default vehicle.

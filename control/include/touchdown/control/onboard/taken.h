@@ -19,4 +19,9 @@ enum class Taken {
 inline constexpr int kTakenKinds = 8;
 std::string_view ToString(Taken taken);
 
+/// A second one of the same time would be a double.
+constexpr bool IsLookedAt(Taken taken) {
+  return taken == Taken::kUsed || taken == Taken::kGated || taken == Taken::kWaiting;
+}
+
 }  // namespace touchdown::control

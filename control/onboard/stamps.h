@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace touchdown::control {
+
+/// The time stamps of one sensor that were looked at, the newest: a ring. Does not allocate.
+class Stamps {
+ public:
+  bool Has(double t) const {
+    const auto end = stamps_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, kKept));
+    return std::find(stamps_.begin(), end, t) != end;
+  }
+  void Add(double t) { stamps_[count_++ % kKept] = t; }
+
+ private:
+  static constexpr std::size_t kKept = 64;
+  std::array<double, kKept> stamps_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace touchdown::control
