@@ -86,11 +86,12 @@ void SetLanding(planning::ReplannerOptions* options) {
   if (options->arrival == planning::ArrivalMode::kFree) SetWeight("arrival_time", kHurry, options);
 }
 
-OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height) {
+OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height,
+                              const Envelope& envelope) {
   OnboardOptions options;
   options.model = model;
   options.pad.pad_height = deck_height;
-  options.pad.speed_prior = std::max(options.pad.speed_prior, Envelope{}.PadSpeedPrior());
+  options.pad.speed_prior = std::max(options.pad.speed_prior, envelope.PadSpeedPrior());
   options.shortest_contact_plan = planning::ReplannerOptions{}.min_contact_duration;
   options.map.inflation_radius = LeastClearance(model);
   return options;
@@ -99,6 +100,7 @@ OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck
 OnboardParts LandingParts(const OnboardOptions& options, const Envelope& envelope) {
   planning::ReplannerOptions planner;
   planner.arrival = planning::ArrivalMode::kFree;
+  planner.min_contact_duration = options.shortest_contact_plan;
   SetVehicle(options.model, envelope, options.deck_size, 1.0 / options.replan_rate,
              options.latency.measured ? options.latency.longest : 0.0, &planner);
   SetLanding(&planner);

@@ -19,6 +19,9 @@ namespace {
 
 using solvers::AddThreadCpu;
 
+constexpr double kLatest = 1e10;     // of any time: the clock of 1970 is far below [s]
+constexpr double kForceHolds = 0.1;  // a foot force says something for so long [s]
+
 const OnboardParts& Whole(const OnboardParts& parts) {
   if (!parts.planner) throw std::invalid_argument("OnboardParts::planner is missing");
   if (!parts.controller) throw std::invalid_argument("OnboardParts::controller is missing");
@@ -59,8 +62,10 @@ struct Onboard::Parts {
         replan_clock(options.replan_rate),
         close_clock(options.close_rate) {}
 
-  void Mission() {
-    pilot->StepMission(senses.own(), senses.pad(), foot_force, 1.0 / options.mission_rate);
+  double FootForceAt(double t) const { return t - force_t <= kForceHolds ? foot_force : 0.0; }
+
+  void Mission(double t) {
+    pilot->StepMission(senses.own(), senses.pad(), FootForceAt(t), 1.0 / options.mission_rate);
   }
 
   void Plan(double t) {
@@ -87,7 +92,7 @@ struct Onboard::Parts {
   }
 
   void Control(double t) {
-    const PilotCommand command = pilot->Control(senses.own().now());
+    const PilotCommand command = pilot->Control(senses.own());
     setpoint.t = t;
     setpoint.armed = pilot->mission().motors_armed;
     setpoint.thrusts = command.mix.thrusts;
@@ -100,6 +105,7 @@ struct Onboard::Parts {
   void Report(double t) {
     status.mission = pilot->mission();
     status.own = senses.own().Status(t);
+    status.foot_force = FootForceAt(t);
     status.pad_known = options.to_goal || senses.pad().initialized();
     status.pad_sure = options.to_goal || senses.pad().Converged(t);
     status.plan_valid = pilot->plan_valid(t);
@@ -166,14 +172,13 @@ void Onboard::Begin(const Eigen::Vector4d& thrusts) {
 }
 
 const Setpoint& Onboard::Step(double t) {
-  if (!it_->pilot || !std::isfinite(t) || (it_->stepped && t <= *it_->stepped)) {
-    return it_->setpoint;
-  }
+  const bool is_time = t >= 0.0 && t <= kLatest;
+  if (!it_->pilot || !is_time || (it_->stepped && t <= *it_->stepped)) return it_->setpoint;
   it_->stepped = t;
   it_->senses.Advance(t);
   AddThreadCpu(&it_->times.control, [&] {
     it_->status.mission_step = it_->mission_clock.Due(t);
-    if (it_->status.mission_step) it_->Mission();
+    if (it_->status.mission_step) it_->Mission(t);
   });
   it_->Plan(t);
   AddThreadCpu(&it_->times.control, [&] { it_->Control(t); });

@@ -279,13 +279,35 @@ const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFil
   return result;
 }
 
-PilotCommand Pilot::Control(const estimation::VehicleState& vehicle) {
+PilotCommand Pilot::Control(const OwnState& own) {
+  const double t = own.now().t;
   PilotCommand command;
-  command.reference = Reference(vehicle.t);
+  command.reference = Reference(t);
   if (!mission_.motors_armed) return command;
+  command.law = own.Status(t) == estimation::OwnStatus::kImuStale
+                    ? Blind(command.reference)
+                    : Tracked(own.now(), command.reference);
+  MixerOutput& mix = command.mix;
+  mix = mixer_.Mix(command.law.wrench);
+  if (lead_) mix.thrusts = lead_->Command(mix.thrusts, t);
+  if (observer_) observer_->Command(mix.thrusts);
+  return command;
+}
+
+// Nothing is known of the attitude, so no moment can be right. An autopilot that has one of its own levels out.
+ControlOutput Pilot::Blind(const planning::FlatState& reference) const {
+  ControlOutput level;
+  level.wrench.thrust = model_.HoverThrust() / disturbance().thrust_gain;
+  level.R_WB_desired =
+      Eigen::AngleAxisd(reference.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return level;
+}
+
+ControlOutput Pilot::Tracked(const estimation::VehicleState& vehicle,
+                             const planning::FlatState& committed) {
   if (observer_) observer_->Update(vehicle, foot_force_ > kTouchForce);
   estimation::VehicleState told = vehicle;
-  planning::FlatState reference = command.reference;
+  planning::FlatState reference = committed;
   Disturbance compensated = disturbance();
   const bool landing = Landing();
   // In a gust at contact the lean matters more than centimetres. But without an estimate of the wind the
@@ -297,12 +319,7 @@ PilotCommand Pilot::Control(const estimation::VehicleState& vehicle) {
                        &reference);
   }
   settling_.Apply(&told, &reference, &compensated);
-  command.law = parts_.controller->Update(told, reference, compensated, TiltMost(vehicle));
-  MixerOutput& mix = command.mix;
-  mix = mixer_.Mix(command.law.wrench);
-  if (lead_) mix.thrusts = lead_->Command(mix.thrusts, vehicle.t);
-  if (observer_) observer_->Command(mix.thrusts);
-  return command;
+  return parts_.controller->Update(told, reference, compensated, TiltMost(vehicle));
 }
 
 // Leaning farther so close to the deck, the hull's rim would touch it before the feet do. But who is blown off

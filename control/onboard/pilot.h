@@ -57,7 +57,7 @@ class Pilot {
                                        const planning::OccupancyMap& map);
 
   /// What is commanded in this control step. Once per step: the disturbance is estimated from it.
-  PilotCommand Control(const estimation::VehicleState& vehicle);
+  PilotCommand Control(const OwnState& own);
 
   /// What the tracking law compensates; nothing where it is not estimated.
   Disturbance disturbance() const;
@@ -76,6 +76,9 @@ class Pilot {
   bool plans_often() const;
 
  private:
+  ControlOutput Blind(const planning::FlatState& reference) const;
+  ControlOutput Tracked(const estimation::VehicleState& vehicle,
+                        const planning::FlatState& committed);
   bool arriving() const;
   double TiltMost(const estimation::VehicleState& vehicle) const;
   double HeadingAhead(const estimation::VehicleState& vehicle,

@@ -169,6 +169,40 @@ TEST(Onboard, AForceFromTheFutureIsRefused) {
   EXPECT_EQ(onboard.Take(estimation::FootForce{0.1, 0.0}), Taken::kUsed);
 }
 
+// A sensor that dies under load would press for ever.
+TEST(Onboard, AForceIsForgotten) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.1);
+  onboard.Take(estimation::FootForce{0.1, 9.0});
+  const auto pressed = [&](double t) {
+    onboard.Take(At(t));
+    onboard.Step(t);
+    return onboard.status().foot_force;
+  };
+  EXPECT_EQ(pressed(0.15), 9.0);
+  EXPECT_EQ(pressed(0.25), 0.0);
+}
+
+TEST(Onboard, AStepsTimeIsATime) {
+  Onboard onboard = Hovering(0.1);
+  const double good = onboard.Step(0.1).t;
+  for (const double wrong : {kNan, -1.0, 1e300}) EXPECT_EQ(onboard.Step(wrong).t, good);
+  EXPECT_EQ(onboard.Step(0.102).t, 0.102);
+}
+
+TEST(Onboard, WithoutAnAttitudeNoMomentIsAsked) {
+  Onboard onboard = Hovering(0.1);
+  estimation::VehicleState tilted = At(0.12);
+  tilted.q_WB = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
+  onboard.Take(tilted);
+  EXPECT_GT(onboard.Step(0.12).wrench.moment_B.norm(), 0.1);
+  const Setpoint& blind = onboard.Step(0.25);
+  EXPECT_EQ(blind.wrench.moment_B.norm(), 0.0);
+  EXPECT_NEAR(blind.wrench.thrust, ToyQuadrotor().HoverThrust(), 0.1);
+  EXPECT_EQ(blind.R_WB.col(2).z(), 1.0);
+  EXPECT_TRUE(blind.armed);
+}
+
 // A corrupt copy does not stand for the good one.
 TEST(Onboard, WhatWasInvalidMayComeAgain) {
   Onboard onboard = Hovering(1.0);
@@ -208,6 +242,15 @@ TEST(Onboard, DoublesOfTheOwnSensorsChangeNothing) {
   EXPECT_EQ(once.own().q_WB.coeffs(), twice.own().q_WB.coeffs());
   EXPECT_EQ(once.taken()[static_cast<int>(Taken::kDoubled)], 0);
   EXPECT_EQ(twice.taken()[static_cast<int>(Taken::kDoubled)], 1501 + 31 + 76 + 76);
+}
+
+// A fast vehicle may land on a fast pad.
+TEST(Onboard, ThePadsSpeedFollowsFromTheEnvelope) {
+  Envelope fast;
+  fast.speed = 12.0;
+  EXPECT_EQ(LandingOptions(ToyQuadrotor(), ToyWorld::kDeck, fast).pad.speed_prior,
+            fast.PadSpeedPrior());
+  EXPECT_LT(Options().pad.speed_prior, fast.PadSpeedPrior());
 }
 
 TEST(Onboard, AFlightBeginsOnceAndWithThrusts) {

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "touchdown/estimation/base/measurements.h"
+#include "touchdown/estimation/base/own_measurements.h"
 #include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 
@@ -30,7 +31,8 @@ struct ToyWorld {
   estimation::VehicleModel model = ToyQuadrotor();
   estimation::VehicleState vehicle;
   Eigen::Vector4d thrusts = Eigen::Vector4d::Constant(0.25 * model.HoverThrust());
-  double foot_force = 0.0;  ///< [N]
+  double foot_force = 0.0;                              ///< [N]
+  Eigen::Vector3d f_B{0.0, 0.0, estimation::kGravity};  ///< specific force [m/s^2]
   Eigen::Vector3d pad_start = {6.0, 1.0, kDeck}, pad_velocity = {0.5, 0.0, 0.0};
   Eigen::AlignedBox3d wall{Eigen::Vector3d(4.0, -1.0, 0.0), Eigen::Vector3d(4.4, 1.5, 3.0)};
 
@@ -69,6 +71,8 @@ struct ToyWorld {
     const Eigen::Vector3d w = vehicle.w_WB_B;
     vehicle.w_WB_B += kStep * (moment_B - w.cross(I.cwiseProduct(w))).cwiseQuotient(I);
     vehicle.v_WB += kStep / model.mass_kg * force_W;
+    f_B = R_WB.transpose() *
+          (force_W / model.mass_kg + Eigen::Vector3d(0.0, 0.0, estimation::kGravity));
     vehicle.p_WB += kStep * vehicle.v_WB;
     const Eigen::Quaterniond rate(0.0, vehicle.w_WB_B.x(), vehicle.w_WB_B.y(), vehicle.w_WB_B.z());
     vehicle.q_WB.coeffs() += 0.5 * kStep * (vehicle.q_WB * rate).coeffs();
@@ -98,6 +102,14 @@ struct ToyWorld {
       }
     }
     return image;
+  }
+
+  /// Over the last step, without noise.
+  estimation::ImuSample Imu() const { return {vehicle.t, f_B, vehicle.w_WB_B}; }
+  estimation::OwnPositionFix Gps() const { return {vehicle.t, vehicle.p_WB, 0.02, 0.04}; }
+  estimation::HeightSample Height() const { return {vehicle.t, vehicle.p_WB.z(), 0.1}; }
+  estimation::HeadingSample Compass() const {
+    return {vehicle.t, estimation::Yaw(vehicle.q_WB), 0.03};
   }
 
   /// The tags are seen from up to 5 m above, within 40 degrees.

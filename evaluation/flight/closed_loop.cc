@@ -86,6 +86,7 @@ class Trial {
   TrialResult Run() {
     try {
       while (!judge_.outcome()) Step();
+      CheckTaken();
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
                                            world_.time(), result_.seed, error.what()));
@@ -312,6 +313,12 @@ class Trial {
 
   void Note(double t, const char* kind, const std::string& text) {
     if (record_ != nullptr) record_->events.push_back({t, kind, text});
+  }
+
+  // The simulated sensors are right by construction: what the vehicle takes for no measurement is ours to mend.
+  void CheckTaken() const {
+    const int invalid = onboard_.taken()[static_cast<std::size_t>(control::Taken::kInvalid)];
+    if (invalid > 0) throw std::logic_error(fmt::format("{} measurements were invalid", invalid));
   }
 
   void Finish() {

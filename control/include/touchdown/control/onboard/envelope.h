@@ -48,9 +48,10 @@ void SetVehicle(const estimation::VehicleModel& model, const Envelope& envelope,
 void SetLanding(planning::ReplannerOptions* options);
 
 /// An Onboard's options and parts for a vehicle that lands on a pad of this height by a Replanner, with the own state
-/// given: what the program uses by default, without its latency. To change one thing, change it and construct.
-/// @throws std::invalid_argument as Replanner does.
-OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height);
+/// given: what the program uses by default, without its latency. Change options before LandingParts, which takes from
+/// them what planner and law need to know. @throws std::invalid_argument as Replanner does.
+OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height,
+                              const Envelope& envelope = {});
 OnboardParts LandingParts(const OnboardOptions& options, const Envelope& envelope = {});
 
 }  // namespace touchdown::control

@@ -37,6 +37,7 @@ struct OnboardStatus {
   MissionOutputs mission;     ///< mode, and of the last step of the mission why it changed
   bool mission_step = false;  ///< ... which was in the last Step
   estimation::OwnStatus own = estimation::OwnStatus::kAligning;
+  double foot_force = 0.0;  ///< as it counts: forgotten where no newer one comes [N]
   bool pad_known = false;   ///< it has been measured; a goal always is
   bool pad_sure = false;    ///< ... well enough to land by
   bool plan_valid = false;  ///< what is flown is no older than the mission allows
