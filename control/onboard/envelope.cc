@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "estimation/base/degrees.h"
 #include "touchdown/planning/certify/margins.h"
 #include "touchdown/planning/certify/swept_hull.h"
 #include "touchdown/solvers/backend_registry.h"
@@ -12,7 +13,6 @@
 namespace touchdown::control {
 namespace {
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kTiltReserve_deg = 10.0;  // beyond plans: stops in wind count on it ...
 // ... and beyond that, for gusts alone. In gusts of 15 m/s a vehicle 20 % too light is up to 0.9 m off
 // its reference without it and 0.2 m with it; more brings no more.
@@ -24,7 +24,7 @@ constexpr double kHurry = 100.0;           // ... and of the arrival time in it
 constexpr double kSpeedPrior = 0.5;        // of the pad, share of the speed limit
 
 double Beyond(const Envelope& envelope, double reserve_deg) {
-  return std::min(kSteepest, (envelope.tilt_deg + reserve_deg) * kRadPerDeg);
+  return std::min(kSteepest, (envelope.tilt_deg + reserve_deg) * estimation::kRadPerDeg);
 }
 
 // Where no weight is set.
@@ -43,7 +43,8 @@ void SetWeight(const char* term, double weight, planning::ReplannerOptions* opti
 }  // namespace
 
 planning::Limits Envelope::limits() const {
-  return {speed, std::min(acceleration, estimation::kGravity * std::tan(tilt_deg * kRadPerDeg))};
+  return {speed, std::min(acceleration,
+                          estimation::kGravity * std::tan(tilt_deg * estimation::kRadPerDeg))};
 }
 
 double Envelope::StopTilt() const { return Beyond(*this, kTiltReserve_deg); }
@@ -69,7 +70,7 @@ void SetVehicle(const estimation::VehicleModel& model, const Envelope& envelope,
                 double period, double late, planning::ReplannerOptions* options) {
   options->problem.vehicle.thrust_max = model.MaxThrust() / model.mass_kg;
   options->problem.vehicle.thrust_min = 4.0 * model.rotor_thrust_min / model.mass_kg;
-  options->problem.vehicle.tilt_max = envelope.tilt_deg * kRadPerDeg;
+  options->problem.vehicle.tilt_max = envelope.tilt_deg * estimation::kRadPerDeg;
   options->problem.vehicle.stop_tilt_max = envelope.StopTilt();
   options->limits = envelope.limits();
   options->ceiling_height = envelope.ceiling;

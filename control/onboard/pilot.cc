@@ -14,23 +14,25 @@
 
 #include "control/tracking/lean.h"
 #include "control/tracking/tracking_law.h"
+#include "estimation/base/degrees.h"
 #include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::control {
 namespace {
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-constexpr double kLookAhead = 0.8;              // the heading is where the vehicle will be then [s]
-constexpr double kLookDistance = 0.3;           // nearer than this the way ahead says nothing [m]
-constexpr double kInSight = 30.0 * kRadPerDeg;  // what is to be seen is no farther off the heading
+constexpr double kLookAhead = 0.8;     // the heading is where the vehicle will be then [s]
+constexpr double kLookDistance = 0.3;  // nearer than this the way ahead says nothing [m]
+constexpr double kInSight =
+    30.0 * estimation::kRadPerDeg;        // what is to be seen is no farther off the heading
 constexpr double kNearest = 0.1;          // of what is to be seen, from the vehicle's axis [m]
 constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within this [rad]
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
-constexpr double kFarAside = 70.0 * kRadPerDeg;  // of the way: half a foot's sector and more
-constexpr double kUpright = 0.07;                // ... until it is less than that
-constexpr double kFlareMargin = 5.0 * kRadPerDeg;
+constexpr double kFarAside =
+    70.0 * estimation::kRadPerDeg;  // of the way: half a foot's sector and more
+constexpr double kUpright = 0.07;   // ... until it is less than that
+constexpr double kFlareMargin = 5.0 * estimation::kRadPerDeg;
 constexpr double kBlownOff = 0.15;        // of the reference [m]: far below the 0.5 m that lose it
 constexpr double kFlareBegins = 0.2;      // from there on the position loop is softened ...
 constexpr double kFlareSoftness = 0.8;    // ... to so many times its frequency at contact_height

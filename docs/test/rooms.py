@@ -26,9 +26,21 @@ class Source:
         self.public = inner[:2] == ["include", "touchdown"]
         inner = inner[3:] if self.public else inner
         self.room = "/".join([folder, *inner[:-1]])
-        found = [name for _, name in INCLUDE.findall(path.read_text(encoding="utf-8"))]
+        content = path.read_text(encoding="utf-8")
+        found = [name for _, name in INCLUDE.findall(content)]
         self.includes = [name for name in found if name.removeprefix("touchdown/").split("/")[0] in FOLDERS]
         self.others = [name for name in found if name not in self.includes]
+        self.hidden = hidden_names(content) if path.suffix == ".cc" else set()
+
+
+def hidden_names(content):
+    """What the anonymous namespaces of a source declare: constants, types, functions with their arguments."""
+    names = set()
+    for body in re.findall(r"^namespace \{\n(.*?)^\}  // namespace$", content, re.S | re.M):
+        names |= set(re.findall(r"^constexpr [\w:<> ]*\b(k\w+)", body, re.M))
+        names |= set(re.findall(r"^(?:struct|class|enum class) (\w+)", body, re.M))
+        names |= {" ".join(head.split()) for head in re.findall(r"^\w[\w:<>&* \[\]]*?\b(\w+\([^;{}()]*\)) \{$", body, re.M)}
+    return names
 
 
 def sources(root=ROOT):
@@ -92,6 +104,13 @@ def wrong_in(files, rows):
         if count > MOST_FILES:
             said.append(f"{room} holds {count} files; {MOST_FILES} are the most")
     said += [f"docs/architecture.md has a line for {room}, which is no room" for room in order if room not in graph(files)]
+    for room in order:
+        owner = {}
+        for file in (file for file in files if file.room == room):
+            for name in sorted(file.hidden):
+                if name in owner:
+                    said.append(f"{name} is in an anonymous namespace of {owner[name]} and of {file.path}: a room is compiled together")
+                owner[name] = file.path
     for file in files:
         if not file.public:
             continue

@@ -36,6 +36,19 @@ Eigen::Vector3d LogRotation(const Eigen::Quaterniond& q) {
   return sign * scale * q.vec();
 }
 
+Eigen::Quaterniond ShortestTurn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  constexpr double kOpposite = 1e-12;  // of one plus the cosine
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+  const double cosine = b.dot(a);
+  if (1.0 + cosine < kOpposite) {
+    const Eigen::Vector3d axis = a.unitOrthogonal();
+    return {0.0, axis.x(), axis.y(), axis.z()};
+  }
+  const double s = std::sqrt((1.0 + cosine) * 2.0);
+  const Eigen::Vector3d axis = a.cross(b) * (1.0 / s);
+  return {0.5 * s, axis.x(), axis.y(), axis.z()};
+}
+
 Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& phi) {
   const double angle2 = phi.squaredNorm();
   double first = 0.5 - angle2 / 24.0;

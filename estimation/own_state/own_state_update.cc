@@ -137,7 +137,7 @@ OwnUpdate OwnStateFilter::Align(const ImuSample& sample) {
   OwnBelief belief;
   OwnState& state = belief.state;
   state.t = sample.t;
-  const auto level = Eigen::Quaterniond::FromTwoVectors(f_B, Eigen::Vector3d::UnitZ());
+  const auto level = ShortestTurn(f_B, Eigen::Vector3d::UnitZ());
   const double turn = hover.heading->value.x() - Yaw(level);
   state.q_WB = (ExpRotation(turn * Eigen::Vector3d::UnitZ()) * level).normalized();
   state.p_WB = hover.position->value;

@@ -25,7 +25,7 @@ namespace touchdown::estimation {
 namespace {
 
 constexpr int kMaxIterations = 60;
-constexpr double kStepEnd = 1e-9;          // [m] and [rad]
+constexpr double kShortStep = 1e-9;        // [m] and [rad]
 constexpr double kSamePose = 1e-3;         // two solutions are one if nearer [m], [rad]
 constexpr double kMinInformation = 1e-12;  // least over largest eigenvalue of J^T J
 
@@ -96,7 +96,7 @@ Solution Minimise(const Problem& problem, const PoseCP& start) {
     matrix.diagonal() *= 1.0 + damping;
     const Vector6d step = matrix.ldlt().solve(-solution.sums.gradient);
     if (!step.allFinite()) return solution;
-    if (step.norm() < kStepEnd) {
+    if (step.norm() < kShortStep) {
       solution.converged = true;
       return solution;
     }

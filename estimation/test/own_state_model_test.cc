@@ -57,6 +57,21 @@ TEST(RotationVector, ExpAndLogAreInverse) {
   }
 }
 
+TEST(RotationVector, TheShortestTurnBringsOneDirectionIntoTheOther) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d from(normal(random), normal(random), normal(random));
+    const Eigen::Vector3d to(normal(random), normal(random), normal(random));
+    const Eigen::Quaterniond turn = ShortestTurn(from, to);
+    EXPECT_NEAR(turn.norm(), 1.0, 1e-12);
+    EXPECT_LT((turn * from.normalized() - to.normalized()).norm(), 1e-12);
+    EXPECT_NEAR(LogRotation(turn).dot(from), 0.0, 1e-9);
+    EXPECT_LT((ShortestTurn(from, -3.0 * from) * from + from).norm(), 1e-5 * from.norm());
+    EXPECT_LT((ShortestTurn(from, 2.0 * from) * from - from).norm(), 1e-12 * from.norm());
+  }
+}
+
 TEST(RotationVector, RightJacobianAgreesWithDifferences) {
   for (double angle : {0.0, 5e-4, 0.01, 1.0, 3.0}) {
     const Eigen::Vector3d phi = angle * Eigen::Vector3d(2.0, 1.0, -2.0) / 3.0;

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/base/words.h"
 
-#include <algorithm>
+#include <boost/algorithm/string/split.hpp>
 
 namespace touchdown::evaluation {
 
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  boost::split(parts, text, [separator](char c) { return c == separator; });
   return parts;
 }
 

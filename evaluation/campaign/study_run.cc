@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"

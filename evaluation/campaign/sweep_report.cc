@@ -9,8 +9,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
-#include "evaluation/base/degrees.h"
+#include "estimation/base/degrees.h"
 #include "evaluation/base/statistics.h"
 #include "evaluation/campaign/sweep_cells.h"
 #include "evaluation/record/trial_json.h"
@@ -62,8 +63,8 @@ const Figure kFigures[] = {
      }},
     {"tilt_over_equilibrium_deg", "tilt over equilibrium", "deg",
      [](const TrialResult& r) {
-       return AtTouchdown(r,
-                          [](const Touchdown& d) { return d.tilt_over_equilibrium * kDegPerRad; });
+       return AtTouchdown(
+           r, [](const Touchdown& d) { return d.tilt_over_equilibrium * estimation::kDegPerRad; });
      }},
     {"min_clearance_m", "least true clearance", "m",
      [](const TrialResult& r) { return r.min_clearance_m; }},

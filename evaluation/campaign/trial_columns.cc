@@ -284,10 +284,10 @@ std::string TimingColumns() {
 
 namespace {
 
-using Json = nlohmann::json;
+using Cbor = nlohmann::json;
 
-Json Packed(const std::vector<SqlValue>& values) {
-  Json list = Json::array();
+Cbor Packed(const std::vector<SqlValue>& values) {
+  Cbor list = Cbor::array();
   for (const SqlValue& value : values) {
     std::visit(
         [&](const auto& v) {
@@ -302,9 +302,9 @@ Json Packed(const std::vector<SqlValue>& values) {
   return list;
 }
 
-std::vector<SqlValue> Unpacked(const Json& list) {
+std::vector<SqlValue> Unpacked(const Cbor& list) {
   std::vector<SqlValue> values;
-  for (const Json& value : list) {
+  for (const Cbor& value : list) {
     if (value.is_null()) {
       values.emplace_back();
     } else if (value.is_string()) {
@@ -323,13 +323,13 @@ std::vector<SqlValue> Unpacked(const Json& list) {
 std::string PackResult(const TrialResult& result) {
   const TrialValues values = ValuesOf(result);
   const std::vector<std::uint8_t> bytes =
-      Json::to_cbor(Json::array({Packed(values.trial), Packed(values.timing),
+      Cbor::to_cbor(Cbor::array({Packed(values.trial), Packed(values.timing),
                                  result.timing.replan_wall_ms, result.timing.replan_cpu_ms}));
   return {bytes.begin(), bytes.end()};
 }
 
 TrialResult UnpackResult(const std::string& bytes) {
-  const Json json = Json::from_cbor(bytes);
+  const Cbor json = Cbor::from_cbor(bytes);
   TrialResult result = ResultOf({Unpacked(json.at(0)), Unpacked(json.at(1))});
   json.at(2).get_to(result.timing.replan_wall_ms);
   json.at(3).get_to(result.timing.replan_cpu_ms);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/build_info.h"
 #include "evaluation/compare/compare_summary.h"

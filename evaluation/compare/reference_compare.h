@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "touchdown/solvers/backend/solver_result.h"
 #include "touchdown/solvers/backend_registry.h"

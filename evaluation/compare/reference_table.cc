@@ -9,9 +9,9 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr ResultFormat kFormat{"touchdown problem set", 2};
+constexpr ResultFormat kSetFormat{"touchdown problem set", 2};
 
-constexpr char kSchema[] = R"sql(
+constexpr char kSetSchema[] = R"sql(
 CREATE TABLE problem(problem TEXT PRIMARY KEY, optimum REAL);
 CREATE TABLE other_optimum(problem TEXT, cost REAL);
 CREATE TABLE solve(problem TEXT, backend TEXT, start INTEGER, verdict TEXT, best INTEGER, status TEXT, cost REAL,
@@ -59,7 +59,7 @@ void WriteCells(SqliteDb& db, const ReferenceResult& result) {
 
 void WriteReferenceTable(const std::string& path, const ReferenceOptions& options,
                          const ReferenceResult& result, const MachineState& machine) {
-  WriteResultFile(path, kFormat, kSchema, Facts(options, result, machine), [&](SqliteDb& db) {
+  WriteResultFile(path, kSetFormat, kSetSchema, Facts(options, result, machine), [&](SqliteDb& db) {
     SqliteStatement problem = db.Prepare("INSERT INTO problem VALUES(?, ?)");
     SqliteStatement other = db.Prepare("INSERT INTO other_optimum VALUES(?, ?)");
     for (std::size_t i = 0; i < result.problems.size(); ++i) {

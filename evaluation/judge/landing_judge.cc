@@ -4,14 +4,13 @@
 // upright and disarmed, makes a landing. Everything else is exactly one failure class; an obstacle
 // that is touched before the landing is over is a collision, whatever the feet stand on.
 #include "evaluation/judge/landing_judge.h"
+#include "estimation/base/degrees.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "evaluation/base/degrees.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -140,9 +139,9 @@ std::string Broken(const LandingRule& rule, const Touchdown& d) {
   };
   compare(d.relative_velocity.head<2>().norm(), rule.horizontal_speed, 1.0, "m/s horizontally");
   compare(std::abs(d.relative_velocity.z()), rule.vertical_speed, 1.0, "m/s vertically");
-  compare(d.tilt_over_equilibrium, rule.tilt_over_equilibrium, kDegPerRad,
+  compare(d.tilt_over_equilibrium, rule.tilt_over_equilibrium, estimation::kDegPerRad,
           "deg from the equilibrium's tilt");
-  compare(d.tilt, rule.tilt, kDegPerRad, "deg of tilt");
+  compare(d.tilt, rule.tilt, estimation::kDegPerRad, "deg of tilt");
   return fmt::format("{}", fmt::join(words, "; "));
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/build_info.h"
 #include "evaluation/compare/compare_report.h"

@@ -3,6 +3,7 @@
 #include "evaluation/profile/profile_report.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/build_info.h"
 #include "evaluation/record/trial_json.h"

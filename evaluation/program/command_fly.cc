@@ -6,9 +6,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/degrees.h"
 #include "evaluation/base/map_file.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/report_program.h"
@@ -44,8 +45,8 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
     text += fmt::format("  touchdown error        {:.3f} m\n", t.error_m);
     text += fmt::format("  relative velocity      [{:.3f}, {:.3f}, {:.3f}] m/s\n",
                         t.relative_velocity.x(), t.relative_velocity.y(), t.relative_velocity.z());
-    text +=
-        fmt::format("  tilt over equilibrium  {:.1f} deg\n", t.tilt_over_equilibrium * kDegPerRad);
+    text += fmt::format("  tilt over equilibrium  {:.1f} deg\n",
+                        t.tilt_over_equilibrium * estimation::kDegPerRad);
     if (const auto last = LastErrors(scenario, r)) {
       text += fmt::format("  mean |error|, last 5 s {:.3f} m in x, {:.3f} m in y\n", last->x(),
                           last->y());
@@ -74,9 +75,9 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   }
   if (r.own_state) {
     const OwnStateQuality& own = *r.own_state;
-    text +=
-        fmt::format("  own state, RMS error   {:.3f} m, {:.3f} m/s, {:.2f} deg\n",
-                    own.rmse_position_m, own.rmse_velocity_mps, own.rmse_attitude_rad * kDegPerRad);
+    text += fmt::format("  own state, RMS error   {:.3f} m, {:.3f} m/s, {:.2f} deg\n",
+                        own.rmse_position_m, own.rmse_velocity_mps,
+                        own.rmse_attitude_rad * estimation::kDegPerRad);
   }
   if (r.safety) {
     const SafetyFigures& safety = *r.safety;
@@ -118,7 +119,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   return text;
 }
 
-void CheckOutputs(const FlyArguments& arguments) {
+void CheckFlightOutputs(const FlyArguments& arguments) {
   if (!arguments.record.empty() && arguments.record == arguments.plot) {
     throw BadInput(fmt::format("--record and --plot are the same file, {}.", arguments.record));
   }
@@ -129,7 +130,7 @@ void CheckOutputs(const FlyArguments& arguments) {
 
 // The result is printed first: a file or picture that fails does not take it along.
 int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
-  CheckOutputs(arguments);
+  CheckFlightOutputs(arguments);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
   std::optional<planning::PersistentMap> map;

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
@@ -37,7 +38,7 @@ struct ProfileArguments {
   bool allow_debug = false;
 };
 
-void CheckOutputs(const ProfileArguments& arguments) {
+void CheckProfileOutputs(const ProfileArguments& arguments) {
   if (!arguments.db.empty() && arguments.db == arguments.trace) {
     throw BadInput(fmt::format("--db and --trace are the same file, {}.", arguments.db));
   }
@@ -65,7 +66,7 @@ Profile Run(const ProfileArguments& arguments, const Registries& registries,
     if (all > 1) spdlog::info("{} of {} runs", done, all);
   };
   const auto begin = [&] {
-    CheckOutputs(arguments);
+    CheckProfileOutputs(arguments);
     if (arguments.pin) PinToCpu(*arguments.pin);
     machine->load_before = LoadAverage();
   };

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/output_path.h"
@@ -51,7 +52,7 @@ void CheckPicture(const std::string& picture, const std::vector<Variation>& vari
   }
 }
 
-void CheckOutputs(const SweepArguments& arguments) {
+void CheckSweepOutputs(const SweepArguments& arguments) {
   if (!arguments.db.empty() && arguments.db == arguments.picture) {
     throw BadInput(fmt::format("--db and --picture are the same file, {}.", arguments.db));
   }
@@ -82,7 +83,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
         fmt::format("--shard {}: it has no trials, of {}.", arguments.shard, options.trials));
   }
   const Campaign campaign = SweepCampaign(options, registries);
-  CheckOutputs(arguments);
+  CheckSweepOutputs(arguments);
   const CampaignResult result = RunCampaign(campaign, flight, registries, CampaignProgress());
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, arguments.db);

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "evaluation/scenario/scenario_schema.h"
 
 namespace touchdown::evaluation {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/build_info.h"

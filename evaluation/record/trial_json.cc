@@ -2,10 +2,12 @@
 // The machine-readable result of one trial. Fields that do not apply are null, never left out.
 #include "evaluation/record/trial_json.h"
 
-#include "evaluation/base/degrees.h"
+#include "estimation/base/degrees.h"
 #include "evaluation/base/statistics.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
+
+#include <nlohmann/json.hpp>
 
 namespace touchdown::evaluation {
 namespace {
@@ -24,8 +26,8 @@ Json TouchdownJson(const TrialResult& result) {
   json["error_m"] = t.error_m;
   json["relative_velocity_mps"] = {t.relative_velocity.x(), t.relative_velocity.y(),
                                    t.relative_velocity.z()};
-  json["tilt_deg"] = t.tilt * kDegPerRad;
-  json["tilt_over_equilibrium_deg"] = t.tilt_over_equilibrium * kDegPerRad;
+  json["tilt_deg"] = t.tilt * estimation::kDegPerRad;
+  json["tilt_over_equilibrium_deg"] = t.tilt_over_equilibrium * estimation::kDegPerRad;
   return json;
 }
 
@@ -44,8 +46,8 @@ Json OwnStateJson(const std::optional<OwnStateQuality>& quality) {
           {"max_position_m", quality->max_position_m},
           {"rmse_velocity_mps", quality->rmse_velocity_mps},
           {"max_velocity_mps", quality->max_velocity_mps},
-          {"rmse_attitude_deg", quality->rmse_attitude_rad * kDegPerRad},
-          {"max_attitude_deg", quality->max_attitude_rad * kDegPerRad}};
+          {"rmse_attitude_deg", quality->rmse_attitude_rad * estimation::kDegPerRad},
+          {"max_attitude_deg", quality->max_attitude_rad * estimation::kDegPerRad}};
 }
 
 Json SafetyJson(const std::optional<SafetyFigures>& safety) {

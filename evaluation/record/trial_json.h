@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "evaluation/judge/trial_result.h"
 #include "touchdown/evaluation/scenario/scenario.h"

@@ -8,7 +8,7 @@ namespace {
 
 using Options = planning::EgoPlannerOptions;
 
-const std::vector<OptionKey<Options>>& Keys() {
+const std::vector<OptionKey<Options>>& EgoKeys() {
   static const std::vector<OptionKey<Options>> keys = {
       {"ego.goal_rate",
        [](Options& o) -> double& { return o.goal_rate; },
@@ -48,10 +48,10 @@ PlannerEntry EgoEntry(const char* name, const char* summary, bool goal_velocity)
   entry.summary = summary;
   entry.rate = planning::EgoPlanner::kRate;
   entry.solver = "lbfgs";
-  entry.parameters = ParametersOf(Keys());
+  entry.parameters = ParametersOf(EgoKeys());
   entry.make = [goal_velocity](const PlannerSetup& setup) {
     Options options;
-    Set(setup, Keys(), &options);
+    Set(setup, EgoKeys(), &options);
     options.plan.max_speed = setup.limits.speed;
     options.plan.max_acceleration = setup.limits.acceleration;
     options.goal_velocity = goal_velocity;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/scenario/waypoint_file.h"
 #include "sim/pad/pad_motion.h"
 #include "touchdown/evaluation/scenario/scenario.h"
@@ -15,20 +16,18 @@ namespace {
 
 using Kind = sim::PadMotionConfig::Kind;
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-
 sim::PadMotionConfig ConfigOf(Kind kind, const PadMotionSetup& setup) {
   const Scenario::Pad& pad = setup.scenario.pad;
   sim::PadMotionConfig config;
   config.kind = kind;
   config.p_start << pad.start, pad.deck_height;
-  config.heading = pad.heading_deg * kRadPerDeg;
+  config.heading = pad.heading_deg * estimation::kRadPerDeg;
   config.speed = kind == Kind::kStatic ? 0.0 : pad.speed;
   // A straight_turn has its sense from the angle, a random drive draws it.
   const bool signed_rate = kind == Kind::kCircle || kind == Kind::kFigureEight;
   config.turn_rate = signed_rate ? pad.turn_rate : std::abs(pad.turn_rate);
   config.turn_start = pad.turn_start;
-  config.turn_angle = pad.turn_deg * kRadPerDeg;
+  config.turn_angle = pad.turn_deg * estimation::kRadPerDeg;
   config.go_time = pad.go_time;
   config.stop_time = pad.stop_time;
   config.acceleration = pad.acceleration;

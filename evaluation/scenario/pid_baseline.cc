@@ -8,7 +8,7 @@ namespace {
 
 using planning::PidGains;
 
-const std::vector<OptionKey<PidGains>>& Keys() {
+const std::vector<OptionKey<PidGains>>& PidKeys() {
   static const std::vector<OptionKey<PidGains>> keys = {
       {"pid.proportional",
        [](PidGains& g) -> double& { return g.proportional; },
@@ -50,10 +50,10 @@ PlannerEntry PidPlanner() {
   entry.summary = "PID law that tracks the pad, then descends; knows no obstacles";
   entry.avoids = false;
   entry.rate = planning::PidFollower::kRate;
-  entry.parameters = ParametersOf(Keys());
+  entry.parameters = ParametersOf(PidKeys());
   entry.make = [](const PlannerSetup& setup) {
     PidGains gains;
-    Set(setup, Keys(), &gains);
+    Set(setup, PidKeys(), &gains);
     return std::make_unique<planning::PidFollower>(gains, setup.limits);
   };
   return entry;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/base/build_info.h"
 #include "evaluation/scenario/waypoint_file.h"
 #include "sim/base/random_stream.h"
@@ -19,7 +20,6 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadPerDeg = kPi / 180.0;
 
 /// Whatever is known of the pad: it is not where the vehicle is to go.
 class ToGoal final : public estimation::PadPredictor {
@@ -111,12 +111,13 @@ TrialDraw DrawTrial(const Scenario& scenario, std::uint64_t seed) {
                       scenario.start.position_spread[axis] * start.Uniform(-1.0, 1.0);
   }
   const double yaw = start.Uniform(-kPi, kPi);
-  draw.yaw = scenario.start.yaw_random ? yaw : scenario.start.yaw_deg * kRadPerDeg;
+  draw.yaw = scenario.start.yaw_random ? yaw : scenario.start.yaw_deg * estimation::kRadPerDeg;
   sim::RandomStream pad(seed, "pad");
   draw.phase = scenario.pad.phase + scenario.pad.phase_spread * pad.Uniform(-1.0, 1.0);
   const double direction = sim::RandomStream(seed, "wind direction").Uniform(-kPi, kPi);
-  draw.wind_direction =
-      scenario.wind.direction_random ? direction : scenario.wind.direction_deg * kRadPerDeg;
+  draw.wind_direction = scenario.wind.direction_random
+                            ? direction
+                            : scenario.wind.direction_deg * estimation::kRadPerDeg;
   return draw;
 }
 

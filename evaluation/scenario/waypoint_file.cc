@@ -33,7 +33,7 @@ std::vector<std::string> Columns(const std::string& line) {
   return columns;
 }
 
-class Reader {
+class WaypointReader {
  public:
   std::vector<sim::PadWaypoint> Read(std::istream& file) {
     std::string text;
@@ -119,7 +119,9 @@ class Reader {
 
 }  // namespace
 
-std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text) { return Reader().Read(text); }
+std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text) {
+  return WaypointReader().Read(text);
+}
 
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path) {
   std::error_code unknown;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/flight/onboard_setup.h"

@@ -2,6 +2,7 @@
 #include "evaluation/compare/reference_compare.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace touchdown::evaluation {
 namespace {

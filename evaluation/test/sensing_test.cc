@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/flight/depth_eye.h"

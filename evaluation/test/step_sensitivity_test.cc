@@ -2,6 +2,7 @@
 #include "evaluation/studies/replan/step_sensitivity.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/studies/replan/scene_sets.h"
 #include "touchdown/planning/problem/term_registry.h"

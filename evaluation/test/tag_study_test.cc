@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/studies/tags/tag_fit.h"
 #include "evaluation/studies/tags/tag_picture.h"

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/sliding_mean.h"

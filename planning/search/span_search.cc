@@ -16,8 +16,8 @@ namespace touchdown::planning {
 namespace {
 
 // Room at first; a search that needs more makes more.
-constexpr std::size_t kUsualQueue = 1 << 18;
-constexpr std::size_t kUsualWay = 1024;
+constexpr std::size_t kUsualSpans = 1 << 18;
+constexpr std::size_t kUsualGates = 1024;
 
 struct Step {
   int x, y;
@@ -51,8 +51,8 @@ void RequireFactor(const char* name, double value) {
 }  // namespace
 
 SpanSearch::Queue::Queue() {
-  first_.reserve(kUsualQueue);
-  entries_.reserve(kUsualQueue);
+  first_.reserve(kUsualSpans);
+  entries_.reserve(kUsualSpans);
 }
 
 void SpanSearch::Queue::Clear() {
@@ -90,8 +90,8 @@ SpanSearch::SpanSearch(const WayCost& cost, double greed)
 
 void SpanSearch::Reserve(const OccupancyMap& map) {
   columns_.Reserve(map);
-  way_.reserve(kUsualWay);
-  gates_.reserve(kUsualWay);
+  way_.reserve(kUsualGates);
+  gates_.reserve(kUsualGates);
   const auto columns = static_cast<std::size_t>(map.size().head<2>().prod());
   if (nodes_.size() == columns * ColumnSpans::kMost) return;
   nodes_.assign(columns * ColumnSpans::kMost, Node());

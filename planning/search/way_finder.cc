@@ -14,20 +14,20 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kStep = 0.05;        // sampling of a curve [s]
+constexpr double kCurveStep = 0.05;   // sampling of a curve [s]
 constexpr double kLevelMargin = 0.3;  // of a way from floor and ceiling, out of the window [m]
 
 void CutToWindow(const UniformBspline& curve, const OccupancyMap& map, BlockedRun* run) {
   const auto in_window = [&](double t) { return map.InWindow(map.CellOf(curve.Position(t))); };
   if (!in_window(run->t_in)) return;
-  while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kStep);
+  while (!in_window(run->t_out)) run->t_out = std::max(run->t_in, run->t_out - kCurveStep);
 }
 
 void SampleBetweenLevels(const UniformBspline& curve, const BlockedRun& run, const FreeSpace& space,
                          GuidePath* path) {
   path->clear();
   const double time = run.t_out - run.t_in;
-  const int steps = std::max(1, static_cast<int>(std::ceil(time / kStep)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(time / kCurveStep)));
   for (int i = 0; i <= steps; ++i) {
     Eigen::Vector3d p = curve.Position(run.t_in + i * time / steps);
     p.z() =
@@ -106,7 +106,7 @@ void EndBeside(const TimedWay& way, const UniformBspline& curve, const FreeSpace
     const Eigen::Vector3d there = way.AtShare((t - curve.t0()) / curve.duration());
     return TraverseCells(curve.Position(t), there, space.map->resolution(), is_free);
   };
-  for (double t = run->t_out; t < curve.t_end(); t += kStep) {
+  for (double t = run->t_out; t < curve.t_end(); t += kCurveStep) {
     if (!sees_way(t)) run->t_out = std::min(t + more, curve.t_end());
   }
 }

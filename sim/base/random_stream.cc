@@ -68,4 +68,9 @@ double RandomStream::Normal(double sigma) {
   return sigma * x * scale;
 }
 
+Eigen::Vector3d RandomStream::Normal3(double sigma) {
+  const double x = Normal(sigma), y = Normal(sigma), z = Normal(sigma);
+  return {x, y, z};
+}
+
 }  // namespace touchdown::sim

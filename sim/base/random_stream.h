@@ -5,6 +5,8 @@
 #include <random>
 #include <string_view>
 
+#include <Eigen/Core>
+
 namespace touchdown::sim {
 
 /// A random generator of its own for each purpose ("world", "start", "pad", "gps", ...), seeded
@@ -23,6 +25,8 @@ class RandomStream {
   /// Normal with mean 0 and standard deviation `sigma` >= 0. A draw is used even when sigma is 0,
   /// so that a sensor made exact keeps its later draws where they were.
   double Normal(double sigma);
+  /// Three of them.
+  Eigen::Vector3d Normal3(double sigma);
 
  private:
   double UnitDraw();  // uniform in [0, 1)

@@ -14,8 +14,6 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Calls visit(centre, half_extents) for every column that stands.
 template <class Visit>
 void ForEachColumn(const VoxelColumns& columns, Visit&& visit) {

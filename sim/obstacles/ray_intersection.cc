@@ -13,8 +13,6 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 struct Interval {
   double enter = -kInfinity;
   double leave = kInfinity;

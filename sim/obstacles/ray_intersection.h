@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 
 namespace touchdown::sim {
+
+/// A ray that meets nothing.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Smallest s >= 0 at which origin + s * direction crosses the surface of a box centred at the
 /// origin with its sides along the axes; +infinity if it never does. From inside: where the ray

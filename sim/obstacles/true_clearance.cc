@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "estimation/base/argument_check.h"
+#include "estimation/base/rotation_vector.h"
 
 namespace touchdown::sim {
 namespace {
@@ -70,7 +71,7 @@ class ObjectMaker {
     for (int i = 0; i < Ring::kSides; ++i) {
       const Eigen::Vector3d side = ring.Corner(i + 1) - ring.Corner(i);
       const Eigen::Matrix3d turn =
-          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), side).toRotationMatrix();
+          estimation::ShortestTurn(Eigen::Vector3d::UnitZ(), side).toRotationMatrix();
       Add(std::make_shared<fcl::Capsuled>(ring.tube_radius, side.norm()), turn,
           ring.Corner(i) + 0.5 * side);
     }

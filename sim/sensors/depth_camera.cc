@@ -15,15 +15,10 @@
 #include <string>
 
 #include "estimation/base/argument_check.h"
+#include "estimation/base/degrees.h"
 #include "sim/obstacles/ray_intersection.h"
 
 namespace touchdown::sim {
-namespace {
-
-double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
-
-}  // namespace
-
 void Validate(const DepthCameraConfig& config) {
   estimation::CheckWithin("depth_camera.width", config.width, 1, 4096);
   estimation::CheckWithin("depth_camera.height", config.height, 1, 4096);
@@ -38,15 +33,15 @@ estimation::CameraIntrinsics IntrinsicsOf(const DepthCameraConfig& config) {
   estimation::CameraIntrinsics intrinsics;
   intrinsics.width = config.width;
   intrinsics.height = config.height;
-  intrinsics.focal = 0.5 * config.width / std::tan(0.5 * Radians(config.fov_x_deg));
+  intrinsics.focal = 0.5 * config.width / std::tan(0.5 * estimation::Radians(config.fov_x_deg));
   intrinsics.cx = 0.5 * config.width;
   intrinsics.cy = 0.5 * config.height;
   return intrinsics;
 }
 
 Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config) {
-  const double c = std::cos(Radians(config.pitch_deg));
-  const double s = std::sin(Radians(config.pitch_deg));
+  const double c = std::cos(estimation::Radians(config.pitch_deg));
+  const double s = std::sin(estimation::Radians(config.pitch_deg));
   Eigen::Matrix3d R_BC;
   R_BC.col(0) = -Eigen::Vector3d::UnitY();
   R_BC.col(1) = Eigen::Vector3d(-s, 0.0, -c);
@@ -122,7 +117,6 @@ void DepthCamera::CollectNear(const Eigen::Vector3d& p_WC, const estimation::Pad
 
 void DepthCamera::Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
                           estimation::DepthFrame* frame) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Eigen::Matrix3d R_WB = vehicle.q_WB.toRotationMatrix();
   frame->t = vehicle.t;
   frame->intrinsics = intrinsics_;

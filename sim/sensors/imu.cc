@@ -15,13 +15,6 @@
 namespace touchdown::sim {
 namespace {
 
-Eigen::Vector3d Normal3(RandomStream& stream, double sigma) {
-  const double x = stream.Normal(sigma);
-  const double y = stream.Normal(sigma);
-  const double z = stream.Normal(sigma);
-  return {x, y, z};
-}
-
 const ImuConfig& Checked(const ImuConfig& config) {
   estimation::CheckWithin("imu.rate_hz", config.rate_hz, 10.0, 1000.0);
   estimation::CheckWithin("imu.accelerometer_noise", config.accelerometer_noise, 0.0, 1.0);
@@ -40,8 +33,8 @@ Imu::Imu(const ImuConfig& config, std::uint64_t seed)
       clock_(config.rate_hz),
       noise_(seed, "imu noise"),
       bias_(seed, "imu bias"),
-      accelerometer_bias_(Normal3(bias_, config.accelerometer_offset)),
-      gyro_bias_(Normal3(bias_, config.gyro_offset)) {}
+      accelerometer_bias_(bias_.Normal3(config.accelerometer_offset)),
+      gyro_bias_(bias_.Normal3(config.gyro_offset)) {}
 
 std::optional<estimation::ImuSample> Imu::Poll(const estimation::VehicleState& vehicle) {
   if (!clock_.Due(vehicle.t)) return std::nullopt;
@@ -60,11 +53,11 @@ std::optional<estimation::ImuSample> Imu::Poll(const estimation::VehicleState& v
   estimation::ImuSample sample;
   sample.t = vehicle.t;
   sample.f_B = q_middle.conjugate() * force_W + accelerometer_bias_;
-  sample.f_B += Normal3(noise_, config_.accelerometer_noise / root);
+  sample.f_B += noise_.Normal3(config_.accelerometer_noise / root);
   sample.w_WB_B = phi / dt + gyro_bias_;
-  sample.w_WB_B += Normal3(noise_, config_.gyro_noise / root);
-  accelerometer_bias_ += Normal3(bias_, config_.accelerometer_walk * root);
-  gyro_bias_ += Normal3(bias_, config_.gyro_walk * root);
+  sample.w_WB_B += noise_.Normal3(config_.gyro_noise / root);
+  accelerometer_bias_ += bias_.Normal3(config_.accelerometer_walk * root);
+  gyro_bias_ += bias_.Normal3(config_.gyro_walk * root);
   last_ = vehicle;
   return sample;
 }

@@ -13,17 +13,6 @@
 #include "estimation/base/argument_check.h"
 
 namespace touchdown::sim {
-namespace {
-
-Eigen::Vector3d Normal3(RandomStream& stream, double sigma) {
-  const double x = stream.Normal(sigma);
-  const double y = stream.Normal(sigma);
-  const double z = stream.Normal(sigma);
-  return {x, y, z};
-}
-
-}  // namespace
-
 OwnNoise::OwnNoise(const OwnSensorConfig& config, std::uint64_t seed, std::string_view name)
     : config_(config),
       white_(seed, name),
@@ -35,7 +24,7 @@ OwnNoise::OwnNoise(const OwnSensorConfig& config, std::uint64_t seed, std::strin
   estimation::CheckWithin(prefix + ".drift_sigma", config.drift_sigma, 0.0, 100.0);
   estimation::CheckWithin(prefix + ".drift_time", config.drift_time, 0.01, 1.0e6);
   estimation::CheckWithin(prefix + ".latency_ms", config.latency_ms, 0.0, 500.0);
-  drift_ = Normal3(drift_stream_, config.drift_sigma);
+  drift_ = drift_stream_.Normal3(config.drift_sigma);
   if (config.rate_hz > 0.0) {
     clock_.emplace(config.rate_hz);
     keep_ = std::exp(-1.0 / (config.rate_hz * config.drift_time));
@@ -45,9 +34,9 @@ OwnNoise::OwnNoise(const OwnSensorConfig& config, std::uint64_t seed, std::strin
 bool OwnNoise::Due(double t) { return clock_.has_value() && clock_->Due(t); }
 
 Eigen::Vector3d OwnNoise::Draw() {
-  Eigen::Vector3d error = drift_ + Normal3(white_, config_.sigma);
+  Eigen::Vector3d error = drift_ + white_.Normal3(config_.sigma);
   drift_ =
-      keep_ * drift_ + Normal3(drift_stream_, std::sqrt(1.0 - keep_ * keep_) * config_.drift_sigma);
+      keep_ * drift_ + drift_stream_.Normal3(std::sqrt(1.0 - keep_ * keep_) * config_.drift_sigma);
   return error;
 }
 

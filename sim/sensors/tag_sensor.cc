@@ -13,6 +13,7 @@
 #include <span>
 
 #include "estimation/base/argument_check.h"
+#include "estimation/base/degrees.h"
 #include "estimation/tags/pad_sheet.h"
 #include "sim/pad/pad_geometry.h"
 #include "sim/sensors/pad_camera.h"
@@ -24,8 +25,6 @@ namespace {
 using Corners = Eigen::Matrix<double, 2, 4>;
 
 constexpr double kMinSigma = 1e-6;  // that the solver is told of exact corners [pixel]
-
-double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 // The pad in C.
 struct Placement {
@@ -105,7 +104,7 @@ TagSensor::TagSensor(const TagSensorConfig& config, const ObstacleField& obstacl
   estimation::CheckWithin("length of tag_camera.p_BC", config.p_BC.norm(), 0.0, 10.0);
   intrinsics_.width = config.width;
   intrinsics_.height = config.height;
-  intrinsics_.focal = 0.5 * config.height / std::tan(0.5 * Radians(config.fov_y_deg));
+  intrinsics_.focal = 0.5 * config.height / std::tan(0.5 * estimation::Radians(config.fov_y_deg));
   intrinsics_.cx = 0.5 * config.width;
   intrinsics_.cy = 0.5 * config.height;
 }
@@ -116,7 +115,7 @@ std::array<bool, estimation::kPadTagCount> TagSensor::Visible(
   const Eigen::Vector3d p_WC = vehicle.p_WB + vehicle.q_WB * config_.p_BC;
   const Eigen::Matrix3d R_WC = vehicle.q_WB.toRotationMatrix() * DownwardCameraAxes();
   const double plate_edge = PlateEdge(config_.occlusion);
-  const double cos_limit = std::cos(Radians(config_.max_view_angle_deg));
+  const double cos_limit = std::cos(estimation::Radians(config_.max_view_angle_deg));
   const auto corner_seen = [&](const Eigen::Vector3d& corner_C) {
     return InImage(intrinsics_, corner_C) &&
            // Of the ray from camera (0) to corner (1), nothing may cross before 1.
@@ -179,7 +178,7 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   image.pose = estimation::SolvePadPose(
       std::span(tags.data(), count), intrinsics_, options,
       estimation::LevelPadNormal(believed.toRotationMatrix(), DownwardCameraAxes(),
-                                 Radians(config_.attitude_sigma_deg)));
+                                 estimation::Radians(config_.attitude_sigma_deg)));
   return image;
 }
 

@@ -27,13 +27,9 @@ using estimation::VehicleModel;
 constexpr double kTolerance = 1.0e-6;
 constexpr double kUnevenFeet = 1.0e-4;  // [m]
 
-[[noreturn]] void Refuse(const std::string& what) {
-  throw std::invalid_argument("vehicle file: " + what);
-}
-
 int Find(const mjModel& m, int type, const std::string& kind, const std::string& name) {
   const int id = mj_name2id(&m, type, name.c_str());
-  if (id < 0) Refuse("there is no " + kind + " named \"" + name + "\"");
+  if (id < 0) RefuseVehicle("there is no " + kind + " named \"" + name + "\"");
   return id;
 }
 
@@ -44,10 +40,10 @@ bool IsUpright(const mjtNum* quat) { return std::abs(std::abs(quat[0]) - 1.0) < 
 void ReadBody(const mjModel& m, int body, VehicleModel* model) {
   const int joint = m.body_jntadr[body];
   if (m.body_jntnum[body] != 1 || m.jnt_type[joint] != mjJNT_FREE || m.nbody != 2) {
-    Refuse("body \"vehicle\" must be the only body and have one joint, a free joint");
+    RefuseVehicle("body \"vehicle\" must be the only body and have one joint, a free joint");
   }
   if (mju_norm3(m.body_ipos + 3 * body) > kTolerance || !IsUpright(m.body_iquat + 4 * body)) {
-    Refuse(
+    RefuseVehicle(
         "the <inertial> of body \"vehicle\" must be at its origin, principal axes along its own");
   }
   model->mass_kg = m.body_mass[body];
@@ -59,7 +55,7 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
   const mjtNum* pos = m.geom_pos + 3 * hull;
   if (m.geom_type[hull] != mjGEOM_CYLINDER || std::hypot(pos[0], pos[1]) > kTolerance ||
       !IsUpright(m.geom_quat + 4 * hull)) {
-    Refuse("geom \"hull\" must be a cylinder about z_B");
+    RefuseVehicle("geom \"hull\" must be a cylinder about z_B");
   }
   model->hull_radius = m.geom_size[3 * hull];
   model->hull_top = pos[2] + m.geom_size[3 * hull + 1];
@@ -76,8 +72,8 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
     const double radius = m.geom_size[3 * geom];
     if (m.geom_type[geom] != mjGEOM_SPHERE ||
         std::hypot(p[0], p[1]) + radius > model->hull_radius) {
-      Refuse("geom \"" + std::string(GeomName(m, geom)) +
-             "\" must be a sphere within the hull's radius");
+      RefuseVehicle("geom \"" + std::string(GeomName(m, geom)) +
+                    "\" must be a sphere within the hull's radius");
     }
     model->foot_depth = std::max(model->foot_depth, radius - p[2]);
     shortest = std::min(shortest, radius - p[2]);
@@ -86,12 +82,14 @@ void ReadHull(const mjModel& m, VehicleModel* model) {
     model->foot_azimuths.push_back(std::atan2(p[1], p[0]));
     ++feet;
   }
-  if (feet < 3) Refuse("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");
+  if (feet < 3)
+    RefuseVehicle("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");
   if (model->foot_depth - shortest > kUnevenFeet) {
-    Refuse("the feet must reach down equally far, not " + std::to_string(shortest) + " to " +
-           std::to_string(model->foot_depth) + " m");
+    RefuseVehicle("the feet must reach down equally far, not " + std::to_string(shortest) + " to " +
+                  std::to_string(model->foot_depth) + " m");
   }
-  if (model->foot_depth <= model->hull_bottom) Refuse("the feet must reach below geom \"hull\"");
+  if (model->foot_depth <= model->hull_bottom)
+    RefuseVehicle("the feet must reach below geom \"hull\"");
 }
 
 void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
@@ -103,15 +101,15 @@ void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
                        gear[4] == 0.0 && gear[5] != 0.0;
   if (m.actuator_trntype[actuator] != mjTRN_SITE || m.actuator_trnid[2 * actuator] != site ||
       m.site_bodyid[site] != body || !IsUpright(m.site_quat + 4 * site) || !along_z) {
-    Refuse("actuator \"" + name + "\" must act on site \"" + name +
-           "\" of body \"vehicle\", upright, with gear 0 0 1 0 0 k, k not 0");
+    RefuseVehicle("actuator \"" + name + "\" must act on site \"" + name +
+                  "\" of body \"vehicle\", upright, with gear 0 0 1 0 0 k, k not 0");
   }
   if (m.actuator_dyntype[actuator] != mjDYN_FILTER ||
       m.actuator_gaintype[actuator] != mjGAIN_FIXED ||
       m.actuator_gainprm[mjNGAIN * actuator] != 1.0 ||
       m.actuator_biastype[actuator] != mjBIAS_NONE || m.actuator_ctrllimited[actuator] == 0) {
-    Refuse("actuator \"" + name +
-           "\" must have dyntype filter, gainprm 1, no bias and a limited control range");
+    RefuseVehicle("actuator \"" + name +
+                  "\" must have dyntype filter, gainprm 1, no bias and a limited control range");
   }
   const double lag = m.actuator_dynprm[mjNDYN * actuator];
   const double low = m.actuator_ctrlrange[2 * actuator];
@@ -127,7 +125,8 @@ void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
     model->torque_per_thrust = torque;
   } else if (lag != model->rotor_lag_s || low != model->rotor_thrust_min ||
              high != model->rotor_thrust_max || torque != model->torque_per_thrust) {
-    Refuse("actuator \"" + name + "\" differs from \"rotor0\" in lag, range or torque per thrust");
+    RefuseVehicle("actuator \"" + name +
+                  "\" differs from \"rotor0\" in lag, range or torque per thrust");
   }
   estimation::Rotor& rotor = model->rotors[static_cast<std::size_t>(index)];
   rotor.p_BR = Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site);
@@ -140,7 +139,7 @@ void ReadDrag(const mjModel& m, VehicleModel* model) {
   const int linear = Find(m, mjOBJ_NUMERIC, "numeric", "rotor_drag");
   const int area = Find(m, mjOBJ_NUMERIC, "numeric", "body_drag_area");
   if (m.numeric_size[linear] != 3 || m.numeric_size[area] != 1) {
-    Refuse("numeric \"rotor_drag\" must have three numbers and \"body_drag_area\" one");
+    RefuseVehicle("numeric \"rotor_drag\" must have three numbers and \"body_drag_area\" one");
   }
   model->rotor_drag = Eigen::Map<const Eigen::Vector3d>(m.numeric_data + m.numeric_adr[linear]);
   model->body_drag_area = m.numeric_data[m.numeric_adr[area]];
@@ -160,11 +159,16 @@ void CheckSteerable(const VehicleModel& model) {
   }
   const Eigen::FullPivLU<Eigen::Matrix4d> lu(wrench);
   if (!lu.isInvertible() || lu.inverse().col(0).minCoeff() <= 0.0) {
-    Refuse("its rotors cannot make thrust and three moments: their places and senses of rotation");
+    RefuseVehicle(
+        "its rotors cannot make thrust and three moments: their places and senses of rotation");
   }
 }
 
 }  // namespace
+
+void RefuseVehicle(const std::string& what) {
+  throw std::invalid_argument("vehicle file: " + what);
+}
 
 std::string ReadVehicleFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -182,15 +186,15 @@ estimation::VehicleModel LoadVehicleModel(const std::string& mjcf) {
   VehicleModel model;
   ReadBody(m, body, &model);
   ReadHull(m, &model);
-  if (m.nu != 4) Refuse("it has " + std::to_string(m.nu) + " actuators; allowed is 4");
+  if (m.nu != 4) RefuseVehicle("it has " + std::to_string(m.nu) + " actuators; allowed is 4");
   for (int i = 0; i < 4; ++i) ReadRotor(m, body, i, &model);
   ReadDrag(m, &model);
   CheckSteerable(model);
   constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
   if (model.MaxThrust() < kLeastThrustToWeight * model.HoverThrust()) {
-    Refuse("the rotors' largest thrust, " + estimation::NumberText(model.MaxThrust()) +
-           " N, does not carry its weight 1.2 times, " +
-           estimation::NumberText(kLeastThrustToWeight * model.HoverThrust()) + " N");
+    RefuseVehicle("the rotors' largest thrust, " + estimation::NumberText(model.MaxThrust()) +
+                  " N, does not carry its weight 1.2 times, " +
+                  estimation::NumberText(kLeastThrustToWeight * model.HoverThrust()) + " N");
   }
   return model;
 }

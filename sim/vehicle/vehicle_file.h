@@ -28,4 +28,7 @@ std::string ReadVehicleFile(const std::string& path);
 /// naming what the file lacks of the list above.
 estimation::VehicleModel LoadVehicleModel(const std::string& mjcf);
 
+/// Throws std::invalid_argument saying what is wrong with a vehicle's file.
+[[noreturn]] void RefuseVehicle(const std::string& what);
+
 }  // namespace touchdown::sim

@@ -34,10 +34,6 @@ constexpr double kFeetShare = 0.6;         // of the hull's radius
 constexpr double kFeetClearance = 0.35;    // hull above soles, over the feet's distance from z_B
 constexpr double kLeastHullHeight = 0.01;  // [m]
 
-[[noreturn]] void Refuse(const std::string& what) {
-  throw std::invalid_argument("vehicle file: " + what);
-}
-
 Eigen::Vector3d Vec3(const mjtNum* p) { return {p[0], p[1], p[2]}; }
 
 std::string Quoted(const mjModel& m, int address, const char* kind, int index) {
@@ -70,7 +66,7 @@ class Import {
     FindBase();
     ReadMass();
     if (m_.nu != 4)
-      Refuse("it has " + std::to_string(m_.nu) + " actuators; allowed is 4, one a rotor");
+      RefuseVehicle("it has " + std::to_string(m_.nu) + " actuators; allowed is 4, one a rotor");
     for (int i = 0; i < 4; ++i) motors_.push_back(ReadMotor(i));
     CheckMotorsAgree();
     ReadOutline();
@@ -83,8 +79,8 @@ class Import {
     int free_joints = 0;
     for (int j = 0; j < m_.njnt; ++j) {
       if (m_.jnt_type[j] != mjJNT_FREE) {
-        Refuse(Quoted(m_, m_.name_jntadr[j], "joint", j) +
-               " moves; allowed is one free joint alone");
+        RefuseVehicle(Quoted(m_, m_.name_jntadr[j], "joint", j) +
+                      " moves; allowed is one free joint alone");
       }
       const int dof = m_.jnt_dofadr[j];
       CheckNothingHolds(Quoted(m_, m_.name_jntadr[j], "joint", j), m_.jnt_stiffness[j], dof);
@@ -92,7 +88,7 @@ class Import {
       ++free_joints;
     }
     if (free_joints != 1) {
-      Refuse("it has " + std::to_string(free_joints) + " free joints; allowed is 1");
+      RefuseVehicle("it has " + std::to_string(free_joints) + " free joints; allowed is 1");
     }
     R_WB_ = Eigen::Map<const Matrix>(d_.xmat + 9 * base_);
   }
@@ -106,7 +102,8 @@ class Import {
                         : stiffness != 0.0              ? "stiffness"
                                                         : nullptr;
       if (has != nullptr) {
-        Refuse(joint + " has " + has + "; allowed is 0: drag is a matter of airframe.rotor_drag");
+        RefuseVehicle(joint + " has " + has +
+                      "; allowed is 0: drag is a matter of airframe.rotor_drag");
       }
     }
   }
@@ -122,7 +119,7 @@ class Import {
       mass_ += m_.body_mass[body];
       moment += m_.body_mass[body] * Vec3(d_.xipos + 3 * body);
     }
-    if (!(mass_ > 0.0)) Refuse("it has no mass");
+    if (!(mass_ > 0.0)) RefuseVehicle("it has no mass");
     p_WB_ = moment / mass_;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     for (int body = 1; body < m_.nbody; ++body) {
@@ -138,7 +135,7 @@ class Import {
     inertia.diagonal().setZero();
     const double skew = inertia.cwiseAbs().maxCoeff() / inertia_.minCoeff();
     if (skew > kSkewInertia) {
-      Refuse(
+      RefuseVehicle(
           "its largest product of inertia is " + estimation::NumberText(skew) +
           " of its least moment about the centre of mass; allowed is 0.05: its axes must be those "
           "of its inertia");
@@ -161,26 +158,27 @@ class Import {
     const std::string name = Quoted(m_, m_.name_actuatoradr[i], "actuator", i);
     const int site = m_.actuator_trnid[2 * i];
     if (m_.actuator_trntype[i] != mjTRN_SITE || !OfVehicle(m_.site_bodyid[site])) {
-      Refuse(name +
-             " does not act on a site of the vehicle; allowed are four thrust motors at sites");
+      RefuseVehicle(
+          name + " does not act on a site of the vehicle; allowed are four thrust motors at sites");
     }
     const mjtNum* gear = m_.actuator_gear + 6 * i;
     if (gear[0] != 0.0 || gear[1] != 0.0 || gear[3] != 0.0 || gear[4] != 0.0 || gear[2] == 0.0) {
-      Refuse(name + " must have gear \"0 0 f 0 0 k\", f not 0");
+      RefuseVehicle(name + " must have gear \"0 0 f 0 0 k\", f not 0");
     }
-    if (gear[5] == 0.0) Refuse(name + " has no reaction torque, the last number of its gear");
+    if (gear[5] == 0.0)
+      RefuseVehicle(name + " has no reaction torque, the last number of its gear");
     if (m_.actuator_gaintype[i] != mjGAIN_FIXED || m_.actuator_biastype[i] != mjBIAS_NONE) {
-      Refuse(name + " must have a fixed gain and no bias, as a motor has");
+      RefuseVehicle(name + " must have a fixed gain and no bias, as a motor has");
     }
     if (m_.actuator_trnid[2 * i + 1] >= 0) {
-      Refuse(name + " has a refsite; allowed are motors that act on one site");
+      RefuseVehicle(name + " has a refsite; allowed are motors that act on one site");
     }
-    if (m_.actuator_ctrllimited[i] == 0) Refuse(name + " has no ctrlrange");
+    if (m_.actuator_ctrllimited[i] == 0) RefuseVehicle(name + " has no ctrlrange");
     const Matrix R_WS = Eigen::Map<const Matrix>(d_.site_xmat + 9 * site);
     const double upright = R_WS.col(2).dot(R_WB_.col(2));
     const double scale = gear[2] * upright;
     if (std::abs(upright) < kUpright) {
-      Refuse(name + " does not push along the z axis of the body with the free joint");
+      RefuseVehicle(name + " does not push along the z axis of the body with the free joint");
     }
     Motor motor;
     motor.p_BR = ToB(Vec3(d_.site_xpos + 3 * site));
@@ -188,8 +186,8 @@ class Import {
     motor.low = std::min(scale * force[0], scale * force[1]);
     motor.high = std::max(scale * force[0], scale * force[1]);
     if (!(motor.low >= 0.0 && motor.high > motor.low)) {
-      Refuse(name + " pushes with " + estimation::NumberText(motor.low) + " to " +
-             estimation::NumberText(motor.high) + " N along z; allowed is a range above 0");
+      RefuseVehicle(name + " pushes with " + estimation::NumberText(motor.low) + " to " +
+                    estimation::NumberText(motor.high) + " N along z; allowed is a range above 0");
     }
     motor.torque = gear[5] / gear[2];
     if (m_.actuator_dyntype[i] == mjDYN_NONE) {
@@ -197,7 +195,7 @@ class Import {
     } else if (m_.actuator_dyntype[i] == mjDYN_FILTER) {
       motor.lag = m_.actuator_dynprm[mjNDYN * i];
     } else {
-      Refuse(name + " must have dyntype none or filter");
+      RefuseVehicle(name + " must have dyntype none or filter");
     }
     return motor;
   }
@@ -209,8 +207,8 @@ class Import {
       const Motor& motor = motors_[i];
       if (!same(motor.low, first.low) || !same(motor.high, first.high) ||
           !same(motor.lag, first.lag) || !same(std::abs(motor.torque), std::abs(first.torque))) {
-        Refuse(Quoted(m_, m_.name_actuatoradr[i], "actuator", static_cast<int>(i)) +
-               " differs from the first one in thrust, lag or torque per thrust");
+        RefuseVehicle(Quoted(m_, m_.name_actuatoradr[i], "actuator", static_cast<int>(i)) +
+                      " differs from the first one in thrust, lag or torque per thrust");
       }
     }
   }

@@ -11,7 +11,6 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFallen = 0.5;  // of what a look found too much, before the next
 
 }  // namespace
@@ -26,7 +25,7 @@ void GapRule::Prepare(const View& view, OptimalityCheck* check) {
 void GapRule::Begin(const View& view, double gap) {
   view_ = &view;
   gap_ = gap;
-  look_below_ = kInfinity;
+  look_below_ = Problem::kInfinity;
   points_ = looked_ = 0;
   storage_.HoldParameters();
 }
@@ -42,16 +41,17 @@ bool GapRule::Met(const Eigen::VectorXd& y, double cost, double violation) {
   if (above <= allowed) return true;
   // Without a bound it has to fall by what would have been allowed.
   const double fall = std::isfinite(above) ? kFallen * (above - allowed) : allowed;
-  look_below_ = std::min(cost - fall, std::nextafter(cost, -kInfinity));
+  look_below_ = std::min(cost - fall, std::nextafter(cost, -Problem::kInfinity));
   return false;
 }
 
 /// By a Newton step; infinite where the cost does not curve upwards.
 double GapRule::Promised(const Eigen::VectorXd& y) {
   if (!view_->Evaluate(y.data(), {.gradient = true, .hessian = true}, {}, &storage_)) {
-    return kInfinity;
+    return Problem::kInfinity;
   }
-  if (factor_.Factor(storage_.hessian) != BorderedCholesky::Status::kDefinite) return kInfinity;
+  if (factor_.Factor(storage_.hessian) != BorderedCholesky::Status::kDefinite)
+    return Problem::kInfinity;
   return NewtonStep(*view_, y.data(), storage_.gradient.data(), factor_, step_.data());
 }
 

@@ -23,6 +23,10 @@ double Largest(const std::vector<double>& numbers) {
   return largest;
 }
 
+double Dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
 double LargestDiagonal(const BorderedBandMatrix& H) {
   const int d = H.block_size();
   double largest = 1e-300;

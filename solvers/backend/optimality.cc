@@ -27,10 +27,10 @@ constexpr double kPushingFrom[] = {1e-5, 1e-3, 1e-1};  // the same, far from the
 constexpr double kRowWeight = 1e7;  // beside the curvature, of rows that are to be kept
 constexpr int kRefinements = 4;
 constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
-constexpr double kRounding = 1e-12;
+constexpr double kBoundRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 constexpr double kLastShift = 1e6;
-constexpr double kShiftGrowth = 10.0;
+constexpr double kNextShift = 10.0;
 constexpr double kReaches[] = {1.0, 0.1, 0.01};  // shares of a step onto the rows
 
 }  // namespace
@@ -178,7 +178,7 @@ double OptimalityCheck::WayTo(int row, double multiplier) const {
 double OptimalityCheck::Beyond(int row, double u) const {
   const double bound = u > rows_.hi(row) ? rows_.hi(row) : rows_.lo(row);
   const bool between = u >= rows_.lo(row) && u <= rows_.hi(row);
-  return between || std::abs(u - bound) <= kRounding * std::abs(bound) ? 0.0 : u - bound;
+  return between || std::abs(u - bound) <= kBoundRounding * std::abs(bound) ? 0.0 : u - bound;
 }
 
 /// Of the worst of rows of these values, by the slopes at y.
@@ -312,7 +312,7 @@ bool OptimalityCheck::Estimate() {
       if (side_[r] == Side::kNone || side_[r] == Side::kBoth) return 0.0;
       return -(side_[r] == Side::kUpper ? 1.0 : -1.0) * lambda_[r] * norm_[r];
     };
-    double worst = kRounding * Largest(gradient_);
+    double worst = kBoundRounding * Largest(gradient_);
     for (int r = 0; r < rows_.size(); ++r) worst = std::max(worst, wrong(r));
     bool any = false;
     for (int r = 0; r < rows_.size(); ++r) {
@@ -388,7 +388,7 @@ double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLe
 bool OptimalityCheck::FactorShifted() {
   MeasureDiagonal();
   double taken = 0.0;
-  for (double share = kFirstShift; share <= kLastShift; share *= kShiftGrowth) {
+  for (double share = kFirstShift; share <= kLastShift; share *= kNextShift) {
     Shift(share - taken);
     taken = share;
     if (factor_.Factor(at_->hessian) != BorderedCholesky::Status::kDefinite) continue;

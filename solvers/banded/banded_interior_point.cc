@@ -71,10 +71,6 @@ constexpr double kElasticPrice = 100.0;
 constexpr double kElasticPriceRaised = 1e5;
 constexpr double kContradiction = 0.1;
 
-double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
 }  // namespace
 
 void BandedInteriorPoint::Prepare(const View& view) {

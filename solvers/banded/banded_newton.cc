@@ -19,17 +19,13 @@ namespace touchdown::solvers {
 namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
-constexpr double kShortestStep = 1e-10;
+constexpr double kLeastLength = 1e-10;
 constexpr double kLessShift = 1e5;    // 0.1 of the last one, which is 1e-6 of this
-constexpr double kLongestStep = 1e3;  // over the point's size
+constexpr double kMostPerSize = 1e3;  // over the point's size
 /// Below this share of the cost a decrease is rounding.
-constexpr double kRounding = 1e-15;
+constexpr double kValueRounding = 1e-15;
 /// What was gained counts for this share of the cost at least.
-constexpr double kLeastShare = 1e-6;
-
-double Dot(const std::vector<double>& a, const std::vector<double>& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
+constexpr double kLeastScale = 1e-6;
 
 }  // namespace
 
@@ -67,7 +63,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     // Of the cost; of what was gained, where a constant in the cost must not end the solve.
     const double gained = std::abs(evaluator->first_cost() - value);
     const double whole =
-        tolerances.of_gain ? std::clamp(gained, kLeastShare * scale, scale) : scale;
+        tolerances.of_gain ? std::clamp(gained, kLeastScale * scale, scale) : scale;
     if (promised <= (shift > 0.0 ? tolerances.own : tolerances.gap) * whole) {
       ended_near_ = promised > tolerances.own * whole;
       return SolveStatus::kConverged;
@@ -90,7 +86,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
 
 /// Where hardly anything curves, nothing tells how far a step may go.
 double BandedNewton::Shorten() {
-  const double share = kLongestStep * (1.0 + Largest(y_)) / Largest(step_);
+  const double share = kMostPerSize * (1.0 + Largest(y_)) / Largest(step_);
   if (share >= 1.0) return 1.0;
   for (double& number : step_) number *= share;
   return share;
@@ -102,12 +98,12 @@ double BandedNewton::Shorten() {
 /// accepted.
 double BandedNewton::LineSearch(double value, double slope, bool derivatives,
                                 Evaluator* evaluator) {
-  for (double t = 1.0; t > kShortestStep; t *= 0.5) {
+  for (double t = 1.0; t > kLeastLength; t *= 0.5) {
     for (std::size_t i = 0; i < y_.size(); ++i) trial_[i] = y_[i] + t * step_[i];
     bool ok = derivatives ? evaluator->EvaluateLagrangian(trial_.data(), {})
                           : evaluator->Evaluate(trial_.data(), {});
     const double decrease = value - evaluator->last().full.value;
-    const double wanted = -kSufficientDecrease * t * slope - kRounding * std::abs(value);
+    const double wanted = -kSufficientDecrease * t * slope - kValueRounding * std::abs(value);
     ok = ok && decrease >= wanted;
     // A term may have a value where it has no derivatives.
     if (ok && !derivatives && !evaluator->must_stop()) {

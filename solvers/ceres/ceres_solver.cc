@@ -146,9 +146,9 @@ class WindowResiduals : public ceres::EvaluationCallback {
 
 /// Hands every iteration to the evaluator. Shrinking a dogleg's region may leave the rejected step
 /// as it was: nothing is evaluated then, and it does not count.
-class IterationWatch : public ceres::IterationCallback {
+class ProgressWatch : public ceres::IterationCallback {
  public:
-  explicit IterationWatch(Evaluator* evaluator)
+  explicit ProgressWatch(Evaluator* evaluator)
       : evaluator_(evaluator),
         told_cost_(evaluator->best_cost()),
         told_evaluations_(evaluator->evaluations()) {}
@@ -219,7 +219,7 @@ class CeresSolver : public SolverBackend {
       return;
     }
     windows_.Bind(view, evaluator, y_.data());
-    IterationWatch watch(evaluator);
+    ProgressWatch watch(evaluator);
     ceres::Solver::Options solver = Options();
     solver.callbacks.push_back(&watch);
 

@@ -7,8 +7,6 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kInfinity = SmallProblem::kInfinity;
-
 /// The cost of HS1, 2, 15 to 17 and 20.
 constexpr auto kRosenbrock = [](const auto* x, auto* u) {
   u[0] = 10.0 * (x[1] - x[0] * x[0]);
@@ -20,20 +18,20 @@ constexpr auto kRosenbrock = [](const auto* x, auto* u) {
 void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* all) {
   all->push_back(SmallProblem("HS1", {-2.0, 1.0}, 0.0, form)
                      .Squares(2, kRosenbrock)
-                     .Bound(1, -1.5, kInfinity));
+                     .Bound(1, -1.5, kUnbounded));
   all->push_back(SmallProblem("HS2", {-2.0, 1.0}, 0.0504261879, form)
                      .Squares(2, kRosenbrock)
-                     .Bound(1, 1.5, kInfinity)
+                     .Bound(1, 1.5, kUnbounded)
                      .Other(4.9412293));
   all->push_back(SmallProblem("HS3", {10.0, 1.0}, 0.0, form)
                      .Cost([](const auto* x, auto* u) { u[0] = x[1] + 1e-5 * Square(x[1] - x[0]); })
-                     .Bound(1, 0.0, kInfinity));
+                     .Bound(1, 0.0, kUnbounded));
   all->push_back(SmallProblem("HS4", {1.125, 0.125}, 8.0 / 3.0, form)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] + 1.0) * Square(x[0] + 1.0) / 3.0 + x[1];
                      })
-                     .Bound(0, 1.0, kInfinity)
-                     .Bound(1, 0.0, kInfinity));
+                     .Bound(0, 1.0, kUnbounded)
+                     .Bound(1, 0.0, kUnbounded));
   all->push_back(
       SmallProblem("HS5", {0.0, 0.0}, -0.5 * std::sqrt(3.0) - std::acos(-1.0) / 3.0, form)
           .Other(2.0 / 3.0 * std::acos(-1.0) - 0.5 * std::sqrt(3.0))
@@ -100,7 +98,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                     u[0] = x[0] * x[1] - 1.0;
                                     u[1] = x[0] + x[1] * x[1];
                                   })
-                     .Bound(0, -kInfinity, 0.5)
+                     .Bound(0, -kUnbounded, 0.5)
                      .Other(360.379767));
   all->push_back(SmallProblem("HS16", {-2.0, 1.0}, 0.25, form)
                      .Squares(2, kRosenbrock)
@@ -110,7 +108,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                     u[1] = x[0] * x[0] + x[1];
                                   })
                      .Bound(0, -0.5, 0.5)
-                     .Bound(1, -kInfinity, 1.0)
+                     .Bound(1, -kUnbounded, 1.0)
                      .Other(3.9820605)
                      .Other(23.1446609));
   all->push_back(SmallProblem("HS17", {-2.0, 1.0}, 1.0, form)
@@ -121,7 +119,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                     u[1] = x[0] * x[0] - x[1];
                                   })
                      .Bound(0, -0.5, 0.5)
-                     .Bound(1, -kInfinity, 1.0));
+                     .Bound(1, -kUnbounded, 1.0));
   all->push_back(SmallProblem("HS18", {2.0, 2.0}, 5.0, form)
                      .Squares(2,
                               [](const auto* x, auto* u) {
@@ -203,7 +201,7 @@ void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* 
                                     u[1] = x[0] + std::sqrt(3.0) * x[1];
                                     u[2] = 6.0 - x[0] - std::sqrt(3.0) * x[1];
                                   })
-                     .BoundAll(0.0, kInfinity));
+                     .BoundAll(0.0, kUnbounded));
   all->push_back(SmallProblem("HS26", {-2.6, 2.0, 2.0}, 0.0, form)
                      .Squares(2,
                               [](const auto* x, auto* u) {

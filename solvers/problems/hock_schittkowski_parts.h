@@ -2,14 +2,12 @@
 // The set is compiled in three parts.
 #pragma once
 
+#include "solvers/problems/square.h"
 #include "touchdown/solvers/problems/hock_schittkowski.h"
 
 namespace touchdown::solvers {
 
-template <class T>
-T Square(const T& x) {
-  return x * x;
-}
+inline constexpr double kUnbounded = SmallProblem::kInfinity;
 
 void AddHockSchittkowskiFirst(EqualityForm form, std::vector<ReferenceProblem>* all);
 void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>* all);

@@ -7,8 +7,6 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kInfinity = SmallProblem::kInfinity;
-
 /// The cost of HS46 and 49.
 constexpr auto kFlat = [](const auto* x, auto* u) {
   u[0] = x[0] - x[1];
@@ -69,7 +67,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                     u[0] = 6.0 * x[1] + 4.0 * x[2] - x[0] * x[0] * x[0] - 3.0;
                                   })
                      .Zero(1, [](const auto* x, auto* u) { u[0] = 1.0 - x[0] - x[1] - x[2]; })
-                     .BoundAll(0.0, kInfinity));
+                     .BoundAll(0.0, kUnbounded));
   all->push_back(SmallProblem("HS33", {0.0, 0.0, 3.0}, std::sqrt(2.0) - 6.0, form)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = (x[0] - 1.0) * (x[0] - 2.0) * (x[0] - 3.0) + x[2];
@@ -79,8 +77,8 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                     u[0] = x[2] * x[2] - x[1] * x[1] - x[0] * x[0];
                                     u[1] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 4.0;
                                   })
-                     .Bound(0, 0.0, kInfinity)
-                     .Bound(1, 0.0, kInfinity)
+                     .Bound(0, 0.0, kUnbounded)
+                     .Bound(1, 0.0, kUnbounded)
                      .Bound(2, 0.0, 5.0));
   all->push_back(SmallProblem("HS34", {0.0, 1.05, 2.9}, -std::log(std::log(10.0)), form)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0]; })
@@ -100,7 +98,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                    2.0 * x[1] * x[1] + x[2] * x[2] + 2.0 * x[0] * x[1] + 2.0 * x[0] * x[2];
           })
           .AtLeastZero(1, [](const auto* x, auto* u) { u[0] = 3.0 - x[0] - x[1] - 2.0 * x[2]; })
-          .BoundAll(0.0, kInfinity));
+          .BoundAll(0.0, kUnbounded));
   all->push_back(SmallProblem("HS36", {10.0, 10.0, 10.0}, -3300.0, form)
                      .Cost([](const auto* x, auto* u) { u[0] = -x[0] * x[1] * x[2]; })
                      .AtLeastZero(1, [](const auto* x,
@@ -184,7 +182,7 @@ void AddHockSchittkowskiSecond(EqualityForm form, std::vector<ReferenceProblem>*
                                     u[4] = 8.0 - x[2] - 2.0 * x[3];
                                     u[5] = 5.0 - x[2] - x[3];
                                   })
-                     .BoundAll(0.0, kInfinity)
+                     .BoundAll(0.0, kUnbounded)
                      .Other(-13.0));
   all->push_back(SmallProblem("HS45", {2.0, 2.0, 2.0, 2.0, 2.0}, 1.0, form)
                      .Cost([](const auto* x, auto* u) {

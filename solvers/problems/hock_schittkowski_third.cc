@@ -7,8 +7,6 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kInfinity = SmallProblem::kInfinity;
-
 /// The rows of HS78, 80 and 81.
 constexpr auto kSurfaces = [](const auto* x, auto* u) {
   u[0] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] + x[3] * x[3] + x[4] * x[4] - 10.0;
@@ -54,7 +52,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                              u[0] = 8.0 * x[0] + 14.0 * x[1] + 7.0 * x[2] - 56.0;
                              u[1] = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 25.0;
                            })
-                     .BoundAll(0.0, kInfinity));
+                     .BoundAll(0.0, kUnbounded));
   all->push_back(
       SmallProblem("HS64", {1.0, 1.0, 1.0}, 6299.842428, form)
           .Cost([](const auto* x, auto* u) {
@@ -63,7 +61,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
           })
           .AtLeastZero(1, [](const auto* x,
                              auto* u) { u[0] = 1.0 - 4.0 / x[0] - 32.0 / x[1] - 120.0 / x[2]; })
-          .BoundAll(1e-5, kInfinity));
+          .BoundAll(1e-5, kUnbounded));
   all->push_back(
       SmallProblem("HS65", {-5.0, 5.0, 0.0}, 0.9535288567, form)
           .Squares(3,
@@ -126,7 +124,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                                              20.5 * x[2] * x[2] + 0.62 * x[3] * x[3]);
                        })
           .Zero(1, [](const auto* x, auto* u) { u[0] = x[0] + x[1] + x[2] + x[3] - 1.0; })
-          .BoundAll(0.0, kInfinity));
+          .BoundAll(0.0, kUnbounded));
   all->push_back(SmallProblem("HS76", {0.5, 0.5, 0.5, 0.5}, -4.681818181, form)
                      .Cost([](const auto* x, auto* u) {
                        u[0] = x[0] * x[0] + 0.5 * x[1] * x[1] + x[2] * x[2] + 0.5 * x[3] * x[3] -
@@ -138,7 +136,7 @@ void AddHockSchittkowskiThird(EqualityForm form, std::vector<ReferenceProblem>* 
                                     u[1] = 4.0 - 3.0 * x[0] - x[1] - 2.0 * x[2] + x[3];
                                     u[2] = x[1] + 4.0 * x[2] - 1.5;
                                   })
-                     .BoundAll(0.0, kInfinity));
+                     .BoundAll(0.0, kUnbounded));
   all->push_back(SmallProblem("HS77", {2.0, 2.0, 2.0, 2.0, 2.0}, 0.24150513, form)
                      .Other(4.602561512)
                      .Other(5.533357279)

@@ -3,17 +3,14 @@
 
 #include <cmath>
 
+#include "solvers/problems/square.h"
+
 namespace touchdown::solvers {
 
 namespace {
 
 SmallProblem Start(const char* name, std::vector<double> start, double cost) {
   return SmallProblem(name, std::move(start), cost, EqualityForm::kRows);
-}
-
-template <class T>
-T Square(const T& x) {
-  return x * x;
 }
 
 void AddOfTwoVariables(std::vector<ReferenceProblem>* all) {

@@ -15,7 +15,6 @@
 namespace touchdown::solvers {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kGravity = 9.81;
 
@@ -254,7 +253,7 @@ constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 
 /// States without bounds, then the inputs' own.
 std::vector<double> Limits(int states, double sign, std::vector<double> inputs) {
-  std::vector<double> all(static_cast<std::size_t>(states), sign * kInfinity);
+  std::vector<double> all(static_cast<std::size_t>(states), sign * Problem::kInfinity);
   all.insert(all.end(), inputs.begin(), inputs.end());
   return all;
 }
@@ -288,8 +287,8 @@ ReferenceProblem ThroughWaypoints(int steps) {
 
 std::vector<ReferenceProblem> ShootingProblems() {
   std::vector<ReferenceProblem> all;
-  all.push_back(SwingUp("pendulum_20", 20, kInfinity));
-  all.push_back(SwingUp("pendulum_200", 200, kInfinity));
+  all.push_back(SwingUp("pendulum_20", 20, Problem::kInfinity));
+  all.push_back(SwingUp("pendulum_200", 200, Problem::kInfinity));
   all.push_back(SwingUp("pendulum_weak_60", 60, 3.0));
   all.push_back(SwingUp("pendulum_weak_200", 200, 3.0));
   all.push_back(CartPoleUp(50));

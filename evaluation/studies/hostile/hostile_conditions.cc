@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/base/words.h"
 #include "evaluation/studies/hostile/hostile_world.h"
+#include "touchdown/estimation/base/vehicle_model.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-constexpr double kGravity = 9.81;
 constexpr double kStillShare = 0.25;  // of the flights has no wind at all
 constexpr double kMsPerS = 1e3;
 constexpr double kMostMs = 200.0;  // of latency that is assumed [ms]
@@ -87,7 +87,8 @@ void DrawConditions(sim::RandomStream& draw, Scenario* s) {
     *factor = DrawIn(draw, {0.8, 1.2});
   }
   s->gps.sigma = std::pow(10.0, DrawIn(draw, {-2.0, 0.0}));
-  const double by_tilt = kGravity * std::tan(s->limits.tilt_deg * kRadPerDeg);
+  const double by_tilt =
+      estimation::kGravity * std::tan(s->limits.tilt_deg * estimation::kRadPerDeg);
   s->limits.acceleration = DrawIn(draw, {0.5, by_tilt});
   s->pad.deck_height = DrawIn(draw, {0.3, 0.7});
 }
@@ -140,7 +141,7 @@ void DrawBeyond(const std::vector<std::string>& beyond, sim::RandomStream& draw,
 
 void AddNearPost(sim::RandomStream& draw, Scenario* scenario) {
   const double room = DrawIn(draw, {0.4, 0.8}), diameter = DrawIn(draw, {0.1, 0.4});
-  const double bearing = DrawIn(draw, {0.0, 360.0}) * kRadPerDeg;
+  const double bearing = DrawIn(draw, {0.0, 360.0}) * estimation::kRadPerDeg;
   const Eigen::Vector2d start = scenario->start.position.head<2>();
   const Eigen::Vector2d p =
       start + (room + 0.5 * diameter) * Eigen::Vector2d(std::cos(bearing), std::sin(bearing));

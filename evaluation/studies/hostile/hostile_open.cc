@@ -2,13 +2,13 @@
 // Families in the open: thin things, things close to the start, a far thing at full speed.
 #include <cmath>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/studies/hostile/hostile_family.h"
 #include "evaluation/studies/hostile/hostile_world.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr double kPoleGap = 1.0;  // least distance of two poles [m]
 constexpr int kPoleTries = 200;   // places that are looked at for all poles
 
@@ -41,7 +41,7 @@ void MakeNearStart(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario*
   const double first = DrawIn(draw, {0.0, 360.0});
   const int things = 2 + DrawOneOf(draw, 4);
   for (int i = 0; i < things; ++i) {
-    const double bearing = (first + DrawIn(draw, {0.0, 200.0})) * kRadPerDeg;
+    const double bearing = (first + DrawIn(draw, {0.0, 200.0})) * estimation::kRadPerDeg;
     const double room = DrawIn(draw, {kTakeOffRoom, 1.4});
     const double half = 0.5 * DrawIn(draw, {0.1, 0.8});
     const double height = DrawChance(draw, 0.7) ? kTallWall : DrawIn(draw, {0.8, 2.5});

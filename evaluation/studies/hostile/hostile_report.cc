@@ -6,6 +6,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/statistics.h"
 #include "evaluation/studies/hostile/hostile_family.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "evaluation/campaign/campaign.h"
 #include "evaluation/studies/hostile/hostile_study.h"

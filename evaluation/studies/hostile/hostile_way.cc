@@ -13,21 +13,21 @@
 
 #include <Eigen/Geometry>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/obstacles/obstacle_field.h"
+#include "touchdown/estimation/base/vehicle_model.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-constexpr double kGravity = 9.81;
-constexpr double kCell = 0.2;      // [m]
-constexpr double kBorder = 3.0;    // around everything: room to fly around it [m]
-constexpr double kFloor = 0.6;     // lowest cells [m]
-constexpr double kOverLow = 0.5;   // above the deck a way may end from here [m]
-constexpr double kOverHigh = 1.5;  // to here
-constexpr double kLaneStep = 0.2;  // of the pad's lane in time [s]
-constexpr double kHull = 0.35;     // least room beside a start that has less than the clearance [m]
+constexpr double kCell = 0.2;          // [m]
+constexpr double kRoomAround = 3.0;    // around everything: room to fly around it [m]
+constexpr double kFloor = 0.6;         // lowest cells [m]
+constexpr double kOverLow = 0.5;       // above the deck a way may end from here [m]
+constexpr double kOverHigh = 1.5;      // to here
+constexpr double kLaneStepTime = 0.2;  // of the pad's lane in time [s]
+constexpr double kHull = 0.35;  // least room beside a start that has less than the clearance [m]
 constexpr double kStartZone = 1.0;          // around such a start [m]
 constexpr double kWindy = 5.0;              // [m/s]
 constexpr double kShare = 0.5;              // of the limits a way is flown with
@@ -38,7 +38,8 @@ constexpr double kTouchDown = 6.0;          // from above the lane to contact [s
 // From rest to rest over a way.
 double FlightTime(const Scenario& s, double length) {
   const double most =
-      std::min(s.limits.acceleration, kGravity * std::tan(s.limits.tilt_deg * kRadPerDeg));
+      std::min(s.limits.acceleration,
+               estimation::kGravity * std::tan(s.limits.tilt_deg * estimation::kRadPerDeg));
   const double a = std::min(kShare * most, kUsualAcceleration);
   const double v = std::min(kShare * s.limits.speed, kUsualSpeed);
   return length < v * v / a ? 2.0 * std::sqrt(length / a) : length / v + v / a;
@@ -62,8 +63,8 @@ class WayFinder {
     SampleLane(registries, horizon - kTouchDown);
     space_.extend(Eigen::Vector2d(start_.head<2>()));
     space_.extend(lane_box_);
-    low_ = space_.min() - Eigen::Vector2d::Constant(kBorder);
-    const Eigen::Vector2d extent = space_.max() + Eigen::Vector2d::Constant(kBorder) - low_;
+    low_ = space_.min() - Eigen::Vector2d::Constant(kRoomAround);
+    const Eigen::Vector2d extent = space_.max() + Eigen::Vector2d::Constant(kRoomAround) - low_;
     nx_ = static_cast<int>(extent.x() / kCell) + 1;
     ny_ = static_cast<int>(extent.y() / kCell) + 1;
     nz_ = static_cast<int>((scenario.planning.ceiling - kFloor) / kCell) + 1;
@@ -109,9 +110,9 @@ class WayFinder {
 
   void SampleLane(const Registries& registries, double until) {
     const auto course = PadCourseOf(scenario_, registries, scenario_.pad.phase, 0);
-    for (int i = 0; i * kLaneStep <= until; ++i) {
-      const Eigen::Vector2d p = course->At(i * kLaneStep).p_WP.head<2>();
-      lane_.push_back({p, i * kLaneStep});
+    for (int i = 0; i * kLaneStepTime <= until; ++i) {
+      const Eigen::Vector2d p = course->At(i * kLaneStepTime).p_WP.head<2>();
+      lane_.push_back({p, i * kLaneStepTime});
       lane_box_.extend(p);
     }
   }

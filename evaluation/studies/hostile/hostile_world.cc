@@ -13,7 +13,7 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kCell = 0.1;         // of the map [m]
+constexpr double kMapCell = 0.1;      // of the map [m]
 constexpr double kPadShare = 0.4;     // of limits.acceleration, for following the pad
 constexpr double kGentlestPad = 0.2;  // [m/s]
 constexpr double kEightReach =
@@ -132,7 +132,7 @@ void TurnWorld(sim::RandomStream& draw, Scenario* scenario) {
   Move move;
   move.mirrored = DrawChance(draw, 0.5);
   move.quarters = DrawOneOf(draw, 4);
-  move.shift << DrawIn(draw, {0.0, kCell}), DrawIn(draw, {0.0, kCell});
+  move.shift << DrawIn(draw, {0.0, kMapCell}), DrawIn(draw, {0.0, kMapCell});
   for (BoxObstacle& box : scenario->boxes) {
     box.centre = move.Point(box.centre);
     if (move.quarters % 2 == 1) std::swap(box.size.x(), box.size.y());

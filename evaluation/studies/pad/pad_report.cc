@@ -3,6 +3,7 @@
 #include "evaluation/studies/pad/pad_report.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/result_file.h"
 #include "evaluation/base/sqlite_db.h"

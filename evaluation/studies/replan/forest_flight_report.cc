@@ -2,6 +2,7 @@
 #include "evaluation/studies/replan/forest_flight_report.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/result_file.h"
 #include "evaluation/base/sqlite_db.h"
@@ -14,9 +15,9 @@ using Json = nlohmann::ordered_json;
 constexpr FlightOutcome kOutcomes[] = {FlightOutcome::kReached, FlightOutcome::kCollided,
                                        FlightOutcome::kStuck, FlightOutcome::kCrashed};
 
-constexpr ResultFormat kFormat{"touchdown forest flights", 1};
+constexpr ResultFormat kForestFormat{"touchdown forest flights", 1};
 
-constexpr char kSchema[] = R"sql(
+constexpr char kForestSchema[] = R"sql(
 CREATE TABLE flight(planner TEXT, kind TEXT, flight INTEGER, seed INTEGER, outcome TEXT,
   message TEXT, time_s REAL, length_m REAL, clearance_m REAL, max_speed_mps REAL,
   max_acceleration_mps2 REAL, plans INTEGER, steps_without_plan INTEGER,
@@ -112,7 +113,7 @@ Json ForestFlightJson(const std::vector<ForestFlightPart>& parts) {
 }
 
 void WriteForestFlights(const std::string& path, const std::vector<ForestFlightPart>& parts) {
-  WriteResultFile(path, kFormat, kSchema, {}, [&](SqliteDb& db) {
+  WriteResultFile(path, kForestFormat, kForestSchema, {}, [&](SqliteDb& db) {
     SqliteStatement insert =
         db.Prepare("INSERT INTO flight VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     SqliteStatement timing = db.Prepare("INSERT INTO timing VALUES(?, ?, ?, ?, ?)");

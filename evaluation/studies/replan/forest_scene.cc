@@ -12,10 +12,10 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kHeight = 1.0;       // of start and goal [m]
-constexpr double kKeepOut = 2.0;      // of pillars around start and goal [m]
-constexpr double kSquare = 8.0;       // half side of the square of starts [m]
-constexpr double kGoal = 11.0 / 7.5;  // of the horizon
+constexpr double kCruiseHeight = 1.0;  // of start and goal [m]
+constexpr double kAroundStart = 2.0;   // of pillars around start and goal [m]
+constexpr double kSquare = 8.0;        // half side of the square of starts [m]
+constexpr double kGoal = 11.0 / 7.5;   // of the horizon
 
 }  // namespace
 
@@ -45,7 +45,7 @@ ForestScene DrawForestScene(const SceneOptions& options, sim::RandomStream* stre
   const double heading = stream->Uniform(-std::numbers::pi, std::numbers::pi);
   const double speed = stream->Uniform(0.0, 0.8 * options.kind.limits.speed);
   const double course = heading + stream->Uniform(-0.4, 0.4);
-  scene.start.p = {x, y, kHeight};
+  scene.start.p = {x, y, kCruiseHeight};
   scene.start.v = speed * Eigen::Vector3d(std::cos(course), std::sin(course), 0.0);
   scene.ahead = {std::cos(heading), std::sin(heading), 0.0};
   const double distance = kGoal * options.horizon;
@@ -59,7 +59,7 @@ ForestScene DrawForestScene(const SceneOptions& options, sim::RandomStream* stre
   forest.size = forest.size.cwiseMax(2.0 * (kSquare + distance + 1.0));
   forest.rings = static_cast<int>(std::lround(rings * forest.size.prod()));
   sim::SetDensity(density, &forest);
-  forest.keep_out = {{scene.start.p.head<2>(), kKeepOut}, {scene.goal.head<2>(), kKeepOut}};
+  forest.keep_out = {{scene.start.p.head<2>(), kAroundStart}, {scene.goal.head<2>(), kAroundStart}};
   scene.height = forest.height;
   scene.field = sim::MakeForest(forest, stream->Seed());
   return scene;

@@ -139,15 +139,15 @@ class SceneAsker {
   }
 
   void AskGrown(const ReplanScene& scene, std::vector<ReplanRow>* rows) {
-    constexpr double kSeen = 5.0;  // [m]
+    constexpr double kSeenFrom = 5.0;  // [m]
     planning::OccupancyMap map(scene.map->options());
     map.MoveWindow(scene.map->origin());
-    LearnWithin(*scene.map, scene.start.p, kSeen, &map);
+    LearnWithin(*scene.map, scene.start.p, kSeenFrom, &map);
     const planning::ReplanInput first = AskAt(scene, &replanner_);
     if (replanner_.Replan(first, map).status != planning::ReplanStatus::kPlanned) return;
     const planning::ReplanInput input = Later(first, 0.2);
-    LearnWithin(*scene.map, input.vehicle.p_WB, kSeen, &map);
-    rows->push_back(Ask(scene, SceneStep::kGrown, map, input, {input.vehicle.p_WB, kSeen}));
+    LearnWithin(*scene.map, input.vehicle.p_WB, kSeenFrom, &map);
+    rows->push_back(Ask(scene, SceneStep::kGrown, map, input, {input.vehicle.p_WB, kSeenFrom}));
   }
 
   /// From the present state of the replanner.

@@ -187,9 +187,9 @@ SceneSketch DrawYard(const SceneOptions& options, RandomStream& stream) {
       const Vector3d half(stream.Uniform(1.0, 3.0), across, 0.5 * height);
       obstacle = sim::Box{p, half, yaw};
     }
-    constexpr double kKeepOut = 1.2;  // around start and end [m]
-    const bool in_the_way = sim::SignedDistance(obstacle, sketch.start.p) < kKeepOut ||
-                            sim::SignedDistance(obstacle, sketch.target) < 0.5 * kKeepOut;
+    constexpr double kAroundEnds = 1.2;  // around start and end [m]
+    const bool in_the_way = sim::SignedDistance(obstacle, sketch.start.p) < kAroundEnds ||
+                            sim::SignedDistance(obstacle, sketch.target) < 0.5 * kAroundEnds;
     if (!in_the_way) obstacles.push_back(obstacle);
   }
   sketch.field = sim::ObstacleField(std::move(obstacles));

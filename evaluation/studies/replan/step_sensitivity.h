@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "evaluation/studies/replan/replan_study.h"
 #include "touchdown/planning/problem/step_constants.h"

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "estimation/base/degrees.h"
 #include "touchdown/planning/problem/term_kinematics.h"
 
 namespace touchdown::planning {
@@ -122,8 +123,8 @@ TermEntry ApproachCorridorTerm() {
                       {"span", 2.0, 0.1, 60.0, "acts this long before arrival [s]"}};
   entry.is_limit = true;
   entry.make = [info = entry.info](const TermSetup& setup) {
-    constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-    const OutsideCorridor map{setup.Get("radius"), std::tan(kRadPerDeg * setup.Get("angle_deg")),
+    const OutsideCorridor map{setup.Get("radius"),
+                              std::tan(estimation::kRadPerDeg * setup.Get("angle_deg")),
                               setup.Get("span"), setup.hard};
     return MakeLandingTerm(info, map, setup.Hinge(), setup.segments() - 1);
   };

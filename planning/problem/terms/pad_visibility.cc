@@ -12,7 +12,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kSmoothing = 0.05;  // [m] and [m/s^2]
+constexpr double kSmoothedEdge = 0.05;  // [m] and [m/s^2]
 
 struct OutOfView {
   static constexpr int kBlockSize = 3, kWindow = 3, kOutputs = 1;
@@ -39,7 +39,7 @@ struct OutOfView {
     Triple<T> f = KnotAcceleration(q, h);
     f[2] += estimation::kGravity;
     for (int c = 0; c < 3; ++c) f[c] -= pull_W[c];
-    constexpr double kSmall = kSmoothing * kSmoothing;
+    constexpr double kSmall = kSmoothedEdge * kSmoothedEdge;
     u[0] = cosine * sqrt(Dot(d, d) + kSmall) + Dot(d, f) / sqrt(Dot(f, f) + kSmall);
   }
 };

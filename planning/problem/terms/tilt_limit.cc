@@ -13,7 +13,7 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kSmoothing = 0.1;  // [m/s^2]
+constexpr double kSmoothedTip = 0.1;  // [m/s^2]
 
 struct OutsideCone : OfAcceleration<OutsideCone> {
   double slope = 1.0;
@@ -21,7 +21,7 @@ struct OutsideCone : OfAcceleration<OutsideCone> {
   void Update(const LandingContext& context) { pull_W = context.pull_W; }
   double At(const Eigen::Vector3d& a, Eigen::Vector3d* g, Eigen::Matrix3d* H) const {
     const Eigen::Vector3d f = a + estimation::kGravity * Eigen::Vector3d::UnitZ() - pull_W;
-    const double s = std::sqrt(f.head<2>().squaredNorm() + kSmoothing * kSmoothing);
+    const double s = std::sqrt(f.head<2>().squaredNorm() + kSmoothedTip * kSmoothedTip);
     const Eigen::Vector2d w = f.head<2>() / s;
     *g << w, -slope;
     H->setZero();

@@ -219,7 +219,7 @@ struct Scenario {
     double gap = 0.005;  ///< to the optimum, at which a solve ends, share of the cost
     std::map<std::string, double> options;  ///< of the backend, by its own names
   } solver;
-  /// terms.<term>.<key>: weight, hard (0 or 1) or a parameter of the term.
+  /// Keys `terms.TERM.KEY`: weight, hard (0 or 1) or a parameter of the term.
   std::map<std::string, std::map<std::string, double>> terms;
 
   struct Limits {

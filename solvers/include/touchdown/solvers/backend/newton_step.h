@@ -14,6 +14,7 @@ inline constexpr double kSmallestCost = 1e-9;
 
 /// The largest by its absolute value; 0 without any.
 double Largest(const std::vector<double>& numbers);
+double Dot(const std::vector<double>& a, const std::vector<double>& b);
 
 /// The largest element of the diagonal without its border, by its absolute value.
 double LargestDiagonal(const BorderedBandMatrix& H);

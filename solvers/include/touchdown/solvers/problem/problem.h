@@ -63,6 +63,9 @@ struct Evaluation {
 /// with its own Evaluation.
 class Problem {
  public:
+  /// The bound of a row that has none.
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
   /// Throws std::invalid_argument if a size or an interval bound is out of range.
   explicit Problem(const ProblemShape& shape);
 
@@ -119,8 +122,6 @@ class Problem {
   bool AddCost(std::size_t i, Evaluation* evaluation) const;
   void AddBoundViolation(const double* x, Evaluation* evaluation) const;
   bool AddViolation(std::size_t i, bool gradient, Evaluation* evaluation) const;
-
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
   ProblemShape shape_;
   std::vector<Entry> terms_;
