@@ -39,6 +39,8 @@ std::string_view ToString(Taken taken) {
       return "waiting";
     case Taken::kGated:
       return "gated";
+    case Taken::kEmpty:
+      return "empty";
     case Taken::kIgnored:
       return "ignored";
     case Taken::kDoubled:
@@ -151,6 +153,7 @@ Taken Onboard::Take(const estimation::HeightSample& s) { return Counted(it_->sen
 Taken Onboard::Take(const estimation::HeadingSample& s) { return Counted(it_->senses.TakeOwn(s)); }
 Taken Onboard::Take(const estimation::PadGpsFix& s) { return Counted(it_->senses.Take(s)); }
 Taken Onboard::Take(const estimation::PadSighting& s) { return Counted(it_->senses.Take(s)); }
+Taken Onboard::Take(const estimation::PadImage& s) { return Counted(it_->senses.Take(s)); }
 Taken Onboard::Take(const estimation::DepthImage& s) { return Counted(it_->senses.Take(s)); }
 
 Taken Onboard::Take(const estimation::FootForce& force) { return Counted(it_->TakeForce(force)); }

@@ -92,6 +92,14 @@ Taken Senses::Take(const estimation::PadSighting& sighting) {
   return taken;
 }
 
+Taken Senses::Take(const estimation::PadImage& image) {
+  if (!estimation::IsPossible(image)) return Taken::kInvalid;
+  if (const auto refused = Refused(image.t, pad_images_)) return *refused;
+  pad_images_.Add(image.t);
+  const auto sighting = look_.Find(image, own_.At(image.t), pad_);
+  return sighting ? Take(*sighting) : Taken::kEmpty;
+}
+
 Taken Senses::Take(const estimation::DepthImage& image) {
   if (!HasItsPixels(image)) return Taken::kInvalid;
   if (const auto refused = Refused(image.t, images_)) return *refused;

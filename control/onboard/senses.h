@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "control/onboard/own_state.h"
+#include "control/onboard/pad_look.h"
 #include "control/onboard/stamps.h"
 #include "touchdown/control/onboard/onboard_options.h"
 #include "touchdown/control/onboard/taken.h"
@@ -29,6 +30,7 @@ class Senses {
   }
   Taken Take(const estimation::PadGpsFix& fix);
   Taken Take(const estimation::PadSighting& sighting);
+  Taken Take(const estimation::PadImage& image);
   Taken Take(const estimation::DepthImage& image);
 
   /// The time stamp is ahead of all that is known of the time, or no number.
@@ -58,7 +60,8 @@ class Senses {
   double deck_half_size_;
   double start_free_;
   bool pad_is_obstacle_;  // the goal is another than the pad
-  Stamps fixes_, sightings_, images_;
+  Stamps fixes_, sightings_, pad_images_, images_;
+  PadLook look_;
   estimation::DepthFrame frame_;
   std::vector<estimation::PadArrival>* pad_log_ = nullptr;
 };

@@ -8,18 +8,30 @@ constexpr double kWidest = 1e4;    // of an image plane, over the focal length
 constexpr double kFarthest = 1e7;  // of a camera [m]
 constexpr double kRotation = 1e-3;
 
-}  // namespace
-
 // Written so that a number that is none fails each.
-bool IsPossible(const DepthFrame& frame) {
-  const CameraIntrinsics& k = frame.intrinsics;
+bool IsPossible(const CameraIntrinsics& k, const Eigen::Vector3d& place,
+                const Eigen::Matrix3d& turn) {
   const double widest = kWidest * k.focal;
   const auto in_plane = [widest](double centre, int size) {
     return size > 0 && size <= widest && centre >= -widest && centre <= widest;
   };
   return k.focal > 0.0 && widest <= 1e12 && in_plane(k.cx, k.width) && in_plane(k.cy, k.height) &&
-         frame.max_range > 0.0 && (frame.p_WC.array().abs() < kFarthest).all() &&
-         frame.R_WC.isUnitary(kRotation) && frame.R_WC.determinant() > 0.0;
+         (place.array().abs() < kFarthest).all() && turn.isUnitary(kRotation) &&
+         turn.determinant() > 0.0;
+}
+
+}  // namespace
+
+bool IsPossible(const DepthFrame& frame) {
+  return frame.max_range > 0.0 && IsPossible(frame.intrinsics, frame.p_WC, frame.R_WC);
+}
+
+bool IsPossible(const PadImage& image) {
+  const GrayImage& gray = image.gray;
+  return IsPossible(image.intrinsics, image.p_BC, image.R_BC) &&
+         gray.width == image.intrinsics.width && gray.height == image.intrinsics.height &&
+         gray.pixels.size() ==
+             static_cast<std::size_t>(gray.width) * static_cast<std::size_t>(gray.height);
 }
 
 }  // namespace touchdown::estimation

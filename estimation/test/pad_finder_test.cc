@@ -58,7 +58,7 @@ TEST(PadFinder, AlignmentMakesFarPosesSharperAndStaysHonest) {
     const double direction = 3.0 * unit(random), yaw = 3.0 * unit(random);
     const PoseCP truth =
         PadAhead(distance, tilt, direction, yaw, {0.3 * unit(random), 0.2 * unit(random)});
-    GrayImage image = PadImage(truth, TestCamera());
+    GrayImage image = DrawPad(truth, TestCamera());
     AddNoise(2.0, &random, &image);
     const PadNormal normal{truth.R.col(2), 0.02};
     const PadView view = whole.Find(image.View(), TestCamera(), normal);
@@ -91,7 +91,7 @@ TEST(PadFinder, PoseIsLeftAloneWhereTheSheetIsNot) {
   EXPECT_FALSE(alignment.Refine(image.View(), TestCamera(), std::nullopt, &pose));
   for (std::uint8_t& level : image.pixels) level = static_cast<std::uint8_t>(random() % 256);
   EXPECT_FALSE(alignment.Refine(image.View(), TestCamera(), std::nullopt, &pose));
-  image = PadImage(PadAhead(4.0, 0.2, 1.0, 0.5 + 1.6), TestCamera());  // turned too far
+  image = DrawPad(PadAhead(4.0, 0.2, 1.0, 0.5 + 1.6), TestCamera());  // turned too far
   EXPECT_FALSE(alignment.Refine(image.View(), TestCamera(), std::nullopt, &pose));
   EXPECT_EQ(pose.p_CP, before.p_CP);
   EXPECT_EQ(pose.cov, before.cov);
@@ -101,7 +101,7 @@ TEST(PadFinder, PoseIsLeftAloneWhereTheSheetIsNot) {
 
 TEST(PadFinder, HalfThePadOccluded) {
   const PoseCP truth = PadAhead(3.0, 0.2, 1.0, 0.3);
-  GrayImage image = PadImage(truth, TestCamera());
+  GrayImage image = DrawPad(truth, TestCamera());
   for (int v = 0; v < image.height; ++v) {
     for (int u = 162; u < image.width; ++u) {
       image.pixels[static_cast<std::size_t>(v * image.width + u)] = 60;

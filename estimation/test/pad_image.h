@@ -87,7 +87,7 @@ inline double PadLevel(const Eigen::Vector2d& x_P) {
 }
 
 /// The camera's image of the pad, each pixel the mean of 6 x 6 rays; grey beyond the sheet.
-inline GrayImage PadImage(const PoseCP& pose, const CameraIntrinsics& camera) {
+inline GrayImage DrawPad(const PoseCP& pose, const CameraIntrinsics& camera) {
   constexpr int kRays = 6;
   constexpr double kSheet = 0.64;  // [m]
   GrayImage image{camera.width, camera.height, {}};

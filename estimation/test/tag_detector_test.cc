@@ -27,7 +27,7 @@ TEST(TagDetector, FindsAllTagsWithTheirCornersInOrder) {
   TagDetector once;
   for (const double yaw : {0.0, 0.4, 2.0, -2.7}) {
     const PoseCP pose = PadAhead(1.5, 0.2, 0.5, yaw, {0.05, -0.03});
-    const GrayImage image = PadImage(pose, TestCamera());
+    const GrayImage image = DrawPad(pose, TestCamera());
     for (TagDetector* detector : {&once, &twice}) {
       const auto found = detector->Detect(image.View());
       ASSERT_EQ(found.size(), 5U) << yaw;
@@ -40,14 +40,14 @@ TEST(TagDetector, FindsAllTagsWithTheirCornersInOrder) {
 TEST(TagDetector, EnlargedImagesHaveTheirTagsFoundFartherAway) {
   TagDetector twice({.enlarge = 2});
   TagDetector once;
-  const GrayImage image = PadImage(PadAhead(7.5, 0.1, 0.5, 0.4), TestCamera());  // 10.7 pixels
+  const GrayImage image = DrawPad(PadAhead(7.5, 0.1, 0.5, 0.4), TestCamera());  // 10.7 pixels
   EXPECT_EQ(twice.Detect(image.View()).size(), 4U);
   EXPECT_LT(once.Detect(image.View()).size(), 4U);
 }
 
 TEST(TagDetector, CutTagsAreNotReported) {
   const PoseCP pose = PadAhead(1.5, 0.0, 0.0, 0.0, {0.8, 0.0});  // half of the pad is to the right
-  const auto found = TagDetector().Detect(PadImage(pose, TestCamera()).View());
+  const auto found = TagDetector().Detect(DrawPad(pose, TestCamera()).View());
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].id, 2);
   EXPECT_EQ(found[1].id, 3);
@@ -58,7 +58,7 @@ TEST(TagDetector, NoCornerIsTakenFromTheBorder) {
   TagDetector detector;
   for (int step = 0; step < 40; ++step) {
     const PoseCP pose = PadAhead(0.8, 0.2, 0.1 * step, 0.7, {0.55 + 0.01 * step, 0.1});
-    const auto found = detector.Detect(PadImage(pose, TestCamera()).View());
+    const auto found = detector.Detect(DrawPad(pose, TestCamera()).View());
     EXPECT_LT(WorstCorner(found, pose), 1.0) << step;
   }
 }
@@ -82,7 +82,7 @@ TEST(TagDetector, NoiseIsNoTag) {
 }
 
 TEST(TagDetector, SameImageSameBits) {
-  const GrayImage image = PadImage(PadAhead(3.0, 0.3, 0.5, 0.4), TestCamera());
+  const GrayImage image = DrawPad(PadAhead(3.0, 0.3, 0.5, 0.4), TestCamera());
   TagDetector detector;
   const auto first = detector.Detect(image.View());
   const auto second = detector.Detect(image.View());

@@ -59,14 +59,22 @@ void Perception::SensePad(const estimation::VehicleState& vehicle, const estimat
   const double t = vehicle.t;
   pad_measured_ = false;
   // Most steps bring nothing: the clock is read only if something has arrived.
-  const auto take = [this, onboard](const auto& measurement) {
-    solvers::AddThreadCpu(&sensing_times_.pad_filter, [&] {
-      if (onboard->Take(measurement) != control::Taken::kIgnored) pad_measured_ = true;
+  const auto take = [this, onboard](const auto& measurement, double* time) {
+    solvers::AddThreadCpu(time, [&] {
+      const control::Taken taken = onboard->Take(measurement);
+      if (taken != control::Taken::kIgnored && taken != control::Taken::kEmpty)
+        pad_measured_ = true;
     });
   };
-  if (const auto fix = gps_.Poll(t, pad)) take(*fix);
-  pad_eye_->Look(vehicle, onboard->own(), pad, onboard->pad(), &sensing_times_);
-  while (const auto sighting = pad_eye_->Poll(t)) take(*sighting);
+  if (const auto fix = gps_.Poll(t, pad)) take(*fix, &sensing_times_.pad_filter);
+  pad_eye_->Look(vehicle, onboard->own(), pad, &sensing_times_);
+  while (const auto seen = pad_eye_->Poll(t)) {
+    if (seen->image) {
+      take(*seen->image, &sensing_times_.pad_finding);
+    } else {
+      take(seen->sighting, &sensing_times_.pad_filter);
+    }
+  }
 }
 
 void Perception::SenseDepth(const estimation::VehicleState& vehicle, control::Onboard* onboard) {

@@ -79,9 +79,10 @@ class Onboard {
   Taken Take(const estimation::OwnVelocityFix& fix);
   Taken Take(const estimation::HeightSample& sample);
   Taken Take(const estimation::HeadingSample& sample);
-  /// The pad, by its GPS and by its tags.
+  /// The pad, by its GPS and by its tags: as they were found, or to be found in an image, which allocates.
   Taken Take(const estimation::PadGpsFix& fix);
   Taken Take(const estimation::PadSighting& sighting);
+  Taken Take(const estimation::PadImage& image);
   /// Obstacles. Returns from the pad are told apart.
   Taken Take(const estimation::DepthImage& image);
   Taken Take(const estimation::FootForce& force);

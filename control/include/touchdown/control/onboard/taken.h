@@ -10,13 +10,14 @@ enum class Taken {
   kUsed,     ///< in its place in time, also where it came late or out of order
   kWaiting,  ///< kept for the start of the filter
   kGated,    ///< too unlikely, or of no use to the filter now; nothing changed
+  kEmpty,    ///< an image that does not show the pad
   kIgnored,  ///< the pad's GPS, while its tags are seen and the own state is estimated
   kDoubled,  ///< this sensor's measurement of that time has been taken already
   kTooOld,   ///< older than the history reaches
   kInvalid,  ///< not finite, out of range, or ahead of time
   kUnasked,  ///< this vehicle has no such sensor, or its own state is not known yet
 };
-inline constexpr int kTakenKinds = 8;
+inline constexpr int kTakenKinds = 9;
 std::string_view ToString(Taken taken);
 
 /// A second one of the same time would be a double.

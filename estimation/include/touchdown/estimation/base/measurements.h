@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "touchdown/estimation/base/gray_image.h"
+
 namespace touchdown::estimation {
 
 /// Pinhole camera without distortion. C: camera frame, x right, y down, z along the optical axis.
@@ -49,6 +51,18 @@ struct PadGpsFix {
   Eigen::Vector2d p_WP = Eigen::Vector2d::Zero();  ///< [m]
   double sigma = 0.01;                             ///< standard deviation, each axis [m], >= 0
 };
+
+/// One grey image from a camera that is fixed to the vehicle and looks for the pad's tags.
+struct PadImage {
+  double t = 0.0;                                      ///< middle of the exposure [s]
+  CameraIntrinsics intrinsics;                         ///< of this size is `gray`
+  Eigen::Vector3d p_BC = Eigen::Vector3d::Zero();      ///< camera in B [m]
+  Eigen::Matrix3d R_BC = Eigen::Matrix3d::Identity();  ///< C to B
+  GrayImage gray;
+};
+
+/// Whether such a camera can have taken it, as above, and its pixels are all there.
+bool IsPossible(const PadImage& image);
 
 /// Pose of the pad seen by the downward camera through its tags, relative to the vehicle.
 struct PadSighting {
