@@ -91,6 +91,7 @@ OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck
                               const Envelope& envelope) {
   OnboardOptions options;
   options.model = model;
+  options.envelope = envelope;
   options.pad.pad_height = deck_height;
   options.pad.speed_prior = std::max(options.pad.speed_prior, envelope.PadSpeedPrior());
   options.shortest_contact_plan = planning::ReplannerOptions{}.min_contact_duration;
@@ -98,15 +99,15 @@ OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck
   return options;
 }
 
-OnboardParts LandingParts(const OnboardOptions& options, const Envelope& envelope) {
+OnboardParts LandingParts(const OnboardOptions& options) {
   planning::ReplannerOptions planner;
   planner.arrival = planning::ArrivalMode::kFree;
   planner.min_contact_duration = options.shortest_contact_plan;
-  SetVehicle(options.model, envelope, options.deck_size, 1.0 / options.replan_rate,
+  SetVehicle(options.model, options.envelope, options.deck_size, 1.0 / options.replan_rate,
              options.latency.measured ? options.latency.longest : 0.0, &planner);
   SetLanding(&planner);
   ControllerOptions law;
-  law.tilt_max = envelope.TrackingTilt();
+  law.tilt_max = options.envelope.TrackingTilt();
   OnboardParts parts;
   parts.planner = std::make_unique<planning::Replanner>(planner, solvers::StandardBackends());
   parts.controller = MakeController("geometric", options.model, law);

@@ -64,7 +64,9 @@ struct Onboard::Parts {
         replan_clock(options.replan_rate),
         close_clock(options.close_rate) {}
 
-  double FootForceAt(double t) const { return t - force_t <= kForceHolds ? foot_force : 0.0; }
+  double FootForceAt(double t) const {
+    return std::abs(t - force_t) <= kForceHolds ? foot_force : 0.0;
+  }
 
   void Mission(double t) {
     pilot->StepMission(senses.own(), senses.pad(), FootForceAt(t), 1.0 / options.mission_rate);
@@ -85,6 +87,7 @@ struct Onboard::Parts {
   }
 
   Taken TakeForce(const estimation::FootForce& force) {
+    if (!senses.own().known()) return Taken::kUnasked;
     if (senses.IsAhead(force.t) || !std::isfinite(force.force)) return Taken::kInvalid;
     if (force.t == force_t) return Taken::kDoubled;
     if (force.t < force_t) return Taken::kTooOld;
@@ -160,15 +163,20 @@ Taken Onboard::Take(const estimation::FootForce& force) { return Counted(it_->Ta
 
 const std::array<int, kTakenKinds>& Onboard::taken() const { return it_->taken; }
 
-void Onboard::Begin(const Eigen::Vector4d& thrusts) {
-  if (!it_->senses.own().known()) {
-    throw std::invalid_argument("Onboard::Begin: the own state is not known yet");
-  }
+void Onboard::Begin(double t, const Eigen::Vector4d& thrusts) {
   if (it_->pilot) throw std::invalid_argument("Onboard::Begin: the flight has begun");
+  estimation::CheckWithin("Onboard::Begin: t [s]", t, 0.0, kLatest);
   const estimation::VehicleModel& model = it_->options.model;
   for (int i = 0; i < 4; ++i) {
     estimation::CheckWithin("Onboard::Begin: one of the thrusts [N]", thrusts[i],
                             model.rotor_thrust_min, model.rotor_thrust_max);
+  }
+  it_->senses.Advance(t);
+  const estimation::OwnStatus status = it_->senses.own().Status(t);
+  if (!KnowsAttitude(status)) {
+    throw std::invalid_argument("Onboard::Begin: the own state at t [s] is " +
+                                std::string(estimation::ToString(status)) +
+                                "; allowed: good, outage, uncertain");
   }
   it_->senses.Begin();
   it_->pilot.emplace(it_->options, it_->parts, it_->senses.own().now(), thrusts, it_->senses.map());

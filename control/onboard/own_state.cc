@@ -83,8 +83,13 @@ Taken OwnState::Take(const VehicleState& state) {
   ++size_;
   for (int i = size_ - 1; i > at; --i) given_[Slot(i)] = given(i - 1);
   given_[Slot(at)] = state;
-  if (at == size_ - 1) now_ = state;
+  if (at == size_ - 1) TakeNewest(state);
   return Taken::kUsed;
+}
+
+void OwnState::TakeNewest(const VehicleState& state) {
+  if (advanced_ && state.t < *advanced_) return Advance(*advanced_);
+  now_ = state;
 }
 
 bool OwnState::IsAhead(double t) const { return advanced_ && !(t <= *advanced_ + kAhead); }
@@ -98,13 +103,7 @@ Taken OwnState::Added(const Measurement& measured, Stamps* stamps,
   const Taken taken = TakenAs((*filter_.*add)(measured));
   if (IsLookedAt(taken)) stamps->Add(measured.t);
   if (taken != Taken::kUsed) return taken;
-  const VehicleState newest = filter_->Estimate();
-  if (advanced_ && newest.t - ahead_ < *advanced_) {
-    Advance(*advanced_);
-  } else {
-    now_ = newest;
-    now_.t -= ahead_;
-  }
+  TakeNewest(Newest());
   return taken;
 }
 
@@ -124,10 +123,16 @@ Taken OwnState::Take(const estimation::HeadingSample& sample) {
   return Added(sample, &headings_, &estimation::OwnStateFilter::AddHeading);
 }
 
+VehicleState OwnState::Newest() const {
+  VehicleState state = filter_->Estimate();
+  state.t -= ahead_;
+  return state;
+}
+
 void OwnState::Advance(double t) {
   advanced_ = t;
   if (filter_) {
-    now_ = filter_->Estimate(t + ahead_);
+    if (filter_->started()) now_ = filter_->Estimate(t + ahead_);
   } else {
     while (size_ > 0 && IsAhead(given(size_ - 1).t)) --size_;
     if (size_ > 0) now_ = At(t);
@@ -160,7 +165,10 @@ bool OwnState::Reaches(double t) const {
 }
 
 estimation::OwnStatus OwnState::Status(double t) const {
-  if (filter_) return filter_->Status(t + ahead_);
+  if (filter_) {
+    const bool ahead = filter_->started() && Newest().t > t + kAhead;
+    return ahead ? estimation::OwnStatus::kImuStale : filter_->Status(t + ahead_);
+  }
   if (size_ == 0) return estimation::OwnStatus::kAligning;
   return std::abs(t - LatestAt(t).t) <= kCarriedOn ? estimation::OwnStatus::kGood
                                                    : estimation::OwnStatus::kImuStale;

@@ -54,6 +54,8 @@ class OwnState {
   Taken Added(const Measurement& measured, Stamps* stamps,
               estimation::OwnUpdate (estimation::OwnStateFilter::*add)(const Measurement&));
   bool IsAhead(double t) const;
+  estimation::VehicleState Newest() const;
+  void TakeNewest(const estimation::VehicleState& state);
   const estimation::VehicleState& LatestAt(double t) const;
   std::size_t Slot(int i) const { return static_cast<std::size_t>(first_ + i) % given_.size(); }
   const estimation::VehicleState& given(int i) const { return given_[Slot(i)]; }
@@ -70,5 +72,11 @@ class OwnState {
   int first_ = 0;
   int size_ = 0;
 };
+
+/// An attitude is known, however well: there is something to control.
+constexpr bool KnowsAttitude(estimation::OwnStatus status) {
+  return status == estimation::OwnStatus::kGood || status == estimation::OwnStatus::kOutage ||
+         status == estimation::OwnStatus::kUncertain;
+}
 
 }  // namespace touchdown::control

@@ -286,9 +286,8 @@ PilotCommand Pilot::Control(const OwnState& own) {
   PilotCommand command;
   command.reference = Reference(t);
   if (!mission_.motors_armed) return command;
-  command.law = own.Status(t) == estimation::OwnStatus::kImuStale
-                    ? Blind(command.reference)
-                    : Tracked(own.now(), command.reference);
+  command.law = KnowsAttitude(own.Status(t)) ? Tracked(own.now(), command.reference)
+                                             : Blind(t, command.reference);
   MixerOutput& mix = command.mix;
   mix = mixer_.Mix(command.law.wrench);
   if (lead_) mix.thrusts = lead_->Command(mix.thrusts, t);
@@ -297,9 +296,10 @@ PilotCommand Pilot::Control(const OwnState& own) {
 }
 
 // Nothing is known of the attitude, so no moment can be right. An autopilot that has one of its own levels out.
-ControlOutput Pilot::Blind(const planning::FlatState& reference) const {
+ControlOutput Pilot::Blind(double t, const planning::FlatState& reference) const {
   ControlOutput level;
-  level.wrench.thrust = model_.HoverThrust() / disturbance().thrust_gain;
+  level.wrench.thrust =
+      settling_.CarriedShare(t) * model_.HoverThrust() / disturbance().thrust_gain;
   level.R_WB_desired =
       Eigen::AngleAxisd(reference.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return level;

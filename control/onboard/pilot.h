@@ -76,7 +76,7 @@ class Pilot {
   bool plans_often() const;
 
  private:
-  ControlOutput Blind(const planning::FlatState& reference) const;
+  ControlOutput Blind(double t, const planning::FlatState& reference) const;
   ControlOutput Tracked(const estimation::VehicleState& vehicle,
                         const planning::FlatState& committed);
   bool arriving() const;

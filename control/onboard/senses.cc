@@ -74,6 +74,7 @@ Taken Senses::Take(const estimation::PadGpsFix& fix) {
   if (const auto refused = Refused(fix.t, fixes_)) return *refused;
   if (TagsGuide(own_.now().t)) return Taken::kIgnored;
   estimation::PadGpsFix doubted = fix;
+  if (!(fix.sigma >= 0.0)) return Taken::kInvalid;
   doubted.sigma = std::hypot(fix.sigma, own_.HorizontalSigma());
   if (pad_log_ != nullptr) pad_log_->push_back({own_.now().t, doubted});
   const Taken taken = TakenAs(pad_.AddGps(doubted));

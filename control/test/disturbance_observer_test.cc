@@ -293,6 +293,24 @@ TEST(DisturbanceObserver, AJumpOfTheStateIsNoForce) {
   EXPECT_EQ(observer.disturbance().force_W, before);
 }
 
+TEST(DisturbanceObserver, AfterAGapTheRotorsHaveFollowed) {
+  const estimation::VehicleModel model = Vehicle();
+  const Eigen::Vector4d hover = Eigen::Vector4d::Constant(0.25 * model.HoverThrust());
+  DisturbanceObserver observer(model);
+  estimation::VehicleState state;
+  observer.Command(1.5 * hover);
+  for (; state.t < 0.5; state.t += kStep) {
+    observer.Update(state, true);  // held: nothing is learned, but the rotors turn up
+    observer.Command(1.5 * hover);
+  }
+  observer.Command(hover);
+  state.t += 1.0;
+  for (int k = 0; k < 100; ++k, state.t += kStep) {
+    EXPECT_NEAR(observer.Update(state, false).force_W.norm(), 0.0, 1e-9);
+    observer.Command(hover);
+  }
+}
+
 TEST(DisturbanceObserver, EstimateIsBounded) {
   DisturbanceObserverOptions options;
   options.force_max = 0.2;

@@ -118,7 +118,7 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
   } else {
     onboard.Take(world.vehicle);
   }
-  onboard.Begin(world.thrusts);
+  onboard.Begin(world.vehicle.t, world.thrusts);
   Landing landing;
   bool met = false;
   for (int k = 0; k < 20000; ++k) {
@@ -224,7 +224,7 @@ TEST(OnboardFlights, NothingIsAllocatedOnceItFlies) {
   const OnboardOptions options = LandingOptions(world.model, ToyWorld::kDeck);
   Onboard onboard(options, LandingParts(options));
   onboard.Take(world.vehicle);
-  onboard.Begin(world.thrusts);
+  onboard.Begin(world.vehicle.t, world.thrusts);
   long taking = 0, stepping = 0;
   int steps = 0;
   for (bool armed = true; armed && world.vehicle.t < 30.0; ++steps) {

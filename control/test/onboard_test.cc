@@ -35,7 +35,8 @@ estimation::VehicleState At(double t, const Eigen::Vector3d& p_WB = {0.0, 0.0, 2
 Onboard Hovering(double seconds) {
   Onboard onboard = Made(Options());
   for (int k = 0; k <= std::lround(100 * seconds); ++k) onboard.Take(At(0.01 * k));
-  onboard.Begin(Eigen::Vector4d::Constant(0.25 * ToyQuadrotor().HoverThrust()));
+  onboard.Begin(0.01 * std::lround(100 * seconds),
+                Eigen::Vector4d::Constant(0.25 * ToyQuadrotor().HoverThrust()));
   return onboard;
 }
 
@@ -82,12 +83,12 @@ TEST(Onboard, WhatIsMissingOrOutOfRangeIsNamed) {
 
 TEST(Onboard, NothingTurnsBeforeTheFlightBegins) {
   Onboard onboard = Made(Options());
-  EXPECT_THAT(Sentence([&] { onboard.Begin(Eigen::Vector4d::Zero()); }),
-              ::testing::HasSubstr("own state is not known"));
+  EXPECT_THAT(Sentence([&] { onboard.Begin(0.0, Eigen::Vector4d::Zero()); }),
+              ::testing::HasSubstr("own state at t [s] is aligning"));
   onboard.Take(At(0.0));
   EXPECT_FALSE(onboard.Step(0.0).armed);
   EXPECT_EQ(onboard.Step(0.1).thrusts, Eigen::Vector4d::Zero());
-  onboard.Begin(Eigen::Vector4d::Constant(2.9));
+  onboard.Begin(0.0, Eigen::Vector4d::Constant(2.9));
   EXPECT_TRUE(onboard.Step(0.2).armed);
 }
 
@@ -151,6 +152,50 @@ TEST(Onboard, AWrongStateBeforeTheFirstStepDoesNotBlindIt) {
   EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kGood);
 }
 
+TEST(Onboard, AWrongStateBeforeTheFlightIsNotFlownTo) {
+  Onboard onboard = Made(Options());
+  for (int k = 0; k <= 10; ++k) onboard.Take(At(0.01 * k));
+  onboard.Take(At(1e6, {9, 9, 9}));
+  onboard.Begin(0.1, Eigen::Vector4d::Constant(2.9));
+  onboard.Step(0.102);
+  EXPECT_EQ(onboard.own().p_WB.x(), 0.0);
+  EXPECT_EQ(onboard.Reference(0.2).p_WB.x(), 0.0);
+  EXPECT_FALSE(onboard.map().IsObservedFree(onboard.map().CellOf({9, 9, 9})));
+  EXPECT_TRUE(onboard.map().IsObservedFree(onboard.map().CellOf({0, 0, 2})));
+}
+
+// Two clocks that have nothing in common.
+TEST(Onboard, WithStatesOfAnotherTimeNoFlightBegins) {
+  Onboard onboard = Made(Options());
+  onboard.Take(At(1.7e9));
+  const auto begin = [&] { onboard.Begin(10.0, Eigen::Vector4d::Constant(2.9)); };
+  EXPECT_THAT(Sentence(begin), ::testing::HasSubstr("aligning"));
+  EXPECT_EQ(onboard.Take(At(1.7e9 + 0.01)), Taken::kInvalid);
+  onboard.Take(At(10.0));
+  EXPECT_NO_THROW(begin());
+}
+
+TEST(Onboard, WithAnImuOfAnotherTimeNoFlightBegins) {
+  OnboardOptions options = Options();
+  options.own_state.emplace();
+  Onboard onboard = Made(options);
+  onboard.Take(estimation::ImuSample{0.0, {0, 0, 9.81}, {0, 0, 0}});
+  onboard.Take(estimation::OwnPositionFix{0.0, {1, 2, 3}, 0.05, 0.05});
+  onboard.Take(estimation::HeadingSample{0.0, 0.1, 0.03});
+  onboard.Take(estimation::ImuSample{1e6, {0, 0, 9.81}, {0, 0, 0}});
+  EXPECT_THAT(Sentence([&] { onboard.Begin(2.0, Eigen::Vector4d::Constant(2.9)); }),
+              ::testing::HasSubstr("imu_stale"));
+}
+
+TEST(Onboard, AStateThatIsLateDoesNotTurnTimeBack) {
+  Onboard onboard = Hovering(0.1);
+  onboard.Step(0.2);
+  EXPECT_EQ(onboard.Take(At(0.142, {0.1, 0, 2})), Taken::kUsed);
+  EXPECT_EQ(onboard.own().t, 0.2);
+  EXPECT_EQ(onboard.own().p_WB.x(), 0.1);
+  EXPECT_EQ(onboard.Take(estimation::FootForce{0.2, 1.0}), Taken::kUsed);
+}
+
 // A state from a little ahead waits for its time; the true ones are flown by until then.
 TEST(Onboard, AStateFromALittleAheadDoesNotStandForNow) {
   Onboard onboard = Hovering(0.1);
@@ -167,6 +212,11 @@ TEST(Onboard, AForceFromTheFutureIsRefused) {
   Onboard onboard = Hovering(0.1);
   EXPECT_EQ(onboard.Take(estimation::FootForce{1e9, 9.0}), Taken::kInvalid);
   EXPECT_EQ(onboard.Take(estimation::FootForce{0.1, 0.0}), Taken::kUsed);
+}
+
+TEST(Onboard, AForceBeforeTheOwnStateIsUnasked) {
+  Onboard onboard = Made(Options());
+  EXPECT_EQ(onboard.Take(estimation::FootForce{1e9, 9.0}), Taken::kUnasked);
 }
 
 // A sensor that dies under load would press for ever.
@@ -188,6 +238,31 @@ TEST(Onboard, AStepsTimeIsATime) {
   const double good = onboard.Step(0.1).t;
   for (const double wrong : {kNan, -1.0, 1e300}) EXPECT_EQ(onboard.Step(wrong).t, good);
   EXPECT_EQ(onboard.Step(0.102).t, 0.102);
+}
+
+TEST(Onboard, WithoutAnImuNoMomentIsAsked) {
+  OnboardOptions options = Options();
+  options.own_state.emplace();
+  Onboard onboard = Made(options);
+  const auto feed = [&](double t) {
+    onboard.Take(estimation::OwnPositionFix{t, {1, 2, 3}, 0.05, 0.05});
+    onboard.Take(estimation::HeadingSample{t, 0.1, 0.03});
+    onboard.Take(estimation::ImuSample{t, {0, 0, 9.81}, {0, 0, 0}});
+  };
+  for (int k = 0; k <= 600; ++k) feed(0.002 * k);
+  onboard.Begin(1.2, Eigen::Vector4d::Constant(2.9));
+  feed(1.202);
+  EXPECT_GT(onboard.Step(1.202).wrench.moment_B.norm(), 0.0);
+  EXPECT_EQ(onboard.Step(1.5).wrench.moment_B.norm(), 0.0);
+  EXPECT_EQ(onboard.status().own, estimation::OwnStatus::kImuStale);
+  feed(1.502);
+  onboard.Step(1.502);
+  EXPECT_NE(onboard.status().own, estimation::OwnStatus::kImuStale);
+}
+
+TEST(Onboard, ANegativeSigmaIsInvalid) {
+  Onboard onboard = Hovering(0.1);
+  EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.1, {1, 2}, -0.05}), Taken::kInvalid);
 }
 
 TEST(Onboard, WithoutAnAttitudeNoMomentIsAsked) {
@@ -233,6 +308,7 @@ TEST(Onboard, DoublesOfTheOwnSensorsChangeNothing) {
         if (k % 50 == 0) onboard->Take(estimation::OwnPositionFix{t, {1, 2, 3}, 0.05, 0.05});
         if (k % 20 == 0) onboard->Take(estimation::HeightSample{t, 3.0, 0.1});
         if (k % 20 == 0) onboard->Take(estimation::HeadingSample{t, 0.1, 0.03});
+        if (k % 25 == 0) onboard->Take(estimation::OwnVelocityFix{t, {0, 0, 0}, 0.05});
       }
     }
   };
@@ -241,7 +317,7 @@ TEST(Onboard, DoublesOfTheOwnSensorsChangeNothing) {
   EXPECT_EQ(once.own().p_WB, twice.own().p_WB);
   EXPECT_EQ(once.own().q_WB.coeffs(), twice.own().q_WB.coeffs());
   EXPECT_EQ(once.taken()[static_cast<int>(Taken::kDoubled)], 0);
-  EXPECT_EQ(twice.taken()[static_cast<int>(Taken::kDoubled)], 1501 + 31 + 76 + 76);
+  EXPECT_EQ(twice.taken()[static_cast<int>(Taken::kDoubled)], 1501 + 31 + 76 + 76 + 61);
 }
 
 // A fast vehicle may land on a fast pad.
@@ -257,16 +333,16 @@ TEST(Onboard, AFlightBeginsOnceAndWithThrusts) {
   Onboard onboard = Made(Options());
   onboard.Take(At(0.0));
   for (const double wrong : {kNan, -1.0, 100.0}) {
-    EXPECT_THAT(Sentence([&] { onboard.Begin(Eigen::Vector4d(2.9, wrong, 2.9, 2.9)); }),
+    EXPECT_THAT(Sentence([&] { onboard.Begin(0.0, Eigen::Vector4d(2.9, wrong, 2.9, 2.9)); }),
                 ::testing::HasSubstr("thrusts"));
   }
   EXPECT_FALSE(onboard.Step(0.1).armed);
-  onboard.Begin(Eigen::Vector4d::Constant(2.9));
-  EXPECT_THAT(Sentence([&] { onboard.Begin(Eigen::Vector4d::Constant(2.9)); }),
+  onboard.Begin(0.0, Eigen::Vector4d::Constant(2.9));
+  EXPECT_THAT(Sentence([&] { onboard.Begin(0.0, Eigen::Vector4d::Constant(2.9)); }),
               ::testing::HasSubstr("has begun"));
 }
 
-// Without a newer state the vehicle does not know where it is: it holds.
+// Without a newer state the vehicle does not know where it is.
 TEST(Onboard, AStateThatStopsComingIsSaid) {
   Onboard onboard = Hovering(0.1);
   onboard.Step(0.15);
@@ -307,7 +383,7 @@ TEST(Onboard, AnImageIsPlacedWhereTheVehicleWasThen) {
   onboard.Take(world.vehicle);
   const estimation::DepthImage image = world.Depth();
   onboard.Take(At(0.3, {1.5, 0.0, 2.0}));
-  onboard.Begin(Eigen::Vector4d::Constant(2.9));
+  onboard.Begin(0.3, Eigen::Vector4d::Constant(2.9));
   EXPECT_EQ(onboard.Take(image), Taken::kUsed);
   const auto occupied = [&](double x) {
     return onboard.map().IsOccupied(onboard.map().CellOf({x, 0.05, 2.05}));

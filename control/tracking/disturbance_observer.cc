@@ -87,7 +87,11 @@ const Disturbance& DisturbanceObserver::Update(const estimation::VehicleState& s
   const double dt = state.t - last_.t;
   if (started_ && dt <= 0.0) return disturbance_;
   const bool follows = started_ && dt <= kLongestStep;
-  if (follows) Predict(dt);
+  if (follows) {
+    Predict(dt);
+  } else {
+    thrusts_ = commanded_;  // after a gap the rotors have followed
+  }
   const bool jumped = (state.v_WB - last_.v_WB).norm() > kGreatestAcceleration * dt ||
                       (state.w_WB_B - last_.w_WB_B).norm() > kGreatestSpinUp * dt;
   if (follows && !held && !jumped) {

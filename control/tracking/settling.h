@@ -28,6 +28,11 @@ class Settling {
   /// Share of standing at time t, not before that of the last note, in [0, 1]. Continuous.
   double Share(double t) const noexcept;
 
+  /// Of the weight that the rotors carry at time t.
+  double CarriedShare(double t) const noexcept {
+    return 1.0 - Share(t) * (1.0 - parameters_.thrust_share);
+  }
+
   /// Blends what the law is told and asked with standing at state.t; without contact nothing is changed.
   void Apply(estimation::VehicleState* state, planning::FlatState* reference,
              Disturbance* disturbance) const noexcept;

@@ -37,7 +37,7 @@ def hidden_names(content):
     """What the anonymous namespaces of a source declare: constants, types, functions with their arguments."""
     names = set()
     for body in re.findall(r"^namespace \{\n(.*?)^\}  // namespace$", content, re.S | re.M):
-        names |= set(re.findall(r"^constexpr [\w:<> ]*\b(k\w+)", body, re.M))
+        names |= set(re.findall(r"^const(?:expr)? [^;={(]*?\b(k\w+)", body, re.M))
         names |= set(re.findall(r"^(?:struct|class|enum class) (\w+)", body, re.M))
         names |= {" ".join(head.split()) for head in re.findall(r"^\w[\w:<>&* \[\]]*?\b(\w+\([^;{}()]*\)) \{$", body, re.M)}
     return names

@@ -12,7 +12,7 @@ PAGE = """
 | `planning/replan` | a step | `map` |
 """
 HOUSE = {
-    "solvers/linear/matrix.cc": '#include "solvers/linear/matrix.h"\nnamespace {\nconstexpr double kSmall = 1;\n}  // namespace\n',
+    "solvers/linear/matrix.cc": '#include "solvers/linear/matrix.h"\nnamespace {\nconstexpr double kSmall = 1;\nstruct Row {\n};\ndouble Sum(const Row& row) {\n}\n}  // namespace\n',
     "solvers/linear/matrix.h": "#include <Eigen/Core>\n",
     "solvers/banded/step.cc": '#include "touchdown/solvers/banded/step.h"\n#include "solvers/linear/matrix.h"\n',
     "solvers/include/touchdown/solvers/banded/step.h": "#include <vector>\n",
@@ -52,7 +52,8 @@ def test_a_house_in_order_is_in_order(tmp_path):
         ("control/law.cc", "", "control has no line"),
         ("solvers/include/touchdown/solvers/banded/step.h", '#include "solvers/linear/matrix.h"\n', "public and includes solvers/linear/matrix.h"),
         ("solvers/include/touchdown/solvers/banded/step.h", "#include <ceres/ceres.h>\n", "public and includes ceres/ceres.h"),
-        ("solvers/linear/other.cc", "namespace {\nconstexpr double kSmall = 2;\n}  // namespace\n", "kSmall is in an anonymous namespace of"),
+        *[("solvers/linear/other.cc", f"namespace {{\n{twice}\n}}  // namespace\n", "is in an anonymous namespace of")
+          for twice in ("constexpr std::array<double, 2> kSmall = {1, 2};", "struct Row {", "double Sum(const Row& row) {")],
     ],
 )  # fmt: skip
 def test_a_breach_is_named(tmp_path, path, content, sentence):

@@ -86,7 +86,6 @@ class Trial {
   TrialResult Run() {
     try {
       while (!judge_.outcome()) Step();
-      CheckTaken();
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
                                            world_.time(), result_.seed, error.what()));
@@ -120,7 +119,7 @@ class Trial {
         samples_(samples) {
     result_.seed = seed;
     perception_.Hover(world_, &onboard_);
-    onboard_.Begin(Eigen::Vector4d(world_.rotor_commands().data()));
+    onboard_.Begin(world_.time(), Eigen::Vector4d(world_.rotor_commands().data()));
     if (samples_ != nullptr) onboard_.LogPadTo(&samples_->pad.arrivals);
     if (record_ != nullptr) {
       onboard_.KeepBefore(true);
@@ -136,6 +135,7 @@ class Trial {
 
   void Step() {
     perception_.Sense(world_, &onboard_);
+    CheckTaken();
     if (perception_.image_taken()) stand_watch_.Image();
     if (samples_ != nullptr && perception_.image_taken()) {
       samples_->frames.push_back({world_.time(), perception_.frame_times()});

@@ -40,6 +40,7 @@ control::OnboardOptions OptionsOf(const Scenario& scenario, const estimation::Ve
   const PlannerEntry& planner = PlannerOf(scenario, registries);
   control::OnboardOptions options;
   options.model = model;
+  options.envelope = EnvelopeOf(scenario);
   options.descent = StyleOf(scenario);
   options.to_goal = scenario.task == TaskKind::kGoTo;
   options.end_at_rest = scenario.planning.endpoint_velocity == EndpointVelocityKind::kRest;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/flight/own_sense.h"
 
-#include <numbers>
+#include "estimation/base/degrees.h"
 
 namespace touchdown::evaluation {
 
@@ -26,7 +26,7 @@ sim::OwnSensorRigConfig OwnSensorsOf(const Scenario& scenario) {
   config.sensors.height.rate_hz = own.height.rate;
   config.sensors.height.sigma = own.height.sigma;
   config.sensors.heading.rate_hz = own.heading.rate;
-  config.sensors.heading.sigma = own.heading.sigma_deg * std::numbers::pi / 180.0;
+  config.sensors.heading.sigma = estimation::Radians(own.heading.sigma_deg);
   return config;
 }
 

@@ -4,13 +4,14 @@
 // upright and disarmed, makes a landing. Everything else is exactly one failure class; an obstacle
 // that is touched before the landing is over is a collision, whatever the feet stand on.
 #include "evaluation/judge/landing_judge.h"
-#include "estimation/base/degrees.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "estimation/base/degrees.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -44,7 +44,7 @@ void Stand(const Scenario& scenario, double seconds, Look&& look) {
   control::Onboard onboard = MakeOnboard(scenario, model, course, registries);
   OwnSense own(scenario, 3);
   own.Hover(Start(), 0.002, &onboard);
-  onboard.Begin(Eigen::Vector4d::Constant(0.25 * model.HoverThrust()));
+  onboard.Begin(0.0, Eigen::Vector4d::Constant(0.25 * model.HoverThrust()));
   estimation::VehicleState truth = Start();
   for (int k = 0; k <= std::lround(seconds / 0.002); ++k) {
     truth.t = 0.002 * k;

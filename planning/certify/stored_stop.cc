@@ -15,9 +15,9 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kAboveRest = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
-constexpr double kClimb = 1.0;      // where braking on the level is not proven [m]
-constexpr double kPressing = 0.2;   // past the contact that is expected, until it is noticed [s]
+constexpr double kFeetAboveDeck = 0.1;  // of the feet of a vehicle that rests in the pad's way [m]
+constexpr double kClimb = 1.0;          // where braking on the level is not proven [m]
+constexpr double kPressing = 0.2;  // past the contact that is expected, until it is noticed [s]
 constexpr double kContactClock = 0.01;  // of the time at which contact is expected [s]
 constexpr double kOnward = kLatestContact - kPressing;  // from a curve's end to contact at most [s]
 
@@ -42,7 +42,7 @@ double FeetAbove(const UniformBspline& curve, double t, const HullSpace& hull) {
 }  // namespace
 
 double LowestRest(double t, const HullSpace& hull) {
-  return hull.pad->MeanAt(t).p_WP.z() + hull.foot_depth + kAboveRest;
+  return hull.pad->MeanAt(t).p_WP.z() + hull.foot_depth + kFeetAboveDeck;
 }
 
 void Enter(const PairProof& proof, Certificate* certificate) {
@@ -89,7 +89,7 @@ PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits
     if (!proof.proven) {
       const Eigen::Vector3d p_rest = pair->stop.Position(pair->stop.t_end());
       const double lift = TooLow(p_rest, pair->stop.t_end(), hull);
-      proof.proven = rests(lift > 0.0 ? lift + kAboveRest : kClimb);
+      proof.proven = rests(lift > 0.0 ? lift + kFeetAboveDeck : kClimb);
     }
     if (!proof.proven && !arrives) proof.proven = proof.contact = touches_down();
   }

@@ -30,7 +30,7 @@ constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
 constexpr double kBoundRounding = 1e-12;
 constexpr double kLeastCost = 0.1;
 constexpr double kLastShift = 1e6;
-constexpr double kNextShift = 10.0;
+constexpr double kLookShiftGrowth = 10.0;
 constexpr double kReaches[] = {1.0, 0.1, 0.01};  // shares of a step onto the rows
 
 }  // namespace
@@ -388,7 +388,7 @@ double OptimalityCheck::CostValue() const { return std::max(std::abs(cost_), kLe
 bool OptimalityCheck::FactorShifted() {
   MeasureDiagonal();
   double taken = 0.0;
-  for (double share = kFirstShift; share <= kLastShift; share *= kNextShift) {
+  for (double share = kFirstShift; share <= kLastShift; share *= kLookShiftGrowth) {
     Shift(share - taken);
     taken = share;
     if (factor_.Factor(at_->hessian) != BorderedCholesky::Status::kDefinite) continue;

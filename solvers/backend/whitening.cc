@@ -12,9 +12,9 @@ namespace touchdown::solvers {
 
 namespace {
 
-constexpr double kFirstRidge = 1e-9;    // of the mean diagonal, and of the corner
+constexpr double kWhiteningFirstShift = 1e-9;  // of the mean diagonal, and of the corner
 constexpr double kLeastCorner = 1e-10;  // of the corner: less is rounding of what was subtracted
-constexpr double kRidgeGrowth = 100.0;
+constexpr double kWhiteningShiftGrowth = 100.0;
 constexpr int kAttempts = 8;
 
 double MeanDiagonal(const BorderedBandMatrix& A) {
@@ -63,7 +63,7 @@ bool Whitening::Set(const View& view, const double* y, ViewEvaluation* evaluatio
       regular_ = shift == 0.0;
       return true;
     }
-    shift = shift == 0.0 ? kFirstRidge : kRidgeGrowth * shift;
+    shift = shift == 0.0 ? kWhiteningFirstShift : kWhiteningShiftGrowth * shift;
   }
   regular_ = false;
   return true;

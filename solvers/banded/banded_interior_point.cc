@@ -20,7 +20,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "touchdown/solvers/backend/newton_step.h"
 

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "touchdown/solvers/backend/newton_step.h"
 
@@ -19,13 +18,13 @@ namespace touchdown::solvers {
 namespace {
 
 constexpr double kSufficientDecrease = 1e-4;
-constexpr double kLeastLength = 1e-10;
-constexpr double kLessShift = 1e5;    // 0.1 of the last one, which is 1e-6 of this
-constexpr double kMostPerSize = 1e3;  // over the point's size
+constexpr double kNewtonShortestStep = 1e-10;
+constexpr double kLessShift = 1e5;          // 0.1 of the last one, which is 1e-6 of this
+constexpr double kNewtonLongestStep = 1e3;  // over the point's size
 /// Below this share of the cost a decrease is rounding.
 constexpr double kValueRounding = 1e-15;
 /// What was gained counts for this share of the cost at least.
-constexpr double kLeastScale = 1e-6;
+constexpr double kLeastShareOfScale = 1e-6;
 
 }  // namespace
 
@@ -63,7 +62,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
     // Of the cost; of what was gained, where a constant in the cost must not end the solve.
     const double gained = std::abs(evaluator->first_cost() - value);
     const double whole =
-        tolerances.of_gain ? std::clamp(gained, kLeastScale * scale, scale) : scale;
+        tolerances.of_gain ? std::clamp(gained, kLeastShareOfScale * scale, scale) : scale;
     if (promised <= (shift > 0.0 ? tolerances.own : tolerances.gap) * whole) {
       ended_near_ = promised > tolerances.own * whole;
       return SolveStatus::kConverged;
@@ -86,7 +85,7 @@ SolveStatus BandedNewton::Run(const View& view, const double* start, const Toler
 
 /// Where hardly anything curves, nothing tells how far a step may go.
 double BandedNewton::Shorten() {
-  const double share = kMostPerSize * (1.0 + Largest(y_)) / Largest(step_);
+  const double share = kNewtonLongestStep * (1.0 + Largest(y_)) / Largest(step_);
   if (share >= 1.0) return 1.0;
   for (double& number : step_) number *= share;
   return share;
@@ -98,7 +97,7 @@ double BandedNewton::Shorten() {
 /// accepted.
 double BandedNewton::LineSearch(double value, double slope, bool derivatives,
                                 Evaluator* evaluator) {
-  for (double t = 1.0; t > kLeastLength; t *= 0.5) {
+  for (double t = 1.0; t > kNewtonShortestStep; t *= 0.5) {
     for (std::size_t i = 0; i < y_.size(); ++i) trial_[i] = y_[i] + t * step_[i];
     bool ok = derivatives ? evaluator->EvaluateLagrangian(trial_.data(), {})
                           : evaluator->Evaluate(trial_.data(), {});

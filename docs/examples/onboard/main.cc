@@ -84,7 +84,7 @@ int main() {
   options.estimate_disturbance = false;  // the autopilot sees to that
   control::Onboard onboard(options, control::LandingParts(options));
   onboard.Take(world.vehicle);
-  onboard.Begin(Eigen::Vector4d::Constant(0.25 * world.model.HoverThrust()));
+  onboard.Begin(0.0, Eigen::Vector4d::Constant(0.25 * world.model.HoverThrust()));
 
   for (int k = 0; k < 30000; ++k) {
     const double t = world.vehicle.t;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "estimation/base/degrees.h"
 #include "evaluation/base/build_info.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "evaluation/studies/hostile/hostile_conditions.h"
@@ -80,7 +81,7 @@ std::string TopView(const Scenario& s, const Registries& registries) {
   }
   const Eigen::Vector2d low = view.min() - Eigen::Vector2d::Constant(kBorder);
   const Eigen::Vector2d size = view.sizes() + Eigen::Vector2d::Constant(2.0 * kBorder);
-  const double yaw = s.start.yaw_deg * 3.14159265358979323846 / 180.0;
+  const double yaw = estimation::Radians(s.start.yaw_deg);
   const Eigen::Vector2d start = s.start.position.head<2>();
   const Eigen::Vector2d pad = course->At(0.0).p_WP.head<2>();
   const double deck = s.pad.deck_size;

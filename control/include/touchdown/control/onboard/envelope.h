@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a vehicle may do in flight, and what follows from that for its planner, its map and its tracking law.
+// What follows from a vehicle and its envelope for its planner, its map and its tracking law.
 #pragma once
 
 #include "touchdown/control/onboard/onboard_options.h"
@@ -9,24 +9,6 @@
 #include "touchdown/planning/spline/limits.h"
 
 namespace touchdown::control {
-
-/// Of plans: the tracking law may use more.
-struct Envelope {
-  double speed = 3.0;         ///< [m/s]
-  double acceleration = 6.0;  ///< [m/s^2]
-  double tilt_deg = 35.0;     ///< [deg]
-  double ceiling = 10.0;      ///< the body's origin stays below this [m]
-
-  /// Speed, and acceleration as the tilt allows it.
-  planning::Limits limits() const;
-  /// Of stops: gusts and steady wind are not to be paid for by the way to rest [rad].
-  double StopTilt() const;
-  /// 1 sigma of the pad's velocity before it is measured [m/s]: a pad may be nearly as fast as the vehicle, and a
-  /// narrow prior would gate its first fixes for ever.
-  double PadSpeedPrior() const;
-  /// Of the tracking law [rad].
-  double TrackingTilt() const;
-};
 
 /// The hull's radius about the centre of mass, feet and all, however the vehicle tilts [m].
 double HullAtEveryTilt(const estimation::VehicleModel& model);
@@ -49,9 +31,9 @@ void SetLanding(planning::ReplannerOptions* options);
 
 /// An Onboard's options and parts for a vehicle that lands on a pad of this height by a Replanner, with the own state
 /// given: what the program uses by default, without its latency. Change options before LandingParts, which takes from
-/// them what planner and law need to know. @throws std::invalid_argument as Replanner does.
+/// them, the envelope too, what planner and law need to know. @throws std::invalid_argument as Replanner does.
 OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height,
                               const Envelope& envelope = {});
-OnboardParts LandingParts(const OnboardOptions& options, const Envelope& envelope = {});
+OnboardParts LandingParts(const OnboardOptions& options);
 
 }  // namespace touchdown::control

@@ -90,9 +90,11 @@ class Onboard {
   /// How many measurements became what, by Taken.
   const std::array<int, kTakenKinds>& taken() const;
 
-  /// The vehicle hovers, with these rotor thrusts [N]: the flight begins, once. The own state is to be known.
-  /// @throws std::invalid_argument if it is not, if the flight has begun, or for a thrust out of the model's range.
-  void Begin(const Eigen::Vector4d& thrusts);
+  /// The vehicle hovers at the time t [s], in [0, 1e10], with these rotor thrusts [N]: the flight begins, once. States
+  /// from later than t, by more than a moment, are forgotten.
+  /// @throws std::invalid_argument if its state at t is not known then, if the flight has begun, or for a time or a
+  /// thrust out of its range.
+  void Begin(double t, const Eigen::Vector4d& thrusts);
 
   /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one
   /// again. Before Begin: the rotors stand still.

@@ -14,8 +14,27 @@
 #include "touchdown/planning/map/occupancy_map.h"
 #include "touchdown/planning/map/persistent_map.h"
 #include "touchdown/planning/replan/planner.h"
+#include "touchdown/planning/spline/limits.h"
 
 namespace touchdown::control {
+
+/// Of plans: the tracking law may use more.
+struct Envelope {
+  double speed = 3.0;         ///< [m/s]
+  double acceleration = 6.0;  ///< [m/s^2]
+  double tilt_deg = 35.0;     ///< [deg]
+  double ceiling = 10.0;      ///< the body's origin stays below this [m]
+
+  /// Speed, and acceleration as the tilt allows it.
+  planning::Limits limits() const;
+  /// Of stops: gusts and steady wind are not to be paid for by the way to rest [rad].
+  double StopTilt() const;
+  /// 1 sigma of the pad's velocity before it is measured [m/s]: a pad may be nearly as fast as the vehicle, and a
+  /// narrow prior would gate its first fixes for ever.
+  double PadSpeedPrior() const;
+  /// Of the tracking law [rad].
+  double TrackingTilt() const;
+};
 
 /// From the time of a question to the time at which its answer is flown.
 struct PlanLatency {
@@ -29,6 +48,7 @@ struct PlanLatency {
 /// Numbers and switches. The defaults land the default vehicle.
 struct OnboardOptions {
   estimation::VehicleModel model;
+  Envelope envelope;
 
   DescentStyle descent = DescentStyle::kPlanned;  ///< kNone: it stays above the pad
   bool to_goal =

@@ -65,8 +65,8 @@ class Controller {
   virtual ~Controller() = default;
 
   /// Does not allocate. Inputs that are not finite give an output that is not finite.
-  /// `disturbance` is to be compensated; the law "paper", as published, does not look at it. `tilt_most` is of the
-  /// desired thrust, besides the options' tilt_max, > 0 [rad].
+  /// @param disturbance to compensate; the law "paper", as published, does not look at it.
+  /// @param tilt_most of the desired thrust, besides the options' tilt_max, > 0 [rad].
   virtual ControlOutput Update(
       const estimation::VehicleState& state, const planning::FlatState& reference,
       const Disturbance& disturbance = {},

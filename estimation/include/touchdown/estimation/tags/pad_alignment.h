@@ -28,7 +28,7 @@ class PadAlignment {
 
   /// Replaces pose and covariance if the printed sheet is found in the image near where the pose
   /// puts it; else leaves them as they are. `pose` must be kSolved. Allocates at the first images.
-  /// `normal` is what is known of the deck's normal, as in SolvePadPose.
+  /// @param normal what is known of the deck's normal, as in SolvePadPose.
   /// @returns whether the pose was replaced.
   bool Refine(const GrayImageView& image, const CameraIntrinsics& camera,
               const std::optional<PadNormal>& normal, PadPose* pose);

@@ -32,7 +32,7 @@ class PadFinder {
   /// Throws std::invalid_argument for an option out of its range.
   explicit PadFinder(const PadFinderOptions& options = {});
 
-  /// `normal` is what is known of the deck's normal (LevelPadNormal). Throws as TagDetector and
+  /// @param normal what is known of the deck's normal (LevelPadNormal). Throws as TagDetector and
   /// SolvePadPose do. Allocates.
   PadView Find(const GrayImageView& image, const CameraIntrinsics& camera,
                const std::optional<PadNormal>& normal = std::nullopt);

@@ -57,20 +57,21 @@ struct PadPose {
 
 /// The pose that explains all corners of all tags best, in the sense of least squares of their
 /// distances in the image. Does not allocate. Never throws for what an image may hold.
-/// `tags` have ids of PadTags(), each once. `normal` decides between the two poses, and makes that of a single tag
-/// sharper. Throws std::invalid_argument for options or a normal out of range, or for an id that the pad
+/// @param tags with ids of PadTags(), each once.
+/// @param normal decides between the two poses, and makes that of a single tag sharper.
+/// Throws std::invalid_argument for options or a normal out of range, or for an id that the pad
 /// lacks.
 PadPose SolvePadPose(std::span<const TagDetection> tags, const CameraIntrinsics& camera,
                      const PadPoseOptions& options = {},
                      const std::optional<PadNormal>& normal = std::nullopt);
 
 /// The pose as a measurement for the pad filter. The pose must be kSolved.
-/// `t` is the time stamp of the image [s], R_BC turns C into B, p_BC is the camera in B [m].
+/// @param t time stamp of the image [s]. @param R_BC C to B. @param p_BC camera in B [m].
 PadSighting ToSighting(const PadPose& pose, double t, const Eigen::Matrix3d& R_BC,
                        const Eigen::Vector3d& p_BC);
 
 /// The deck's normal as a camera on a vehicle at attitude R_WB sees it.
-/// `sigma` is that of the attitude, and of the deck's [rad].
+/// @param sigma of the attitude, and of the deck's [rad].
 PadNormal LevelPadNormal(const Eigen::Matrix3d& R_WB, const Eigen::Matrix3d& R_BC, double sigma);
 
 }  // namespace touchdown::estimation

@@ -88,7 +88,7 @@ struct DerivativeBounds {
   /// Of the thrust axis of who flies it exactly, against the pull [rad/s].
   double body_rate = 0.0;
 };
-/// `pull_W` is a steady force over the mass that acts beside gravity [m/s^2].
+/// @param pull_W a steady force over the mass that acts beside gravity [m/s^2].
 DerivativeBounds BoundDerivatives(const UniformBspline& curve,
                                   const Eigen::Vector3d& pull_W = Eigen::Vector3d::Zero());
 
