@@ -60,5 +60,6 @@ build_release() {
   shift
   say "Building in build/release"
   (cd "$TOUCHDOWN_ROOT" && cmake --preset release -DTOUCHDOWN_BUILD_TESTS="$tests" >/dev/null)
-  cmake --build "$TOUCHDOWN_ROOT/build/release" -j2 ${1:+--target "$@"}
+  # What is compiled for the first time is not preprocessed apart from that.
+  CCACHE_DEPEND=1 cmake --build "$TOUCHDOWN_ROOT/build/release" -j2 ${1:+--target "$@"}
 }
