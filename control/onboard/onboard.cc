@@ -19,7 +19,6 @@ namespace {
 
 using solvers::AddThreadCpu;
 
-constexpr double kLatest = 1e10;     // of any time: the clock of 1970 is far below [s]
 constexpr double kForceHolds = 0.1;  // a foot force says something for so long [s]
 
 const OnboardParts& Whole(const OnboardParts& parts) {
@@ -165,7 +164,7 @@ const std::array<int, kTakenKinds>& Onboard::taken() const { return it_->taken; 
 
 void Onboard::Begin(double t, const Eigen::Vector4d& thrusts) {
   if (it_->pilot) throw std::invalid_argument("Onboard::Begin: the flight has begun");
-  estimation::CheckWithin("Onboard::Begin: t [s]", t, 0.0, kLatest);
+  estimation::CheckWithin("Onboard::Begin: t [s]", t, 0.0, kLatestTime);
   const estimation::VehicleModel& model = it_->options.model;
   for (int i = 0; i < 4; ++i) {
     estimation::CheckWithin("Onboard::Begin: one of the thrusts [N]", thrusts[i],
@@ -178,12 +177,17 @@ void Onboard::Begin(double t, const Eigen::Vector4d& thrusts) {
                                 std::string(estimation::ToString(status)) +
                                 "; allowed: good, outage, uncertain");
   }
+  const double height = it_->senses.own().now().p_WB.z();
+  if (!(height < it_->options.envelope.ceiling)) {
+    estimation::ThrowOutOfRange("Onboard::Begin: the height of the own state [m]", height,
+                                "below the envelope's ceiling");
+  }
   it_->senses.Begin();
   it_->pilot.emplace(it_->options, it_->parts, it_->senses.own().now(), thrusts, it_->senses.map());
 }
 
 const Setpoint& Onboard::Step(double t) {
-  const bool is_time = t >= 0.0 && t <= kLatest;
+  const bool is_time = IsTime(t);
   if (!it_->pilot || !is_time || (it_->stepped && t <= *it_->stepped)) return it_->setpoint;
   it_->stepped = t;
   it_->senses.Advance(t);

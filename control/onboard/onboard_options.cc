@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/control/onboard/onboard_options.h"
 
+#include <stdexcept>
+
 #include "estimation/base/argument_check.h"
 
 namespace touchdown::control {
@@ -8,8 +10,21 @@ namespace touchdown::control {
 using estimation::CheckAbove;
 using estimation::CheckWithin;
 
+void Validate(const Envelope& envelope) {
+  CheckAbove("envelope.speed", envelope.speed, 0.0, 100.0);
+  CheckAbove("envelope.acceleration", envelope.acceleration, 0.0, 100.0);
+  CheckAbove("envelope.tilt_deg", envelope.tilt_deg, 0.0, 60.0);
+  CheckAbove("envelope.ceiling", envelope.ceiling, 0.0, 1000.0);
+}
+
 void Validate(const OnboardOptions& options) {
   Validate(options.model);
+  Validate(options.envelope);
+  CheckWithin("descent", static_cast<int>(options.descent), static_cast<int>(DescentStyle::kNone),
+              static_cast<int>(DescentStyle::kPlanned));
+  if (options.to_goal && options.descent != DescentStyle::kNone) {
+    throw std::invalid_argument("descent is to land; with to_goal allowed is DescentStyle::kNone");
+  }
   CheckAbove("deck_size", options.deck_size, 2.0 * options.model.foot_radius,
              100.0);  // for the feet
   CheckAbove("corridor_radius", options.corridor_radius, 0.0, 100.0);

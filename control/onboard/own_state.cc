@@ -19,9 +19,14 @@ constexpr double kDensest = 1000.0;  // given states are kept [Hz]
 constexpr double kCarriedOn = 0.1;   // a given state is good for so long without a newer one [s]
 constexpr double kAhead = 0.1;       // of the time that was advanced to: no measurement is [s]
 
-bool Valid(const VehicleState& s) {
-  return std::isfinite(s.t) && s.p_WB.allFinite() && s.v_WB.allFinite() && s.w_WB_B.allFinite() &&
-         std::abs(s.q_WB.norm() - 1.0) < 1e-3;
+// Written so that a number that is none fails each.
+bool IsPossible(const VehicleState& s) {
+  constexpr double kFarthest = 1e7, kFastest = 1e4;  // [m], [m/s] and [rad/s]
+  const auto within = [](const Eigen::Vector3d& a, double most) {
+    return (a.array().abs() < most).all();
+  };
+  return IsTime(s.t) && within(s.p_WB, kFarthest) && within(s.v_WB, kFastest) &&
+         within(s.w_WB_B, kFastest) && std::abs(s.q_WB.norm() - 1.0) < 1e-3;
 }
 
 VehicleState CarriedTo(double t, const VehicleState& from) {
@@ -68,7 +73,8 @@ bool OwnState::known() const { return filter_ ? filter_->started() : size_ > 0; 
 
 Taken OwnState::Take(const VehicleState& state) {
   if (filter_) return Taken::kUnasked;
-  if (!Valid(state) || IsAhead(state.t)) return Taken::kInvalid;
+  if (!IsPossible(state) || IsAhead(state.t)) return Taken::kInvalid;
+  if (!advanced_ && !Reaches(state.t)) size_ = 0;  // the newest may be of a wrong time
   int at = size_;  // in front of which it belongs
   while (at > 0 && given(at - 1).t > state.t) --at;
   if (at > 0 && given(at - 1).t == state.t) return Taken::kDoubled;

@@ -34,11 +34,6 @@ Taken TakenAs(estimation::PadUpdate update) {
   return Taken::kInvalid;
 }
 
-bool HasItsPixels(const estimation::DepthImage& image) {
-  const auto side = [](int pixels) { return static_cast<std::size_t>(std::max(0, pixels)); };
-  return image.depth.size() == side(image.intrinsics.width) * side(image.intrinsics.height);
-}
-
 }  // namespace
 
 Senses::Senses(const OnboardOptions& options, std::optional<planning::PersistentMap> memory)
@@ -57,7 +52,7 @@ void Senses::Begin() {
 }
 
 bool Senses::IsAhead(double t) const {
-  return !std::isfinite(t) || (own_.known() && t > own_.now().t + kAheadOfTime);
+  return !IsTime(t) || (own_.known() && t > own_.now().t + kAheadOfTime);
 }
 
 std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {
@@ -102,7 +97,7 @@ Taken Senses::Take(const estimation::PadImage& image) {
 }
 
 Taken Senses::Take(const estimation::DepthImage& image) {
-  if (!HasItsPixels(image)) return Taken::kInvalid;
+  if (!estimation::IsPossible(image)) return Taken::kInvalid;
   if (const auto refused = Refused(image.t, images_)) return *refused;
   const estimation::VehicleState from = own_.At(image.t);
   const Eigen::Matrix3d R_WB = from.q_WB.toRotationMatrix();
@@ -134,7 +129,7 @@ planning::PadOutline Senses::Outline(double t, double stamp) const {
 
 planning::PersistentMap Senses::TakeMemory() {
   memory_.Flush(&map_);
-  return std::move(memory_);
+  return std::exchange(memory_, planning::PersistentMap(map_.options()));
 }
 
 }  // namespace touchdown::control

@@ -2,6 +2,7 @@
 // What becomes of a measurement, whenever and however often it comes.
 #include "touchdown/control/onboard/onboard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -19,6 +20,7 @@ namespace touchdown::control {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 OnboardOptions Options() { return LandingOptions(ToyQuadrotor(), ToyWorld::kDeck); }
 
@@ -70,7 +72,16 @@ TEST(Onboard, WhatIsMissingOrOutOfRangeIsNamed) {
       {[](auto* options, auto*) { options->history = 0.0; }, "history is 0"},
       {[](auto* options, auto*) { options->start_free = -1.0; }, "start_free is -1"},
       {[](auto* options, auto*) { options->model.mass_kg = 0.0; }, "mass"},
+      {[](auto* options, auto*) { options->model.foot_depth = -0.1; }, "foot_depth"},
       {[](auto* options, auto*) { options->pad.max_delay = -1.0; }, "max_delay"},
+      {[](auto* options, auto*) { options->envelope.speed = kNan; }, "envelope.speed is nan"},
+      {[](auto* options, auto*) { options->envelope.acceleration = 0.0; },
+       "envelope.acceleration is 0"},
+      {[](auto* options, auto*) { options->envelope.tilt_deg = 90.0; }, "envelope.tilt_deg is 90"},
+      {[](auto* options, auto*) { options->envelope.ceiling = -1.0; }, "envelope.ceiling is -1"},
+      {[](auto* options, auto*) { options->descent = static_cast<DescentStyle>(7); },
+       "descent is 7"},
+      {[](auto* options, auto*) { options->to_goal = true; }, "with to_goal"},
   };
   for (const Slip& slip : slips) {
     OnboardOptions options = Options();
@@ -110,6 +121,7 @@ TEST(Onboard, GivenStatesComeInAnyOrder) {
   EXPECT_EQ(onboard.Take(At(1.1, {9, 0, 2})), Taken::kDoubled);
   EXPECT_EQ(onboard.own().p_WB.x(), 3.0);
   EXPECT_EQ(onboard.OwnAt(1.1).p_WB.x(), 2.0);
+  onboard.Begin(1.2, Eigen::Vector4d::Constant(2.9));
   EXPECT_EQ(onboard.Take(At(0.1)), Taken::kTooOld);
   EXPECT_EQ(onboard.Take(At(kNan)), Taken::kInvalid);
   EXPECT_EQ(onboard.Take(At(1.3, {kNan, 0, 2})), Taken::kInvalid);
@@ -185,6 +197,40 @@ TEST(Onboard, WithAnImuOfAnotherTimeNoFlightBegins) {
   onboard.Take(estimation::ImuSample{1e6, {0, 0, 9.81}, {0, 0, 0}});
   EXPECT_THAT(Sentence([&] { onboard.Begin(2.0, Eigen::Vector4d::Constant(2.9)); }),
               ::testing::HasSubstr("imu_stale"));
+}
+
+// ... and the true ones that come after it are not too old.
+TEST(Onboard, AWrongStateBeforeTheFlightDoesNotShutOutTheTrueOnes) {
+  Onboard onboard = Made(Options());
+  EXPECT_EQ(onboard.Take(At(1.7e9, {9, 9, 9})), Taken::kUsed);
+  for (int k = 0; k <= 10; ++k) EXPECT_EQ(onboard.Take(At(0.01 * k)), Taken::kUsed);
+  onboard.Begin(0.1, Eigen::Vector4d::Constant(2.9));
+  EXPECT_EQ(onboard.own().p_WB, Eigen::Vector3d(0.0, 0.0, 2.0));
+}
+
+TEST(Onboard, AStateThatNoVehicleHasIsInvalid) {
+  Onboard onboard = Hovering(0.1);
+  const auto taken = [&](const std::function<void(estimation::VehicleState*)>& spoil) {
+    estimation::VehicleState state = At(0.15);
+    spoil(&state);
+    return onboard.Take(state);
+  };
+  EXPECT_EQ(taken([](auto* s) { s->p_WB.x() = 1e200; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* s) { s->v_WB.y() = -1e200; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* s) { s->w_WB_B.z() = 1e200; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto* s) { s->t = -1.0; }), Taken::kInvalid);
+  EXPECT_EQ(taken([](auto*) {}), Taken::kUsed);
+}
+
+TEST(Onboard, ItsMemoryCanBeTakenTwice) {
+  Onboard onboard = Hovering(0.1);
+  ToyWorld world;
+  world.wall = {Eigen::Vector3d(3.0, -1.0, 0.0), Eigen::Vector3d(3.4, 1.0, 3.0)};
+  world.vehicle = At(0.1);
+  EXPECT_EQ(onboard.Take(world.Depth()), Taken::kUsed);
+  EXPECT_GT(onboard.TakeMemory().size(), 0u);
+  EXPECT_EQ(onboard.TakeMemory().size(), 0u);
+  onboard.Step(0.12);
 }
 
 TEST(Onboard, AStateThatIsLateDoesNotTurnTimeBack) {
@@ -263,6 +309,14 @@ TEST(Onboard, WithoutAnImuNoMomentIsAsked) {
 TEST(Onboard, ANegativeSigmaIsInvalid) {
   Onboard onboard = Hovering(0.1);
   EXPECT_EQ(onboard.Take(estimation::PadGpsFix{0.1, {1, 2}, -0.05}), Taken::kInvalid);
+}
+
+TEST(Onboard, ASightingOfLessThanNoTagIsInvalid) {
+  Onboard onboard = Hovering(0.1);
+  estimation::PadSighting sighting{0.1, {0, 0, -1}, 0.0, Eigen::Vector3d::Constant(0.01), 0.01, -1};
+  EXPECT_EQ(onboard.Take(sighting), Taken::kInvalid);
+  sighting.tags_seen = 1;
+  EXPECT_EQ(onboard.Take(sighting), Taken::kUsed);
 }
 
 TEST(Onboard, WithoutAnAttitudeNoMomentIsAsked) {
@@ -417,7 +471,35 @@ TEST(Onboard, AnImageThatIsNoneIsRefused) {
   EXPECT_EQ(taken([](auto* i) { i->t = kNan; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->t = 2.2; }), Taken::kInvalid);
   EXPECT_EQ(taken([](auto* i) { i->t = 0.5; }), Taken::kTooOld);
+  const auto all = [](float depth) {
+    return [depth](auto* i) { std::fill(i->depth.begin(), i->depth.end(), depth); };
+  };
+  for (const float nothing : {0.0F, -1.0F, 3000.0F, float(kNan), -float(kInfinity)}) {
+    EXPECT_EQ(taken(all(nothing)), Taken::kInvalid) << nothing;
+  }
   EXPECT_EQ(taken([](auto*) {}), Taken::kUsed);
+}
+
+// The sky of an image in millimetres is as far as of one in metres.
+TEST(Onboard, AnImageInMillimetresIsRefused) {
+  Onboard onboard = Hovering(0.1);
+  ToyWorld world;
+  world.wall = {Eigen::Vector3d(3.0, -1.0, 0.0), Eigen::Vector3d(3.4, 1.0, 3.0)};
+  world.vehicle = At(0.1);
+  estimation::DepthImage image = world.Depth();
+  for (float& depth : image.depth) depth *= 1000.0F;
+  EXPECT_EQ(onboard.Take(image), Taken::kInvalid);
+  for (float& depth : image.depth) depth *= 1e-3F;
+  EXPECT_EQ(onboard.Take(image), Taken::kUsed);
+}
+
+TEST(Onboard, NoFlightBeginsAboveTheCeiling) {
+  OnboardOptions options = Options();
+  options.envelope.ceiling = 1.5;
+  Onboard onboard = Made(options);
+  onboard.Take(At(0.0));
+  EXPECT_THAT(Sentence([&] { onboard.Begin(0.0, Eigen::Vector4d::Constant(2.9)); }),
+              ::testing::HasSubstr("height of the own state [m] is 2"));
 }
 
 TEST(Onboard, AForceIsOfItsTime) {

@@ -52,6 +52,10 @@ void Validate(const estimation::VehicleModel& model) {
   RequirePositive("VehicleModel.inertia.z", model.inertia.z());
   Require(model.rotor_drag.allFinite() && model.rotor_drag.minCoeff() >= 0.0,
           "VehicleModel.rotor_drag (least)", model.rotor_drag.minCoeff(), ">= 0");
+  RequirePositive("VehicleModel.hull_radius", model.hull_radius);
+  RequirePositive("VehicleModel.foot_depth", model.foot_depth);
+  Require(model.rotor_thrust_min >= 0.0, "VehicleModel.rotor_thrust_min", model.rotor_thrust_min,
+          ">= 0 N");
   Require(model.MaxThrust() > model.HoverThrust() && std::isfinite(model.MaxThrust()),
           "VehicleModel.MaxThrust()", model.MaxThrust(), "more than the weight");
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "touchdown/estimation/base/measurements.h"
 
+#include <cmath>
+#include <cstddef>
+
 namespace touchdown::estimation {
 namespace {
 
@@ -20,18 +23,34 @@ bool IsPossible(const CameraIntrinsics& k, const Eigen::Vector3d& place,
          turn.determinant() > 0.0;
 }
 
+std::size_t Pixels(const CameraIntrinsics& k) {
+  return static_cast<std::size_t>(k.width) * static_cast<std::size_t>(k.height);
+}
+
 }  // namespace
 
 bool IsPossible(const DepthFrame& frame) {
   return frame.max_range > 0.0 && IsPossible(frame.intrinsics, frame.p_WC, frame.R_WC);
 }
 
+bool IsPossible(const DepthImage& image) {
+  if (!(image.max_range > 0.0) || !IsPossible(image.intrinsics, image.p_BC, image.R_BC) ||
+      image.depth.size() != Pixels(image.intrinsics)) {
+    return false;
+  }
+  bool beyond = false, clear = false;
+  for (const float depth : image.depth) {
+    if (depth > 0.0F && depth <= image.max_range) return true;
+    if (depth > image.max_range) (std::isinf(depth) ? clear : beyond) = true;
+  }
+  return clear && !beyond;
+}
+
 bool IsPossible(const PadImage& image) {
   const GrayImage& gray = image.gray;
   return IsPossible(image.intrinsics, image.p_BC, image.R_BC) &&
          gray.width == image.intrinsics.width && gray.height == image.intrinsics.height &&
-         gray.pixels.size() ==
-             static_cast<std::size_t>(gray.width) * static_cast<std::size_t>(gray.height);
+         gray.pixels.size() == Pixels(image.intrinsics);
 }
 
 }  // namespace touchdown::estimation

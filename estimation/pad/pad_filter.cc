@@ -63,7 +63,8 @@ PadUpdate PadFilter::AddSighting(const PadSighting& sighting, const VehicleState
   measurement.cov_p = cov_W.topLeftCorner<2, 2>() + own * Eigen::Matrix2d::Identity();
   measurement.yaw = PadYawInWorld(vehicle.q_WB, sighting.yaw_BP);
   measurement.yaw_variance = std::pow(sighting.sigma_yaw, 2) + std::pow(own_attitude, 2);
-  if (!(sighting.sigma_p.minCoeff() > 0.0) || !(sighting.sigma_yaw > 0.0)) {
+  if (!(sighting.sigma_p.minCoeff() > 0.0) || !(sighting.sigma_yaw > 0.0) ||
+      sighting.tags_seen < 0) {
     measurement.t = std::nan("");
   }
   return Add(measurement);

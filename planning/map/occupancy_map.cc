@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -180,25 +181,26 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutli
   const double resolved = options_.thinnest_obstacle * k.focal;
   sharp_ = 0.5 * resolved;
   const double short_of_return = 1.0 - kNoiseSigmas * options_.range_noise;
+  const double farthest = frame.max_range * (1.0 + kNoiseSigmas * options_.range_noise + 1e-6);
   const float* depth = frame.depth.data();
   for (int v = 0; v < k.height; ++v) {
     const double down = (v + 0.5 - k.cy) * per_pixel;
     const Eigen::Vector3d row_W = frame.R_WC.col(2) + frame.R_WC.col(1) * down;
     for (int u = 0; u < k.width; ++u) {
-      double along = *depth++;        // the optical axis [m]
-      if (!(along >= 0.0)) continue;  // an invalid pixel says nothing
+      double along = *depth++;  // the optical axis [m]
       const double right = (u + 0.5 - k.cx) * per_pixel;
       const double per_depth = std::sqrt(1.0 + right * right + down * down);
-      const bool returned = std::isfinite(along);
+      const bool returned = along != std::numeric_limits<double>::infinity();
       if (!returned) along = frame.max_range / per_depth;
-      if (along * per_depth < options_.min_ray) continue;
+      const double range = along * per_depth;
+      if (!(range >= options_.min_ray && range <= farthest)) continue;  // it says nothing
       const Eigen::Vector3d ray_W = row_W + frame.R_WC.col(0) * right;
       const double freed = std::min(returned ? along * short_of_return : along, resolved);
       votes_.AddRay(in_window(frame.p_WC + ray_W * freed));
       if (!returned) continue;
       const Eigen::Vector3d end = frame.p_WC + ray_W * along;
       if (end.z() <= options_.ground_height) continue;
-      votes_.AddHit(in_window(end), VoteOf(pad.Classify(end, ToleranceAt(along * per_depth))));
+      votes_.AddHit(in_window(end), VoteOf(pad.Classify(end, ToleranceAt(range))));
     }
   }
   votes_.Finish();

@@ -359,7 +359,8 @@ std::map<std::array<int, 3>, Seen> SeenCells(const OccupancyMap& map,
       const Eigen::Vector3d ray((u + 0.5 - k.cx) / k.focal, (v + 0.5 - k.cy) / k.focal, 1.0);
       const bool returned = std::isfinite(depth);
       const double along = returned ? depth : frame.max_range / ray.norm();
-      if (along * ray.norm() < map.options().min_ray) continue;
+      const double range = along * ray.norm();
+      if (range < map.options().min_ray || range > 1.0001 * frame.max_range) continue;
       const double freed = std::min(along, map.options().thinnest_obstacle * k.focal);
       const Eigen::Vector3d end = frame.p_WC + frame.R_WC * ray * along;
       const Eigen::Vector3d free_end = frame.p_WC + frame.R_WC * ray * freed;
@@ -445,6 +446,23 @@ TEST(OccupancyMap, RefusesAFrameWithTooFewDepths) {
   estimation::DepthFrame frame = WallFrame({0.05, 0.05, 0.85}, 2.0);
   frame.depth.pop_back();
   EXPECT_THROW(map.Integrate(frame, {}), std::invalid_argument);
+}
+
+// What no camera reports frees nothing: behind it may be anything.
+TEST(OccupancyMap, APixelThatIsNoneSaysNothing) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float depth : {0.0F, -1.0F, 4.5F, 2000.0F, -kInfinity, std::nanf("")}) {
+    OccupancyMap map(SmallMap());
+    const Eigen::Vector3d p_WC(0.05, 0.05, 0.85);
+    map.Recentre(p_WC);
+    estimation::DepthFrame frame = WallFrame(p_WC, 2.0);
+    std::fill(frame.depth.begin(), frame.depth.end(), depth);
+    map.Integrate(frame, {});
+    EXPECT_EQ(map.CountObservedFree(), 0) << depth;
+    std::fill(frame.depth.begin(), frame.depth.end(), kInfinity);
+    map.Integrate(frame, {});
+    EXPECT_GT(map.CountObservedFree(), 0) << depth;
+  }
 }
 
 int CountOf(const CellBlocks& memory) {

@@ -62,8 +62,8 @@ struct OnboardTimes {
 ///
 /// Take() whatever has come, in any order; Step() at the rate of the tracking law, 500 Hz by default of the
 /// laws' gains. The first state is to be a hover: Begin() takes it over. The same calls give the same bits (but with
-/// PlanLatency::measured). Once it flies nothing
-/// allocates: the first steps make the room that is kept.
+/// PlanLatency::measured). Once it flies nothing allocates: the first steps make the room that is kept. One that was
+/// moved from may be given another or destroyed, no more.
 class Onboard {
  public:
   /// @throws std::invalid_argument naming the first option out of its range, or the part that is missing.
@@ -92,8 +92,8 @@ class Onboard {
 
   /// The vehicle hovers at the time t [s], in [0, 1e10], with these rotor thrusts [N]: the flight begins, once. States
   /// from later than t, by more than a moment, are forgotten.
-  /// @throws std::invalid_argument if its state at t is not known then, if the flight has begun, or for a time or a
-  /// thrust out of its range.
+  /// @throws std::invalid_argument if its state at t is not known then or not below the ceiling, if the flight has
+  /// begun, or for a time or a thrust out of its range.
   void Begin(double t, const Eigen::Vector4d& thrusts);
 
   /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one
@@ -122,7 +122,7 @@ class Onboard {
   void LogPadTo(std::vector<estimation::PadArrival>* log);
   /// The map itself, for those who know more than the sensors.
   planning::OccupancyMap* mutable_map();
-  /// Hands over all that was ever observed; the last call.
+  /// Hands over all that was ever observed, and begins anew with nothing remembered outside of the window. Allocates.
   planning::PersistentMap TakeMemory();
 
  private:

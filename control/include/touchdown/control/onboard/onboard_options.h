@@ -20,10 +20,10 @@ namespace touchdown::control {
 
 /// Of plans: the tracking law may use more.
 struct Envelope {
-  double speed = 3.0;         ///< [m/s]
-  double acceleration = 6.0;  ///< [m/s^2]
-  double tilt_deg = 35.0;     ///< [deg]
-  double ceiling = 10.0;      ///< the body's origin stays below this [m]
+  double speed = 3.0;         ///< in (0, 100] [m/s]
+  double acceleration = 6.0;  ///< in (0, 100] [m/s^2]
+  double tilt_deg = 35.0;     ///< in (0, 60] [deg]
+  double ceiling = 10.0;      ///< the body's origin stays below this, in (0, 1000] [m]
 
   /// Speed, and acceleration as the tilt allows it.
   planning::Limits limits() const;
@@ -86,7 +86,8 @@ struct OnboardParts {
   std::optional<planning::PersistentMap> memory;  ///< what is known of the world before
 };
 
-/// Throws std::invalid_argument naming the first option out of its range.
+/// Throw std::invalid_argument naming the first option out of its range.
+void Validate(const Envelope& envelope);
 void Validate(const OnboardOptions& options);
 
 }  // namespace touchdown::control

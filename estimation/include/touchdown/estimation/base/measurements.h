@@ -28,7 +28,8 @@ struct DepthFrame {
   Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();  ///< C to W
   double max_range = 6.0;  ///< returns beyond this distance along the ray are not reported [m]
   std::vector<float>
-      depth;  ///< height x width, row-major, along the optical axis [m]; inf: no return
+      depth;  ///< height x width, row-major, along the optical axis [m]; inf: no return. A pixel that
+              ///< is none of both, or beyond the range, says nothing
 };
 
 /// Whether a camera can have taken it: positive focal length, an image plane that is no wider than 1e4 focal lengths,
@@ -44,6 +45,10 @@ struct DepthImage {
   double max_range = 6.0;                              ///< as in DepthFrame [m]
   std::vector<float> depth;                            ///< as in DepthFrame [m]
 };
+
+/// Whether such a camera can have taken it, as above, its pixels are all there, and they say something: an image in
+/// millimetres has no return within the range.
+bool IsPossible(const DepthImage& image);
 
 /// Position of the pad by GPS (horizontal, in W). The paper's eq. 11 without its heading.
 struct PadGpsFix {
