@@ -99,6 +99,7 @@ Taken Senses::Take(const estimation::PadImage& image) {
 Taken Senses::Take(const estimation::DepthImage& image) {
   if (!estimation::IsPossible(image)) return Taken::kInvalid;
   if (const auto refused = Refused(image.t, images_)) return *refused;
+  if (!estimation::SaysSomething(image)) return Taken::kEmpty;
   const estimation::VehicleState from = own_.At(image.t);
   const Eigen::Matrix3d R_WB = from.q_WB.toRotationMatrix();
   frame_.t = image.t;

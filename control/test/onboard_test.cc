@@ -475,20 +475,20 @@ TEST(Onboard, AnImageThatIsNoneIsRefused) {
     return [depth](auto* i) { std::fill(i->depth.begin(), i->depth.end(), depth); };
   };
   for (const float nothing : {0.0F, -1.0F, 3000.0F, float(kNan), -float(kInfinity)}) {
-    EXPECT_EQ(taken(all(nothing)), Taken::kInvalid) << nothing;
+    EXPECT_EQ(taken(all(nothing)), Taken::kEmpty) << nothing;
   }
   EXPECT_EQ(taken([](auto*) {}), Taken::kUsed);
 }
 
 // The sky of an image in millimetres is as far as of one in metres.
-TEST(Onboard, AnImageInMillimetresIsRefused) {
+TEST(Onboard, AnImageInMillimetresSaysNothing) {
   Onboard onboard = Hovering(0.1);
   ToyWorld world;
   world.wall = {Eigen::Vector3d(3.0, -1.0, 0.0), Eigen::Vector3d(3.4, 1.0, 3.0)};
   world.vehicle = At(0.1);
   estimation::DepthImage image = world.Depth();
   for (float& depth : image.depth) depth *= 1000.0F;
-  EXPECT_EQ(onboard.Take(image), Taken::kInvalid);
+  EXPECT_EQ(onboard.Take(image), Taken::kEmpty);
   for (float& depth : image.depth) depth *= 1e-3F;
   EXPECT_EQ(onboard.Take(image), Taken::kUsed);
 }

@@ -34,10 +34,11 @@ bool IsPossible(const DepthFrame& frame) {
 }
 
 bool IsPossible(const DepthImage& image) {
-  if (!(image.max_range > 0.0) || !IsPossible(image.intrinsics, image.p_BC, image.R_BC) ||
-      image.depth.size() != Pixels(image.intrinsics)) {
-    return false;
-  }
+  return image.max_range > 0.0 && IsPossible(image.intrinsics, image.p_BC, image.R_BC) &&
+         image.depth.size() == Pixels(image.intrinsics);
+}
+
+bool SaysSomething(const DepthImage& image) {
   bool beyond = false, clear = false;
   for (const float depth : image.depth) {
     if (depth > 0.0F && depth <= image.max_range) return true;

@@ -10,7 +10,7 @@ enum class Taken {
   kUsed,     ///< in its place in time, also where it came late or out of order
   kWaiting,  ///< kept for the start of the filter
   kGated,    ///< too unlikely, or of no use to the filter now; nothing changed
-  kEmpty,    ///< an image that does not show the pad
+  kEmpty,    ///< an image that does not show the pad, or no depth at all
   kIgnored,  ///< the pad's GPS, while its tags are seen and the own state is estimated
   kDoubled,  ///< this sensor's measurement of that time has been taken already
   kTooOld,   ///< older than the history reaches

@@ -46,9 +46,10 @@ struct DepthImage {
   std::vector<float> depth;                            ///< as in DepthFrame [m]
 };
 
-/// Whether such a camera can have taken it, as above, its pixels are all there, and they say something: an image in
-/// millimetres has no return within the range.
+/// Whether such a camera can have taken it, as above, and its pixels are all there.
 bool IsPossible(const DepthImage& image);
+/// Whether its pixels say something: an image in millimetres has no return within the range.
+bool SaysSomething(const DepthImage& image);
 
 /// Position of the pad by GPS (horizontal, in W). The paper's eq. 11 without its heading.
 struct PadGpsFix {
