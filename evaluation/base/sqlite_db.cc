@@ -43,6 +43,11 @@ void SqliteStatement::Bind(int index, std::string_view value) {
                                SQLITE_TRANSIENT));
 }
 
+void SqliteStatement::Bind(int index, SqlBlob blob) {
+  Check(db_, sqlite3_bind_blob64(statement_, index + 1, blob.bytes.data(), blob.bytes.size(),
+                                 SQLITE_STATIC));
+}
+
 void SqliteStatement::Bind(int index, const SqlValue& value) {
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return Bind(index, *whole);
   if (const auto* number = std::get_if<double>(&value)) return Bind(index, *number);

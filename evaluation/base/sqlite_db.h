@@ -22,6 +22,11 @@ struct SqliteError : std::runtime_error {
 /// What stands in a column: nothing, a whole number, a number, a text.
 using SqlValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 
+/// Bytes that are no text. They outlive the statement's run.
+struct SqlBlob {
+  std::string_view bytes;
+};
+
 /// A prepared statement. Parameters and columns are counted from 0. Must not outlive its database.
 class SqliteStatement {
  public:
@@ -48,6 +53,7 @@ class SqliteStatement {
     }
   }
   void Bind(int index, const SqlValue& value);
+  void Bind(int index, SqlBlob blob);
   void BindNull(int index);
 
   /// Runs to the next row; false when there is none. @throws SqliteError

@@ -33,6 +33,7 @@ class ScenarioHashes {
     if (!fresh) return at->second;
     const OutsideFiles outside = OutsideFilesOf(scenario);
     std::string all = text + '\0' + outside.pad_waypoints + '\0' + outside.vehicle_hash;
+    if (outside.world_hash != "none") all += '\0' + outside.world_hash;
     if (scenario.map_prior != "none") all += '\0' + OfMap(scenario.map_prior);
     return at->second = HashOf(all);
   }

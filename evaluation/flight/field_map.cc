@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cell against obstacle, each test exact: a turned box by separating axes in the plane, a cylinder
-// by the point of the cell nearest to its axis, a column by its interval on each axis, and a side of
+// by the point of the cell nearest to its axis, a sphere by the one nearest to its centre, a mesh by its triangles, a column by its interval on each axis, and a side of
 // a ring by the distance from its segment to the cell, a convex function along the segment.
 #include "evaluation/flight/field_map.h"
 
@@ -53,6 +53,21 @@ void Mark(const sim::Cylinder& cylinder, OccupancyMap* map) {
   MarkCells(sim::BoundsOf(cylinder), map, [&](const Eigen::Vector3d& centre) {
     const Eigen::Array2d off = (centre - cylinder.center).head<2>().array().abs();
     return (off - half).max(0.0).matrix().norm() < cylinder.radius - kTouch;
+  });
+}
+
+void Mark(const sim::Sphere& sphere, OccupancyMap* map) {
+  const double half = 0.5 * map->resolution();
+  MarkCells(sim::BoundsOf(sphere), map, [&](const Eigen::Vector3d& centre) {
+    const Eigen::Array3d off = (centre - sphere.center).array().abs();
+    return (off - half).max(0.0).matrix().norm() < sphere.radius - kTouch;
+  });
+}
+
+void Mark(const sim::Mesh& mesh, OccupancyMap* map) {
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * map->resolution() - kTouch);
+  MarkCells(mesh.surface->bounds(), map, [&](const Eigen::Vector3d& centre) {
+    return mesh.surface->Meets({centre - half, centre + half});
   });
 }
 

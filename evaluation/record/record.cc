@@ -68,7 +68,8 @@ CREATE TABLE replanner_state(plan INTEGER PRIMARY KEY, planned INTEGER, around_u
   next_from_unknown INTEGER);
 CREATE TABLE state_point(plan INTEGER, curve TEXT, i INTEGER, x REAL, y REAL, z REAL);
 CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy REAL, cz REAL,
-  size_x REAL, size_y REAL, size_z REAL, radius REAL);
+  size_x REAL, size_y REAL, size_z REAL, radius REAL, yaw REAL);
+CREATE TABLE surface(obstacle INTEGER, corners BLOB, triangles BLOB);
 CREATE TABLE zone(id INTEGER PRIMARY KEY, term TEXT, shape TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL);
 CREATE TABLE timing(stage TEXT PRIMARY KEY, cpu_s REAL);
@@ -90,6 +91,7 @@ void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result
              fmt::format("{} {} {}", record.hover_W.x(), record.hover_W.y(), record.hover_W.z()));
   insert.Run("idle_steps", std::to_string(record.idle_steps));
   insert.Run("vehicle_hash", record.outside.vehicle_hash);
+  insert.Run("world_hash", record.outside.world_hash);
   nlohmann::ordered_json json = LandJson(scenario, result);
   json.erase("wall_clock");  // wall-clock figures stand only in the table timing
   insert.Run("result_json", json.dump());
@@ -260,19 +262,57 @@ void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   }
 }
 
+// As float32 and int32, little-endian as all machines are that this runs on.
+void WriteSurface(SqliteDb& db, int obstacle, const sim::TriangleMesh& surface) {
+  std::vector<float> corners;
+  std::vector<std::int32_t> triangles;
+  for (const Eigen::Vector3d& corner : surface.corners()) {
+    for (const double x : corner) corners.push_back(static_cast<float>(x));
+  }
+  for (const Eigen::Vector3i& of : surface.triangles()) {
+    triangles.insert(triangles.end(), of.begin(), of.end());
+  }
+  const auto bytes = [](const auto& values) {
+    return SqlBlob{{reinterpret_cast<const char*>(values.data()),
+                    values.size() * sizeof(values.front())}};
+  };
+  db.Prepare("INSERT INTO surface VALUES(?, ?, ?)").Run(obstacle, bytes(corners), bytes(triangles));
+}
+
+struct ObstacleWords {
+  const char* kind = "mesh";
+  std::optional<double> radius, yaw;
+};
+
+ObstacleWords WordsOf(const sim::Obstacle& obstacle) {
+  if (const auto* box = std::get_if<sim::Box>(&obstacle)) return {"box", {}, box->yaw};
+  if (const auto* cylinder = std::get_if<sim::Cylinder>(&obstacle)) {
+    return {"cylinder", cylinder->radius, {}};
+  }
+  if (const auto* sphere = std::get_if<sim::Sphere>(&obstacle)) {
+    return {"sphere", sphere->radius, {}};
+  }
+  return {};
+}
+
 void WriteObstacles(SqliteDb& db, const Scenario& scenario) {
-  SqliteStatement insert = db.Prepare("INSERT INTO obstacle VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SqliteStatement insert =
+      db.Prepare("INSERT INTO obstacle VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   int id = 0;
   for (const NamedObstacle& named : ObstaclesOf(scenario)) {
+    const sim::Bounds bounds = sim::BoundsOf(named.obstacle);
+    Eigen::Vector3d middle = 0.5 * (bounds.min + bounds.max), size = bounds.max - bounds.min;
     if (const auto* box = std::get_if<sim::Box>(&named.obstacle)) {
-      const Eigen::Vector3d size = 2.0 * box->half_extents;
-      insert.Run(id++, named.key, "box", box->center.x(), box->center.y(), box->center.z(),
-                 size.x(), size.y(), size.z(), std::optional<double>());
-    } else if (const auto* cylinder = std::get_if<sim::Cylinder>(&named.obstacle)) {
-      const double across = 2.0 * cylinder->radius;
-      insert.Run(id++, named.key, "cylinder", cylinder->center.x(), cylinder->center.y(),
-                 cylinder->center.z(), across, across, cylinder->height, cylinder->radius);
+      middle = box->center;
+      size = 2.0 * box->half_extents;
     }
+    const ObstacleWords words = WordsOf(named.obstacle);
+    insert.Run(id, named.key, words.kind, middle.x(), middle.y(), middle.z(), size.x(), size.y(),
+               size.z(), words.radius, words.yaw);
+    if (const auto* mesh = std::get_if<sim::Mesh>(&named.obstacle)) {
+      WriteSurface(db, id, *mesh->surface);
+    }
+    ++id;
   }
 }
 

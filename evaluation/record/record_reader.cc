@@ -331,6 +331,9 @@ void CheckOutsideFiles(const Meta& meta, const Scenario& scenario) {
     throw std::invalid_argument(fmt::format(
         "its vehicle was another one than the file {} describes now", scenario.vehicle));
   }
+  if (meta.at("world_hash") != now.world_hash) {
+    throw std::invalid_argument("the files of its obstacles held another world than they do now");
+  }
 }
 
 void CheckFormat(const Meta& meta) {
@@ -350,7 +353,7 @@ void CheckFormat(const Meta& meta) {
   }
   for (const char* key :
        {"scenario", "scenario_yaml", "seed", "build_hash", "revision", "map_resolution", "map_size",
-        "pad_waypoints", "vehicle_hash", "hover", "idle_steps"}) {
+        "pad_waypoints", "vehicle_hash", "world_hash", "hover", "idle_steps"}) {
     value(key);
   }
 }

@@ -13,6 +13,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/words.h"
+#include "evaluation/scenario/obstacle_keys.h"
 #include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_schema.h"
 
@@ -57,10 +58,8 @@ class Reader {
     if (const auto key = FindScenarioKey(name, keys_)) {
       key->set(source_->scenario, value, where);
       source_->where[name] = where;
-    } else if (name == "obstacles.boxes") {
-      ReadList(name, value, where, BoxKeys(), &source_->scenario.boxes);
-    } else if (name == "obstacles.cylinders") {
-      ReadList(name, value, where, CylinderKeys(), &source_->scenario.cylinders);
+    } else if (ReadObstacles(name, value, where)) {
+      return;
     } else if (IsGroup(name)) {
       ReadMap(value, name, where);
     } else {
@@ -69,6 +68,17 @@ class Reader {
   }
 
  private:
+  bool ReadObstacles(const std::string& name, const YAML::Node& value, const Where& where) {
+    bool found = false;
+    ForEachObstacleList(source_->scenario,
+                        [&](const std::string& list, auto& elements, const auto& keys) {
+                          if (list != name) return;
+                          ReadList(name, value, where, keys, &elements);
+                          found = true;
+                        });
+    return found;
+  }
+
   Where WhereIs(const YAML::Node& node) const {
     return {file_, lines_ && node.Mark().line >= 0 ? node.Mark().line + 1 : 0};
   }
@@ -96,7 +106,10 @@ class Reader {
       if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
     }
     if (group.empty()) words.insert(words.end(), {"terms", kObstacles});
-    if (group == std::string(kObstacles) + ".") words = {"obstacles.boxes", "obstacles.cylinders"};
+    if (group == std::string(kObstacles) + ".") {
+      ForEachObstacleList(source_->scenario, [&](const std::string& list, const auto&,
+                                                 const auto&) { words.push_back(list); });
+    }
     if (words.empty()) return "`docs/scenario.md` lists the keys";
     return "allowed here: " + Enumerate(words);
   }
@@ -270,22 +283,22 @@ std::string DumpScenario(const Scenario& scenario) {
     text += name + ": " + key.get(scenario) + "\n";
   }
   text += DumpOpenKeys(scenario);
-  if (scenario.boxes.empty() && scenario.cylinders.empty()) return text;
-  text += std::string(kObstacles) + ":\n";
-  const auto list = [&text](const std::string& name, const auto& elements, const auto& keys) {
+  std::string lists;
+  ForEachObstacleList(scenario, [&lists](const std::string& name, const auto& elements,
+                                         const auto& keys) {
     if (elements.empty()) return;
-    text += "  " + name + ":\n";
+    lists += "  " + name.substr(std::string(kObstacles).size() + 1) + ":\n";
+    const typename std::decay_t<decltype(elements)>::value_type usual;
     for (const auto& element : elements) {
       std::string line;
       for (const auto& key : keys) {
+        if (key.optional && key.get(element) == key.get(usual)) continue;
         line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
       }
-      text += "    - {" + line + "}\n";
+      lists += "    - {" + line + "}\n";
     }
-  };
-  list("boxes", scenario.boxes, BoxKeys());
-  list("cylinders", scenario.cylinders, CylinderKeys());
-  return text;
+  });
+  return lists.empty() ? text : text + kObstacles + ":\n" + lists;
 }
 
 }  // namespace touchdown::evaluation

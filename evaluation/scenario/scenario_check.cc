@@ -44,21 +44,15 @@ estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
   }
 }
 
-// Horizontal distance between a point's box of half size `spread` and an obstacle's outline, if
-// they overlap in height [z_lo, z_hi]; infinite otherwise.
-double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centre,
-                     const Eigen::Vector2d& spread, double z_lo, double z_hi) {
-  const sim::Bounds bounds = sim::BoundsOf(obstacle);
-  if (bounds.max.z() <= z_lo || bounds.min.z() >= z_hi) {
-    return std::numeric_limits<double>::infinity();
+// With the line of the element whose file is at fault.
+ObstacleList ReadObstacles(const ScenarioSource& source) {
+  try {
+    return ObstaclesOf(source.scenario);
+  } catch (const BadInput& error) {
+    const std::string why = error.what();
+    const std::string key = why.substr(0, why.find(':'));
+    throw BadInput(fmt::format("{}: {}", source.WhereOf(key).ToString(), why));
   }
-  const Eigen::Vector2d middle = 0.5 * (bounds.min + bounds.max).head<2>();
-  const Eigen::Vector2d half = 0.5 * (bounds.max - bounds.min).head<2>();
-  const Eigen::Vector2d offset = (middle - centre).cwiseAbs() - spread;
-  if (std::holds_alternative<sim::Cylinder>(obstacle)) {
-    return offset.cwiseMax(0.0).norm() - half.x();
-  }
-  return (offset - half).cwiseMax(0.0).norm();
 }
 
 void CheckCeiling(const ScenarioSource& source, const estimation::VehicleModel& model) {
@@ -126,7 +120,7 @@ void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
   }
   for (const NamedObstacle& named : obstacles) {
     const double gap = HorizontalGap(named.obstacle, p.head<2>(), spread.head<2>(), lowest,
-                                     p.z() + spread.z() + model.hull_top);
+                                     p.z() + spread.z() + model.hull_top, model.hull_radius);
     if (gap < model.hull_radius) {
       throw BadInput(
           fmt::format("{}: {} stands on the start: it must stay more than {:.2f} m (the hull) from "
@@ -335,7 +329,8 @@ void CheckMotionItself(const ScenarioSource& source, const Registries& registrie
   }
 }
 
-void CheckPadMotion(const ScenarioSource& source, const Registries& registries) {
+void CheckPadMotion(const ScenarioSource& source, const ObstacleList& obstacles,
+                    const Registries& registries) {
   const Scenario& s = source.scenario;
   CheckMotionItself(source, registries);
   const PadMotionEntry& motion = PartNamed(registries.pad_motions, s.pad.motion, "pad motion");
@@ -344,7 +339,7 @@ void CheckPadMotion(const ScenarioSource& source, const Registries& registries) 
                                source.WhereOf("pad.phase_spread").ToString(), s.pad.phase_spread));
   }
   // Where it will drive is known for one seed only.
-  if (motion.drawn && (!s.boxes.empty() || !s.cylinders.empty())) {
+  if (motion.drawn && !obstacles.empty()) {
     throw BadInput(fmt::format("{}: pad.motion: {} is for scenarios without obstacles.",
                                source.WhereOf("pad.motion").ToString(), motion.name));
   }
@@ -377,21 +372,27 @@ void CheckPadPath(const ScenarioSource& source, const ObstacleList& obstacles,
                   const Registries& registries) {
   const Scenario& s = source.scenario;
   const double half_diagonal = s.pad.deck_size * std::sqrt(0.5);
+  std::vector<sim::Bounds> bounds;
+  for (const NamedObstacle& named : obstacles) bounds.push_back(sim::BoundsOf(named.obstacle));
+  const sim::BoundsTree tree(bounds);
+  const Eigen::Vector3d reach(half_diagonal, half_diagonal, s.pad.deck_height + kHeadroom);
   for (const double shift : {-s.pad.phase_spread, s.pad.phase_spread}) {
     const auto course = PadCourseOf(s, registries, s.pad.phase + shift, s.seed);
     for (int i = 0; i * kPathStep <= s.timeout; ++i) {
       const double t = i * kPathStep;
       const Eigen::Vector2d p_WP = course->At(t).p_WP.head<2>();
-      for (const NamedObstacle& named : obstacles) {
+      const Eigen::Vector3d base(p_WP.x(), p_WP.y(), 0.0);
+      tree.Within({base - reach, base + reach}, [&](int index) {
+        const NamedObstacle& named = obstacles[static_cast<std::size_t>(index)];
         const double gap = HorizontalGap(named.obstacle, p_WP, Eigen::Vector2d::Zero(), 0.0,
-                                         s.pad.deck_height + kHeadroom);
+                                         s.pad.deck_height + kHeadroom, half_diagonal);
         if (gap < half_diagonal) {
           throw BadInput(fmt::format(
               "{}: {} stands on the pad's way: at {:.1f} s its centre passes at {:.2f} m, and the "
               "deck needs {:.2f} m.",
               source.WhereOf(named.key).ToString(), named.key, t, gap, half_diagonal));
         }
-      }
+      });
     }
   }
 }
@@ -407,11 +408,10 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
 }
 
 void CheckScenario(const ScenarioSource& source, const Registries& registries) {
-  const Scenario& s = source.scenario;
-  CheckPadMotion(source, registries);
+  const ObstacleList obstacles = ReadObstacles(source);
+  CheckPadMotion(source, obstacles, registries);
   CheckSensors(source);
   const estimation::VehicleModel model = ReadVehicle(source);
-  const ObstacleList obstacles = ObstaclesOf(s);
   CheckAirframe(source);
   CheckPlanning(source, model, registries);
   CheckDescent(source, registries);

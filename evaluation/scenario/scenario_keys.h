@@ -95,12 +95,12 @@ SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& wor
           [=](const Scenario& s) { return words.at(static_cast<std::size_t>(at(s))); }};
 }
 
-template <typename At>
-SchemaKey<Scenario> Text(std::string name, std::string range, std::string doc, At at) {
+template <typename Owner = Scenario, typename At>
+SchemaKey<Owner> Text(std::string name, std::string range, std::string doc, At at) {
   return {name, "text", "", std::move(range), std::move(doc),
-          [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadText(n, w, name); },
+          [=](Owner& o, const YAML::Node& n, const Where& w) { at(o) = ReadText(n, w, name); },
           // Double-quoted YAML is JSON's notation for what paths hold.
-          [=](const Scenario& s) { return std::string("\"").append(at(s)).append("\""); }};
+          [=](const Owner& o) { return std::string("\"").append(at(o)).append("\""); }};
 }
 
 /// The name of an entry of a registry, which scenario_check asks.

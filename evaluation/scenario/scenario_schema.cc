@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/words.h"
+#include "evaluation/scenario/obstacle_keys.h"
 #include "evaluation/scenario/scenario_keys.h"
 
 namespace touchdown::evaluation {
@@ -65,37 +66,6 @@ std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries) {
            return WriteNumber(is_given ? given->second : parameter.value);
          }});
   }
-  return keys;
-}
-
-template <typename Element>
-static SchemaKey<Element> Optional(SchemaKey<Element> key) {
-  key.optional = true;
-  return key;
-}
-
-const std::vector<SchemaKey<BoxObstacle>>& BoxKeys() {
-  static const std::vector<SchemaKey<BoxObstacle>> keys = {
-      schema::Vector<2, BoxObstacle>("centre", schema::In(-200, 200, "m"),
-                                     "centre of the base in W", TOUCHDOWN_AT(centre)),
-      schema::Vector<3, BoxObstacle>("size", schema::Above(0, 100, "m"), "edges along x, y and z",
-                                     TOUCHDOWN_AT(size)),
-      Optional(schema::Number<BoxObstacle>(
-          "base", schema::In(0, 100, "m"),
-          "height of the lower face above the ground: a roof, a bridge", TOUCHDOWN_AT(base))),
-  };
-  return keys;
-}
-
-const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys() {
-  static const std::vector<SchemaKey<CylinderObstacle>> keys = {
-      schema::Vector<2, CylinderObstacle>("centre", schema::In(-200, 200, "m"),
-                                          "centre of the base in W", TOUCHDOWN_AT(centre)),
-      schema::Number<CylinderObstacle>("radius", schema::Above(0, 50, "m"), "radius",
-                                       TOUCHDOWN_AT(radius)),
-      schema::Number<CylinderObstacle>("height", schema::Above(0, 100, "m"),
-                                       "height above the ground", TOUCHDOWN_AT(height)),
-  };
   return keys;
 }
 
@@ -178,15 +148,15 @@ std::string ScenarioKeysMarkdown(const Registries& registries) {
       "constraints instead of a cost |\n"
       "| `terms.<term>.<parameter>` | number |  | as `touchdown list terms --json` says | the "
       "term's | a parameter of the term |\n";
-  const auto rows = [&text](const std::string& list, const auto& keys, const auto& element) {
+  const Scenario none;
+  ForEachObstacleList(none, [&text](const std::string& list, const auto& elements, const auto& keys) {
+    const typename std::decay_t<decltype(elements)>::value_type element;
     for (const auto& key : keys) {
       const std::string value = key.optional ? fmt::format("`{}`", key.get(element)) : "required";
       text += fmt::format("| `{}[].{}` | {} | {} | {} | {} | {} |\n", list, key.name, key.type,
                           key.unit, key.range, value, key.doc);
     }
-  };
-  rows("obstacles.boxes", BoxKeys(), BoxObstacle{});
-  rows("obstacles.cylinders", CylinderKeys(), CylinderObstacle{});
+  });
   return text;
 }
 

@@ -30,10 +30,6 @@ struct SchemaKey {
 const std::vector<SchemaKey<Scenario>>& ScenarioKeys();
 /// These, and behind them those of the parts' parameters.
 std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries);
-/// Keys of one element of obstacles.boxes and obstacles.cylinders.
-const std::vector<SchemaKey<BoxObstacle>>& BoxKeys();
-const std::vector<SchemaKey<CylinderObstacle>>& CylinderKeys();
-
 /// The key called `name`: of `keys`, the list above, or open: solver.options.<name> and terms.<term>.<key>,
 /// whose names and ranges backends and terms know (CheckScenario asks them). Open keys have no `get`.
 std::optional<SchemaKey<Scenario>> FindScenarioKey(const std::string& name,

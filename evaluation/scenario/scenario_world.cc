@@ -35,26 +35,6 @@ class ToGoal final : public estimation::PadPredictor {
 
 }  // namespace
 
-ObstacleList ObstaclesOf(const Scenario& scenario) {
-  ObstacleList list;
-  for (std::size_t i = 0; i < scenario.boxes.size(); ++i) {
-    const BoxObstacle& spec = scenario.boxes[i];
-    sim::Box box;
-    box.center << spec.centre, spec.base + 0.5 * spec.size.z();
-    box.half_extents = 0.5 * spec.size;
-    list.push_back({fmt::format("obstacles.boxes[{}]", i), box});
-  }
-  for (std::size_t i = 0; i < scenario.cylinders.size(); ++i) {
-    const CylinderObstacle& spec = scenario.cylinders[i];
-    sim::Cylinder cylinder;
-    cylinder.center << spec.centre, 0.5 * spec.height;
-    cylinder.radius = spec.radius;
-    cylinder.height = spec.height;
-    list.push_back({fmt::format("obstacles.cylinders[{}]", i), cylinder});
-  }
-  return list;
-}
-
 std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
                                                   const Registries& registries, double phase,
                                                   std::uint64_t seed) {
@@ -99,6 +79,7 @@ OutsideFiles OutsideFilesOf(const Scenario& scenario) {
     files.pad_waypoints = WaypointText(ReadWaypointFile(scenario.pad.waypoints));
   }
   if (scenario.vehicle != "default") files.vehicle_hash = HashOf(VehicleMjcf(scenario));
+  files.world_hash = WorldHash(scenario);
   return files;
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/scenario/world_obstacles.h"
 #include "sim/air/wind.h"
-#include "sim/obstacles/obstacle.h"
 #include "sim/pad/pad_geometry.h"
 #include "sim/world/world.h"
 #include "touchdown/evaluation/scenario/scenario.h"
@@ -15,16 +15,6 @@
 #include "touchdown/sim/pad/pad_course.h"
 
 namespace touchdown::evaluation {
-
-/// An obstacle with the key it came from, "obstacles.boxes[2]".
-struct NamedObstacle {
-  std::string key;
-  sim::Obstacle obstacle;
-};
-using ObstacleList = std::vector<NamedObstacle>;
-
-/// Boxes first, then cylinders: the order of the obstacle field.
-ObstacleList ObstaclesOf(const Scenario& scenario);
 
 /// What drives the pad in the trial of `seed` with `phase` metres driven before t = 0.
 /// @throws std::invalid_argument if the motion cannot be made or is unknown; if its waypoint file cannot be read, the line
@@ -47,11 +37,13 @@ sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 std::string VehicleMjcf(const Scenario& scenario);
 
 /// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
-/// points of the waypoint file, the hash of the vehicle's MJCF text; each `none` without such a file.
+/// points of the waypoint file, the hashes of the vehicle's MJCF text and of the files of obstacles; each `none` without
+/// such a file.
 /// @throws std::invalid_argument as PadCourseOf and VehicleMjcf do.
 struct OutsideFiles {
   std::string pad_waypoints = "none";
   std::string vehicle_hash = "none";
+  std::string world_hash = "none";
 };
 OutsideFiles OutsideFilesOf(const Scenario& scenario);
 

@@ -28,6 +28,14 @@ std::string TextOf(const Cylinder& cylinder) {
          "' quat='1 0 0 0'";
 }
 
+std::string TextOf(const Sphere& sphere) {
+  return "type='sphere' size='" + estimation::NumberText(sphere.radius) + "' pos='" +
+         VectorText(sphere.center) + "'";
+}
+
+// Without its asset's name: GeomText has it.
+std::string TextOf(const Mesh&) { return "type='mesh'"; }
+
 // Refused by CheckGeom before.
 std::string TextOf(const VoxelColumns&) { return ""; }
 std::string TextOf(const Ring&) { return ""; }
@@ -41,7 +49,18 @@ std::string VectorText(const Eigen::Vector3d& v) {
 
 std::string GeomText(const Obstacle& obstacle, const std::string& name, const std::string& user) {
   CheckGeom(obstacle, name, user);
-  return std::visit([](const auto& shape) { return TextOf(shape); }, obstacle);
+  const std::string text = std::visit([](const auto& shape) { return TextOf(shape); }, obstacle);
+  return std::holds_alternative<Mesh>(obstacle) ? text + " mesh='" + name + "'" : text;
+}
+
+std::string MeshAssetText(const TriangleMesh& mesh, const std::string& name) {
+  std::string text = "<mesh name='" + name + "' vertex='";
+  for (const Eigen::Vector3d& corner : mesh.corners()) text += VectorText(corner) + ' ';
+  text += "' face='";
+  for (const Eigen::Vector3i& of : mesh.triangles()) {
+    for (const int i : of) text += std::to_string(i) + ' ';
+  }
+  return text + "'/>\n";
 }
 
 }  // namespace touchdown::sim

@@ -12,8 +12,11 @@ namespace touchdown::sim {
 /// "x y z" as an MJCF attribute takes it.
 std::string VectorText(const Eigen::Vector3d& v);
 
-/// The attributes type, size, pos and quat of an upright box or cylinder. Throws
-/// std::invalid_argument, naming the obstacle as `name` and what needs it as `user`, for any other.
+/// The attributes type, size, pos and quat of an obstacle; of a mesh its asset, which has its `name`
+/// (MeshAssetText). Throws std::invalid_argument as CheckGeom.
 std::string GeomText(const Obstacle& obstacle, const std::string& name, const std::string& user);
+
+/// A mesh as an asset.
+std::string MeshAssetText(const TriangleMesh& mesh, const std::string& name);
 
 }  // namespace touchdown::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances and rays for boxes and cylinders (compound_shapes.cc has the others), each in the obstacle's own frame, where a box is
+// Distances and rays for boxes, cylinders and spheres (compound_shapes.cc and triangle_mesh.cc have the others), each in the obstacle's own frame, where a box is
 // axis-aligned and a cylinder is a rectangle in (radius, z). The signed distance to a rectangle or
 // box of half extents h at a point p is |max(q, 0)| + min(max_i q_i, 0) with q = |p| - h.
 
@@ -47,6 +47,17 @@ void ValidateOne(const Cylinder& cylinder, const std::string& name) {
   estimation::CheckAbove(name + ": height", cylinder.height, 0.0, kMaxSize);
 }
 
+void ValidateOne(const Sphere& sphere, const std::string& name) {
+  ValidateCenter(sphere.center, name);
+  estimation::CheckAbove(name + ": radius", sphere.radius, 0.0, kMaxSize);
+}
+
+void ValidateOne(const Mesh& mesh, const std::string& name) {
+  if (mesh.surface == nullptr) throw std::invalid_argument(name + ": a mesh without a surface");
+  ValidateCenter(mesh.surface->bounds().min, name + " (least)");
+  ValidateCenter(mesh.surface->bounds().max, name + " (greatest)");
+}
+
 void ValidateOne(const VoxelColumns& columns, const std::string& name) {
   ValidateCenter(columns.corner, name);
   estimation::CheckAbove(name + ": cell", columns.cell, 0.0, kMaxSize);
@@ -84,15 +95,32 @@ double DistanceTo(const Cylinder& cylinder, const Eigen::Vector3d& p_W) {
   return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
+double DistanceTo(const Sphere& sphere, const Eigen::Vector3d& p_W) {
+  return (p_W - sphere.center).norm() - sphere.radius;
+}
+
+double DistanceTo(const Mesh& mesh, const Eigen::Vector3d& p_W) {
+  return mesh.surface->SignedDistance(p_W);
+}
+
 double RayTo(const Box& box, const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) {
-  return RayBox(box.half_extents, TurnedBack(box.yaw, origin_W - box.center),
-                TurnedBack(box.yaw, direction_W));
+  return TurnedBox(box).RayDistance(origin_W, direction_W);
 }
 
 double RayTo(const Cylinder& cylinder, const Eigen::Vector3d& origin_W,
              const Eigen::Vector3d& direction_W) {
   return RayCylinder(cylinder.radius, 0.5 * cylinder.height, origin_W - cylinder.center,
                      direction_W);
+}
+
+double RayTo(const Sphere& sphere, const Eigen::Vector3d& origin_W,
+             const Eigen::Vector3d& direction_W) {
+  return RayBall(sphere.radius, origin_W - sphere.center, direction_W);
+}
+
+double RayTo(const Mesh& mesh, const Eigen::Vector3d& origin_W,
+             const Eigen::Vector3d& direction_W) {
+  return mesh.surface->RayDistance(origin_W, direction_W);
 }
 
 Bounds BoundsOfOne(const Box& box) {
@@ -107,6 +135,13 @@ Bounds BoundsOfOne(const Cylinder& cylinder) {
   const Eigen::Vector3d reach(cylinder.radius, cylinder.radius, 0.5 * cylinder.height);
   return {cylinder.center - reach, cylinder.center + reach};
 }
+
+Bounds BoundsOfOne(const Sphere& sphere) {
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(sphere.radius);
+  return {sphere.center - reach, sphere.center + reach};
+}
+
+Bounds BoundsOfOne(const Mesh& mesh) { return mesh.surface->bounds(); }
 
 Bounds BoundsOfOne(const VoxelColumns& columns) {
   Eigen::Array2i low(columns.count_x, columns.count_y);
@@ -138,6 +173,21 @@ Bounds BoundsOfOne(const Ring& ring) {
 
 }  // namespace
 
+TurnedBox::TurnedBox(const Box& box)
+    : center_(box.center),
+      half_extents_(box.half_extents),
+      cos_(std::cos(box.yaw)),
+      sin_(std::sin(box.yaw)) {}
+
+Eigen::Vector3d TurnedBox::ToBox(const Eigen::Vector3d& v_W) const {
+  return {cos_ * v_W.x() + sin_ * v_W.y(), -sin_ * v_W.x() + cos_ * v_W.y(), v_W.z()};
+}
+
+double TurnedBox::RayDistance(const Eigen::Vector3d& origin_W,
+                              const Eigen::Vector3d& direction_W) const {
+  return RayBox(half_extents_, ToBox(origin_W - center_), ToBox(direction_W));
+}
+
 void Validate(const Obstacle& obstacle, const std::string& name) {
   std::visit([&](const auto& shape) { ValidateOne(shape, name); }, obstacle);
 }
@@ -146,7 +196,7 @@ void CheckGeom(const Obstacle& obstacle, const std::string& name, const std::str
   const bool columns = std::holds_alternative<VoxelColumns>(obstacle);
   if (!columns && !std::holds_alternative<Ring>(obstacle)) return;
   throw std::invalid_argument(name + " is " + (columns ? "a group of voxel columns" : "a ring") +
-                              ": " + user + " takes boxes and cylinders only");
+                              ": " + user + " takes none");
 }
 
 double SignedDistance(const Obstacle& obstacle, const Eigen::Vector3d& p_W) {

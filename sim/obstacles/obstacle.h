@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 
 #include <Eigen/Core>
 
+#include "sim/obstacles/bounds_tree.h"
 #include "sim/obstacles/compound_shapes.h"
+#include "sim/obstacles/triangle_mesh.h"
 
 namespace touchdown::sim {
 
@@ -24,22 +27,25 @@ struct Cylinder {
   double height = 2.0;                               ///< whole height [m], > 0
 };
 
-/// One solid thing that does not move.
-using Obstacle = std::variant<Box, Cylinder, VoxelColumns, Ring>;
-
-/// Axis-aligned bounds in W [m].
-struct Bounds {
-  Eigen::Vector3d min;
-  Eigen::Vector3d max;
+struct Sphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< in W [m]
+  double radius = 0.5;                               ///< [m], > 0
 };
+
+/// Any other solid, by its surface. Copies share it.
+struct Mesh {
+  std::shared_ptr<const TriangleMesh> surface;  ///< never nullptr
+};
+
+/// One solid thing that does not move.
+using Obstacle = std::variant<Box, Cylinder, Sphere, Mesh, VoxelColumns, Ring>;
 
 /// Throws std::invalid_argument, naming the obstacle as `name`, the value and the allowed range, if
 /// a size is not in (0, 1000] m or a number is not finite.
 void Validate(const Obstacle& obstacle, const std::string& name);
 
-/// Throws std::invalid_argument, naming the obstacle as `name` and what needs it as `user`, unless it
-/// is a box or a cylinder: voxel columns and rings are no geoms of a MuJoCo world, nor of the
-/// checkers and cameras that work beside one.
+/// Throws std::invalid_argument, naming the obstacle as `name` and what needs it as `user`, if it is a group of voxel
+/// columns or a ring: they are for maps and planners, nothing is rendered or touched of them.
 void CheckGeom(const Obstacle& obstacle, const std::string& name, const std::string& user);
 
 /// Distance from the point `p_W` to the surface [m], negative inside. Exact, but for the inside of
@@ -55,5 +61,18 @@ double RayDistance(const Obstacle& obstacle, const Eigen::Vector3d& origin_W,
 
 /// Tight axis-aligned bounds.
 Bounds BoundsOf(const Obstacle& obstacle);
+
+/// A box made ready for many rays, as RayDistance gives them.
+class TurnedBox {
+ public:
+  explicit TurnedBox(const Box& box);
+  double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
+
+ private:
+  Eigen::Vector3d ToBox(const Eigen::Vector3d& v_W) const;
+
+  Eigen::Vector3d center_, half_extents_;
+  double cos_, sin_;  // of the yaw
+};
 
 }  // namespace touchdown::sim

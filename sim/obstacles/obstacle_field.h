@@ -2,16 +2,18 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "sim/obstacles/bounds_tree.h"
 #include "sim/obstacles/obstacle.h"
 
 namespace touchdown::sim {
 
-/// All obstacles of a world, each valid. The ground (z = 0) and the pad are not in it. A value
-/// type.
+/// All obstacles of a world, each valid. The ground (z = 0) and the pad are not in it. A value type: the one list that
+/// rays, distances, touches, pictures and maps are made from. Searched by a tree, so that thousands are no burden.
 class ObstacleField {
  public:
   ObstacleField() = default;
@@ -26,11 +28,18 @@ class ObstacleField {
   /// Distance from `p_W` to the nearest surface [m], negative inside; +infinity in an empty field.
   double SignedDistance(const Eigen::Vector3d& p_W) const;
 
-  /// Nearest crossing over all obstacles, as sim::RayDistance.
-  double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
+  /// Nearest crossing over all obstacles, as sim::RayDistance, or `within` if there is none before.
+  double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
+                     double within = std::numeric_limits<double>::infinity()) const;
+
+  /// Of the obstacles' bounds.
+  const BoundsTree& tree() const { return tree_; }
 
  private:
   std::vector<Obstacle> obstacles_;
+  std::vector<TurnedBox> boxes_;  ///< those among the obstacles
+  std::vector<int> box_of_;       ///< index in boxes_; -1: another kind
+  BoundsTree tree_;
 };
 
 }  // namespace touchdown::sim

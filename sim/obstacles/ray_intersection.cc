@@ -67,6 +67,12 @@ double RayCylinder(double radius, double half_height, const Eigen::Vector3d& ori
   return inside.FirstCrossing();
 }
 
+double RayBall(double radius, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  return WhereNegative(direction.squaredNorm(), origin.dot(direction),
+                       origin.squaredNorm() - radius * radius)
+      .FirstCrossing();
+}
+
 double RayCapsule(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
                   const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   Interval inside{kInfinity, -kInfinity};

@@ -20,6 +20,9 @@ double RayBox(const Eigen::Vector3d& half_extents, const Eigen::Vector3d& origin
 double RayCylinder(double radius, double half_height, const Eigen::Vector3d& origin,
                    const Eigen::Vector3d& direction);
 
+/// The same for a ball about the origin.
+double RayBall(double radius, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
 /// The same for a capsule: all points within `radius` of the segment from `a` to `b`, a != b.
 double RayCapsule(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
                   const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);

@@ -13,8 +13,6 @@
 #include "sim/obstacles/true_clearance.h"
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/collision_object.h>
@@ -28,70 +26,12 @@
 #include <vector>
 
 #include "estimation/base/argument_check.h"
-#include "estimation/base/rotation_vector.h"
+#include "sim/obstacles/fcl_objects.h"
 
 namespace touchdown::sim {
 namespace {
 
-using Object = fcl::CollisionObjectd;
-
 constexpr double kGjkTolerance = 1.0e-12;  // change of the distance at which GJK stops [m]
-
-/// The shapes that make up an obstacle.
-class ObjectMaker {
- public:
-  explicit ObjectMaker(std::vector<std::unique_ptr<Object>>* objects) : objects_(objects) {}
-
-  void operator()(const Box& box) {
-    const Eigen::Vector3d sides = 2.0 * box.half_extents;
-    const Eigen::Matrix3d turn =
-        Eigen::AngleAxisd(box.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    Add(std::make_shared<fcl::Boxd>(sides), turn, box.center);
-  }
-  void operator()(const Cylinder& cylinder) {
-    Add(std::make_shared<fcl::Cylinderd>(cylinder.radius, cylinder.height),
-        Eigen::Matrix3d::Identity(), cylinder.center);
-  }
-  // Neighbours along x of one height are one box.
-  void operator()(const VoxelColumns& columns) {
-    for (int y = 0; y < columns.count_y; ++y) {
-      const double* heights = columns.heights.data() + y * columns.count_x;
-      for (int from = 0, to; from < columns.count_x; from = to) {
-        const double height = heights[from];
-        to = from + 1;
-        while (to < columns.count_x && heights[to] == height) ++to;
-        if (height <= 0.0) continue;
-        const Eigen::Vector3d sides((to - from) * columns.cell, columns.cell, height);
-        const Eigen::Vector3d low = columns.corner + columns.cell * Eigen::Vector3d(from, y, 0.0);
-        Add(std::make_shared<fcl::Boxd>(sides), Eigen::Matrix3d::Identity(), low + 0.5 * sides);
-      }
-    }
-  }
-  void operator()(const Ring& ring) {
-    for (int i = 0; i < Ring::kSides; ++i) {
-      const Eigen::Vector3d side = ring.Corner(i + 1) - ring.Corner(i);
-      const Eigen::Matrix3d turn =
-          estimation::ShortestTurn(Eigen::Vector3d::UnitZ(), side).toRotationMatrix();
-      Add(std::make_shared<fcl::Capsuled>(ring.tube_radius, side.norm()), turn,
-          ring.Corner(i) + 0.5 * side);
-    }
-  }
-
- private:
-  void Add(const std::shared_ptr<fcl::CollisionGeometryd>& shape, const Eigen::Matrix3d& R,
-           const Eigen::Vector3d& p) {
-    objects_->push_back(std::make_unique<Object>(shape, R, p));
-  }
-
-  std::vector<std::unique_ptr<Object>>* objects_;
-};
-
-int IndexOf(const Object& object) { return *static_cast<const int*>(object.getUserData()); }
-
-// One of the pair is the vehicle, which carries no index.
-const Object& ObstacleOf(const Object& a, const Object& b) {
-  return a.getUserData() != nullptr ? a : b;
-}
 
 struct Search {
   Clearance best{std::numeric_limits<double>::infinity(), -1};
@@ -99,7 +39,7 @@ struct Search {
 };
 
 // Called for each pair whose bounds overlap; false goes on with the others.
-bool VisitOverlap(Object* a, Object* b, void* data) {
+bool VisitOverlap(FclObject* a, FclObject* b, void* data) {
   auto* search = static_cast<Search*>(data);
   fcl::CollisionRequestd request(1, true);
   request.gjk_solver_type = fcl::GST_LIBCCD;
@@ -107,14 +47,14 @@ bool VisitOverlap(Object* a, Object* b, void* data) {
   if (fcl::collide(a, b, request, result) == 0) return false;
   const double depth = std::abs(result.getContact(0).penetration_depth);
   if (!search->collided || -depth < search->best.distance) {
-    search->best = {-depth, IndexOf(ObstacleOf(*a, *b))};
+    search->best = {-depth, ObstacleOf(*a, *b)};
   }
   search->collided = true;
   return false;
 }
 
 // Called for each pair whose bounds are nearer than `bound`, which it lowers; true ends the search.
-bool VisitPair(Object* a, Object* b, void* data, double& bound) {
+bool VisitPair(FclObject* a, FclObject* b, void* data, double& bound) {
   auto* search = static_cast<Search*>(data);
   fcl::DistanceRequestd request;
   request.gjk_solver_type = fcl::GST_LIBCCD;
@@ -123,7 +63,7 @@ bool VisitPair(Object* a, Object* b, void* data, double& bound) {
   // A pair in touch gives -1: nothing collides here, so it is the touch itself.
   const double distance = std::max(0.0, fcl::distance(a, b, request, result));
   if (distance < search->best.distance) {
-    search->best = {distance, IndexOf(ObstacleOf(*a, *b))};
+    search->best = {distance, ObstacleOf(*a, *b)};
   }
   bound = search->best.distance;
   return bound <= 0.0;
@@ -136,38 +76,23 @@ class TrueClearance::Impl {
   Impl(const ObstacleField& obstacles, const estimation::VehicleModel& model)
       : center_B_(0.0, 0.0, 0.5 * (model.hull_top - model.foot_depth)),
         hull_(std::make_shared<fcl::Cylinderd>(model.hull_radius,
-                                               model.hull_top + model.foot_depth)) {
-    indices_.reserve(obstacles.size());
-    for (const Obstacle& obstacle : obstacles.obstacles()) {
-      indices_.push_back(static_cast<int>(indices_.size()));
-      const std::size_t first = objects_.size();
-      std::visit(ObjectMaker(&objects_), obstacle);
-      for (std::size_t i = first; i < objects_.size(); ++i) {
-        objects_[i]->setUserData(&indices_.back());
-        objects_[i]->computeAABB();
-        tree_.registerObject(objects_[i].get());
-      }
-    }
-    tree_.setup();
-  }
+                                               model.hull_top + model.foot_depth)),
+        objects_(obstacles) {}
 
   Clearance Nearest(const estimation::VehicleState& vehicle) const {
     Search search;
-    if (objects_.empty()) return search.best;
     const Eigen::Matrix3d R_WB = vehicle.q_WB.toRotationMatrix();
-    Object hull(hull_, R_WB, vehicle.p_WB + R_WB * center_B_);
+    FclObject hull(hull_, R_WB, vehicle.p_WB + R_WB * center_B_);
     hull.computeAABB();
-    tree_.collide(&hull, &search, VisitOverlap);
-    if (!search.collided) tree_.distance(&hull, &search, VisitPair);
+    objects_.tree().collide(&hull, &search, VisitOverlap);
+    if (!search.collided) objects_.tree().distance(&hull, &search, VisitPair);
     return search.best;
   }
 
  private:
   Eigen::Vector3d center_B_;
   std::shared_ptr<fcl::Cylinderd> hull_;
-  std::vector<int> indices_;  // what the objects' user data points to
-  std::vector<std::unique_ptr<Object>> objects_;
-  fcl::DynamicAABBTreeCollisionManagerd tree_;
+  FclObstacles objects_;
 };
 
 TrueClearance::TrueClearance(const ObstacleField& obstacles,

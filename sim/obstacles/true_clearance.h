@@ -18,7 +18,8 @@ struct Clearance {
 /// True distance between the vehicle and the obstacles, by FCL on the exact shapes: a checker that
 /// shares no code with map, planner or contact physics. The vehicle is the upright-in-B cylinder of
 /// hull_radius from the soles of the feet (-foot_depth) to hull_top, which holds every colliding
-/// part of it. Ground and pad do not count.
+/// part of it. Ground and pad do not count. Of a mesh it is the distance to the surface: 0 is the least where the hull
+/// touches it, and a hull that is wholly inside is as far as from outside.
 class TrueClearance {
  public:
   /// Throws std::invalid_argument naming the value if the model's hull is not a cylinder of

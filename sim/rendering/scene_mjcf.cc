@@ -20,7 +20,15 @@ constexpr double kSheetThickness = 0.0005;  // [m]
 constexpr double kPlateThickness = 0.004;   // of what covers a part of it [m]
 constexpr double kGroundPeriod = 4.0;       // the ground's texture repeats after [m]
 
-void WriteAssets(std::ostream& xml) {
+std::string NameOf(std::size_t obstacle) { return "obstacle " + std::to_string(obstacle); }
+
+const char* MaterialOf(const Obstacle& obstacle) {
+  const bool round =
+      std::holds_alternative<Cylinder>(obstacle) || std::holds_alternative<Sphere>(obstacle);
+  return round ? "cylinder" : "box";
+}
+
+void WriteAssets(const VisualScene& scene, std::ostream& xml) {
   const std::string repeat = estimation::NumberText(1.0 / kGroundPeriod);
   xml << "<asset>\n"
       << "<texture name='ground' type='2d' builtin='flat' rgb1='1 1 1' width='" << kGroundTexels
@@ -34,8 +42,14 @@ void WriteAssets(std::ostream& xml) {
       << "<material name='cylinder' rgba='0.36 0.55 0.38 1' specular='0'/>\n"
       << "<material name='deck' rgba='0.62 0.62 0.66 1' specular='0'/>\n"
       << "<material name='plate' rgba='0.45 0.45 0.45 1' specular='0'/>\n"
-      << "<material name='pad_body' rgba='0.25 0.30 0.42 1' specular='0'/>\n"
-      << "</asset>\n";
+      << "<material name='pad_body' rgba='0.25 0.30 0.42 1' specular='0'/>\n";
+  const std::vector<Obstacle>& obstacles = scene.obstacles.obstacles();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (const auto* mesh = std::get_if<Mesh>(&obstacles[i])) {
+      xml << MeshAssetText(*mesh->surface, NameOf(i));
+    }
+  }
+  xml << "</asset>\n";
 }
 
 void WriteGeom(const Box& box, const char* name, std::ostream& xml) {
@@ -87,16 +101,15 @@ std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view) {
       << estimation::NumberText(view.far) << "'/>\n"
       << "<headlight ambient='0.5 0.5 0.5' diffuse='0 0 0' specular='0 0 0'/>\n"
       << "</visual>\n";
-  WriteAssets(xml);
+  WriteAssets(scene, xml);
   xml << "<worldbody>\n"
       << "<light directional='true' castshadow='false' pos='0 0 10' dir='0.2 0.3 -1' "
       << "ambient='0 0 0' diffuse='0.45 0.45 0.45' specular='0 0 0'/>\n"
       << "<geom name='ground' type='plane' size='0 0 1' material='ground'/>\n";
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     const Obstacle& obstacle = scene.obstacles.obstacles()[i];
-    const char* const material = std::holds_alternative<Box>(obstacle) ? "box" : "cylinder";
-    xml << "<geom material='" << material << "' "
-        << GeomText(obstacle, "obstacle " + std::to_string(i), "a rendered scene") << "/>\n";
+    xml << "<geom material='" << MaterialOf(obstacle) << "' "
+        << GeomText(obstacle, NameOf(i), "a rendered scene") << "/>\n";
   }
   WritePad(scene, xml);
   xml << "<body name='camera' mocap='true'>\n"

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth images by casting one ray per pixel centre at the analytic shapes, which at 80x60 pixels
-// costs a tenth of mj_ray and of rendering. Rays have z_C = 1, so that a ray's parameter is the
-// depth. Per frame, shapes out of range are dropped and the camera is put into each remaining
-// shape's frame once; per ray, a shape whose bounding sphere it misses is skipped: with m = center
-// - camera and direction d it misses if it is farther than r from the centre, |m|^2 - (m.d)^2 /
-// |d|^2 > r^2.
+// Depth images by casting one ray per pixel centre at the shapes themselves, which at 80x60 pixels costs a tenth of
+// mj_ray and of rendering. Rays have z_C = 1, so that a ray's parameter is the depth.
 
 #include "sim/sensors/depth_camera.h"
 
@@ -18,6 +14,12 @@
 #include "sim/obstacles/ray_intersection.h"
 
 namespace touchdown::sim {
+namespace {
+
+constexpr double kBeyond = 1.001;  // of the range: what is farther is not looked for
+
+}  // namespace
+
 void Validate(const DepthCameraConfig& config) {
   estimation::CheckWithin("depth_camera.width", config.width, 1, 4096);
   estimation::CheckWithin("depth_camera.height", config.height, 1, 4096);
@@ -48,39 +50,9 @@ Eigen::Matrix3d CameraAxes(const DepthCameraConfig& config) {
   return R_BC;
 }
 
-DepthCamera::Shape DepthCamera::MakeShape(const Obstacle& obstacle) {
-  Shape shape;
-  if (const auto* box = std::get_if<Box>(&obstacle)) {
-    shape.is_box = true;
-    shape.center = box->center;
-    shape.size = box->half_extents;
-    shape.cos_yaw = std::cos(box->yaw);
-    shape.sin_yaw = std::sin(box->yaw);
-    shape.bounding_radius = box->half_extents.norm();
-  } else {
-    const auto& cylinder = std::get<Cylinder>(obstacle);
-    const double half_height = 0.5 * cylinder.height;
-    shape.center = cylinder.center;
-    shape.size = {cylinder.radius, cylinder.radius, half_height};
-    shape.bounding_radius = std::hypot(cylinder.radius, half_height);
-  }
-  return shape;
-}
-
-Eigen::Vector3d DepthCamera::Shape::ToLocal(const Eigen::Vector3d& v_W) const {
-  return {cos_yaw * v_W.x() + sin_yaw * v_W.y(), -sin_yaw * v_W.x() + cos_yaw * v_W.y(), v_W.z()};
-}
-
-double DepthCamera::Shape::Cast(const Eigen::Vector3d& ray_W, double ray_squared) const {
-  const double along = from_camera.dot(ray_W);
-  if (miss_squared * ray_squared > along * along) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector3d ray = ToLocal(ray_W);
-  return is_box ? RayBox(size, camera, ray) : RayCylinder(size.x(), size.z(), camera, ray);
-}
-
 DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& obstacles,
                          const PadGeometry& pad, std::uint64_t seed)
-    : config_(config), pad_(pad), noise_(seed, "depth camera") {
+    : config_(config), pad_(pad), obstacles_(obstacles), noise_(seed, "depth camera") {
   Validate(config);
   intrinsics_ = IntrinsicsOf(config);
   R_BC_ = CameraAxes(config);
@@ -92,26 +64,6 @@ DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& o
                            (row + 0.5 - intrinsics_.cy) / intrinsics_.focal, 1.0);
     }
   }
-  for (const Obstacle& obstacle : obstacles.obstacles()) {
-    CheckGeom(obstacle, "obstacle " + std::to_string(scene_.size()), "the depth camera");
-    scene_.push_back(MakeShape(obstacle));
-  }
-  near_.reserve(scene_.size() + 2);
-}
-
-void DepthCamera::CollectNear(const Eigen::Vector3d& p_WC, const estimation::PadState& pad) {
-  const auto add_if_near = [&](Shape shape) {
-    shape.from_camera = shape.center - p_WC;
-    const double distance = shape.from_camera.norm();
-    if (distance - shape.bounding_radius > config_.max_range) return;
-    shape.miss_squared = distance * distance - shape.bounding_radius * shape.bounding_radius;
-    shape.camera = shape.ToLocal(-shape.from_camera);
-    near_.push_back(shape);
-  };
-  near_.clear();
-  for (const Shape& shape : scene_) add_if_near(shape);
-  add_if_near(MakeShape(DeckBox(pad_, pad)));
-  add_if_near(MakeShape(PadBodyBox(pad_, pad)));
 }
 
 void DepthCamera::Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
@@ -123,7 +75,7 @@ void DepthCamera::Capture(const estimation::VehicleState& vehicle, const estimat
   frame->p_WC = vehicle.p_WB + R_WB * config_.p_BC;
   frame->max_range = config_.max_range;
   frame->depth.resize(rays_C_.size());
-  CollectNear(frame->p_WC, pad);
+  const TurnedBox deck(DeckBox(pad_, pad)), body(PadBodyBox(pad_, pad));
 
   for (std::size_t i = 0; i < rays_C_.size(); ++i) {
     const Eigen::Vector3d ray_W = frame->R_WC * rays_C_[i];
@@ -131,7 +83,10 @@ void DepthCamera::Capture(const estimation::VehicleState& vehicle, const estimat
     // The ground is seen from above only.
     const double to_ground = -frame->p_WC.z() / ray_W.z();
     double depth = ray_W.z() < 0.0 && to_ground >= 0.0 ? to_ground : kInfinity;
-    for (const Shape& shape : near_) depth = std::min(depth, shape.Cast(ray_W, ray_squared));
+    depth = std::min({depth, deck.RayDistance(frame->p_WC, ray_W),
+                      body.RayDistance(frame->p_WC, ray_W)});
+    const double beyond = kBeyond * config_.max_range / std::sqrt(ray_squared);
+    depth = obstacles_.RayDistance(frame->p_WC, ray_W, std::min(depth, beyond));
     const bool seen = depth * depth * ray_squared <= config_.max_range * config_.max_range;
     if (seen && config_.range_noise > 0.0) {
       depth = std::max(0.0, depth * (1.0 + noise_.Normal(config_.range_noise)));

@@ -53,31 +53,11 @@ class DepthCamera {
   const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }
 
  private:
-  /// Shape to cast rays at, in its own upright frame, with the sphere that holds it.
-  struct Shape {
-    bool is_box = false;                               ///< else a cylinder
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< in W [m]
-    Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< half extents [m]
-    double cos_yaw = 1.0;
-    double sin_yaw = 0.0;
-    double bounding_radius = 0.0;
-    // Of the frame at hand:
-    Eigen::Vector3d from_camera = Eigen::Vector3d::Zero();  ///< center - camera, in W
-    Eigen::Vector3d camera = Eigen::Vector3d::Zero();       ///< in the shape's frame
-    double miss_squared = 0.0;  ///< |from_camera|^2 - bounding_radius^2; negative: camera inside
-
-    Eigen::Vector3d ToLocal(const Eigen::Vector3d& v_W) const;
-    double Cast(const Eigen::Vector3d& ray_W, double ray_squared) const;
-  };
-  static Shape MakeShape(const Obstacle& obstacle);
-  void CollectNear(const Eigen::Vector3d& p_WC, const estimation::PadState& pad);
-
   DepthCameraConfig config_;
   estimation::CameraIntrinsics intrinsics_;
   Eigen::Matrix3d R_BC_;
   PadGeometry pad_;
-  std::vector<Shape> scene_;             ///< all obstacles
-  std::vector<Shape> near_;              ///< of the frame at hand; capacity reserved
+  ObstacleField obstacles_;
   std::vector<Eigen::Vector3d> rays_C_;  ///< per pixel, z = 1: a ray's parameter is its depth
   RandomStream noise_;
 };

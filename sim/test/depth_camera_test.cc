@@ -8,10 +8,13 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim/mujoco/mjcf_text.h"
 #include "sim/mujoco/mujoco_model.h"
 #include "sim/test/scenes.h"
 #include "sim/vehicle/vehicle_file.h"
@@ -33,11 +36,28 @@ estimation::PadState PadAt(double x, double y, double yaw) {
   return pad;
 }
 
+/// A world's text with its obstacles as geoms, which it has none of, for mj_ray.
+std::string WithObstacles(const WorldConfig& config) {
+  std::string xml = WorldMjcf(config), assets, geoms;
+  const std::vector<Obstacle>& obstacles = config.obstacles.obstacles();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const std::string name = "obstacle " + std::to_string(i);
+    if (const auto* mesh = std::get_if<Mesh>(&obstacles[i])) {
+      assets += MeshAssetText(*mesh->surface, name);
+    }
+    geoms += "<geom " + GeomText(obstacles[i], name, "mj_ray") + "/>\n";
+  }
+  const std::string end = "</worldbody>";
+  xml.insert(xml.find(end), geoms);
+  xml.insert(xml.find("<worldbody>"), "<asset>" + assets + "</asset>\n");
+  return xml;
+}
+
 // The compiled scene with the pad where the camera is told it is.
 class MujocoScene {
  public:
   MujocoScene(const WorldConfig& config, const estimation::PadState& pad)
-      : model_(CompileMjcf(WorldMjcf(config), DefaultVehicleMjcf())),
+      : model_(CompileMjcf(WithObstacles(config), DefaultVehicleMjcf())),
         data_(MakeMujocoData(*model_)),
         vehicle_(mj_name2id(model_.get(), mjOBJ_BODY, "vehicle")) {
     Joint("pad_x") = pad.p_WP.x();

@@ -8,9 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sim/sensors/depth_camera.h"
+#include "sim/rendering/scene_mjcf.h"
 #include "sim/test/scenes.h"
-#include "sim/world/world_mjcf.h"
 
 namespace touchdown::sim {
 namespace {
@@ -181,16 +180,15 @@ TEST(Forest, RefusesWhatCannotBe) {
               AllOf(HasSubstr("pillars is 800"), HasSubstr("fits")));
 }
 
-// Ragged pillars and rings have no geoms: whoever works beside MuJoCo says so.
-TEST(Forest, VoxelShapesAreRefusedWhereAWorldIsAsked) {
-  WorldConfig world;
-  world.obstacles = MakeForest(ForestOfKind("A"), 1);
-  EXPECT_THAT(MessageOf<std::invalid_argument>([&] { WorldMjcf(world); }),
-              AllOf(HasSubstr("obstacle 0"), HasSubstr("voxel columns"), HasSubstr("MuJoCo")));
-  const ObstacleField ring({Ring{}});
-  EXPECT_THAT(MessageOf<std::invalid_argument>(
-                  [&] { DepthCamera(DepthCameraConfig{}, ring, PadGeometry{}, 1); }),
-              AllOf(HasSubstr("obstacle 0 is a ring"), HasSubstr("depth camera")));
+// Ragged pillars and rings have no geoms: whoever would draw them says so.
+TEST(Forest, VoxelShapesAreRefusedWhereAPictureIsAsked) {
+  VisualScene scene;
+  scene.obstacles = MakeForest(ForestOfKind("A"), 1);
+  EXPECT_THAT(MessageOf<std::invalid_argument>([&] { SceneMjcf(scene, {}); }),
+              AllOf(HasSubstr("obstacle 0"), HasSubstr("voxel columns"), HasSubstr("scene")));
+  scene.obstacles = ObstacleField({Ring{}});
+  EXPECT_THAT(MessageOf<std::invalid_argument>([&] { SceneMjcf(scene, {}); }),
+              HasSubstr("obstacle 0 is a ring"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,7 @@
 #include "sim/mujoco/mujoco_model.h"
 #include "sim/vehicle/trim.h"
 #include "sim/vehicle/vehicle_file.h"
+#include "sim/world/obstacle_touch.h"
 #include "sim/world/start_check.h"
 #include "sim/world/world_mjcf.h"
 
@@ -34,9 +36,8 @@ constexpr double kMaxWind = 100.0;  // [m/s]
 
 // What a geom is in the world.
 struct GeomRole {
-  enum class Part { kGround, kObstacle, kDeck, kPadBody, kFoot, kHull };
+  enum class Part { kGround, kDeck, kPadBody, kFoot, kHull };
   Part part = Part::kGround;
-  int obstacle = -1;
 
   bool OfVehicle() const { return part == Part::kFoot || part == Part::kHull; }
 };
@@ -56,8 +57,6 @@ ContactKind KindOf(GeomRole::Part vehicle, GeomRole::Part other) {
       return vehicle == GeomRole::Part::kFoot ? ContactKind::kFootDeck : ContactKind::kHullDeck;
     case GeomRole::Part::kPadBody:
       return ContactKind::kPadVehicle;
-    case GeomRole::Part::kObstacle:
-      return ContactKind::kObstacle;
     default:
       return ContactKind::kGround;
   }
@@ -129,6 +128,7 @@ class World::Impl {
   long steps_ = 0;
   bool failed_ = false;
   std::vector<GeomRole> roles_;  // by geom
+  std::optional<ObstacleTouch> touch_;
   int vehicle_body_ = -1;
   int vehicle_qpos_ = -1;
   int vehicle_qvel_ = -1;
@@ -160,7 +160,7 @@ World::Impl::Impl(const WorldConfig& config) : config_(config), course_(CourseOf
   CheckStart(config_, model_);
   mujoco_ = CompileMjcf(WorldMjcf(config_), config_.vehicle_mjcf);
   data_ = MakeMujocoData(*mujoco_);
-  contacts_.reserve(static_cast<std::size_t>(mujoco_->nconmax));
+  contacts_.reserve(static_cast<std::size_t>(mujoco_->nconmax) + 1);
   FindIndices();
   AlterPlant();
   SetInitialState(thrust);
@@ -186,22 +186,21 @@ void World::Impl::FindIndices() {
   vehicle_qpos_ = m->jnt_qposadr[m->body_jntadr[vehicle_body_]];
   vehicle_qvel_ = m->body_dofadr[vehicle_body_];
 
-  constexpr std::string_view kObstacle = "obstacle";
+  std::vector<int> parts;  // of the vehicle, that touch what stands
   roles_.resize(static_cast<std::size_t>(m->ngeom));
   for (int geom = 0; geom < m->ngeom; ++geom) {
     const std::string_view name = m->names + m->name_geomadr[geom];
     GeomRole& role = roles_[static_cast<std::size_t>(geom)];
     if (m->geom_bodyid[geom] == vehicle_body_) {
       role.part = name.starts_with("foot") ? GeomRole::Part::kFoot : GeomRole::Part::kHull;
+      if ((m->geom_conaffinity[geom] & 1) != 0) parts.push_back(geom);
     } else if (name == "deck") {
       role.part = GeomRole::Part::kDeck;
     } else if (name == "pad_body") {
       role.part = GeomRole::Part::kPadBody;
-    } else if (name.starts_with(kObstacle)) {
-      role.part = GeomRole::Part::kObstacle;
-      role.obstacle = std::stoi(std::string(name.substr(kObstacle.size())));
     }
   }
+  touch_.emplace(config_.obstacles, *m, parts);
 }
 
 void World::Impl::AlterPlant() {
@@ -320,7 +319,6 @@ void World::Impl::ReadContacts() {
 
     Contact contact;
     contact.kind = KindOf(vehicle.part, other.part);
-    contact.obstacle = other.obstacle;
     std::array<mjtNum, 6> force{};  // in the contact frame, the normal first
     mj_contactForce(m, d, i, force.data());
     contact.normal_force = force[0];
@@ -330,6 +328,11 @@ void World::Impl::ReadContacts() {
     if (vehicle.part == GeomRole::Part::kFoot) foot_force_ += contact.normal_force;
     contacts_.push_back(contact);
   }
+  // Positions are still those at the step's beginning, as all that a step finds.
+  const auto touch = touch_->Find(*d, Vec3(d->xpos + 3 * vehicle_body_));
+  if (!touch) return;
+  const Eigen::Vector3d v_W = PointVelocity(vehicle_body_, touch->p_W);
+  contacts_.push_back({ContactKind::kObstacle, touch->obstacle, 0.0, touch->p_W, v_W});
 }
 
 estimation::VehicleState World::Impl::Vehicle() const {

@@ -46,7 +46,7 @@ enum class ContactKind {
   kFootDeck,    ///< a foot on the deck: how a landing looks
   kHullDeck,    ///< any other part of the vehicle on the deck
   kPadVehicle,  ///< any part of the vehicle on the pad vehicle's body below the deck
-  kObstacle,    ///< any part of the vehicle on an obstacle
+  kObstacle,    ///< any part of the vehicle on an obstacle; it is not pushed back, the flight is over
   kGround,      ///< any part of the vehicle on the ground
 };
 
@@ -57,7 +57,7 @@ const char* ToString(ContactKind kind);
 struct Contact {
   ContactKind kind = ContactKind::kGround;
   int obstacle = -1;                                  ///< index in the field for kObstacle, else -1
-  double normal_force = 0.0;                          ///< [N]
+  double normal_force = 0.0;                          ///< [N]; of an obstacle 0
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();      ///< contact point [m]
   Eigen::Vector3d v_rel_W = Eigen::Vector3d::Zero();  ///< vehicle's point minus the other's [m/s]
 };
@@ -75,7 +75,7 @@ class World {
   World& operator=(World&&) noexcept;
   ~World();
 
-  /// Advances one time step. Does not allocate.
+  /// Advances one time step. Does not allocate but where an obstacle is within the vehicle's reach.
   /// @param rotor_thrust_commands per rotor [N]; clipped to the rotors' limits, reached with their
   /// lag.
   /// @param wind_W velocity of the air [m/s].

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The scene as MJCF text. Choices, each measured in MuJoCo 2.2.2: Euler with 2 ms, Newton, elliptic
 // cone and impratio 10 (a landed vehicle creeps 0.05 mm in 13 s); the pad on slide and hinge joints
-// with velocity drives (a mocap body shows contact a surface at rest); static obstacles directly in
-// worldbody (each in a body of its own is 4x slower); the pad's stateless actuators before the
+// with velocity drives (a mocap body shows contact a surface at rest); no obstacles, whose touch is found elsewhere
+// (obstacle_touch.h); the pad's stateless actuators before the
 // rotors' stateful ones, as the compiler demands; small nconmax and njmax, which bound the memory
 // of mjData. Everything but the vehicle has contype 1 and conaffinity 0: it touches only the
 // vehicle. No angle is written in degrees or radians, so that the vehicle file's <compiler> cannot
@@ -62,12 +62,6 @@ std::string WorldMjcf(const WorldConfig& config) {
       << "<worldbody>\n"
       << "<geom name='ground' type='plane' size='0 0 1' pos='0 0 0' condim='3' " << kEnvironment
       << "/>\n";
-  for (std::size_t i = 0; i < config.obstacles.size(); ++i) {
-    xml << "<geom name='obstacle" << i << "' condim='3' " << kEnvironment
-        << GeomText(config.obstacles.obstacles()[i], "obstacle " + std::to_string(i),
-                    "a MuJoCo world")
-        << "/>\n";
-  }
   WritePad(config, xml);
   xml << "</worldbody>\n<actuator>\n";
   WriteDrive("pad_x", PadDrive::kVelocityGain, xml);

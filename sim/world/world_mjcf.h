@@ -21,8 +21,8 @@ struct PadDrive {
   }
 };
 
-/// MJCF text of the world: ground, obstacles, pad vehicle; the vehicle is included under
-/// kVehicleIncludeName. Geoms are named "ground", "obstacle<index>", "deck" and "pad_body"; joints
+/// MJCF text of the world: ground and pad vehicle; the vehicle is included under
+/// kVehicleIncludeName. Geoms are named "ground", "deck" and "pad_body"; joints
 /// and actuators of the pad "pad_x", "pad_y" and "pad_yaw". The configuration is taken as valid.
 std::string WorldMjcf(const WorldConfig& config);
 

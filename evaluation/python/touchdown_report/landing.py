@@ -10,7 +10,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
+from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
@@ -33,6 +33,7 @@ PAD_COLOUR = "#2B2B2B"
 PLAN_COLOUR = "#56B4E9"
 BUILDING_FACE = "#DDD8CF"
 BUILDING_EDGE = "#8C857A"
+MOST_NUMBERED = 40  # obstacles whose height stands in the picture
 PICTURE_STYLE = {
     **STYLE,
     "axes.labelcolor": "#333333",
@@ -82,20 +83,43 @@ def deck_outline(pad_row, half):
 def draw_obstacles(axes, obstacles, side):
     """Outlines from above, or from the south with the nearer ones in front."""
     order = sorted(obstacles, key=lambda o: -o["centre"][1]) if side else obstacles
+    numbered = len(obstacles) <= MOST_NUMBERED
     for obstacle in order:
         (cx, cy, cz), (sx, sy, sz) = obstacle["centre"], obstacle["size"]
         look = {"facecolor": BUILDING_FACE, "edgecolor": BUILDING_EDGE, "lw": 0.8, "zorder": 1}
         if side:
-            axes.add_patch(
-                Rectangle((cx - sx / 2, cz - sz / 2), sx, sz, **{**look, "alpha": 0.45})
-            )
-        elif obstacle["kind"] == "cylinder":
-            axes.add_patch(Circle((cx, cy), sx / 2, **look))
+            look["alpha"] = 0.45
+        if obstacle["kind"] == "mesh":
+            draw_surface(axes, obstacle["surface"][:, :, [0, 2] if side else [0, 1]])
+        elif obstacle["kind"] == "sphere" or (obstacle["kind"] == "cylinder" and not side):
+            axes.add_patch(Circle((cx, cz if side else cy), sx / 2, **look))
+        elif side:
+            wide = sx
+            if obstacle["kind"] == "box":
+                wide = abs(sx * np.cos(obstacle["yaw"])) + abs(sy * np.sin(obstacle["yaw"]))
+            axes.add_patch(Rectangle((cx - wide / 2, cz - sz / 2), wide, sz, **look))
         else:
-            axes.add_patch(Rectangle((cx - sx / 2, cy - sy / 2), sx, sy, **look))
-            axes.annotate(
-                f"{sz:g} m", (cx, cy), ha="center", va="center", fontsize=7, color=BUILDING_EDGE
+            axes.add_patch(
+                Rectangle(
+                    (cx - sx / 2, cy - sy / 2),
+                    sx,
+                    sy,
+                    angle=np.degrees(obstacle["yaw"]),
+                    rotation_point="center",
+                    **look,
+                )
             )
+            if numbered:
+                axes.annotate(
+                    f"{sz:g} m", (cx, cy), ha="center", va="center", fontsize=7, color=BUILDING_EDGE
+                )
+
+
+def draw_surface(axes, triangles):
+    """A mesh by its triangles, shape (n, 3, 2), with the edges left out that would hide it."""
+    axes.add_collection(
+        PolyCollection(triangles, facecolor=BUILDING_FACE, edgecolor="none", alpha=0.45, zorder=1)
+    )
 
 
 def draw_world(axes, record, contact, half, side):

@@ -6,7 +6,7 @@ import numpy as np
 
 from touchdown_report import database
 
-SUPPORTED_VERSION = "16"
+SUPPORTED_VERSION = "17"
 
 
 class RecordError(Exception):
@@ -31,15 +31,7 @@ class Record:
         )
         self.modes = [row[0] for row in db.execute("SELECT mode FROM mode ORDER BY t")]
         self.events = db.execute("SELECT t, kind, text FROM event ORDER BY t").fetchall()
-        self.obstacles = [
-            dict(zip(("kind", "centre", "size"), (kind, np.array(c), np.array(s))))
-            for kind, c, s in (
-                (row[0], row[1:4], row[4:7])
-                for row in db.execute(
-                    "SELECT kind, cx, cy, cz, size_x, size_y, size_z FROM obstacle ORDER BY id"
-                )
-            )
-        ]
+        self.obstacles = self._obstacles(db)
         self.zones = [
             (row[0], row[1], row[2:5], row[5:8])
             for row in db.execute(
@@ -54,6 +46,29 @@ class Record:
         if not rows:
             raise RecordError("The record holds no states.")
         return np.array(rows, dtype=float)
+
+    @staticmethod
+    def _obstacles(db):
+        """Dictionaries with kind, centre, size, yaw; of a mesh its surface: corners of each triangle, (n, 3, 3)."""
+        surfaces = {
+            obstacle: np.frombuffer(corners, "<f4").reshape(-1, 3)[
+                np.frombuffer(triangles, "<i4").reshape(-1, 3)
+            ]
+            for obstacle, corners, triangles in db.execute("SELECT * FROM surface")
+        }
+        rows = db.execute(
+            "SELECT id, kind, cx, cy, cz, size_x, size_y, size_z, yaw FROM obstacle ORDER BY id"
+        )
+        return [
+            {
+                "kind": row[1],
+                "centre": np.array(row[2:5]),
+                "size": np.array(row[5:8]),
+                "yaw": row[8],
+                "surface": surfaces.get(row[0]),
+            }
+            for row in rows
+        ]
 
     @staticmethod
     def _plans(db):

@@ -28,18 +28,59 @@ enum class EndpointVelocityKind { kPad, kRest };
 enum class EndpointKind { kEliminated, kExplicit };
 enum class LimitsKind { kSoft, kHard };
 
-/// A box on the ground, its edges along the world's axes.
+/// A box, turned about its middle.
 struct BoxObstacle {
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its base in W [m]
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();    ///< edges along x, y, z [m]
-  double base = 0.0;                                 ///< of its lower face above the ground [m]
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();    ///< of its base in W [m]
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();      ///< edges along x, y, z [m]
+  double base = 0.0;                                   ///< of its lower face above the ground [m]
+  Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();  ///< roll, pitch, yaw [deg]
 };
 
-/// An upright cylinder on the ground.
+/// An upright cylinder.
 struct CylinderObstacle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< of its base in W [m]
   double radius = 0.3;                               ///< [m]
   double height = 4.0;                               ///< [m]
+  double base = 0.0;                                 ///< of its lower face above the ground [m]
+};
+
+struct SphereObstacle {
+  Eigen::Vector3d centre = Eigen::Vector3d::UnitZ();  ///< in W [m]
+  double radius = 0.3;                                ///< [m]
+};
+
+/// Upright walls from point to point.
+struct WallObstacle {
+  std::vector<double> points;  ///< x, y of each, in W [m]
+  double thickness = 0.2;      ///< [m]
+  double height = 3.0;         ///< [m]
+  double base = 0.0;           ///< of its lower face above the ground [m]
+};
+
+/// The solids of a triangle mesh in a file.
+struct MeshObstacle {
+  std::string file;
+  double scale = 1.0;                                  ///< metres to the file's unit
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();        ///< of the file's origin in W [m]
+  Eigen::Vector3d turn_deg = Eigen::Vector3d::Zero();  ///< roll, pitch, yaw [deg]
+};
+
+/// Ground by a grey picture of its heights.
+struct HeightFieldObstacle {
+  std::string file;
+  Eigen::Vector2d size = Eigen::Vector2d::Constant(10.0);  ///< along x and y [m]
+  double height = 1.0;                                     ///< of white above black [m]
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();            ///< of its middle, at black, in W [m]
+  double yaw_deg = 0.0;                                    ///< [deg]
+};
+
+/// The occupied cells of an OctoMap file.
+struct OctomapObstacle {
+  std::string file;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< of the file's origin in W [m]
+  double yaw_deg = 0.0;                          ///< [deg]
+  Eigen::Vector3d crop_min = Eigen::Vector3d::Constant(-1e4);  ///< in the file's frame [m] ...
+  Eigen::Vector3d crop_max = Eigen::Vector3d::Constant(1e4);   ///< ... cells' middles within count
 };
 
 /// Time from the question to the plan that is flown.
@@ -243,6 +284,11 @@ struct Scenario {
 
   std::vector<BoxObstacle> boxes;
   std::vector<CylinderObstacle> cylinders;
+  std::vector<SphereObstacle> spheres;
+  std::vector<WallObstacle> walls;
+  std::vector<MeshObstacle> meshes;
+  std::vector<HeightFieldObstacle> height_fields;
+  std::vector<OctomapObstacle> octomaps;
 };
 
 /// One plan is to lead to contact.

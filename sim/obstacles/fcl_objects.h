@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// FCL's headers are heavy: for the few sources that ask it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include "sim/obstacles/obstacle_field.h"
+
+namespace touchdown::sim {
+
+using FclObject = fcl::CollisionObjectd;
+
+/// A field's obstacles in FCL's dynamic tree of bounds. Each object knows the obstacle that it belongs to.
+class FclObstacles {
+ public:
+  explicit FclObstacles(const ObstacleField& obstacles);
+  FclObstacles(FclObstacles&&) = delete;
+
+  const fcl::DynamicAABBTreeCollisionManagerd& tree() const { return tree_; }
+
+ private:
+  std::vector<int> indices_;  // what the objects' user data points to
+  std::vector<std::unique_ptr<FclObject>> objects_;
+  fcl::DynamicAABBTreeCollisionManagerd tree_;
+};
+
+/// Of a pair of which one is an obstacle's: that obstacle's index.
+int ObstacleOf(const FclObject& a, const FclObject& b);
+
+}  // namespace touchdown::sim

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// By libpng without any change of values: no gamma, no palette, 16 bits stay 16.
+#include <array>
+#include <csetjmp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include <png.h>
+
+#include "estimation/base/argument_check.h"
+#include "sim/obstacles/mesh_shapes.h"
+#include "sim/obstacles/world_files.h"
+
+namespace touchdown::sim {
+namespace {
+
+constexpr double kThickness = 0.5;  // below the lowest height [m]
+
+struct Png {
+  unsigned width = 0, height = 0;
+  int bits = 0, color = 0;
+  std::vector<unsigned char> bytes;  // rows, big endian
+  std::string error;
+};
+
+// libpng's errors jump to here: nothing with a destructor lives in this function.
+void Decode(std::FILE* file, Png* png) {
+  png_structp read = png_create_read_struct(
+      PNG_LIBPNG_VER_STRING, png,
+      [](png_structp in, png_const_charp why) {
+        static_cast<Png*>(png_get_error_ptr(in))->error = why;
+        png_longjmp(in, 1);
+      },
+      [](png_structp, png_const_charp) {});
+  png_infop info = png_create_info_struct(read);
+  if (setjmp(png_jmpbuf(read)) == 0) {
+    png_init_io(read, file);
+    png_set_user_limits(read, 2048, 2048);
+    png_read_info(read, info);
+    png->width = png_get_image_width(read, info);
+    png->height = png_get_image_height(read, info);
+    png->bits = png_get_bit_depth(read, info);
+    png->color = png_get_color_type(read, info);
+    if (png->color == PNG_COLOR_TYPE_GRAY && png->bits >= 8) {
+      png_set_interlace_handling(read);
+      png_read_update_info(read, info);
+      const std::size_t stride = png_get_rowbytes(read, info);
+      png->bytes.resize(stride * png->height);
+      for (int pass = png_get_interlace_type(read, info) == PNG_INTERLACE_NONE ? 1 : 7; pass > 0;
+           --pass) {
+        for (unsigned row = 0; row < png->height; ++row) {
+          png_read_row(read, png->bytes.data() + row * stride, nullptr);
+        }
+      }
+    }
+  }
+  png_destroy_read_struct(&read, &info, nullptr);
+}
+
+}  // namespace
+
+Obstacle ObstacleOfHeightFile(const std::string& path, const Eigen::Vector2d& size, double height,
+                              const Placement& placement) {
+  estimation::CheckAbove("height of a height field's white [m]", height, 0.0, 1000.0);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (file == nullptr) RefuseFile(path, "it cannot be opened");
+  Png png;
+  Decode(file.get(), &png);
+  if (!png.error.empty()) RefuseFile(path, "it is no sound PNG of at most 2048 x 2048: " + png.error);
+  if (png.color != PNG_COLOR_TYPE_GRAY || png.bits < 8) {
+    RefuseFile(path, "it is no grey PNG of 8 or 16 bits");
+  }
+  HeightGrid grid{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  const std::size_t pixels = static_cast<std::size_t>(png.width) * png.height;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const double value = png.bits == 8 ? png.bytes[i] / 255.0
+                                       : (256.0 * png.bytes[2 * i] + png.bytes[2 * i + 1]) / 65535.0;
+    grid.heights.push_back(height * value);
+  }
+  try {
+    return Mesh{std::make_shared<const TriangleMesh>(
+        HeightFieldMesh(grid, size, kThickness, placement))};
+  } catch (const std::invalid_argument& error) {
+    RefuseFile(path, error.what());
+  }
+}
+
+}  // namespace touchdown::sim

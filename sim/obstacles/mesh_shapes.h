@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/obstacles/placement.h"
+#include "sim/obstacles/triangle_mesh.h"
+
+namespace touchdown::sim {
+
+/// A box about the origin of its frame, of twelve triangles: for what does not stand upright.
+TriangleMesh BoxMesh(const Eigen::Vector3d& half_extents, const Placement& placement);
+
+/// Heights on a grid, between which the surface is flat in triangles.
+struct HeightGrid {
+  int columns = 0, rows = 0;    ///< each in [2, 2048]
+  std::vector<double> heights;  ///< [row * columns + column] [m]; row 0 is at the greatest y, column 0 at the least x
+};
+
+/// The ground that such heights make, as a solid: `size` along x and y [m], about the origin of its frame, with sides
+/// down to `thickness` below the lowest height.
+/// @throws std::invalid_argument naming what is out of its range.
+TriangleMesh HeightFieldMesh(const HeightGrid& grid, const Eigen::Vector2d& size, double thickness,
+                             const Placement& placement);
+
+/// The solids that triangles make up: corners at the same place are one, and what hangs together by them is one solid.
+/// @throws std::invalid_argument as TriangleMesh, with the triangle's index among all.
+std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
+                                   const std::vector<Eigen::Vector3i>& triangles);
+
+}  // namespace touchdown::sim
