@@ -238,7 +238,8 @@ class Trial {
     }
     if (in_flight && safety_watch_) WatchSafety(vehicle);
     if (in_flight) {
-      metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep(), TrueClearanceAt(vehicle));
+      metrics_.Step(world_.rotor_thrusts(), saturated, world_.timestep());
+      clearance_.Add(vehicle);
       if (perception_.pad_measured() && onboard_.pad().Converged(vehicle.t)) {
         metrics_.Estimate(onboard_.pad().Estimate(vehicle.t), pad,
                           onboard_.own().p_WB - vehicle.p_WB);
@@ -288,11 +289,6 @@ class Trial {
     }
     touched_ = sim::ToString(contact.kind);
     if (contact.obstacle >= 0) touched_ += fmt::format(" {}", contact.obstacle);
-  }
-
-  std::optional<double> TrueClearanceAt(const estimation::VehicleState& vehicle) const {
-    if (world_.config().obstacles.empty()) return std::nullopt;
-    return clearance_.Distance(vehicle);
   }
 
   void RecordState(const estimation::VehicleState& vehicle, const estimation::PadState& pad) {
@@ -349,6 +345,10 @@ class Trial {
           fmt::format(" Mode: {}.", control::ToString(onboard_.status().mission.mode));
     }
     metrics_.Fill(&result_);
+    if (!world_.config().obstacles.empty()) {
+      solvers::AddThreadCpu(&result_.timing.judging_cpu_s,
+                            [&] { result_.min_clearance_m = clearance_.Least(); });
+    }
     result_.within_limits = result_.max_speed_mps <= limits_.speed &&
                             result_.max_acceleration_mps2 <= limits_.acceleration;
     if (task_ == TaskKind::kLand) {
@@ -377,7 +377,7 @@ class Trial {
   Air air_;
   Perception perception_;
   control::Onboard onboard_;
-  sim::TrueClearance clearance_;
+  sim::LeastClearance clearance_;
   TaskKind task_;
   std::optional<StayTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to

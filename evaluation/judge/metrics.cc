@@ -19,12 +19,10 @@ constexpr double kClockSlack = 1e-6;       // [s]
 
 }  // namespace
 
-void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt,
-                   const std::optional<double>& clearance) {
+void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt) {
   for (const double thrust : rotor_thrusts) effort_ += thrust * thrust * dt;
   ++steps_;
   if (saturated) ++saturated_;
-  if (clearance) clearance_ = clearance_ ? std::min(*clearance_, *clearance) : *clearance;
 }
 
 void Metrics::Sample(double t, const estimation::VehicleState& vehicle,
@@ -69,7 +67,6 @@ void Metrics::Fill(TrialResult* result) const {
   if (steps_ > 0) {
     result->saturation_share = static_cast<double>(saturated_) / static_cast<double>(steps_);
   }
-  result->min_clearance_m = clearance_;
   result->max_speed_mps = max_speed_;
   result->max_acceleration_mps2 = max_acceleration_;
   if (estimates_ > 0) {

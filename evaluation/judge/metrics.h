@@ -18,9 +18,7 @@ namespace touchdown::evaluation {
 class Metrics {
  public:
   /// Every physics step. @param rotor_thrusts [N]. @param dt length of the step [s].
-  /// @param clearance true distance to the nearest obstacle [m], empty without obstacles.
-  void Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt,
-            const std::optional<double>& clearance);
+  void Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt);
 
   /// Every 20 ms.
   void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);
@@ -50,7 +48,6 @@ class Metrics {
   double effort_ = 0.0;
   long steps_ = 0;
   long saturated_ = 0;
-  std::optional<double> clearance_;
   std::optional<Eigen::Vector3d> v_previous_;
   double t_first_ = 0.0;
   double t_previous_ = 0.0;

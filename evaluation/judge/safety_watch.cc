@@ -2,6 +2,7 @@
 #include "evaluation/judge/safety_watch.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -22,12 +23,23 @@ int CountFreeInside(const planning::OccupancyMap& map, const sim::Obstacle& obst
   int count = 0;
   planning::CellIndex row = first;
   for (row.z() = first.z(); row.z() <= last.z(); ++row.z()) {
-    for (row.y() = first.y(); row.y() <= last.y(); ++row.y()) {
-      for (row.x() = first.x(); row.x() <= last.x(); row.x() += 64) {
-        const int cells = std::min(64, last.x() - row.x() + 1);
+    for (row.x() = first.x(); row.x() <= last.x(); row.x() += 64) {
+      const int cells = std::min(64, last.x() - row.x() + 1);
+      std::array<double, 64> outside;  // each cell of a row is at least so far outside [m]: no distance is asked twice
+      outside.fill(-1.0);
+      for (row.y() = first.y(); row.y() <= last.y(); ++row.y()) {
+        for (double& distance : outside) distance -= map.resolution();
         for (std::uint64_t free = map.ObservedFreeRow(row, cells); free != 0; free &= free - 1) {
-          const planning::CellIndex cell = row + planning::CellIndex(std::countr_zero(free), 0, 0);
-          count += sim::SignedDistance(obstacle, map.CentreOf(cell) - drift_W) < 0.0 ? 1 : 0;
+          const int i = std::countr_zero(free);
+          if (outside[static_cast<std::size_t>(i)] > 0.0) continue;
+          const planning::CellIndex cell = row + planning::CellIndex(i, 0, 0);
+          const double distance = sim::SignedDistance(obstacle, map.CentreOf(cell) - drift_W);
+          count += distance < 0.0 ? 1 : 0;
+          const int reach = static_cast<int>(std::max(0.0, distance) / map.resolution());
+          for (int k = std::max(0, i - reach); k <= std::min(63, i + reach); ++k) {
+            double& known = outside[static_cast<std::size_t>(k)];
+            known = std::max(known, distance - std::abs(k - i) * map.resolution());
+          }
         }
       }
     }
@@ -77,9 +89,11 @@ void SafetyWatch::Tracked(const Eigen::Vector3d& p_WB, const Eigen::Vector3d& p_
 void SafetyWatch::LookAt(const planning::OccupancyMap& map, const Eigen::Vector3d& p_WB,
                          const Eigen::Vector3d& drift_W) {
   figures_.free_cells += map.CountObservedFree();
-  for (const sim::Obstacle& obstacle : obstacles_.obstacles()) {
-    figures_.falsely_free_cells += CountFreeInside(map, obstacle, p_WB, drift_W);
-  }
+  const Eigen::Array3d p_W = p_WB - drift_W;
+  obstacles_.tree().Within({p_W - kSight, p_W + kSight}, [&](int i) {
+    figures_.falsely_free_cells += CountFreeInside(
+        map, obstacles_.obstacles()[static_cast<std::size_t>(i)], p_WB, drift_W);
+  });
 }
 
 }  // namespace touchdown::evaluation

@@ -8,21 +8,19 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr int kLeaf = 4;          // things in a leaf, at most
-constexpr double kWider = 1e-9;   // [m], and of the coordinate
+constexpr int kLeaf = 4;         // things that are halved no more
+constexpr double kWider = 1e-9;  // [m], and of the coordinate
 
 Bounds Union(const std::vector<Bounds>& things, const std::vector<int>& order, int first,
              int last) {
-  Bounds all = things[static_cast<std::size_t>(order[static_cast<std::size_t>(first)])];
-  for (int i = first + 1; i < last; ++i) {
+  Bounds all{Eigen::Vector3d::Constant(1e300), Eigen::Vector3d::Constant(-1e300)};
+  for (int i = first; i < last; ++i) {
     const Bounds& thing = things[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
     all.min = all.min.cwiseMin(thing.min);
     all.max = all.max.cwiseMax(thing.max);
   }
   const Eigen::Array3d wider = kWider * (1.0 + all.min.array().abs().max(all.max.array().abs()));
-  all.min.array() -= wider;
-  all.max.array() += wider;
-  return all;
+  return {all.min.array() - wider, all.max.array() + wider};
 }
 
 }  // namespace
@@ -30,16 +28,16 @@ Bounds Union(const std::vector<Bounds>& things, const std::vector<int>& order, i
 BoundsTree::BoundsTree(const std::vector<Bounds>& things) : order_(things.size()) {
   std::iota(order_.begin(), order_.end(), 0);
   if (things.empty()) return;
-  nodes_.reserve(2 * things.size() / kLeaf + 1);
-  Build(things, 0, static_cast<int>(things.size()));
+  nodes_.reserve(things.size() / 2 + 1);
+  root_ = Build(things, 0, static_cast<int>(things.size()));
+  if (nodes_.empty()) nodes_.emplace_back();  // not empty, only small
 }
 
-int BoundsTree::Build(const std::vector<Bounds>& things, int first, int last) {
-  const int index = static_cast<int>(nodes_.size());
-  nodes_.push_back({Union(things, order_, first, last), 0, first, last - first});
-  if (last - first <= kLeaf) return index;
+BoundsTree::Child BoundsTree::Build(const std::vector<Bounds>& things, int first, int last) {
+  if (last - first <= kLeaf) return {first, last - first};
+  const Bounds all = Union(things, order_, first, last);
   int axis = 0;
-  (nodes_.back().bounds.max - nodes_.back().bounds.min).maxCoeff(&axis);
+  (all.max - all.min).maxCoeff(&axis);
   const auto centre = [&](int thing) {
     const Bounds& bounds = things[static_cast<std::size_t>(thing)];
     return bounds.min[axis] + bounds.max[axis];
@@ -49,11 +47,18 @@ int BoundsTree::Build(const std::vector<Bounds>& things, int first, int last) {
                    [&](int a, int b) {
                      return centre(a) < centre(b) || (centre(a) == centre(b) && a < b);
                    });
-  Build(things, first, middle);
-  const int second = Build(things, middle, last);
-  nodes_[static_cast<std::size_t>(index)].second = second;
-  nodes_[static_cast<std::size_t>(index)].count = 0;
-  return index;
+  const auto index = nodes_.size();
+  nodes_.emplace_back();
+  const std::array<Bounds, 2> halves = {Union(things, order_, first, middle),
+                                        Union(things, order_, middle, last)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int c = static_cast<int>(i);
+    nodes_[index].bounds.min[i] = {halves[0].min[c], halves[1].min[c]};
+    nodes_[index].bounds.max[i] = {halves[0].max[c], halves[1].max[c]};
+  }
+  const Child one = Build(things, first, middle), other = Build(things, middle, last);
+  nodes_[index].children = {one, other};
+  return {static_cast<int>(index), -1};
 }
 
 }  // namespace touchdown::sim

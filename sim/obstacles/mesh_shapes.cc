@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -23,6 +25,44 @@ int RootOf(int thing, std::vector<int>* parents) {
   const auto at = [&](int i) -> int& { return up[static_cast<std::size_t>(i)]; };
   while (at(thing) != thing) thing = at(thing) = at(at(thing));
   return thing;
+}
+
+// A triangle at an edge: which way it runs along it, and where it lies about it.
+struct Side {
+  int triangle = 0;
+  bool forth = false;  // from the edge's lower corner to the higher one
+  double angle = 0.0;  // about the edge [rad]
+};
+
+using Edge = std::pair<int, int>;
+
+std::map<Edge, std::vector<Side>> SidesOfEdges(const std::vector<Eigen::Vector3d>& corners,
+                                               const std::vector<Eigen::Vector3i>& triangles) {
+  std::map<Edge, std::vector<Side>> edges;
+  const auto at = [&](int i) -> const Eigen::Vector3d& { return corners[static_cast<std::size_t>(i)]; };
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int from = triangles[t][k], to = triangles[t][(k + 1) % 3], third = triangles[t][(k + 2) % 3];
+      const Edge edge = std::minmax(from, to);
+      const Eigen::Vector3d along = (at(edge.second) - at(edge.first)).normalized();
+      const Eigen::Vector3d across = along.unitOrthogonal(), off = at(third) - at(edge.first);
+      edges[edge].push_back({static_cast<int>(t), from < to,
+                             std::atan2(off.dot(along.cross(across)), off.dot(across))});
+    }
+  }
+  return edges;
+}
+
+// Where two solids touch face to face, the one ends before the other begins.
+void SortAbout(std::vector<Side>* sides) {
+  constexpr double kSame = 1e-6;  // angles of faces in one plane [rad]
+  const auto grid = [](const Side& side) {
+    const auto turns = std::lround(side.angle / kSame), half = std::lround(std::numbers::pi / kSame);
+    return turns >= half ? turns - 2 * half : turns;
+  };
+  std::sort(sides->begin(), sides->end(), [&](const Side& a, const Side& b) {
+    return std::tuple(grid(a), !a.forth, a.triangle) < std::tuple(grid(b), !b.forth, b.triangle);
+  });
 }
 
 }  // namespace
@@ -120,8 +160,6 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
     if (is_new) kept.push_back(p);
     one[i] = found->second;
   }
-  std::vector<int> parents(kept.size());
-  std::iota(parents.begin(), parents.end(), 0);
   std::vector<Eigen::Vector3i> joined;
   for (const Eigen::Vector3i& of : triangles) {
     for (const int i : of) {
@@ -132,18 +170,29 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
     }
     joined.emplace_back(one[static_cast<std::size_t>(of[0])], one[static_cast<std::size_t>(of[1])],
                         one[static_cast<std::size_t>(of[2])]);
-    const int root = RootOf(joined.back()[0], &parents);
-    parents[static_cast<std::size_t>(RootOf(joined.back()[1], &parents))] = root;
-    parents[static_cast<std::size_t>(RootOf(joined.back()[2], &parents))] = root;
+  }
+  std::vector<int> parents(joined.size());  // of triangles
+  std::iota(parents.begin(), parents.end(), 0);
+  for (auto& [edge, sides] : SidesOfEdges(kept, joined)) {
+    SortAbout(&sides);
+    // The solid is between a triangle that runs back along the edge and the next one that runs forth.
+    const std::size_t count = sides.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Side& next = sides[(i + 1) % count];
+      if (sides[i].forth || !next.forth) continue;
+      parents[static_cast<std::size_t>(RootOf(sides[i].triangle, &parents))] =
+          RootOf(next.triangle, &parents);
+    }
   }
   struct Solid {
     std::vector<Eigen::Vector3d> corners;
     std::vector<Eigen::Vector3i> triangles;
+    std::map<int, int> index;  // of a corner among its own
   };
   std::vector<Solid> solids;
-  std::vector<int> solid_of(kept.size(), -1), index(kept.size(), -1);
-  for (const Eigen::Vector3i& of : joined) {
-    int& solid = solid_of[static_cast<std::size_t>(RootOf(of[0], &parents))];
+  std::vector<int> solid_of(joined.size(), -1);
+  for (std::size_t t = 0; t < joined.size(); ++t) {
+    int& solid = solid_of[static_cast<std::size_t>(RootOf(static_cast<int>(t), &parents))];
     if (solid < 0) {
       solid = static_cast<int>(solids.size());
       solids.emplace_back();
@@ -151,12 +200,10 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
     Solid& to = solids[static_cast<std::size_t>(solid)];
     Eigen::Vector3i renamed;
     for (int k = 0; k < 3; ++k) {
-      int& i = index[static_cast<std::size_t>(of[k])];
-      if (i < 0) {
-        i = static_cast<int>(to.corners.size());
-        to.corners.push_back(kept[static_cast<std::size_t>(of[k])]);
-      }
-      renamed[k] = i;
+      const int corner = joined[t][k];
+      const auto [found, is_new] = to.index.emplace(corner, static_cast<int>(to.corners.size()));
+      if (is_new) to.corners.push_back(kept[static_cast<std::size_t>(corner)]);
+      renamed[k] = found->second;
     }
     to.triangles.push_back(renamed);
   }

@@ -25,7 +25,8 @@ struct HeightGrid {
 TriangleMesh HeightFieldMesh(const HeightGrid& grid, const Eigen::Vector2d& size, double thickness,
                              const Placement& placement);
 
-/// The solids that triangles make up: corners at the same place are one, and what hangs together by them is one solid.
+/// The solids that triangles make up: corners at the same place are one, and triangles that share an edge are of one
+/// solid. Solids may touch one another at corners, edges and faces.
 /// @throws std::invalid_argument as TriangleMesh, with the triangle's index among all.
 std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
                                    const std::vector<Eigen::Vector3i>& triangles);

@@ -31,15 +31,19 @@ double ObstacleField::SignedDistance(const Eigen::Vector3d& p_W) const {
 }
 
 double ObstacleField::RayDistance(const Eigen::Vector3d& origin_W,
-                                  const Eigen::Vector3d& direction_W, double within) const {
-  tree_.Along(origin_W, direction_W, &within, [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    const int box = box_of_[index];
-    within = std::min(within,
-                      box >= 0 ? boxes_[static_cast<std::size_t>(box)].RayDistance(origin_W, direction_W)
-                               : sim::RayDistance(obstacles_[index], origin_W, direction_W));
+                                  const Eigen::Vector3d& direction_W) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  tree_.Along(origin_W, direction_W, &nearest, [&](int i) {
+    nearest = std::min(nearest, RayDistance(static_cast<std::size_t>(i), origin_W, direction_W));
   });
-  return within;
+  return nearest;
+}
+
+double ObstacleField::RayDistance(std::size_t obstacle, const Eigen::Vector3d& origin_W,
+                                  const Eigen::Vector3d& direction_W) const {
+  const int box = box_of_[obstacle];
+  return box >= 0 ? boxes_[static_cast<std::size_t>(box)].RayDistance(origin_W, direction_W)
+                  : sim::RayDistance(obstacles_[obstacle], origin_W, direction_W);
 }
 
 }  // namespace touchdown::sim

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,9 +27,11 @@ class ObstacleField {
   /// Distance from `p_W` to the nearest surface [m], negative inside; +infinity in an empty field.
   double SignedDistance(const Eigen::Vector3d& p_W) const;
 
-  /// Nearest crossing over all obstacles, as sim::RayDistance, or `within` if there is none before.
-  double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
-                     double within = std::numeric_limits<double>::infinity()) const;
+  /// Nearest crossing over all obstacles, as sim::RayDistance.
+  double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
+  /// ... of one of them.
+  double RayDistance(std::size_t obstacle, const Eigen::Vector3d& origin_W,
+                     const Eigen::Vector3d& direction_W) const;
 
   /// Of the obstacles' bounds.
   const BoundsTree& tree() const { return tree_; }

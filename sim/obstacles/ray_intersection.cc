@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace touchdown::sim {
 namespace {
 
@@ -71,6 +73,24 @@ double RayBall(double radius, const Eigen::Vector3d& origin, const Eigen::Vector
   return WhereNegative(direction.squaredNorm(), origin.dot(direction),
                        origin.squaredNorm() - radius * radius)
       .FirstCrossing();
+}
+
+// T. Moeller and B. Trumbore, Fast, minimum storage ray/triangle intersection, 1997.
+double RayTriangle(const Triangle& triangle, const Eigen::Vector3d& origin,
+                   const Eigen::Vector3d& direction) {
+  constexpr double kEdge = 1e-12;  // no ray slips through between two triangles
+  const Eigen::Vector3d h = direction.cross(triangle.ac);
+  const double det = triangle.ab.dot(h);
+  if (det == 0.0) return kInfinity;
+  const double inverse = 1.0 / det;
+  const Eigen::Vector3d from = origin - triangle.a;
+  const double u = from.dot(h) * inverse;
+  if (!(u >= -kEdge && u <= 1.0 + kEdge)) return kInfinity;
+  const Eigen::Vector3d q = from.cross(triangle.ab);
+  const double v = direction.dot(q) * inverse;
+  if (!(v >= -kEdge && u + v <= 1.0 + kEdge)) return kInfinity;
+  const double s = triangle.ac.dot(q) * inverse;
+  return s >= 0.0 ? s : kInfinity;
 }
 
 double RayCapsule(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,

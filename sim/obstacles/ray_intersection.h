@@ -23,6 +23,14 @@ double RayCylinder(double radius, double half_height, const Eigen::Vector3d& ori
 /// The same for a ball about the origin.
 double RayBall(double radius, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 
+/// A triangle by a corner and the sides from there.
+struct Triangle {
+  Eigen::Vector3d a, ab, ac;
+};
+/// The same for a triangle, from either side.
+double RayTriangle(const Triangle& triangle, const Eigen::Vector3d& origin,
+                   const Eigen::Vector3d& direction);
+
 /// The same for a capsule: all points within `radius` of the segment from `a` to `b`, a != b.
 double RayCapsule(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double radius,
                   const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);

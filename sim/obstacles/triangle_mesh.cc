@@ -2,7 +2,7 @@
 // The nearest point of the surface lies in a triangle, on an edge or at a corner. The sign is that of the offset along
 // the normal there: the triangle's, the sum of the edge's two, or the sum at the corner by the angles, which is right
 // for every closed surface (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal,
-// IEEE TVCG 11(3), 2005). Rays: Moeller and Trumbore, Fast minimum storage ray/triangle intersection, 1997.
+// IEEE TVCG 11(3), 2005).
 #include "sim/obstacles/triangle_mesh.h"
 
 #include <algorithm>
@@ -54,23 +54,6 @@ Nearest NearestOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eige
   return {a + vb * scale * ab + vc * scale * ac, Kind::kInside, 0};
 }
 
-double RayTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
-                   const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  constexpr double kEdge = 1e-12;  // no ray slips through between two triangles
-  const Eigen::Vector3d ab = b - a, ac = c - a;
-  const Eigen::Vector3d h = direction.cross(ac);
-  const double det = ab.dot(h);
-  if (det == 0.0) return kInfinity;
-  const Eigen::Vector3d from = origin - a;
-  const double u = from.dot(h) / det;
-  if (!(u >= -kEdge && u <= 1.0 + kEdge)) return kInfinity;
-  const Eigen::Vector3d q = from.cross(ab);
-  const double v = direction.dot(q) / det;
-  if (!(v >= -kEdge && u + v <= 1.0 + kEdge)) return kInfinity;
-  const double s = ac.dot(q) / det;
-  return s >= 0.0 ? s : kInfinity;
-}
-
 // A triangle reaches into a box about the origin: by separating axes: the box's three, the triangle's normal, and the products
 // of the edges of both (T. Akenine-Moeller, Fast 3D triangle-box overlap testing, 2001).
 bool ReachesIn(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Array3d& half) {
@@ -114,6 +97,14 @@ TriangleMesh::TriangleMesh(std::vector<Eigen::Vector3d> corners,
   }
   PairEdges();
   SetNormals();
+  tree_ = BoundsTree(EachBounds());
+  for (const int t : tree_.order()) {
+    const Eigen::Vector3d& a = Corner(t, 0);
+    sides_.push_back({a, Corner(t, 1) - a, Corner(t, 2) - a});
+  }
+}
+
+std::vector<Bounds> TriangleMesh::EachBounds() {
   std::vector<Bounds> each;
   each.reserve(triangles_.size());
   for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
@@ -123,7 +114,7 @@ TriangleMesh::TriangleMesh(std::vector<Eigen::Vector3d> corners,
     bounds_.min = bounds_.min.cwiseMin(each.back().min);
     bounds_.max = bounds_.max.cwiseMax(each.back().max);
   }
-  tree_ = BoundsTree(each);
+  return each;
 }
 
 void TriangleMesh::Check() const {
@@ -232,9 +223,9 @@ double TriangleMesh::SignedDistance(const Eigen::Vector3d& p_W) const {
 double TriangleMesh::RayDistance(const Eigen::Vector3d& origin_W,
                                  const Eigen::Vector3d& direction_W) const {
   double first = kInfinity;
-  tree_.Along(origin_W, direction_W, &first, [&](int t) {
+  tree_.AlongPlaces(origin_W, direction_W, &first, [&](int place) {
     first = std::min(
-        first, RayTriangle(Corner(t, 0), Corner(t, 1), Corner(t, 2), origin_W, direction_W));
+        first, RayTriangle(sides_[static_cast<std::size_t>(place)], origin_W, direction_W));
   });
   return first;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "sim/obstacles/bounds_tree.h"
+#include "sim/obstacles/ray_intersection.h"
 
 namespace touchdown::sim {
 
@@ -28,6 +29,11 @@ class TriangleMesh {
   double SignedDistance(const Eigen::Vector3d& p_W) const;
   /// Smallest s >= 0 at which origin + s * direction crosses the surface, +infinity if it never does. Does not allocate.
   double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
+  /// Visits each Triangle whose bounds overlap the place. Does not allocate.
+  template <class Visit>
+  void Within(const Bounds& place, Visit&& visit) const {
+    tree_.PlacesWithin(place, [&](int at) { visit(sides_[static_cast<std::size_t>(at)]); });
+  }
   /// Whether the solid reaches into the place. Does not allocate.
   bool Meets(const Bounds& place) const;
 
@@ -36,6 +42,7 @@ class TriangleMesh {
     return corners_[static_cast<std::size_t>(triangles_[static_cast<std::size_t>(triangle)][i])];
   }
   void Check() const;
+  std::vector<Bounds> EachBounds();
   void PairEdges();
   void SetNormals();
 
@@ -46,6 +53,7 @@ class TriangleMesh {
   std::vector<Eigen::Vector3d> corner_normals_;  ///< sums of those about it, by their angles there
   Bounds bounds_;
   BoundsTree tree_;
+  std::vector<Triangle> sides_;  ///< in the tree's order: rays are many
 };
 
 }  // namespace touchdown::sim

@@ -118,4 +118,43 @@ Clearance TrueClearance::Nearest(const estimation::VehicleState& vehicle) const 
   return impl_->Nearest(vehicle);
 }
 
+LeastClearance::LeastClearance(const ObstacleField& obstacles,
+                               const estimation::VehicleModel& model)
+    : clearance_(obstacles, model),
+      reach_(std::hypot(model.hull_radius, std::max(model.hull_top, model.foot_depth))) {}
+
+void LeastClearance::Add(const estimation::VehicleState& vehicle) {
+  double way = 0.0;
+  if (!poses_.empty()) {
+    const estimation::VehicleState& before = poses_.back().vehicle;
+    way = poses_.back().way + (vehicle.p_WB - before.p_WB).norm() +
+          reach_ * vehicle.q_WB.angularDistance(before.q_WB);
+  }
+  poses_.push_back({vehicle, way});
+}
+
+double LeastClearance::Least() const {
+  if (poses_.empty()) return std::numeric_limits<double>::infinity();
+  const double at_first = clearance_.Distance(poses_.front().vehicle);
+  const double at_last = clearance_.Distance(poses_.back().vehicle);
+  double least = std::min(at_first, at_last);
+  Search(0, at_first, poses_.size() - 1, at_last, &least);
+  return least;
+}
+
+// Between two poses the clearance is no less than where the ways from both would meet. Where the hull is in an
+// obstacle all are asked: FCL's depths are no distances.
+void LeastClearance::Search(std::size_t first, double at_first, std::size_t last, double at_last,
+                            double* least) const {
+  constexpr double kInexact = 1e-6;  // a distance is to be had [m]
+  if (last - first < 2) return;
+  const double way = poses_[last].way - poses_[first].way;
+  if (0.5 * (at_first + at_last - way) - kInexact > std::max(*least, 0.0)) return;
+  const std::size_t middle = first + (last - first) / 2;
+  const double at_middle = clearance_.Distance(poses_[middle].vehicle);
+  *least = std::min(*least, at_middle);
+  Search(first, at_first, middle, at_middle, least);
+  Search(middle, at_middle, last, at_last, least);
+}
+
 }  // namespace touchdown::sim

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "sim/obstacles/obstacle_field.h"
 #include "touchdown/estimation/base/vehicle_model.h"
@@ -38,6 +40,30 @@ class TrueClearance {
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/// The least clearance of a flight. From one pose to the next no point of the hull comes farther than its origin moves
+/// and it turns: of thousands of poses few have to be asked, and the least is the same.
+class LeastClearance {
+ public:
+  LeastClearance(const ObstacleField& obstacles, const estimation::VehicleModel& model);
+
+  /// Keeps a pose. Allocates.
+  void Add(const estimation::VehicleState& vehicle);
+  /// The least of all poses [m]; +infinity without any.
+  double Least() const;
+
+ private:
+  struct Pose {
+    estimation::VehicleState vehicle;
+    double way = 0.0;  ///< that any point of the hull may have come to here [m]
+  };
+  void Search(std::size_t first, double at_first, std::size_t last, double at_last,
+              double* least) const;
+
+  TrueClearance clearance_;
+  double reach_;  // of the hull from the vehicle's origin [m]
+  std::vector<Pose> poses_;
 };
 
 }  // namespace touchdown::sim

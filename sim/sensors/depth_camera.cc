@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Depth images by casting one ray per pixel centre at the shapes themselves, which at 80x60 pixels costs a tenth of
-// mj_ray and of rendering. Rays have z_C = 1, so that a ray's parameter is the depth.
+// Depth images by casting rays, one per pixel centre, at the shapes themselves. Each shape, of a mesh each triangle, is
+// met by the rays of those pixels alone that its corners, or those of its bounds, enclose in the image: with 10^5
+// triangles that costs a tenth of a search along each ray. Rays have z_C = 1, so that a ray's parameter is the depth.
 
 #include "sim/sensors/depth_camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -16,7 +18,36 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr double kBeyond = 1.001;  // of the range: what is farther is not looked for
+/// Pixels [low, high) of an image.
+struct PixelBlock {
+  Eigen::Array2i low, high;
+};
+
+/// The pixels in whose direction a convex hull of points may be, given in the camera's frame [m].
+template <std::size_t kCount>
+PixelBlock PixelsOf(const std::array<Eigen::Vector3d, kCount>& points_C,
+                    const estimation::CameraIntrinsics& k) {
+  constexpr double kNear = 1e-6, kRounding = 1e-6;  // [m], [pixel]
+  Eigen::Array2d low = Eigen::Array2d::Constant(1e15), high = -low;
+  const auto enclose = [&](const Eigen::Vector3d& p) {
+    const Eigen::Array2d pixel = k.focal * p.head<2>().array() / p.z() + Eigen::Array2d(k.cx, k.cy);
+    low = low.min(pixel);
+    high = high.max(pixel);
+  };
+  for (const Eigen::Vector3d& p : points_C) {
+    if (p.z() >= kNear) {
+      enclose(p);
+      continue;
+    }
+    for (const Eigen::Vector3d& q : points_C) {  // of what passes the camera, the part in front
+      if (q.z() > kNear) enclose(p + (kNear - p.z()) / (q.z() - p.z()) * (q - p));
+    }
+  }
+  const Eigen::Array2d last = Eigen::Array2i(k.width, k.height).cast<double>();
+  // A pixel's centre is half a pixel from its number.
+  return {(low - 0.5 - kRounding).max(0.0).min(last).ceil().cast<int>(),
+          (high + 0.5 + kRounding).max(0.0).min(last).floor().cast<int>()};
+}
 
 }  // namespace
 
@@ -58,6 +89,9 @@ DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& o
   R_BC_ = CameraAxes(config);
 
   rays_C_.reserve(static_cast<std::size_t>(config.width) * config.height);
+  const std::size_t pixels = static_cast<std::size_t>(config.width) * config.height;
+  depth_.resize(pixels);
+  rays_W_.resize(pixels);
   for (int row = 0; row < config.height; ++row) {
     for (int column = 0; column < config.width; ++column) {
       rays_C_.emplace_back((column + 0.5 - intrinsics_.cx) / intrinsics_.focal,
@@ -75,23 +109,68 @@ void DepthCamera::Capture(const estimation::VehicleState& vehicle, const estimat
   frame->p_WC = vehicle.p_WB + R_WB * config_.p_BC;
   frame->max_range = config_.max_range;
   frame->depth.resize(rays_C_.size());
-  const TurnedBox deck(DeckBox(pad_, pad)), body(PadBodyBox(pad_, pad));
-
   for (std::size_t i = 0; i < rays_C_.size(); ++i) {
-    const Eigen::Vector3d ray_W = frame->R_WC * rays_C_[i];
-    const double ray_squared = rays_C_[i].squaredNorm();
+    rays_W_[i] = frame->R_WC * rays_C_[i];
     // The ground is seen from above only.
-    const double to_ground = -frame->p_WC.z() / ray_W.z();
-    double depth = ray_W.z() < 0.0 && to_ground >= 0.0 ? to_ground : kInfinity;
-    depth = std::min({depth, deck.RayDistance(frame->p_WC, ray_W),
-                      body.RayDistance(frame->p_WC, ray_W)});
-    const double beyond = kBeyond * config_.max_range / std::sqrt(ray_squared);
-    depth = obstacles_.RayDistance(frame->p_WC, ray_W, std::min(depth, beyond));
-    const bool seen = depth * depth * ray_squared <= config_.max_range * config_.max_range;
+    const double to_ground = -frame->p_WC.z() / rays_W_[i].z();
+    depth_[i] = rays_W_[i].z() < 0.0 && to_ground >= 0.0 ? to_ground : kInfinity;
+  }
+  Draw(frame->p_WC, frame->R_WC, pad);
+  for (std::size_t i = 0; i < rays_C_.size(); ++i) {
+    double depth = depth_[i];
+    const bool seen =
+        depth * depth * rays_C_[i].squaredNorm() <= config_.max_range * config_.max_range;
     if (seen && config_.range_noise > 0.0) {
       depth = std::max(0.0, depth * (1.0 + noise_.Normal(config_.range_noise)));
     }
     frame->depth[i] = static_cast<float>(seen ? depth : kInfinity);
+  }
+}
+
+void DepthCamera::Draw(const Eigen::Vector3d& p_WC, const Eigen::Matrix3d& R_WC,
+                       const estimation::PadState& pad) {
+  const Eigen::Matrix3d R_CW = R_WC.transpose();
+  const auto meet = [&](const PixelBlock& block, const auto& ray_distance) {
+    for (int row = block.low.y(); row < block.high.y(); ++row) {
+      for (int column = block.low.x(); column < block.high.x(); ++column) {
+        const auto i = static_cast<std::size_t>(row * intrinsics_.width + column);
+        depth_[i] = std::min(depth_[i], ray_distance(rays_W_[i]));
+      }
+    }
+  };
+  const auto block_of = [&](const Bounds& bounds) {
+    std::array<Eigen::Vector3d, 8> corners_C;
+    for (std::size_t i = 0; i < 8; ++i) {
+      corners_C[i] = R_CW * (Eigen::Vector3d((i & 1) != 0 ? bounds.max.x() : bounds.min.x(),
+                                             (i & 2) != 0 ? bounds.max.y() : bounds.min.y(),
+                                             (i & 4) != 0 ? bounds.max.z() : bounds.min.z()) -
+                             p_WC);
+    }
+    return PixelsOf(corners_C, intrinsics_);
+  };
+  const Bounds in_range{p_WC.array() - config_.max_range, p_WC.array() + config_.max_range};
+  obstacles_.tree().Within(in_range, [&](int index) {
+    const auto i = static_cast<std::size_t>(index);
+    const Obstacle& obstacle = obstacles_.obstacles()[i];
+    const auto* const mesh = std::get_if<Mesh>(&obstacle);
+    if (mesh == nullptr) {
+      meet(block_of(BoundsOf(obstacle)), [&](const Eigen::Vector3d& ray_W) {
+        return obstacles_.RayDistance(i, p_WC, ray_W);
+      });
+      return;
+    }
+    mesh->surface->Within(in_range, [&](const Triangle& triangle) {
+      const Eigen::Vector3d a_C = R_CW * (triangle.a - p_WC);
+      const Eigen::Vector3d b_C = a_C + R_CW * triangle.ab, c_C = a_C + R_CW * triangle.ac;
+      meet(PixelsOf<3>({a_C, b_C, c_C}, intrinsics_), [&](const Eigen::Vector3d& ray_W) {
+        return RayTriangle(triangle, p_WC, ray_W);
+      });
+    });
+  });
+  for (const Box& box : {DeckBox(pad_, pad), PadBodyBox(pad_, pad)}) {
+    const TurnedBox turned(box);
+    meet(block_of(BoundsOf(box)),
+         [&](const Eigen::Vector3d& ray_W) { return turned.RayDistance(p_WC, ray_W); });
   }
 }
 

@@ -53,12 +53,18 @@ class DepthCamera {
   const estimation::CameraIntrinsics& intrinsics() const { return intrinsics_; }
 
  private:
+  void Draw(const Eigen::Vector3d& p_WC, const Eigen::Matrix3d& R_WC,
+            const estimation::PadState& pad);
+
   DepthCameraConfig config_;
   estimation::CameraIntrinsics intrinsics_;
   Eigen::Matrix3d R_BC_;
   PadGeometry pad_;
   ObstacleField obstacles_;
   std::vector<Eigen::Vector3d> rays_C_;  ///< per pixel, z = 1: a ray's parameter is its depth
+  // Of the image at hand, in W and along the axis.
+  std::vector<Eigen::Vector3d> rays_W_;
+  std::vector<double> depth_;
   RandomStream noise_;
 };
 

@@ -148,5 +148,29 @@ TEST(TrueClearance, RefusesPosesFclWouldAbortOn) {
   EXPECT_THROW(TrueClearance({}, flat), std::invalid_argument);
 }
 
+// Of a flight past obstacles, and through one.
+TEST(LeastClearance, IsTheLeastOfAllPoses) {
+  RandomStream random(8, "least clearance");
+  for (int flight = 0; flight < 20; ++flight) {
+    const ObstacleField field = test::RandomField(12, 5.0, &random);
+    const TrueClearance clearance(field, Model());
+    LeastClearance least(field, Model());
+    EXPECT_EQ(least.Least(), std::numeric_limits<double>::infinity());
+    estimation::VehicleState state;
+    state.p_WB = test::RandomPoint({-6, -6, 1}, {6, 6, 4}, &random);
+    const Eigen::Vector3d v_W = test::RandomPoint({-2, -2, -0.3}, {2, 2, 0.3}, &random);
+    const Eigen::Vector3d w_B = test::RandomPoint({-1, -1, -1}, {1, 1, 1}, &random);
+    double expected = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 1000; ++i) {
+      state.p_WB += 0.004 * v_W;
+      state.q_WB = state.q_WB * Eigen::Quaterniond(Eigen::AngleAxisd(0.004 * w_B.norm(), w_B.normalized()));
+      state.q_WB.normalize();
+      least.Add(state);
+      expected = std::min(expected, clearance.Distance(state));
+    }
+    EXPECT_EQ(least.Least(), expected) << flight;
+  }
+}
+
 }  // namespace
 }  // namespace touchdown::sim

@@ -212,6 +212,24 @@ TEST(MeshShapes, SolidsAreToldApart) {
   EXPECT_NEAR(solids[1].SignedDistance({5.0, 0.0, 3.0}), 2.0, 1e-12);
 }
 
+// Two boxes that share a face, an edge or a corner are two solids.
+TEST(MeshShapes, SolidsMayTouch) {
+  for (const Eigen::Vector3d& off : {Eigen::Vector3d(2, 0, 0), {2, 2, 0}, {2, 2, 2}, {0, -2, 0}, {0, 2, -2}}) {
+    std::vector<Eigen::Vector3d> corners;
+    std::vector<Eigen::Vector3i> triangles;
+    for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), off}) {
+      const TriangleMesh box = BoxMesh({1, 1, 1}, {TurnOf(0, 0, 0), p});
+      const Eigen::Vector3i first = Eigen::Vector3i::Constant(static_cast<int>(corners.size()));
+      corners.insert(corners.end(), box.corners().begin(), box.corners().end());
+      for (const Eigen::Vector3i& of : box.triangles()) triangles.push_back(first + of);
+    }
+    const std::vector<TriangleMesh> solids = SolidsOf(corners, triangles);
+    ASSERT_EQ(solids.size(), 2u) << off.transpose();
+    EXPECT_NEAR(solids[0].Volume(), 8.0, 1e-12);
+    EXPECT_NEAR(solids[1].Volume(), 8.0, 1e-12);
+  }
+}
+
 TEST(MeshShapes, AHeightFieldHasItsHeights) {
   HeightGrid grid{3, 2, {0.0, 1.0, 2.0, 0.0, 1.0, 2.0}};
   const TriangleMesh mesh = HeightFieldMesh(grid, {4.0, 2.0}, 0.5, {});
