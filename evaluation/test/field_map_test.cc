@@ -2,10 +2,13 @@
 // Cells against dense samples of the obstacles' signed distance.
 #include "evaluation/flight/field_map.h"
 
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "sim/base/random_stream.h"
 #include "sim/obstacles/forest.h"
+#include "sim/obstacles/mesh_shapes.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -66,6 +69,9 @@ TEST(FieldMap, CellsThatMeetAnObstacleAreOccupiedAndNoOthers) {
         sim::Cylinder{place(), 0.37, 0.9},
         columns,
         sim::Ring{place(), 0.5, 0.6, 0.06, random.Uniform(-3.0, 3.0)},
+        sim::Sphere{place(), 0.45},
+        sim::Mesh{std::make_shared<const sim::TriangleMesh>(
+            sim::BoxMesh({0.5, 0.3, 0.2}, {sim::TurnOf(0.4, 0.3, 0.2), place()}))},
     });
     OccupancyMap map = EmptyMap();
     FillMap(field, &map);

@@ -221,8 +221,8 @@ TEST_F(ScenarioTest, ObstaclesAreCheckedKeyByKey) {
               AllOf(HasSubstr(":3"), HasSubstr("obstacles.boxes[0] lacks the key size")));
   EXPECT_THAT(Refusal("obstacles:\n  boxes:\n    - {centre: [20, 20], size: [1, 1, 0]}\n"),
               HasSubstr("a list of 3 numbers in (0, 100] m"));
-  EXPECT_THAT(Refusal("obstacles:\n  spheres: []\n"),
-              AllOf(HasSubstr("unknown key obstacles.spheres"), HasSubstr("obstacles.cylinders")));
+  EXPECT_THAT(Refusal("obstacles:\n  cones: []\n"),
+              AllOf(HasSubstr("unknown key obstacles.cones"), HasSubstr("obstacles.cylinders")));
   EXPECT_THAT(Refusal("obstacles: {boxes: [{centre: [20, 20], size: [1, 1, 1], yaw: 1}]}\n"),
               HasSubstr("unknown key obstacles.boxes[0].yaw"));
 }

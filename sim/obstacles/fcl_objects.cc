@@ -2,6 +2,8 @@
 #include "sim/obstacles/fcl_objects.h"
 
 #include <cstddef>
+#include <map>
+#include <mutex>
 #include <variant>
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -14,6 +16,34 @@
 
 namespace touchdown::sim {
 namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSSd>;
+
+std::shared_ptr<Model> MakeModel(const TriangleMesh& surface) {
+  auto model = std::make_shared<Model>();
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(surface.triangles().size());
+  for (const Eigen::Vector3i& of : surface.triangles()) {
+    triangles.emplace_back(static_cast<std::size_t>(of[0]), static_cast<std::size_t>(of[1]),
+                           static_cast<std::size_t>(of[2]));
+  }
+  model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(surface.corners().size()));
+  model->addSubModel(surface.corners(), triangles);
+  model->endModel();
+  return model;
+}
+
+// Made once for a surface as long as somebody has it: checks, touches and clearances of many flights ask for it.
+std::shared_ptr<Model> ModelOf(const std::shared_ptr<const TriangleMesh>& surface) {
+  using Surface = std::weak_ptr<const TriangleMesh>;
+  static std::mutex one_at_a_time;
+  static std::map<Surface, std::shared_ptr<Model>, std::owner_less<>> models;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
+  std::erase_if(models, [](const auto& entry) { return entry.first.expired(); });
+  std::shared_ptr<Model>& model = models[surface];
+  if (model == nullptr) model = MakeModel(*surface);
+  return model;
+}
 
 /// The shapes that make up an obstacle.
 class ObjectMaker {
@@ -34,19 +64,7 @@ class ObjectMaker {
     Add(std::make_shared<fcl::Sphered>(sphere.radius), Eigen::Matrix3d::Identity(), sphere.center);
   }
   void operator()(const Mesh& mesh) {
-    auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-    const TriangleMesh& surface = *mesh.surface;
-    std::vector<fcl::Triangle> triangles;
-    triangles.reserve(surface.triangles().size());
-    for (const Eigen::Vector3i& of : surface.triangles()) {
-      triangles.emplace_back(static_cast<std::size_t>(of[0]), static_cast<std::size_t>(of[1]),
-                             static_cast<std::size_t>(of[2]));
-    }
-    model->beginModel(static_cast<int>(triangles.size()),
-                      static_cast<int>(surface.corners().size()));
-    model->addSubModel(surface.corners(), triangles);
-    model->endModel();
-    Add(model, Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+    Add(ModelOf(mesh.surface), Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
   }
   // Neighbours along x of one height are one box.
   void operator()(const VoxelColumns& columns) {

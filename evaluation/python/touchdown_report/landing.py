@@ -11,6 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
+from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
@@ -33,6 +34,7 @@ PAD_COLOUR = "#2B2B2B"
 PLAN_COLOUR = "#56B4E9"
 BUILDING_FACE = "#DDD8CF"
 BUILDING_EDGE = "#8C857A"
+HIGHEST_SHADE = 8.0  # of a mesh from above [m]
 MOST_NUMBERED = 40  # obstacles whose height stands in the picture
 PICTURE_STYLE = {
     **STYLE,
@@ -90,7 +92,7 @@ def draw_obstacles(axes, obstacles, side):
         if side:
             look["alpha"] = 0.45
         if obstacle["kind"] == "mesh":
-            draw_surface(axes, obstacle["surface"][:, :, [0, 2] if side else [0, 1]])
+            draw_surface(axes, obstacle["surface"], side)
         elif obstacle["kind"] == "sphere" or (obstacle["kind"] == "cylinder" and not side):
             axes.add_patch(Circle((cx, cz if side else cy), sx / 2, **look))
         elif side:
@@ -115,11 +117,17 @@ def draw_obstacles(axes, obstacles, side):
                 )
 
 
-def draw_surface(axes, triangles):
-    """A mesh by its triangles, shape (n, 3, 2), with the edges left out that would hide it."""
-    axes.add_collection(
-        PolyCollection(triangles, facecolor=BUILDING_FACE, edgecolor="none", alpha=0.45, zorder=1)
-    )
+def draw_surface(axes, triangles, side):
+    """A mesh by its triangles, shape (n, 3, 3); from above the higher ones are darker."""
+    if side:
+        look = {"facecolor": BUILDING_FACE, "alpha": 0.45}
+    else:
+        triangles = triangles[np.argsort(triangles[:, :, 2].max(axis=1))]
+        share = np.clip(triangles[:, :, 2].mean(axis=1) / HIGHEST_SHADE, 0.0, 1.0)[:, None]
+        light, dark = np.array(to_rgb("#F2F0EC")), np.array(to_rgb(BUILDING_EDGE))
+        look = {"facecolor": light + share * (dark - light)}
+    shapes = triangles[:, :, [0, 2] if side else [0, 1]]
+    axes.add_collection(PolyCollection(shapes, edgecolor="none", zorder=1, **look))
 
 
 def draw_world(axes, record, contact, half, side):
