@@ -480,16 +480,27 @@ TEST(Onboard, AnImageThatIsNoneIsRefused) {
   EXPECT_EQ(taken([](auto*) {}), Taken::kUsed);
 }
 
-// The sky of an image in millimetres is as far as of one in metres.
+// Most of it is returns from beyond the range.
 TEST(Onboard, AnImageInMillimetresSaysNothing) {
   Onboard onboard = Hovering(0.1);
   ToyWorld world;
-  world.wall = {Eigen::Vector3d(3.0, -1.0, 0.0), Eigen::Vector3d(3.4, 1.0, 3.0)};
+  world.wall = {Eigen::Vector3d(3.0, -9.0, 0.0), Eigen::Vector3d(3.4, 9.0, 9.0)};
   world.vehicle = At(0.1);
   estimation::DepthImage image = world.Depth();
   for (float& depth : image.depth) depth *= 1000.0F;
   EXPECT_EQ(onboard.Take(image), Taken::kEmpty);
   for (float& depth : image.depth) depth *= 1e-3F;
+  EXPECT_EQ(onboard.Take(image), Taken::kUsed);
+}
+
+// One pixel that cannot be does not spoil the others.
+TEST(Onboard, AnImageWithAHotPixelIsUsed) {
+  Onboard onboard = Hovering(0.1);
+  ToyWorld world;
+  world.vehicle = At(0.1);
+  estimation::DepthImage image = world.Depth();
+  std::fill(image.depth.begin(), image.depth.end(), float(kInfinity));
+  image.depth[7] = 60.0F;
   EXPECT_EQ(onboard.Take(image), Taken::kUsed);
 }
 

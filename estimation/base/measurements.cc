@@ -39,12 +39,12 @@ bool IsPossible(const DepthImage& image) {
 }
 
 bool SaysSomething(const DepthImage& image) {
-  bool beyond = false, clear = false;
+  std::ptrdiff_t within = 0, clear = 0, beyond = 0;
   for (const float depth : image.depth) {
-    if (depth > 0.0F && depth <= image.max_range) return true;
-    if (depth > image.max_range) (std::isinf(depth) ? clear : beyond) = true;
+    if (depth > 0.0F && depth <= image.max_range) ++within;
+    if (depth > image.max_range) ++(std::isinf(depth) ? clear : beyond);
   }
-  return clear && !beyond;
+  return within + clear > 0 && beyond <= within + clear;
 }
 
 bool IsPossible(const PadImage& image) {

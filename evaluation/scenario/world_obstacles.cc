@@ -112,8 +112,9 @@ class FileShelf {
   Solids Take(const Element& spec, const ElementKeys<Element>& keys) {
     std::error_code missing;
     const auto size = fs::file_size(spec.file, missing);
+    const auto written = missing ? fs::file_time_type{} : fs::last_write_time(spec.file, missing);
     if (missing) sim::RefuseFile(spec.file, "it cannot be read (" + missing.message() + ")");
-    std::string about = fmt::format("{} {}", size, fs::last_write_time(spec.file).time_since_epoch().count());
+    std::string about = fmt::format("{} {}", size, written.time_since_epoch().count());
     for (const auto& key : keys) about += " " + key.name + " " + key.get(spec);
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = kept_.find(about);
@@ -143,16 +144,19 @@ ObstacleList ObstaclesOf(const Scenario& scenario) {
     for (std::size_t i = 0; i < elements.size(); ++i) {
       const std::string key = fmt::format("{}[{}]", name, i);
       const auto add = [&](const std::vector<sim::Obstacle>& solids) {
-        for (const sim::Obstacle& solid : solids) list.push_back({key, solid});
-      };
-      if constexpr (kIsFile<Element>) {
-        try {
-          add(*shelf.Take(elements[i], keys));
-        } catch (const std::invalid_argument& error) {
-          throw BadInput(fmt::format("{}: {}.", key, error.what()));
+        for (const sim::Obstacle& solid : solids) {
+          sim::Validate(solid, "a solid of it");
+          list.push_back({key, solid});
         }
-      } else {
-        add(SolidsOf(elements[i]));
+      };
+      try {
+        if constexpr (kIsFile<Element>) {
+          add(*shelf.Take(elements[i], keys));
+        } else {
+          add(SolidsOf(elements[i]));
+        }
+      } catch (const std::invalid_argument& error) {
+        throw BadInput(fmt::format("{}: {}.", key, error.what()));
       }
     }
   });
@@ -189,13 +193,29 @@ double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centr
     place.max << centre.array() + reach, z_hi - kTouching;
     return mesh->surface->Meets(place) ? 0.0 : kInfinity;
   }
+  const auto beyond = [&](const Eigen::Vector2d& middle, const Eigen::Vector2d& half) {
+    return ((middle - centre).cwiseAbs() - spread - half).cwiseMax(0.0).norm();
+  };
+  if (const auto* ball = std::get_if<sim::Sphere>(&obstacle)) {
+    const double z = std::clamp(ball->center.z(), z_lo, z_hi) - ball->center.z();
+    return beyond(ball->center.head<2>(), Eigen::Vector2d::Zero()) -
+           std::sqrt(std::max(0.0, ball->radius * ball->radius - z * z));
+  }
+  if (const auto* cylinder = std::get_if<sim::Cylinder>(&obstacle)) {
+    return beyond(cylinder->center.head<2>(), Eigen::Vector2d::Zero()) - cylinder->radius;
+  }
   const Eigen::Vector2d middle = 0.5 * (bounds.min + bounds.max).head<2>();
-  const Eigen::Vector2d half = 0.5 * (bounds.max - bounds.min).head<2>();
-  const Eigen::Vector2d offset = (middle - centre).cwiseAbs() - spread;
-  const bool round = std::holds_alternative<sim::Cylinder>(obstacle) ||
-                     std::holds_alternative<sim::Sphere>(obstacle);
-  if (round) return offset.cwiseMax(0.0).norm() - half.x();
-  return (offset - half).cwiseMax(0.0).norm();
+  const double by_bounds = beyond(middle, 0.5 * (bounds.max - bounds.min).head<2>());
+  const auto* box = std::get_if<sim::Box>(&obstacle);
+  if (box == nullptr || box->yaw == 0.0) return by_bounds;
+  // Along the box's own axes the spread is as wide as its shadow there. Both are too short at corners.
+  const double c = std::cos(box->yaw), s = std::sin(box->yaw);
+  const Eigen::Vector2d off = middle - centre;
+  const Eigen::Vector2d along(std::abs(c * off.x() + s * off.y()), std::abs(c * off.y() - s * off.x()));
+  const Eigen::Vector2d shadow(std::abs(c) * spread.x() + std::abs(s) * spread.y(),
+                               std::abs(s) * spread.x() + std::abs(c) * spread.y());
+  return std::max(by_bounds,
+                  (along - shadow - box->half_extents.head<2>()).cwiseMax(0.0).norm());
 }
 
 }  // namespace touchdown::evaluation

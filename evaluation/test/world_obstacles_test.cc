@@ -2,7 +2,7 @@
 // Worlds from lists and files: what stands in them, what is refused and where, flights in them.
 #include "evaluation/scenario/world_obstacles.h"
 
-#include <cstdio>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -150,6 +150,15 @@ TEST_F(WorldObstacles, AMeshFileIsRefusedWithItsPlaceAndLine) {
   EXPECT_THAT(OfMesh("words.xyz", "no mesh\n"), HasSubstr("words.xyz"));
   EXPECT_THAT(Refusal("obstacles:\n  meshes:\n    - {file: nowhere.obj}\n"),
               AllOf(HasSubstr("world.yaml:3"), HasSubstr("nowhere.obj"), HasSubstr("cannot be read")));
+  EXPECT_THAT(OfMesh("index.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                     "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                     "end_header\n9 9 0\n10 9 0\n9 10 0\n9 9 1\n4 1 2 3 70000000\n"),
+              HasSubstr("index.ply"));
+  EXPECT_THAT(Refusal("obstacles:\n  meshes:\n    - {file: " +
+                      Write("far.obj", Obj({"1 3 2", "1 2 4", "2 3 4", "1 4 3"})) +
+                      ", scale: 500000}\n"),
+              AllOf(HasSubstr("world.yaml:3: obstacles.meshes[0]"), HasSubstr("coordinate")));
   EXPECT_THAT(OfMesh("nan.stl",
                      "solid s\nfacet normal 0 0 1\nouter loop\nvertex 9 9 0\nvertex nan 9 0\n"
                      "vertex 9 10 0\nendloop\nendfacet\nendsolid s\n"),
@@ -174,6 +183,14 @@ TEST_F(WorldObstacles, OtherFilesAreRefusedToo) {
               HasSubstr("no grey PNG"));
   EXPECT_THAT(Refusal("obstacles: {octomaps: [{file: " + Write("no.bt", "no map") + "}]}\n"),
               HasSubstr("no.bt"));
+  for (const char* res : {"-0.1", "0", "nan", "1e-12"}) {
+    const std::string head = "# Octomap OcTree binary file\nid OcTree\nsize 1\nres ";
+    EXPECT_THAT(Refusal("obstacles: {octomaps: [{file: " +
+                        Write("res.bt", head + res + "\ndata\n" + std::string(2, '\1')) + "}]}\n"),
+                HasSubstr("res.bt"));
+  }
+  EXPECT_THAT(Refusal("obstacles:\n  boxes:\n    - {centre: [9, 9], size: [100, 1.0e-8, 1], turn_deg: [1, 0, 0]}\n"),
+              AllOf(HasSubstr("world.yaml:3: obstacles.boxes[0]"), HasSubstr("no area")));
   EXPECT_THAT(Refusal("obstacles: {walls: [{points: [1, 2, 3]}]}\n"),
               HasSubstr("x and y of two points or more"));
 }
@@ -186,6 +203,19 @@ TEST_F(WorldObstacles, WhatStandsOnTheStartOrInThePadsWayIsRefused) {
   EXPECT_THAT(Refusal("obstacles: {height_fields: [{file: " + std::string(kWorlds) +
                       "hills.png, size: [30, 30], height: 3}]}\n"),
               HasSubstr("obstacles.height_fields[0] stands on the"));
+}
+
+// A diagonal wall does not block the rectangle about it.
+TEST_F(WorldObstacles, ATurnedBoxIsWhereItIs) {
+  const sim::Obstacle wall = ObstaclesOf(Load("obstacles: {walls: [{points: [10, -13, 24, 1]}]}\n")).front().obstacle;
+  const auto gap = [&](double x, double y, double spread) {
+    return HorizontalGap(wall, {x, y}, {spread, spread}, 0.0, 2.0, 1.0);
+  };
+  EXPECT_NEAR(gap(20.0, -12.0, 0.0), 9.0 * std::sqrt(0.5) - 0.1, 1e-9);  // less half the thickness
+  EXPECT_NEAR(gap(20.0, -12.0, 1.0), 7.0 * std::sqrt(0.5) - 0.1, 1e-9);
+  EXPECT_EQ(gap(17.0, -6.0, 0.0), 0.0);
+  const sim::Obstacle ball = sim::Sphere{{0.0, 0.0, 2.0}, 1.0};
+  EXPECT_NEAR(HorizontalGap(ball, {3.0, 0.0}, {0.0, 0.0}, 0.0, 1.4, 1.0), 3.0 - 0.8, 1e-12);
 }
 
 // The hash tells whether a file is still what it was; a changed file is read anew.

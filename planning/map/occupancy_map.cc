@@ -193,7 +193,7 @@ void OccupancyMap::Integrate(const estimation::DepthFrame& frame, const PadOutli
       const bool returned = along != std::numeric_limits<double>::infinity();
       if (!returned) along = frame.max_range / per_depth;
       const double range = along * per_depth;
-      if (!(range >= options_.min_ray && range <= farthest)) continue;  // it says nothing
+      if (!(range > 0.0 && range >= options_.min_ray && range <= farthest)) continue;  // it says nothing
       const Eigen::Vector3d ray_W = row_W + frame.R_WC.col(0) * right;
       const double freed = std::min(returned ? along * short_of_return : along, resolved);
       votes_.AddRay(in_window(frame.p_WC + ray_W * freed));

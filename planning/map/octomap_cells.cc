@@ -22,6 +22,10 @@ OccupiedCells ReadOccupiedCells(std::istream& in) {
   text << in.rdbuf();
   const std::string bytes = text.str();
   const OctomapFile file = CheckOctomapFile(bytes);
+  if (!(file.resolution >= 1e-3 && file.resolution <= 100.0)) {
+    throw std::invalid_argument("its resolution is " + std::to_string(file.resolution) +
+                                " m; allowed is [0.001, 100] m");
+  }
   OccupiedCells occupied{file.resolution, {}};
   octomap::OcTree tree(file.resolution);
   if (file.nodes.empty()) return occupied;

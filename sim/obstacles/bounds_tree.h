@@ -68,7 +68,7 @@ class BoundsTree {
     Search(entry, first, visit);
   }
 
-  /// Visits what overlaps the place.
+  /// Visits what overlaps the place, and a few that are near to such.
   template <class Visit>
   void Within(const Bounds& place, Visit&& visit) const {
     PlacesWithin(place, [&](int at) { visit(ThingAt(at)); });

@@ -17,7 +17,17 @@
 namespace touchdown::sim {
 namespace {
 
-using Model = fcl::BVHModel<fcl::OBBRSSd>;
+/// FCL has every object compute its shape's bounds anew: of a model that several have, once and before it is shared.
+class Model : public fcl::BVHModel<fcl::OBBRSSd> {
+ public:
+  void computeLocalAABB() override {
+    if (!bounded_) BVHModel::computeLocalAABB();
+    bounded_ = true;
+  }
+
+ private:
+  bool bounded_ = false;
+};
 
 std::shared_ptr<Model> MakeModel(const TriangleMesh& surface) {
   auto model = std::make_shared<Model>();
@@ -30,6 +40,7 @@ std::shared_ptr<Model> MakeModel(const TriangleMesh& surface) {
   model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(surface.corners().size()));
   model->addSubModel(surface.corners(), triangles);
   model->endModel();
+  model->computeLocalAABB();
   return model;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <csetjmp>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 
@@ -22,6 +23,7 @@ struct Png {
   int bits = 0, color = 0;
   std::vector<unsigned char> bytes;  // rows, big endian
   std::string error;
+  std::array<char, 80> why{};  // as libpng says, to be read when its frames are gone
 };
 
 // libpng's errors jump to here: nothing with a destructor lives in this function.
@@ -29,11 +31,16 @@ void Decode(std::FILE* file, Png* png) {
   png_structp read = png_create_read_struct(
       PNG_LIBPNG_VER_STRING, png,
       [](png_structp in, png_const_charp why) {
-        static_cast<Png*>(png_get_error_ptr(in))->error = why;
+        std::strncpy(static_cast<Png*>(png_get_error_ptr(in))->why.data(), why, 79);
         png_longjmp(in, 1);
       },
       [](png_structp, png_const_charp) {});
-  png_infop info = png_create_info_struct(read);
+  png_infop info = read == nullptr ? nullptr : png_create_info_struct(read);
+  if (info == nullptr) {
+    png->error = "there is no memory for it";
+    png_destroy_read_struct(&read, nullptr, nullptr);
+    return;
+  }
   if (setjmp(png_jmpbuf(read)) == 0) {
     png_init_io(read, file);
     png_set_user_limits(read, 2048, 2048);
@@ -56,6 +63,7 @@ void Decode(std::FILE* file, Png* png) {
     }
   }
   png_destroy_read_struct(&read, &info, nullptr);
+  if (png->why[0] != 0) png->error = png->why.data();
 }
 
 }  // namespace

@@ -25,10 +25,13 @@ void RefuseFile(const std::string& path, const std::string& why) {
 std::vector<Obstacle> ObstaclesOfMeshFile(const std::string& path, double scale,
                                           const Placement& placement) {
   estimation::CheckAbove("scale of a mesh", scale, 0.0, 1e6);
+  // What its name does not hold could change unseen.
+  if (path.ends_with(".gltf")) RefuseFile(path, "it keeps its mesh in another file; allowed is .glb");
   Assimp::Importer importer;
   // The parts of a scene where they stand, each polygon in triangles; points and lines are no solids.
   const aiScene* scene =
-      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
+      importer.ReadFile(path, aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                                  aiProcess_PreTransformVertices);
   if (scene == nullptr) RefuseFile(path, importer.GetErrorString());
   std::vector<Eigen::Vector3d> corners;
   std::vector<Eigen::Vector3i> triangles;

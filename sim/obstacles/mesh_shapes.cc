@@ -27,6 +27,14 @@ int RootOf(int thing, std::vector<int>* parents) {
   return thing;
 }
 
+double SignedVolume(const std::vector<Eigen::Vector3d>& corners,
+                    const std::vector<Eigen::Vector3i>& triangles) {
+  double six = 0.0;
+  const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)] - corners.front(); };
+  for (const Eigen::Vector3i& of : triangles) six += at(of[0]).dot(at(of[1]).cross(at(of[2])));
+  return six / 6.0;
+}
+
 // A triangle at an edge: which way it runs along it, and where it lies about it.
 struct Side {
   int triangle = 0;
@@ -171,6 +179,9 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
     joined.emplace_back(one[static_cast<std::size_t>(of[0])], one[static_cast<std::size_t>(of[1])],
                         one[static_cast<std::size_t>(of[2])]);
   }
+  if (SignedVolume(kept, joined) < 0.0) {
+    for (Eigen::Vector3i& of : joined) std::swap(of[1], of[2]);
+  }
   std::vector<int> parents(joined.size());  // of triangles
   std::iota(parents.begin(), parents.end(), 0);
   for (auto& [edge, sides] : SidesOfEdges(kept, joined)) {
@@ -208,8 +219,22 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
     to.triangles.push_back(renamed);
   }
   std::vector<TriangleMesh> meshes;
+  std::vector<std::pair<Eigen::Vector3d, std::size_t>> inward;  // a corner of such a surface, its index
   for (Solid& solid : solids) {
+    if (SignedVolume(solid.corners, solid.triangles) < 0.0) {
+      inward.emplace_back(solid.corners.front(), meshes.size());
+    }
     meshes.emplace_back(std::move(solid.corners), std::move(solid.triangles));
+  }
+  // A surface that looks inward within another one is a cavity; elsewhere it is turned the wrong way.
+  for (const auto& [corner, index] : inward) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      if (i == index || meshes[i].SignedDistance(corner) >= 0.0) continue;
+      throw std::invalid_argument("the surface at (" + estimation::NumberText(corner.x()) + ", " +
+                                  estimation::NumberText(corner.y()) + ", " +
+                                  estimation::NumberText(corner.z()) +
+                                  ") is a cavity within another solid: cut it open or leave it out");
+    }
   }
   return meshes;
 }

@@ -54,8 +54,10 @@ void ValidateOne(const Sphere& sphere, const std::string& name) {
 
 void ValidateOne(const Mesh& mesh, const std::string& name) {
   if (mesh.surface == nullptr) throw std::invalid_argument(name + ": a mesh without a surface");
-  ValidateCenter(mesh.surface->bounds().min, name + " (least)");
-  ValidateCenter(mesh.surface->bounds().max, name + " (greatest)");
+  for (const Eigen::Vector3d& corner : {mesh.surface->bounds().min, mesh.surface->bounds().max}) {
+    estimation::CheckWithin(name + ": greatest coordinate of its mesh [m]", corner.cwiseAbs().maxCoeff(), 0.0,
+                            kMaxCoordinate);
+  }
 }
 
 void ValidateOne(const VoxelColumns& columns, const std::string& name) {

@@ -26,7 +26,7 @@ constexpr double kFlat = 1e-9;  // height of a triangle over its longest side: i
 // A place of the surface: in the triangle (kInside), on its side i from corner i, or at its corner i.
 struct Nearest {
   enum class Kind { kInside, kSide, kCorner };
-  Eigen::Vector3d p;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
   Kind kind = Kind::kInside;
   int i = 0;
 };

@@ -29,7 +29,7 @@ class TriangleMesh {
   double SignedDistance(const Eigen::Vector3d& p_W) const;
   /// Smallest s >= 0 at which origin + s * direction crosses the surface, +infinity if it never does. Does not allocate.
   double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
-  /// Visits each Triangle whose bounds overlap the place. Does not allocate.
+  /// Visits each Triangle whose bounds overlap the place, and a few that are near to such. Does not allocate.
   template <class Visit>
   void Within(const Bounds& place, Visit&& visit) const {
     tree_.PlacesWithin(place, [&](int at) { visit(sides_[static_cast<std::size_t>(at)]); });

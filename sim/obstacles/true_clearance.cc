@@ -45,7 +45,8 @@ bool VisitOverlap(FclObject* a, FclObject* b, void* data) {
   request.gjk_solver_type = fcl::GST_LIBCCD;
   fcl::CollisionResultd result;
   if (fcl::collide(a, b, request, result) == 0) return false;
-  const double depth = std::abs(result.getContact(0).penetration_depth);
+  const bool is_mesh = a->getObjectType() == fcl::OT_BVH || b->getObjectType() == fcl::OT_BVH;
+  const double depth = is_mesh ? 0.0 : std::abs(result.getContact(0).penetration_depth);
   if (!search->collided || -depth < search->best.distance) {
     search->best = {-depth, ObstacleOf(*a, *b)};
   }

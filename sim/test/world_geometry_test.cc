@@ -153,7 +153,7 @@ TEST(WorldGeometry, AVehicleThatFallsTouchesEachKind) {
     EXPECT_NEAR(SignedDistance(obstacle, contact.p_W), 0.0, 0.02) << obstacle.index();
     // Of one step at this speed the vehicle is at most so deep.
     const double clearance = TrueClearance(config.obstacles, world.model()).Distance(world.vehicle());
-    EXPECT_LT(clearance, 0.0) << obstacle.index();
+    EXPECT_LE(clearance, 0.0) << obstacle.index();
     EXPECT_GT(clearance, -0.35) << obstacle.index();
   }
 }
@@ -228,6 +228,40 @@ TEST(MeshShapes, SolidsMayTouch) {
     EXPECT_NEAR(solids[0].Volume(), 8.0, 1e-12);
     EXPECT_NEAR(solids[1].Volume(), 8.0, 1e-12);
   }
+}
+
+// Also where all of them are turned inside out; one alone within another is no solid.
+TEST(MeshShapes, InsideOutAndCavities) {
+  const auto solids = [](const std::vector<TriangleMesh>& parts, const std::vector<bool>& turned) {
+    std::vector<Eigen::Vector3d> corners;
+    std::vector<Eigen::Vector3i> triangles;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Eigen::Vector3i first = Eigen::Vector3i::Constant(static_cast<int>(corners.size()));
+      corners.insert(corners.end(), parts[i].corners().begin(), parts[i].corners().end());
+      for (Eigen::Vector3i of : parts[i].triangles()) {
+        if (turned[i]) std::swap(of[0], of[1]);
+        triangles.push_back(first + of);
+      }
+    }
+    return SolidsOf(corners, triangles);
+  };
+  const TriangleMesh box = BoxMesh({1, 1, 1}, {}), beside = BoxMesh({1, 1, 1}, {TurnOf(0, 0, 0), {2, 0, 0}});
+  const TriangleMesh within = BoxMesh({0.5, 0.5, 0.5}, {});
+  EXPECT_EQ(solids({box, beside}, {true, true}).size(), 2u);
+  EXPECT_EQ(solids({box, within}, {false, false}).size(), 2u);
+  EXPECT_THAT(test::MessageOf<std::invalid_argument>([&] { solids({box, within}, {false, true}); }),
+              HasSubstr("is a cavity"));
+}
+
+TEST(TrueClearance, OfAMeshThatIsTouchedItIsNothing) {
+  const TrueClearance mesh(ObstacleField({Mesh{Shared(BoxMesh({1, 1, 1}, {}))}}), {});
+  estimation::VehicleState state;
+  for (const double x : {0.9, 1.0, 1.2}) {
+    state.p_WB.x() = x;
+    EXPECT_EQ(mesh.Distance(state), 0.0);
+  }
+  state.p_WB.x() = 2.0;
+  EXPECT_NEAR(mesh.Distance(state), 0.7, 1e-6);
 }
 
 TEST(MeshShapes, AHeightFieldHasItsHeights) {

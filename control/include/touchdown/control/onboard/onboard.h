@@ -72,7 +72,8 @@ class Onboard {
   Onboard(Onboard&&) noexcept;
   Onboard& operator=(Onboard&&) noexcept;
 
-  /// The own state, given; where it is estimated, its measurements.
+  /// The own state, given; where it is estimated, its measurements. Before the flight nobody knows the time: a state
+  /// that is older than the history counts for a new beginning, and those before it are forgotten.
   Taken Take(const estimation::VehicleState& state);
   Taken Take(const estimation::ImuSample& sample);
   Taken Take(const estimation::OwnPositionFix& fix);

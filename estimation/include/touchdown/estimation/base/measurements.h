@@ -48,7 +48,8 @@ struct DepthImage {
 
 /// Whether such a camera can have taken it, as above, and its pixels are all there.
 bool IsPossible(const DepthImage& image);
-/// Whether its pixels say something: an image in millimetres has no return within the range.
+/// Whether its pixels say something, and no fewer than those that are returns from beyond the range, as an image in
+/// millimetres has.
 bool SaysSomething(const DepthImage& image);
 
 /// Position of the pad by GPS (horizontal, in W). The paper's eq. 11 without its heading.
