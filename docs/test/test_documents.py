@@ -77,7 +77,7 @@ def test_every_equation_of_the_paper_has_its_row():
 
 def test_code_in_the_documents_is_code_of_the_examples():
     """Blocks of C++, CMake and YAML are excerpts of what the tests compile; blanks do not count."""
-    known = ["".join(path.read_text().split()) for path in EXAMPLES if path.is_file()]
+    known = ["".join(path.read_text(errors="replace").split()) for path in EXAMPLES if path.is_file()]
     wrong = []
     for page in PAGES:
         for block in page.blocks:
