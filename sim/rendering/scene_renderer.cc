@@ -12,13 +12,13 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "estimation/base/argument_check.h"
+#include "estimation/base/degrees.h"
 #include "estimation/tags/pad_sheet.h"
 #include "sim/mujoco/mujoco_call.h"
 #include "sim/mujoco/mujoco_model.h"
@@ -129,7 +129,7 @@ class SceneRenderer::Impl {
     intrinsics_.width = view.width;
     intrinsics_.height = view.height;
     intrinsics_.focal =
-        0.5 * view.height / std::tan(0.5 * view.fov_y_deg * std::numbers::pi / 180.0);
+        0.5 * view.height / std::tan(0.5 * estimation::Radians(view.fov_y_deg));
     intrinsics_.cx = 0.5 * view.width;
     intrinsics_.cy = 0.5 * view.height;
   }

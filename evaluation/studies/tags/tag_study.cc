@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "estimation/base/argument_check.h"
+#include "estimation/base/degrees.h"
 #include "sim/base/random_stream.h"
 #include "touchdown/solvers/backend/thread_clock.h"
 
@@ -21,7 +22,6 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr double kMaxFov = 100.0;  // [deg]: beyond, some views would look above the horizon
-constexpr double kRadian = 180.0 / std::numbers::pi;  // [deg]
 
 struct View {
   estimation::VehicleState vehicle;
@@ -44,12 +44,12 @@ View DrawView(const TagStudyOptions& options, const estimation::CameraIntrinsics
   const double u = camera.width * random->Uniform(0.0, 1.0);
   const double v = camera.height * random->Uniform(0.0, 1.0);
   const double course = random->Uniform(-kPi, kPi);
-  const double sigma = options.attitude_sigma_deg / kRadian;
+  const double sigma = options.attitude_sigma_deg / estimation::kDegPerRad;
   Eigen::Vector3d error;
   for (const int axis : {2, 1, 0}) error[axis] = random->Normal(sigma);
 
   const Eigen::Vector3d axis(std::cos(direction), std::sin(direction), 0.0);
-  view.vehicle.q_WB = Eigen::AngleAxisd(view.tilt_deg / kRadian, axis) *
+  view.vehicle.q_WB = Eigen::AngleAxisd(view.tilt_deg / estimation::kDegPerRad, axis) *
                       Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
   Eigen::Vector3d ray_W =
       view.vehicle.q_WB *
@@ -80,7 +80,7 @@ TagRow RowOf(const estimation::PadTag& tag, const Eigen::Vector3d& p_CP,
   const Eigen::Vector3d center_C =
       R_CP * Eigen::Vector3d(tag.center_P.x(), tag.center_P.y(), 0.0) + p_CP;
   row.view_angle_deg =
-      kRadian * std::acos(std::clamp(-R_CP.col(2).dot(center_C.normalized()), -1.0, 1.0));
+      estimation::kDegPerRad * std::acos(std::clamp(-R_CP.col(2).dot(center_C.normalized()), -1.0, 1.0));
   Eigen::Matrix<double, 2, 4> corners = tag.Corners();
   row.in_view = true;
   for (int k = 0; k < 4; ++k) {
@@ -123,7 +123,7 @@ TagStudyRow Judge(const View& view, const estimation::PadView& seen, const Eigen
   Eigen::Matrix<double, 6, 1> error;
   error << p_CP - seen.pose.p_CP, turn.angle() * turn.axis();
   row.position_error = error.head<3>().norm();
-  row.rotation_error_deg = kRadian * turn.angle();
+  row.rotation_error_deg = estimation::kDegPerRad * turn.angle();
   row.nees = error.dot(seen.pose.cov.ldlt().solve(error)) / 6.0;
   row.sigma = std::sqrt(seen.pose.cov.topLeftCorner<3, 3>().trace());
   return row;
@@ -154,7 +154,7 @@ std::vector<TagStudyRow> RunTagStudy(const TagStudyOptions& options,
     const double rendered = solvers::ThreadCpuSeconds();
     const Eigen::Matrix3d R_WB = view.vehicle.q_WB.toRotationMatrix() * view.attitude_error;
     const estimation::PadNormal normal = estimation::LevelPadNormal(
-        R_WB, sim::DownwardCameraAxes(), options.attitude_sigma_deg / kRadian);
+        R_WB, sim::DownwardCameraAxes(), options.attitude_sigma_deg / estimation::kDegPerRad);
     const estimation::PadView seen = finder.Find(image.View(), camera.intrinsics(), normal);
     const double found = solvers::ThreadCpuSeconds();
     rows.push_back(Judge(view, seen, options.camera.p_BC, camera.intrinsics()));
