@@ -29,30 +29,16 @@ class Model : public fcl::BVHModel<fcl::OBBRSSd> {
   bool bounded_ = false;
 };
 
-std::shared_ptr<Model> MakeModel(const TriangleMesh& surface) {
-  auto model = std::make_shared<Model>();
-  std::vector<fcl::Triangle> triangles;
-  triangles.reserve(surface.triangles().size());
-  for (const Eigen::Vector3i& of : surface.triangles()) {
-    triangles.emplace_back(static_cast<std::size_t>(of[0]), static_cast<std::size_t>(of[1]),
-                           static_cast<std::size_t>(of[2]));
-  }
-  model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(surface.corners().size()));
-  model->addSubModel(surface.corners(), triangles);
-  model->endModel();
-  model->computeLocalAABB();
-  return model;
-}
-
 // Made once for a surface as long as somebody has it: checks, touches and clearances of many flights ask for it.
-std::shared_ptr<Model> ModelOf(const std::shared_ptr<const TriangleMesh>& surface) {
+std::shared_ptr<fcl::CollisionGeometryd> ModelOf(
+    const std::shared_ptr<const TriangleMesh>& surface) {
   using Surface = std::weak_ptr<const TriangleMesh>;
   static std::mutex one_at_a_time;
-  static std::map<Surface, std::shared_ptr<Model>, std::owner_less<>> models;
+  static std::map<Surface, std::shared_ptr<fcl::CollisionGeometryd>, std::owner_less<>> models;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
   std::erase_if(models, [](const auto& entry) { return entry.first.expired(); });
-  std::shared_ptr<Model>& model = models[surface];
-  if (model == nullptr) model = MakeModel(*surface);
+  std::shared_ptr<fcl::CollisionGeometryd>& model = models[surface];
+  if (model == nullptr) model = FclSurface(surface->corners(), surface->triangles());
   return model;
 }
 
@@ -126,6 +112,22 @@ FclObstacles::FclObstacles(const ObstacleField& obstacles) {
     }
   }
   tree_.setup();
+}
+
+std::shared_ptr<fcl::CollisionGeometryd> FclSurface(const std::vector<Eigen::Vector3d>& corners,
+                                                    const std::vector<Eigen::Vector3i>& triangles) {
+  std::vector<fcl::Triangle> indices;
+  indices.reserve(triangles.size());
+  for (const Eigen::Vector3i& of : triangles) {
+    indices.emplace_back(static_cast<std::size_t>(of[0]), static_cast<std::size_t>(of[1]),
+                         static_cast<std::size_t>(of[2]));
+  }
+  auto model = std::make_shared<Model>();
+  model->beginModel(static_cast<int>(indices.size()), static_cast<int>(corners.size()));
+  model->addSubModel(corners, indices);
+  model->endModel();
+  model->computeLocalAABB();
+  return model;
 }
 
 int ObstacleOf(const FclObject& a, const FclObject& b) {

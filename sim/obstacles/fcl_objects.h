@@ -28,6 +28,10 @@ class FclObstacles {
   fcl::DynamicAABBTreeCollisionManagerd tree_;
 };
 
+/// A surface by its triangles. Its bounds are computed here, once: it may be shared between threads.
+std::shared_ptr<fcl::CollisionGeometryd> FclSurface(const std::vector<Eigen::Vector3d>& corners,
+                                                    const std::vector<Eigen::Vector3i>& triangles);
+
 /// Of a pair of which one is an obstacle's: that obstacle's index.
 int ObstacleOf(const FclObject& a, const FclObject& b);
 

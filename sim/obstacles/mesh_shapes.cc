@@ -27,14 +27,6 @@ int RootOf(int thing, std::vector<int>* parents) {
   return thing;
 }
 
-double SignedVolume(const std::vector<Eigen::Vector3d>& corners,
-                    const std::vector<Eigen::Vector3i>& triangles) {
-  double six = 0.0;
-  const auto at = [&](int i) { return corners[static_cast<std::size_t>(i)] - corners.front(); };
-  for (const Eigen::Vector3i& of : triangles) six += at(of[0]).dot(at(of[1]).cross(at(of[2])));
-  return six / 6.0;
-}
-
 // A triangle at an edge: which way it runs along it, and where it lies about it.
 struct Side {
   int triangle = 0;
@@ -230,10 +222,8 @@ std::vector<TriangleMesh> SolidsOf(const std::vector<Eigen::Vector3d>& corners,
   for (const auto& [corner, index] : inward) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       if (i == index || meshes[i].SignedDistance(corner) >= 0.0) continue;
-      throw std::invalid_argument("the surface at (" + estimation::NumberText(corner.x()) + ", " +
-                                  estimation::NumberText(corner.y()) + ", " +
-                                  estimation::NumberText(corner.z()) +
-                                  ") is a cavity within another solid: cut it open or leave it out");
+      throw std::invalid_argument("the surface at " + PlaceText(corner) +
+                                  " is a cavity within another solid: cut it open or leave it out");
     }
   }
   return meshes;

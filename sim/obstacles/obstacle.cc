@@ -18,13 +18,6 @@ namespace {
 constexpr double kMaxSize = 1000.0;       // [m]
 constexpr double kMaxCoordinate = 1.0e5;  // [m]
 
-// A vector of W in the frame of a box: turned back by its yaw.
-Eigen::Vector3d TurnedBack(double yaw, const Eigen::Vector3d& v_W) {
-  const double c = std::cos(yaw);
-  const double s = std::sin(yaw);
-  return {c * v_W.x() + s * v_W.y(), -s * v_W.x() + c * v_W.y(), v_W.z()};
-}
-
 void ValidateCenter(const Eigen::Vector3d& center, const std::string& name) {
   for (int axis = 0; axis < 3; ++axis) {
     estimation::CheckWithin(name + ": center." + "xyz"[axis], center[axis], -kMaxCoordinate,
@@ -85,9 +78,7 @@ void ValidateOne(const Ring& ring, const std::string& name) {
 }
 
 double DistanceTo(const Box& box, const Eigen::Vector3d& p_W) {
-  const Eigen::Vector3d p = TurnedBack(box.yaw, p_W - box.center);
-  const Eigen::Vector3d q = p.cwiseAbs() - box.half_extents;
-  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+  return TurnedBox(box).SignedDistance(p_W);
 }
 
 double DistanceTo(const Cylinder& cylinder, const Eigen::Vector3d& p_W) {
@@ -183,6 +174,11 @@ TurnedBox::TurnedBox(const Box& box)
 
 Eigen::Vector3d TurnedBox::ToBox(const Eigen::Vector3d& v_W) const {
   return {cos_ * v_W.x() + sin_ * v_W.y(), -sin_ * v_W.x() + cos_ * v_W.y(), v_W.z()};
+}
+
+double TurnedBox::SignedDistance(const Eigen::Vector3d& p_W) const {
+  const Eigen::Vector3d q = ToBox(p_W - center_).cwiseAbs() - half_extents_;
+  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
 }
 
 double TurnedBox::RayDistance(const Eigen::Vector3d& origin_W,

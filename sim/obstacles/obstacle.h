@@ -62,10 +62,11 @@ double RayDistance(const Obstacle& obstacle, const Eigen::Vector3d& origin_W,
 /// Tight axis-aligned bounds.
 Bounds BoundsOf(const Obstacle& obstacle);
 
-/// A box made ready for many rays, as RayDistance gives them.
+/// A box made ready for many questions, as SignedDistance and RayDistance answer them.
 class TurnedBox {
  public:
   explicit TurnedBox(const Box& box);
+  double SignedDistance(const Eigen::Vector3d& p_W) const;
   double RayDistance(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W) const;
 
  private:

@@ -81,12 +81,22 @@ std::uint64_t EdgeKey(int from, int to) {
          static_cast<std::uint32_t>(to);
 }
 
+}  // namespace
+
+double SignedVolume(const std::vector<Eigen::Vector3d>& corners,
+                    const std::vector<Eigen::Vector3i>& triangles) {
+  double six = 0.0;
+  const auto at = [&](int i) -> Eigen::Vector3d {
+    return corners[static_cast<std::size_t>(i)] - corners.front();
+  };
+  for (const Eigen::Vector3i& of : triangles) six += at(of[0]).dot(at(of[1]).cross(at(of[2])));
+  return six / 6.0;
+}
+
 std::string PlaceText(const Eigen::Vector3d& p) {
   return "(" + estimation::NumberText(p.x()) + ", " + estimation::NumberText(p.y()) + ", " +
          estimation::NumberText(p.z()) + ")";
 }
-
-}  // namespace
 
 TriangleMesh::TriangleMesh(std::vector<Eigen::Vector3d> corners,
                            std::vector<Eigen::Vector3i> triangles)
@@ -139,15 +149,6 @@ void TriangleMesh::Check() const {
       throw std::invalid_argument(name + " at " + PlaceText(Corner(t, 0)) + " has no area");
     }
   }
-}
-
-double TriangleMesh::Volume() const {
-  double six = 0.0;
-  const Eigen::Vector3d& about = corners_.front();
-  for (int t = 0; t < static_cast<int>(triangles_.size()); ++t) {
-    six += (Corner(t, 0) - about).dot((Corner(t, 1) - about).cross(Corner(t, 2) - about));
-  }
-  return six / 6.0;
 }
 
 void TriangleMesh::PairEdges() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +11,13 @@
 #include "sim/obstacles/ray_intersection.h"
 
 namespace touchdown::sim {
+
+/// What triangles enclose [m^3]; negative where they are seen with the clock from outside.
+double SignedVolume(const std::vector<Eigen::Vector3d>& corners,
+                    const std::vector<Eigen::Vector3i>& triangles);
+
+/// "(x, y, z)" for sentences.
+std::string PlaceText(const Eigen::Vector3d& p);
 
 /// A solid by its surface: triangles that close it, each seen from outside against the clock. Its surface is one piece
 /// and does not cut itself; that alone is not checked. Distances and rays are exact, by a tree of bounds.
@@ -23,7 +31,7 @@ class TriangleMesh {
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
   const std::vector<Eigen::Vector3i>& triangles() const { return triangles_; }
   const Bounds& bounds() const { return bounds_; }
-  double Volume() const;  ///< [m^3], > 0
+  double Volume() const { return SignedVolume(corners_, triangles_); }  ///< [m^3], > 0
 
   /// To the surface [m], negative inside. Does not allocate.
   double SignedDistance(const Eigen::Vector3d& p_W) const;

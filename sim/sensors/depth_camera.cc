@@ -88,8 +88,8 @@ DepthCamera::DepthCamera(const DepthCameraConfig& config, const ObstacleField& o
   intrinsics_ = IntrinsicsOf(config);
   R_BC_ = CameraAxes(config);
 
-  rays_C_.reserve(static_cast<std::size_t>(config.width) * config.height);
   const std::size_t pixels = static_cast<std::size_t>(config.width) * config.height;
+  rays_C_.reserve(pixels);
   depth_.resize(pixels);
   rays_W_.resize(pixels);
   for (int row = 0; row < config.height; ++row) {

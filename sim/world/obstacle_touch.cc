@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
@@ -27,21 +26,16 @@ using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 Shape MeshOf(const mjModel& m, int mesh) {
   std::vector<Eigen::Vector3d> corners;
-  std::vector<fcl::Triangle> triangles;
+  std::vector<Eigen::Vector3i> triangles;
   const float* vert = m.mesh_vert + 3 * m.mesh_vertadr[mesh];
   const int* face = m.mesh_face + 3 * m.mesh_faceadr[mesh];
   for (int i = 0; i < m.mesh_vertnum[mesh]; ++i, vert += 3) {
     corners.emplace_back(vert[0], vert[1], vert[2]);
   }
   for (int i = 0; i < m.mesh_facenum[mesh]; ++i, face += 3) {
-    triangles.emplace_back(static_cast<std::size_t>(face[0]), static_cast<std::size_t>(face[1]),
-                           static_cast<std::size_t>(face[2]));
+    triangles.emplace_back(face[0], face[1], face[2]);
   }
-  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(corners.size()));
-  model->addSubModel(corners, triangles);
-  model->endModel();
-  return model;
+  return FclSurface(corners, triangles);
 }
 
 Shape ShapeOf(const mjModel& m, int geom) {
