@@ -68,8 +68,9 @@ double LeastClearance(const estimation::VehicleModel& model) {
 
 void SetVehicle(const estimation::VehicleModel& model, const Envelope& envelope, double deck_size,
                 double period, double late, planning::ReplannerOptions* options) {
-  options->problem.vehicle.thrust_max = model.MaxThrust() / model.mass_kg;
-  options->problem.vehicle.thrust_min = 4.0 * model.rotor_thrust_min / model.mass_kg;
+  const estimation::Allocation allocation = estimation::AllocationOf(model);
+  options->problem.vehicle.thrust_max = allocation.thrust_max / model.mass_kg;
+  options->problem.vehicle.thrust_min = allocation.thrust_min / model.mass_kg;
   options->problem.vehicle.tilt_max = envelope.tilt_deg * estimation::kRadPerDeg;
   options->problem.vehicle.stop_tilt_max = envelope.StopTilt();
   options->limits = envelope.limits();
@@ -106,7 +107,7 @@ OnboardParts LandingParts(const OnboardOptions& options) {
   SetVehicle(options.model, options.envelope, options.deck_size, 1.0 / options.replan_rate,
              options.latency.measured ? options.latency.longest : 0.0, &planner);
   SetLanding(&planner);
-  ControllerOptions law;
+  ControllerOptions law = OptionsFor(options.model);
   law.tilt_max = options.envelope.TrackingTilt();
   OnboardParts parts;
   parts.planner = std::make_unique<planning::Replanner>(planner, solvers::StandardBackends());

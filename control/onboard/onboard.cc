@@ -136,6 +136,7 @@ Onboard::Onboard(OnboardOptions options, OnboardParts parts) {
   Whole(parts);
   it_ = std::make_unique<Parts>(std::move(options), std::move(parts));
   it_->setpoint.armed = false;
+  it_->setpoint.thrusts.setZero(static_cast<Eigen::Index>(it_->options.model.actuators.size()));
 }
 
 Onboard::~Onboard() = default;
@@ -162,13 +163,19 @@ Taken Onboard::Take(const estimation::FootForce& force) { return Counted(it_->Ta
 
 const std::array<int, kTakenKinds>& Onboard::taken() const { return it_->taken; }
 
-void Onboard::Begin(double t, const Eigen::Vector4d& thrusts) {
+void Onboard::Begin(double t, const estimation::Commands& thrusts) {
   if (it_->pilot) throw std::invalid_argument("Onboard::Begin: the flight has begun");
   estimation::CheckWithin("Onboard::Begin: t [s]", t, 0.0, kLatestTime);
   const estimation::VehicleModel& model = it_->options.model;
-  for (int i = 0; i < 4; ++i) {
-    estimation::CheckWithin("Onboard::Begin: one of the thrusts [N]", thrusts[i],
-                            model.rotor_thrust_min, model.rotor_thrust_max);
+  const auto count = static_cast<Eigen::Index>(model.actuators.size());
+  if (thrusts.size() != count) {
+    estimation::ThrowOutOfRange("Onboard::Begin: number of thrusts",
+                                static_cast<double>(thrusts.size()), std::to_string(count));
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const estimation::Actuator& actuator = model.actuators[static_cast<std::size_t>(i)];
+    estimation::CheckWithin("Onboard::Begin: one of the thrusts [N]", thrusts[i], actuator.min,
+                            actuator.max);
   }
   it_->senses.Advance(t);
   const estimation::OwnStatus status = it_->senses.own().Status(t);

@@ -14,6 +14,7 @@
 
 #include "control/tracking/lean.h"
 #include "control/tracking/tracking_law.h"
+#include "control/tracking/vehicle_frequencies.h"
 #include "estimation/base/degrees.h"
 #include "touchdown/planning/replan/replanner.h"
 
@@ -62,7 +63,7 @@ planning::EndpointTarget ContactTarget(const estimation::VehicleModel& model, do
 }
 
 Pilot::Pilot(const OnboardOptions& options, const OnboardParts& parts,
-             const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
+             const estimation::VehicleState& start, const estimation::Commands& start_thrusts,
              const planning::OccupancyMap& map)
     : options_(options), parts_(parts), model_(options.model), mixer_(options.model) {
   parameters_.foothold = 0.5 * options.deck_size - model_.foot_radius;
@@ -85,7 +86,9 @@ Pilot::Pilot(const OnboardOptions& options, const OnboardParts& parts,
   parameters_.decide_time = std::max(parameters_.decide_time, parameters_.turn_time + kTurning);
   if (parts.law_compensates) {
     lead_.emplace(model_).Hover(start_thrusts);
-    if (options.estimate_disturbance) observer_.emplace(model_).Hover(start, start_thrusts);
+    if (options.estimate_disturbance) {
+      observer_.emplace(model_, ObserverFor(model_)).Hover(start, start_thrusts);
+    }
   }
   parts_.planner->Prepare(map);
   parts_.planner->CommitHover(start.p_WB, start.t);
@@ -285,6 +288,7 @@ PilotCommand Pilot::Control(const OwnState& own) {
   const double t = own.now().t;
   PilotCommand command;
   command.reference = Reference(t);
+  command.mix.thrusts.setZero(mixer_.min().size());
   if (!mission_.motors_armed) return command;
   command.law = KnowsAttitude(own.Status(t)) ? Tracked(own.now(), command.reference)
                                              : Blind(t, command.reference);

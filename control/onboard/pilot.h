@@ -41,7 +41,7 @@ class Pilot {
   /// The flight begins with a hover at `start`, for which the rotors are told `start_thrusts` [N].
   /// `parts` and `options` are to outlive it. @throws std::invalid_argument if the feet have no room on the deck.
   Pilot(const OnboardOptions& options, const OnboardParts& parts,
-        const estimation::VehicleState& start, const Eigen::Vector4d& start_thrusts,
+        const estimation::VehicleState& start, const estimation::Commands& start_thrusts,
         const planning::OccupancyMap& map);
 
   /// Mission and heading, by what the vehicle knows of itself. Call at a fixed rate.

@@ -244,7 +244,7 @@ TEST(DisturbanceObserver, SaturationDoesNotWindItUp) {
   Body body(model);
   for (int i = 0; i < 1500; ++i) {
     observer.Update(body.state, false);
-    const MixerOutput mix = mixer.Mix({2.0 * model.MaxThrust(), Eigen::Vector3d::Zero()});
+    const MixerOutput mix = mixer.Mix({56.0, Eigen::Vector3d::Zero()});
     ASSERT_TRUE(mix.saturated);
     observer.Command(mix.thrusts);
     body.Step(mix.thrusts, {});

@@ -19,10 +19,10 @@ namespace touchdown::control {
 inline estimation::VehicleModel TestVehicle() {
   estimation::VehicleModel model;
   const double a = 0.1414;
-  model.rotors[0] = {Eigen::Vector3d(a, -a, 0.02), 1.0};
-  model.rotors[1] = {Eigen::Vector3d(-a, a, 0.02), 1.0};
-  model.rotors[2] = {Eigen::Vector3d(a, a, 0.02), -1.0};
-  model.rotors[3] = {Eigen::Vector3d(-a, -a, 0.02), -1.0};
+  model.actuators = {estimation::RotorAt({a, -a, 0.02}, 0.016, 7.0),
+                     estimation::RotorAt({-a, a, 0.02}, 0.016, 7.0),
+                     estimation::RotorAt({a, a, 0.02}, -0.016, 7.0),
+                     estimation::RotorAt({-a, -a, 0.02}, -0.016, 7.0)};
   return model;
 }
 
@@ -77,7 +77,7 @@ class FlightModel {
         Eigen::Quaterniond(Eigen::Vector4d(x.segment<4>(6))).normalized());
     const Eigen::Vector3d w_B = x.segment<3>(10);
     const Eigen::Matrix3d R_WB = q_WB.toRotationMatrix();
-    const Wrench wrench = mixer_.Apply(x.segment<4>(13));
+    const Wrench wrench = mixer_.Apply(estimation::Commands(x.segment<4>(13)));
     const Eigen::Vector3d drag_B = -model_.rotor_drag.cwiseProduct(R_WB.transpose() * v_WB);
     const Eigen::Vector3d force_W =
         R_WB * (Eigen::Vector3d(0.0, 0.0, wrench.thrust) + drag_B) -
@@ -87,8 +87,7 @@ class FlightModel {
     dx.segment<3>(0) = v_WB;
     dx.segment<3>(3) = force_W / model_.mass_kg;
     dx.segment<4>(6) = 0.5 * (q_WB * rate).coeffs();
-    dx.segment<3>(10) = (wrench.moment_B - w_B.cross(model_.inertia.cwiseProduct(w_B)))
-                            .cwiseQuotient(model_.inertia);
+    dx.segment<3>(10) = model_.AccelerationUnder(wrench.moment_B - model_.GyroscopicMoment(w_B));
     dx.segment<4>(13) = (command - x.segment<4>(13)) / model_.rotor_lag_s;
     return dx;
   }

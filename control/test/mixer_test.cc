@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 
@@ -16,12 +17,40 @@ namespace {
 /// Uneven arms and a shifted centre of mass: nothing about the mixer may need symmetry.
 estimation::VehicleModel UnevenVehicle() {
   estimation::VehicleModel model = TestVehicle();
-  model.rotors[0].p_BR << 0.20, -0.12, 0.0;
-  model.rotors[1].p_BR << -0.15, 0.14, 0.0;
-  model.rotors[2].p_BR << 0.16, 0.17, 0.0;
-  model.rotors[3].p_BR << -0.14, -0.16, 0.0;
-  model.rotor_thrust_min = 0.1;
+  model.actuators[0].p_BR << 0.20, -0.12, 0.0;
+  model.actuators[1].p_BR << -0.15, 0.14, 0.0;
+  model.actuators[2].p_BR << 0.16, 0.17, 0.0;
+  model.actuators[3].p_BR << -0.14, -0.16, 0.0;
+  for (estimation::Actuator& rotor : model.actuators) rotor.min = 0.1;
   return model;
+}
+
+/// Rotors all around, 0.2 m from the middle, those beside each other in opposite senses.
+estimation::VehicleModel Around(int rotors) {
+  estimation::VehicleModel model;
+  for (int i = 0; i < rotors; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / rotors;
+    model.actuators.push_back(
+        estimation::RotorAt({0.2 * std::cos(angle), 0.2 * std::sin(angle), 0.0},
+                            i % 2 == 0 ? 0.016 : -0.016, 28.0 / rotors));
+  }
+  return model;
+}
+
+/// One thrust and three moments, one of them about the axis turned round.
+estimation::VehicleModel WrenchVehicle() {
+  estimation::VehicleModel model;
+  model.actuators = {{Eigen::Vector3d::Zero(), 1.0, Eigen::Vector3d::Zero(), 0.0, 28.0},
+                     {Eigen::Vector3d::Zero(), 0.0, -Eigen::Vector3d::UnitX(), -2.0, 2.0},
+                     {Eigen::Vector3d::Zero(), 0.0, Eigen::Vector3d::UnitY(), -2.0, 2.0},
+                     {Eigen::Vector3d::Zero(), 0.0, Eigen::Vector3d::UnitZ(), -0.3, 0.3}};
+  return model;
+}
+
+estimation::Commands Unlimited(const estimation::VehicleModel& model, const Wrench& wrench) {
+  Eigen::Vector4d w;
+  w << wrench.thrust, wrench.moment_B;
+  return estimation::AllocationOf(model).commands_of_wrench * w;
 }
 
 Wrench Difference(const Wrench& a, const Wrench& b) {
@@ -31,10 +60,10 @@ Wrench Difference(const Wrench& a, const Wrench& b) {
 TEST(Mixer, PaperPlusConfiguration) {
   // Eq. 8: rotors on the axes, L = 0.2 m, tau/k = 0.016 m.
   estimation::VehicleModel model;
-  model.rotors[0] = {Eigen::Vector3d(0.2, 0.0, 0.0), 1.0};
-  model.rotors[1] = {Eigen::Vector3d(0.0, 0.2, 0.0), -1.0};
-  model.rotors[2] = {Eigen::Vector3d(-0.2, 0.0, 0.0), 1.0};
-  model.rotors[3] = {Eigen::Vector3d(0.0, -0.2, 0.0), -1.0};
+  model.actuators = {estimation::RotorAt({0.2, 0.0, 0.0}, 0.016, 7.0),
+                     estimation::RotorAt({0.0, 0.2, 0.0}, -0.016, 7.0),
+                     estimation::RotorAt({-0.2, 0.0, 0.0}, 0.016, 7.0),
+                     estimation::RotorAt({0.0, -0.2, 0.0}, -0.016, 7.0)};
   const Wrench wrench = Mixer(model).Apply(Eigen::Vector4d(1.0, 2.0, 3.0, 5.0));
   EXPECT_DOUBLE_EQ(wrench.thrust, 11.0);
   EXPECT_DOUBLE_EQ(wrench.moment_B.x(), 0.2 * (2.0 - 5.0));
@@ -46,7 +75,8 @@ TEST(Mixer, UnsaturatedRoundTripIsExact) {
   std::mt19937_64 random(1);
   for (const auto& model : {TestVehicle(), UnevenVehicle()}) {
     const Mixer mixer(model);
-    std::uniform_real_distribution<double> thrust(model.rotor_thrust_min, model.rotor_thrust_max);
+    const estimation::Actuator& rotor = model.actuators[0];
+    std::uniform_real_distribution<double> thrust(rotor.min, rotor.max);
     for (int trial = 0; trial < 1000; ++trial) {
       Eigen::Vector4d thrusts;
       for (int i = 0; i < 4; ++i) thrusts(i) = thrust(random);
@@ -56,19 +86,45 @@ TEST(Mixer, UnsaturatedRoundTripIsExact) {
   }
 }
 
+// With more than four rotors many commands make a wrench: the shortest is taken.
+TEST(Mixer, MoreRotorsMakeTheSameWrenchWithTheLeastSquares) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const auto& model : {Around(6), Around(8), WrenchVehicle()}) {
+    const Mixer mixer(model);
+    for (int trial = 0; trial < 1000; ++trial) {
+      const Wrench wrench = {
+          12.0 + uniform(random),
+          {0.3 * uniform(random), 0.3 * uniform(random), 0.03 * uniform(random)}};
+      const MixerOutput output = mixer.Mix(wrench);
+      ASSERT_FALSE(output.saturated);
+      const Wrench error = Difference(mixer.Apply(output.thrusts), wrench);
+      EXPECT_LT(error.moment_B.norm() + std::abs(error.thrust), 1e-9);
+      // Any other commands of the same wrench are longer.
+      estimation::Commands aside(output.thrusts.size());
+      for (double& command : aside) command = uniform(random);
+      const Wrench made = mixer.Apply(aside);
+      aside -= Unlimited(model, made);
+      if (aside.norm() < 1e-9) continue;
+      EXPECT_LT(std::abs(output.thrusts.dot(aside)), 1e-9);
+    }
+  }
+}
+
 TEST(Mixer, SaturatedKeepsLimitsAndPriority) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   int saturated = 0;
-  for (const auto& model : {TestVehicle(), UnevenVehicle()}) {
+  for (const auto& model :
+       {TestVehicle(), UnevenVehicle(), Around(6), Around(8), WrenchVehicle()}) {
     const Mixer mixer(model);
     for (int trial = 0; trial < 5000; ++trial) {
       Wrench wrench;
       wrench.thrust = 15.0 + 25.0 * uniform(random);
       wrench.moment_B << 4.0 * uniform(random), 4.0 * uniform(random), 0.6 * uniform(random);
       const MixerOutput output = mixer.Mix(wrench);
-      ASSERT_GE(output.thrusts.minCoeff(), model.rotor_thrust_min);
-      ASSERT_LE(output.thrusts.maxCoeff(), model.rotor_thrust_max);
+      ASSERT_TRUE((output.thrusts.array() >= mixer.min().array()).all());
+      ASSERT_TRUE((output.thrusts.array() <= mixer.max().array()).all());
       const Wrench error = Difference(mixer.Apply(output.thrusts), wrench);
       if (!output.saturated) {
         ASSERT_LT(error.moment_B.norm() + std::abs(error.thrust), 1e-9);
@@ -96,7 +152,7 @@ TEST(Mixer, SaturatedKeepsLimitsAndPriority) {
       }
     }
   }
-  EXPECT_GT(saturated, 3000);
+  EXPECT_GT(saturated, 7500);
 }
 
 // Before, a turn lifted a vehicle whose rotors are stronger than it knows by metres per second.
@@ -105,7 +161,7 @@ TEST(Mixer, RollAndPitchRaiseTheThrustToHalfOfHoverAtMost) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (const double least : {0.0, 0.1, 1.0, 2.0}) {  // N, of 2.9 in hover
     estimation::VehicleModel model = TestVehicle();
-    model.rotor_thrust_min = least;
+    for (estimation::Actuator& rotor : model.actuators) rotor.min = least;
     const Mixer mixer(model);
     const double raised = 4.0 * least + Mixer::kRaisedThrust * (model.HoverThrust() - 4.0 * least);
     for (int trial = 0; trial < 1000; ++trial) {
@@ -131,10 +187,10 @@ TEST(Mixer, ImpossibleGeometryIsRefused) {
   estimation::VehicleModel same_place;
   EXPECT_THROW(Mixer{same_place}, std::invalid_argument);
   estimation::VehicleModel outside = TestVehicle();
-  for (auto& rotor : outside.rotors) rotor.p_BR.x() += 0.5;
+  for (auto& rotor : outside.actuators) rotor.p_BR.x() += 0.5;
   EXPECT_THROW(Mixer{outside}, std::invalid_argument);
   estimation::VehicleModel limits = TestVehicle();
-  limits.rotor_thrust_max = 0.0;
+  limits.actuators[2].max = 0.0;
   EXPECT_THROW(Mixer{limits}, std::invalid_argument);
 }
 

@@ -74,7 +74,7 @@ double DistanceTo(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& p) {
 }
 
 /// An autopilot that takes thrust and attitude and knows its own: 20 rad/s, well damped.
-Eigen::Vector4d Autopilot(const Setpoint& setpoint, const ToyWorld& world) {
+estimation::Commands Autopilot(const Setpoint& setpoint, const ToyWorld& world) {
   const estimation::VehicleState& is = world.vehicle;
   const Eigen::Quaterniond off(is.q_WB.toRotationMatrix().transpose() * setpoint.R_WB);
   const Eigen::Vector3d spin_up =

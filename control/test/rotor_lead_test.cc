@@ -45,12 +45,12 @@ TEST(RotorLead, CommandsStayWithinTheLimitsAndDoNotWindUp) {
   const estimation::VehicleModel model = TestVehicle();
   RotorLead lead(model);
   const double hover = 0.25 * model.HoverThrust();
-  const Eigen::Vector4d most = Eigen::Vector4d::Constant(model.rotor_thrust_max);
+  const Eigen::Vector4d most = Eigen::Vector4d::Constant(model.actuators[0].max);
   double given = hover;
   const auto fly = [&](const Eigen::Vector4d& wanted, double t) {
     const Eigen::Vector4d command = lead.Command(wanted, t);
-    EXPECT_LE(command.maxCoeff(), model.rotor_thrust_max);
-    EXPECT_GE(command.minCoeff(), model.rotor_thrust_min);
+    EXPECT_LE(command.maxCoeff(), model.actuators[0].max);
+    EXPECT_GE(command.minCoeff(), model.actuators[0].min);
     given += (1.0 - std::exp(-kStep / model.rotor_lag_s)) * (command(0) - given);
   };
   int i = 0;

@@ -20,7 +20,7 @@ inline estimation::VehicleModel ToyQuadrotor() {
   estimation::VehicleModel model;
   for (int i = 0; i < 4; ++i) {
     const Eigen::Vector3d p(i == 0 || i == 3 ? 0.12 : -0.12, i < 2 ? 0.12 : -0.12, 0.04);
-    model.rotors[i] = {p, i % 2 == 0 ? 1.0 : -1.0};
+    model.actuators.push_back(estimation::RotorAt(p, i % 2 == 0 ? 0.016 : -0.016, 7.0));
   }
   model.foot_azimuths = {0.785, 2.356, -2.356, -0.785};
   return model;
@@ -51,8 +51,9 @@ struct ToyWorld {
     for (int i = 0; i < 4; ++i) {
       const Eigen::Vector3d thrust_B(0.0, 0.0, thrusts[i]);
       force_W += R_WB * thrust_B;
-      moment_B += model.rotors[i].p_BR.cross(thrust_B);
-      moment_B.z() += model.rotors[i].spin * model.torque_per_thrust * thrusts[i];
+      const estimation::Actuator& rotor = model.actuators[static_cast<std::size_t>(i)];
+      moment_B += rotor.p_BR.cross(thrust_B);
+      moment_B.z() += rotor.moment_B.z() * thrusts[i];
     }
     foot_force = 0.0;
     for (const double azimuth : model.foot_azimuths) {

@@ -54,10 +54,13 @@ void Validate(const estimation::VehicleModel& model) {
           "VehicleModel.rotor_drag (least)", model.rotor_drag.minCoeff(), ">= 0");
   RequirePositive("VehicleModel.hull_radius", model.hull_radius);
   RequirePositive("VehicleModel.foot_depth", model.foot_depth);
-  Require(model.rotor_thrust_min >= 0.0, "VehicleModel.rotor_thrust_min", model.rotor_thrust_min,
-          ">= 0 N");
-  Require(model.MaxThrust() > model.HoverThrust() && std::isfinite(model.MaxThrust()),
-          "VehicleModel.MaxThrust()", model.MaxThrust(), "more than the weight");
+  const double skew =
+      (model.R_BI.transpose() * model.R_BI - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  Require(skew < 1e-6, "VehicleModel.R_BI: off a rotation by", skew, "< 1e-6");
+  const double thrust_max = estimation::AllocationOf(model).thrust_max;
+  Require(thrust_max > model.HoverThrust(),
+          "VehicleModel.actuators: greatest thrust without a moment", thrust_max,
+          "more than the weight");
 }
 
 std::unique_ptr<Controller> MakeController(std::string_view name,

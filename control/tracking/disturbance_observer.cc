@@ -45,12 +45,18 @@ void Shorten(double longest, Eigen::Vector3d* v) {
   if (length > longest) *v *= longest / length;
 }
 
-double LongestArm(const estimation::VehicleModel& model) {
-  double longest = 0.0;
-  for (const estimation::Rotor& rotor : model.rotors) {
-    longest = std::max(longest, rotor.p_BR.head<2>().norm());
+// All thrust at the longest arm, or the greatest of moments that are made alone [N m].
+double GreatestMoment(const estimation::VehicleModel& model) {
+  double thrust = 0.0, arm = 0.0, alone = 0.0;
+  for (const estimation::Actuator& actuator : model.actuators) {
+    if (actuator.thrust > 0.0) {
+      thrust += actuator.max;
+      arm = std::max(arm, actuator.p_BR.head<2>().norm());
+    } else {
+      alone = std::max(alone, actuator.moment_B.norm() * actuator.max);
+    }
   }
-  return longest;
+  return std::max(thrust * arm, alone);
 }
 
 bool Finite(const estimation::VehicleState& s) {
@@ -74,11 +80,10 @@ DisturbanceObserver::DisturbanceObserver(const estimation::VehicleModel& model,
       options_(options),
       mixer_(model),
       force_max_(options.force_max * model.HoverThrust()),
-      moment_max_(options.moment_max * model.MaxThrust() * LongestArm(model)) {
+      moment_max_(options.moment_max * GreatestMoment(model)) {
   Validate(model_);
   Validate(options_);
-  thrusts_.setConstant(0.25 * model.HoverThrust());
-  commanded_ = thrusts_;
+  thrusts_ = commanded_ = mixer_.Level(model.HoverThrust());
 }
 
 const Disturbance& DisturbanceObserver::Update(const estimation::VehicleState& state,
@@ -105,12 +110,12 @@ const Disturbance& DisturbanceObserver::Update(const estimation::VehicleState& s
   return disturbance_;
 }
 
-void DisturbanceObserver::Command(const Eigen::Vector4d& thrusts) noexcept {
+void DisturbanceObserver::Command(const estimation::Commands& thrusts) noexcept {
   if (thrusts.allFinite()) commanded_ = thrusts;
 }
 
 void DisturbanceObserver::Hover(const estimation::VehicleState& state,
-                                const Eigen::Vector4d& thrusts) noexcept {
+                                const estimation::Commands& thrusts) noexcept {
   Command(thrusts);
   thrusts_ = commanded_;
   estimation::VehicleState hover = state;
@@ -133,8 +138,8 @@ void DisturbanceObserver::Predict(double dt) noexcept {
   v_WB_ += dt * (force_W / model_.mass_kg - estimation::kGravity * Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d& w = last_.w_WB_B;
   const Eigen::Vector3d moment_B =
-      wrench.moment_B - w.cross(model_.inertia.cwiseProduct(w)) + disturbance_.moment_B;
-  w_WB_B_ += dt * moment_B.cwiseQuotient(model_.inertia);
+      wrench.moment_B - model_.GyroscopicMoment(w) + disturbance_.moment_B;
+  w_WB_B_ += dt * model_.AccelerationUnder(moment_B);
   thrusts_ += (1.0 - std::exp(-dt / model_.rotor_lag_s)) * (commanded_ - thrusts_);
 }
 
@@ -164,7 +169,7 @@ void DisturbanceObserver::Correct(const estimation::VehicleState& state, double 
   const double z_w = std::exp(-options_.moment_bandwidth * dt);
   const Eigen::Vector3d e_w = state.w_WB_B - w_WB_B_;
   w_WB_B_ += (1.0 - z_w * z_w) * e_w;
-  disturbance_.moment_B += (1.0 - z_w) * (1.0 - z_w) / dt * model_.inertia.cwiseProduct(e_w);
+  disturbance_.moment_B += (1.0 - z_w) * (1.0 - z_w) / dt * model_.MomentFor(e_w);
   Shorten(moment_max_, &disturbance_.moment_B);
 }
 

@@ -14,7 +14,7 @@ struct DisturbanceObserverOptions {
   double steady_time = 2.0;        ///< the steady force is the force's mean over about this [s]
   double force_max = 1.0;          ///< of the estimated force, as a share of the weight [-]
   double moment_max = 0.1;         ///< of the estimated moment, as a share of the greatest thrust
-                                   ///< times the longest arm [-]
+                                   ///< times the longest arm, or of the moments made alone [-]
 };
 
 /// Throws std::invalid_argument naming the first option out of its range.
@@ -39,12 +39,12 @@ class DisturbanceObserver {
 
   /// The thrusts [N] that the rotors are told from the last Update on, after the mixer: what the
   /// vehicle cannot give must not be taken for a disturbance.
-  void Command(const Eigen::Vector4d& thrusts) noexcept;
+  void Command(const estimation::Commands& thrusts) noexcept;
 
   /// As after a long hover that ends now, at state.t: force and factor that keep the vehicle at the
   /// state's velocity and attitude with these thrusts [N] are learned. Before the first Update. Does not
   /// allocate.
-  void Hover(const estimation::VehicleState& state, const Eigen::Vector4d& thrusts) noexcept;
+  void Hover(const estimation::VehicleState& state, const estimation::Commands& thrusts) noexcept;
 
   const Disturbance& disturbance() const { return disturbance_; }
   /// The force without its quick changes [N]: what plans can reckon with.
@@ -62,8 +62,8 @@ class DisturbanceObserver {
   double moment_max_;  ///< [N m]
   bool started_ = false;
   estimation::VehicleState last_;
-  Eigen::Vector4d thrusts_;  ///< behind the lag [N]
-  Eigen::Vector4d commanded_;
+  estimation::Commands thrusts_;  ///< behind the lag [N]
+  estimation::Commands commanded_;
   Eigen::Vector3d v_WB_ = Eigen::Vector3d::Zero();    ///< as the model has it
   Eigen::Vector3d w_WB_B_ = Eigen::Vector3d::Zero();  ///< alike
   Disturbance disturbance_;

@@ -36,7 +36,7 @@ double NearerHeading(double yaw, const Eigen::Matrix3d& R_WB) {
 
 GeometricController::GeometricController(const estimation::VehicleModel& model,
                                          const ControllerOptions& options)
-    : model_(model), options_(options) {
+    : model_(model), options_(options), thrust_max_(estimation::AllocationOf(model).thrust_max) {
   Validate(model_);
   Validate(options_);
 }
@@ -50,7 +50,7 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
       R_WB * model_.rotor_drag.asDiagonal() * R_WB.transpose() * reference.v_WB;
   const LimitedForce force =
       LimitForce(PositionLoop(state, reference, model_, options_) + drag_W - disturbance.force_W,
-                 model_, options_, disturbance.thrust_gain, tilt_most);
+                 model_, options_, thrust_max_, disturbance.thrust_gain, tilt_most);
 
   // Flatness at the force that is really asked for, so that attitude and rate belong together.
   planning::FlatState flat = reference;
@@ -77,9 +77,8 @@ ControlOutput GeometricController::Update(const estimation::VehicleState& state,
   const Eigen::Vector3d angular_acceleration =
       -frequency.cwiseProduct(frequency).cwiseProduct(e_R) -
       2.0 * damping.cwiseProduct(frequency).cwiseProduct(e_w) - state.w_WB_B.cross(w_desired_B);
-  output.wrench.moment_B = model_.inertia.cwiseProduct(angular_acceleration) +
-                           state.w_WB_B.cross(model_.inertia.cwiseProduct(state.w_WB_B)) -
-                           disturbance.moment_B;
+  output.wrench.moment_B = model_.MomentFor(angular_acceleration) +
+                           model_.GyroscopicMoment(state.w_WB_B) - disturbance.moment_B;
   return output;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mixer: the paper's eq. 8 for any four rotors. The wrench is linear in the thrusts; the 4x4 matrix
+// Mixer: the paper's eq. 8 for any actuators. The wrench is linear in the commands; the matrix
 // is inverted once. Saturation by priority: with the contribution r of the roll and pitch moment, a
-// collective thrust T is possible if low <= s r_i + c_i T <= high for every rotor i (c_i > 0: share
-// of rotor i in pure thrust). The greatest scale s <= 1 that leaves such a T, none above what is wanted or what
+// collective thrust T is possible if low_i <= s r_i + c_i T <= high_i for every actuator i (c_i: its share
+// in pure thrust, 0 where it makes a moment alone, which bounds s by itself). The greatest scale s <= 1 that leaves such a T, none above what is wanted or what
 // the thrust may be raised to, follows in closed form from all rotors and pairs of them; T is clamped to its
 // interval; yaw takes what is left.
 
@@ -10,80 +10,76 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
-
-#include <Eigen/LU>
+#include <limits>
 
 namespace touchdown::control {
 
-Mixer::Mixer(const estimation::VehicleModel& model)
-    : min_(model.rotor_thrust_min), max_(model.rotor_thrust_max) {
-  if (!(std::isfinite(min_) && std::isfinite(max_) && min_ >= 0.0 && min_ < max_)) {
-    throw std::invalid_argument("VehicleModel.rotor_thrust_min, _max = " + std::to_string(min_) +
-                                ", " + std::to_string(max_) + ", allowed: 0 <= min < max");
+Mixer::Mixer(const estimation::VehicleModel& model) : allocation_(estimation::AllocationOf(model)) {
+  const auto count = static_cast<Eigen::Index>(model.actuators.size());
+  min_.resize(count);
+  max_.resize(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    min_(i) = model.actuators[static_cast<std::size_t>(i)].min;
+    max_(i) = model.actuators[static_cast<std::size_t>(i)].max;
   }
-  for (int i = 0; i < 4; ++i) {
-    const estimation::Rotor& rotor = model.rotors[static_cast<std::size_t>(i)];
-    wrench_from_thrusts_.col(i) << 1.0, rotor.p_BR.y(), -rotor.p_BR.x(),
-        rotor.spin * model.torque_per_thrust;
-  }
-  const Eigen::FullPivLU<Eigen::Matrix4d> lu(wrench_from_thrusts_);
-  if (!wrench_from_thrusts_.allFinite() || !lu.isInvertible()) {
-    throw std::invalid_argument(
-        "VehicleModel.rotors: positions, spins and torque_per_thrust do not span thrust and three "
-        "moments");
-  }
-  thrusts_from_wrench_ = lu.inverse();
-  const double least_share = thrusts_from_wrench_.col(0).minCoeff();
-  if (least_share <= 0.0) {
-    throw std::invalid_argument("VehicleModel.rotors: least share of a rotor in pure thrust = " +
-                                std::to_string(least_share) +
-                                ", allowed: > 0 (centre of mass between the rotors)");
-  }
-  const double lowest = min_ / least_share;
+  const double lowest = allocation_.thrust_min;
   raised_thrust_ = lowest + kRaisedThrust * std::max(0.0, model.HoverThrust() - lowest);
 }
 
 MixerOutput Mixer::Mix(const Wrench& wrench) const noexcept {
   MixerOutput output;
-  Eigen::Vector4d demand;
-  demand << wrench.thrust, wrench.moment_B;
-  if (!demand.allFinite()) {
-    output.thrusts.setConstant(min_);
+  const Eigen::Index count = min_.size();
+  if (!std::isfinite(wrench.thrust) || !wrench.moment_B.allFinite()) {
+    output.thrusts = Commands::Zero(count).cwiseMax(min_).cwiseMin(max_);
     output.saturated = true;
     return output;
   }
-  output.thrusts = thrusts_from_wrench_ * demand;
-  if (output.thrusts.minCoeff() >= min_ && output.thrusts.maxCoeff() <= max_) return output;
+  const auto& per_wrench = allocation_.commands_of_wrench;
+  const Commands share = per_wrench.col(0);
+  const Commands yaw = per_wrench.col(3) * wrench.moment_B.z();
+  Commands thrusts =
+      per_wrench.col(1) * wrench.moment_B.x() + per_wrench.col(2) * wrench.moment_B.y();
+  output.thrusts = Level(wrench.thrust);
+  for (int axis = 0; axis < 3; ++axis) {
+    output.thrusts += per_wrench.col(axis + 1) * wrench.moment_B(axis);
+  }
+  if ((output.thrusts.array() >= min_.array()).all() &&
+      (output.thrusts.array() <= max_.array()).all()) {
+    return output;
+  }
   output.saturated = true;
 
-  const Eigen::Vector4d share = thrusts_from_wrench_.col(0);
-  const Eigen::Vector4d yaw = thrusts_from_wrench_.col(3) * demand(3);
-  Eigen::Vector4d thrusts = thrusts_from_wrench_.middleCols<2>(1) * demand.segment<2>(1);
-
-  const double highest_thrust = std::max(demand(0), raised_thrust_);
+  const double highest_thrust = std::max(wrench.thrust, raised_thrust_);
   double scale = 1.0;
-  for (int i = 0; i < 4; ++i) {
-    const double room = std::max(0.0, highest_thrust * share(i) - min_);
-    if (-thrusts(i) * scale > room) scale = room / -thrusts(i);
-    for (int j = 0; j < 4; ++j) {
-      const double needed = thrusts(j) / share(j) - thrusts(i) / share(i);
-      const double available = max_ / share(j) - min_ / share(i);
-      if (needed > 0.0 && needed * scale > available) scale = std::max(0.0, available / needed);
+  const auto shorten = [&scale](double needed, double available) {
+    if (needed > 0.0 && needed * scale > available) scale = std::max(0.0, available / needed);
+  };
+  for (Eigen::Index i = 0; i < count; ++i) {
+    shorten(-thrusts(i), highest_thrust * share(i) - min_(i));
+    if (share(i) == 0.0) {
+      shorten(thrusts(i), max_(i));
+      continue;
+    }
+    for (Eigen::Index j = 0; j < count; ++j) {
+      if (share(j) == 0.0) continue;
+      shorten(thrusts(j) / share(j) - thrusts(i) / share(i),
+              max_(j) / share(j) - min_(i) / share(i));
     }
   }
   thrusts *= scale;
 
-  const Eigen::Vector4d lowest = (Eigen::Vector4d::Constant(min_) - thrusts).cwiseQuotient(share);
-  const Eigen::Vector4d highest = (Eigen::Vector4d::Constant(max_) - thrusts).cwiseQuotient(share);
-  const double low = lowest.maxCoeff();
-  const double high = std::max(low, highest.minCoeff());  // equal up to rounding if scale < 1
-  thrusts += share * std::clamp(demand(0), low, high);
+  double low = -std::numeric_limits<double>::infinity(), highest = -low;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (share(i) == 0.0) continue;
+    low = std::max(low, (min_(i) - thrusts(i)) / share(i));
+    highest = std::min(highest, (max_(i) - thrusts(i)) / share(i));
+  }
+  const double high = std::max(low, highest);  // equal up to rounding if scale < 1
+  thrusts += share * std::clamp(wrench.thrust, low, high);
 
   double yaw_scale = 1.0;
-  for (int i = 0; i < 4; ++i) {
-    const double room = yaw(i) > 0.0 ? max_ - thrusts(i) : thrusts(i) - min_;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double room = yaw(i) > 0.0 ? max_(i) - thrusts(i) : thrusts(i) - min_(i);
     if (std::abs(yaw(i)) * yaw_scale > room) yaw_scale = std::max(0.0, room / std::abs(yaw(i)));
   }
   thrusts += yaw_scale * yaw;
@@ -91,9 +87,16 @@ MixerOutput Mixer::Mix(const Wrench& wrench) const noexcept {
   return output;
 }
 
-Wrench Mixer::Apply(const Eigen::Vector4d& thrusts) const noexcept {
-  const Eigen::Vector4d w = wrench_from_thrusts_ * thrusts;
+Wrench Mixer::Apply(const Commands& thrusts) const noexcept {
+  Eigen::Vector4d w = allocation_.wrench_of_commands.col(0) * thrusts(0);
+  for (Eigen::Index i = 1; i < thrusts.size(); ++i) {
+    w += allocation_.wrench_of_commands.col(i) * thrusts(i);
+  }
   return {w(0), w.tail<3>()};
+}
+
+estimation::Commands Mixer::Level(double thrust) const noexcept {
+  return allocation_.Shares() * thrust;
 }
 
 }  // namespace touchdown::control

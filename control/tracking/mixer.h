@@ -8,35 +8,41 @@
 
 namespace touchdown::control {
 
-/// Four rotor thrusts, in the order of VehicleModel::rotors.
+/// What each actuator is told, in the order of VehicleModel::actuators.
 struct MixerOutput {
-  Eigen::Vector4d thrusts = Eigen::Vector4d::Zero();  ///< within the rotor's limits [N]
-  bool saturated = false;                             ///< the wrench could not be had in full
+  estimation::Commands thrusts;  ///< within the actuators' limits [N], of moments [N m]
+  bool saturated = false;        ///< the wrench could not be had in full
 };
 
-/// Wrench to rotor thrusts for any four-rotor geometry (eq. 8 generalised). Where the limits forbid
+/// Wrench to commands for any four to eight actuators (eq. 8 generalised). Where the limits forbid
 /// the whole wrench, roll and pitch moment come first, then collective thrust, then yaw moment. For them the
-/// thrust is raised to kRaisedThrust of the way from the rotors' least to hover at most: a vehicle that every correction of its attitude lifts leaves
+/// thrust is raised to kRaisedThrust of the way from the least to hover at most: a vehicle that every correction of its attitude lifts leaves
 /// its way.
 class Mixer {
  public:
   static constexpr double kRaisedThrust = 0.5;  ///< [-]
 
-  /// Throws std::invalid_argument if the rotors cannot produce every wrench, or hover without
-  /// moment would need a rotor to pull down.
+  /// Throws std::invalid_argument as estimation::AllocationOf does.
   explicit Mixer(const estimation::VehicleModel& model);
 
-  /// Does not allocate. A wrench that is not finite gives every rotor the least thrust.
+  /// Does not allocate. A wrench that is not finite gives every rotor the least thrust, and no moment else.
   MixerOutput Mix(const Wrench& wrench) const noexcept;
 
-  /// The wrench that the thrusts [N] produce.
-  Wrench Apply(const Eigen::Vector4d& thrusts) const noexcept;
+  /// The wrench that the commands produce.
+  Wrench Apply(const estimation::Commands& thrusts) const noexcept;
+
+  /// Commands that make a thrust [N] without a moment, whatever the limits.
+  estimation::Commands Level(double thrust) const noexcept;
+
+  /// Of the commands; their number says how many there are.
+  const estimation::Commands& min() const { return min_; }
+  const estimation::Commands& max() const { return max_; }
 
  private:
-  Eigen::Matrix4d wrench_from_thrusts_;  ///< rows: thrust, moment x, y, z
-  Eigen::Matrix4d thrusts_from_wrench_;
-  double min_;
-  double max_;
+  using Commands = estimation::Commands;
+
+  estimation::Allocation allocation_;
+  Commands min_, max_;
   double raised_thrust_;  ///< up to which moments may raise the thrust [N]
 };
 

@@ -16,7 +16,7 @@ namespace touchdown::control {
 
 PaperController::PaperController(const estimation::VehicleModel& model,
                                  const ControllerOptions& options)
-    : model_(model), options_(options) {
+    : model_(model), options_(options), thrust_max_(estimation::AllocationOf(model).thrust_max) {
   Validate(model_);
   Validate(options_);
 }
@@ -27,7 +27,7 @@ ControlOutput PaperController::Update(const estimation::VehicleState& state,
                                       double tilt_most) const noexcept {
   const Eigen::Matrix3d R_WB = state.q_WB.toRotationMatrix();
   const LimitedForce force = LimitForce(PositionLoop(state, reference, model_, options_), model_,
-                                        options_, 1.0, tilt_most);
+                                        options_, thrust_max_, 1.0, tilt_most);
 
   ControlOutput output;
   output.R_WB_desired = planning::AttitudeFromThrust(force.f_W, reference.yaw);
@@ -40,9 +40,9 @@ ControlOutput PaperController::Update(const estimation::VehicleState& state,
   const Eigen::Vector3d damping(options_.attitude_damping, options_.attitude_damping,
                                 options_.yaw_damping);
   const Eigen::Vector3d e_R = AttitudeError(R_WB, output.R_WB_desired);
-  output.wrench.moment_B = -model_.inertia.cwiseProduct(
-      frequency.cwiseProduct(frequency).cwiseProduct(e_R) +
-      2.0 * damping.cwiseProduct(frequency).cwiseProduct(state.w_WB_B));
+  output.wrench.moment_B =
+      -model_.MomentFor(frequency.cwiseProduct(frequency).cwiseProduct(e_R) +
+                        2.0 * damping.cwiseProduct(frequency).cwiseProduct(state.w_WB_B));
   return output;
 }
 

@@ -17,13 +17,15 @@ constexpr double kLead = 2.0;
 
 RotorLead::RotorLead(const estimation::VehicleModel& model)
     : lag_(model.rotor_lag_s), mixer_(model) {
-  given_.setConstant(0.25 * model.HoverThrust());
+  given_ = mixer_.Level(model.HoverThrust());
   commanded_ = given_;
 }
 
-void RotorLead::Hover(const Eigen::Vector4d& thrusts) noexcept { given_ = commanded_ = thrusts; }
+void RotorLead::Hover(const estimation::Commands& thrusts) noexcept {
+  given_ = commanded_ = thrusts;
+}
 
-Eigen::Vector4d RotorLead::Command(const Eigen::Vector4d& thrusts, double t) noexcept {
+estimation::Commands RotorLead::Command(const estimation::Commands& thrusts, double t) noexcept {
   if (started_ && lag_ > 0.0) given_ += (1.0 - std::exp(-(t - t_) / lag_)) * (commanded_ - given_);
   started_ = true;
   t_ = t;

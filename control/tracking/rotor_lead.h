@@ -17,19 +17,19 @@ class RotorLead {
   explicit RotorLead(const estimation::VehicleModel& model);
 
   /// The rotors have been told `thrusts` [N] for long. Before the first Command.
-  void Hover(const Eigen::Vector4d& thrusts) noexcept;
+  void Hover(const estimation::Commands& thrusts) noexcept;
 
   /// The command with which the rotors are told from time t [s] on to give `thrusts` [N]: within their
   /// limits (Mixer). Once per control step, in time order. Does not allocate.
-  Eigen::Vector4d Command(const Eigen::Vector4d& thrusts, double t) noexcept;
+  estimation::Commands Command(const estimation::Commands& thrusts, double t) noexcept;
 
  private:
   double lag_;  ///< of the model [s]
   Mixer mixer_;
   double t_ = 0.0;
   bool started_ = false;
-  Eigen::Vector4d given_;  ///< by the rotors, as the model has it [N]
-  Eigen::Vector4d commanded_;
+  estimation::Commands given_;  ///< by the rotors, as the model has it [N]
+  estimation::Commands commanded_;
 };
 
 }  // namespace touchdown::control

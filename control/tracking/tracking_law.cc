@@ -11,7 +11,8 @@
 namespace touchdown::control {
 
 LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleModel& model,
-                        const ControllerOptions& options, double thrust_gain, double tilt_most) {
+                        const ControllerOptions& options, double thrust_max, double thrust_gain,
+                        double tilt_most) {
   LimitedForce limited;
   limited.f_W = f_W;
   // Thrust cannot pull down: a hard demand to fall becomes the least upward force, so that the
@@ -28,7 +29,7 @@ LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleMod
     limited.tilt_limited = true;
   }
   const double length = limited.f_W.norm();
-  const double length_max = options.thrust_fraction_max * thrust_gain * model.MaxThrust();
+  const double length_max = options.thrust_fraction_max * thrust_gain * thrust_max;
   if (length > length_max) {
     limited.f_W *= length_max / length;
     limited.thrust_limited = true;

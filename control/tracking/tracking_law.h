@@ -16,10 +16,11 @@ struct LimitedForce {
 
 /// The desired thrust vector brought within the options' limits: the vertical part never below its
 /// least, the tilt cut by shortening the horizontal part (its direction kept), the length cut last
-/// (the whole direction kept). `thrust_gain` is what the rotors give over what the model says,
-/// `tilt_most` a limit besides the options' [rad]. Does not allocate.
+/// (the whole direction kept). `thrust_max` is the model's greatest thrust [N], `thrust_gain` what the rotors give over what
+/// the model says, `tilt_most` a limit besides the options' [rad]. Does not allocate.
 LimitedForce LimitForce(const Eigen::Vector3d& f_W, const estimation::VehicleModel& model,
-                        const ControllerOptions& options, double thrust_gain, double tilt_most);
+                        const ControllerOptions& options, double thrust_max, double thrust_gain,
+                        double tilt_most);
 
 /// Force of the position loop [N], shared by both laws: m (a_ref + g - kp e_p - kv e_v), eq. 19.
 Eigen::Vector3d PositionLoop(const estimation::VehicleState& state,

@@ -119,7 +119,7 @@ class Trial {
         samples_(samples) {
     result_.seed = seed;
     perception_.Hover(world_, &onboard_);
-    onboard_.Begin(world_.time(), Eigen::Vector4d(world_.rotor_commands().data()));
+    onboard_.Begin(world_.time(), world_.rotor_commands());
     if (samples_ != nullptr) onboard_.LogPadTo(&samples_->pad.arrivals);
     if (record_ != nullptr) {
       onboard_.KeepBefore(true);
@@ -145,15 +145,13 @@ class Trial {
     const control::Setpoint& setpoint = onboard_.Step(world_.time());
     NoteMode(vehicle.t);
     NotePlan(vehicle.t);
-    std::array<double, 4> command;
-    for (int i = 0; i < 4; ++i) command[i] = setpoint.thrusts[i];
-    solvers::AddThreadCpu(&result_.timing.physics_cpu_s, [&] { StepPhysics(command); });
+    solvers::AddThreadCpu(&result_.timing.physics_cpu_s, [&] { StepPhysics(setpoint.thrusts); });
     solvers::AddThreadCpu(&result_.timing.judging_cpu_s,
                           [&] { Judge(vehicle, pad, setpoint.saturated); });
   }
 
   // std::runtime_error is the physics' own way to fail; it leaves the state from before the step.
-  void StepPhysics(const std::array<double, 4>& command) {
+  void StepPhysics(const estimation::Commands& command) {
     try {
       world_.Step(command, air_.Step(world_));
     } catch (const std::runtime_error& error) {

@@ -25,8 +25,9 @@ control::DescentStyle StyleOf(const Scenario& scenario) {
                                 : control::DescentStyle::kVertical;
 }
 
-control::ControllerOptions TrackingOptions(const Scenario& scenario) {
-  control::ControllerOptions options;
+control::ControllerOptions TrackingOptions(const Scenario& scenario,
+                                           const estimation::VehicleModel& model) {
+  control::ControllerOptions options = control::OptionsFor(model);
   options.tilt_max = EnvelopeOf(scenario).TrackingTilt();
   return options;
 }
@@ -103,7 +104,7 @@ control::Onboard MakeOnboard(const Scenario& scenario, const estimation::Vehicle
   control::OnboardParts parts;
   parts.planner = MakePlanner(scenario, model, registries);
   parts.planner_lands = planner.lands;
-  const ControllerSetup setup{{scenario, law.parameters}, model, TrackingOptions(scenario)};
+  const ControllerSetup setup{{scenario, law.parameters}, model, TrackingOptions(scenario, model)};
   parts.controller = MadeBy(law, setup, "controller");
   parts.law_compensates = law.compensates;
   parts.predictor = PredictorOf(scenario, registries, std::move(truth));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -27,7 +26,7 @@ struct RecordSample {
   bool pad_known = false;
   estimation::PadState pad_estimate;  ///< meaningful if pad_known
   planning::FlatState reference;
-  std::array<double, 4> rotor_thrusts{};          ///< [N]
+  estimation::Commands rotor_thrusts;             ///< of the actuators after their lag [N]
   Eigen::Vector3d air = Eigen::Vector3d::Zero();  ///< true velocity at the vehicle, in W [m/s]
   control::Disturbance disturbance;               ///< as the pilot estimates it
   const char* mode = "";                          ///< of the mission

@@ -19,7 +19,7 @@ constexpr double kClockSlack = 1e-6;       // [s]
 
 }  // namespace
 
-void Metrics::Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt) {
+void Metrics::Step(const estimation::Commands& rotor_thrusts, bool saturated, double dt) {
   for (const double thrust : rotor_thrusts) effort_ += thrust * thrust * dt;
   ++steps_;
   if (saturated) ++saturated_;

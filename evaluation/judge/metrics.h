@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <deque>
 #include <optional>
 
 #include <Eigen/Core>
 
 #include "evaluation/judge/trial_result.h"
+#include "touchdown/estimation/base/vehicle_model.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
 
@@ -18,7 +18,7 @@ namespace touchdown::evaluation {
 class Metrics {
  public:
   /// Every physics step. @param rotor_thrusts [N]. @param dt length of the step [s].
-  void Step(const std::array<double, 4>& rotor_thrusts, bool saturated, double dt);
+  void Step(const estimation::Commands& rotor_thrusts, bool saturated, double dt);
 
   /// Every 20 ms.
   void Sample(double t, const estimation::VehicleState& vehicle, const estimation::PadState& pad);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
@@ -23,7 +24,8 @@ CREATE TABLE pad(t REAL, source TEXT, px REAL, py REAL, pz REAL, vx REAL, vy REA
   yaw REAL, yaw_rate REAL, cov_xx REAL, cov_xy REAL, cov_yy REAL);
 CREATE TABLE reference(t REAL, px REAL, py REAL, pz REAL, vx REAL, vy REAL, vz REAL,
   ax REAL, ay REAL, az REAL, yaw REAL, yaw_rate REAL);
-CREATE TABLE rotor(t REAL, thrust0 REAL, thrust1 REAL, thrust2 REAL, thrust3 REAL);
+CREATE TABLE rotor(t REAL, thrust0 REAL, thrust1 REAL, thrust2 REAL, thrust3 REAL, thrust4 REAL,
+  thrust5 REAL, thrust6 REAL, thrust7 REAL);
 CREATE TABLE air(t REAL, vx REAL, vy REAL, vz REAL);
 CREATE TABLE disturbance(t REAL, fx REAL, fy REAL, fz REAL, mx REAL, my REAL, mz REAL,
                          thrust_gain REAL);
@@ -117,7 +119,7 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
   SqliteStatement pad = db.Prepare("INSERT INTO pad VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement reference =
       db.Prepare("INSERT INTO reference VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  SqliteStatement rotor = db.Prepare("INSERT INTO rotor VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement rotor = db.Prepare("INSERT INTO rotor VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   SqliteStatement air = db.Prepare("INSERT INTO air VALUES(?, ?, ?, ?)");
   SqliteStatement disturbance =
       db.Prepare("INSERT INTO disturbance VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
@@ -130,7 +132,11 @@ void WriteSamples(SqliteDb& db, const std::vector<RecordSample>& samples) {
     const planning::FlatState& r = s.reference;
     reference.Run(s.t, r.p_WB.x(), r.p_WB.y(), r.p_WB.z(), r.v_WB.x(), r.v_WB.y(), r.v_WB.z(),
                   r.a_WB.x(), r.a_WB.y(), r.a_WB.z(), r.yaw, r.yaw_rate);
-    rotor.Run(s.t, s.rotor_thrusts[0], s.rotor_thrusts[1], s.rotor_thrusts[2], s.rotor_thrusts[3]);
+    Eigen::Matrix<double, estimation::kMostActuators, 1> thrusts;
+    thrusts.setConstant(std::numeric_limits<double>::quiet_NaN());  // no such rotor
+    thrusts.head(s.rotor_thrusts.size()) = s.rotor_thrusts;
+    rotor.Run(s.t, thrusts[0], thrusts[1], thrusts[2], thrusts[3], thrusts[4], thrusts[5],
+              thrusts[6], thrusts[7]);
     air.Run(s.t, s.air.x(), s.air.y(), s.air.z());
     const Eigen::Vector3d& f = s.disturbance.force_W;
     const Eigen::Vector3d& m = s.disturbance.moment_B;
@@ -273,8 +279,8 @@ void WriteSurface(SqliteDb& db, int obstacle, const sim::TriangleMesh& surface) 
     triangles.insert(triangles.end(), of.begin(), of.end());
   }
   const auto bytes = [](const auto& values) {
-    return SqlBlob{{reinterpret_cast<const char*>(values.data()),
-                    values.size() * sizeof(values.front())}};
+    return SqlBlob{
+        {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values.front())}};
   };
   db.Prepare("INSERT INTO surface VALUES(?, ?, ?)").Run(obstacle, bytes(corners), bytes(triangles));
 }

@@ -198,6 +198,25 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
   Reader(source, file, false, keys).ReadEntry(name, value, where);
 }
 
+// What a vehicle's own file beside it says of its airframe, where the scenario does not: FILE.airframe.yaml beside
+// FILE.xml, with the keys of `airframe`.
+void ReadAirframe(const Keys& keys, ScenarioSource* source) {
+  if (source->scenario.vehicle == "default") return;
+  const std::string path =
+      std::filesystem::path(source->scenario.vehicle).replace_extension(".airframe.yaml").string();
+  if (!std::filesystem::exists(path)) return;
+  const YAML::Node root = OneDocument(path, [&path] { return YAML::LoadAllFromFile(path); });
+  ScenarioSource beside;
+  beside.scenario = source->scenario;
+  Reader(&beside, path, true, keys).ReadMap(root, "airframe", Where{path, 0});
+  for (const auto& key : keys) {
+    const auto said = beside.where.find(key.name);
+    if (said == beside.where.end() || source->where.count(key.name) != 0) continue;
+    key.set(source->scenario, YAML::Load(key.get(beside.scenario)), said->second);
+    source->where.insert(*said);
+  }
+}
+
 // What the keys that were given ask of those that were not: some planners' plans do not lead to contact, one
 // that does ends when it is best, and a wind's direction that is given is meant, not one that is drawn.
 void SuitDefaults(const Registries& registries, ScenarioSource* source) {
@@ -233,6 +252,7 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
   const Keys keys = ScenarioKeys(registries);
   Reader(&source, file, true, keys).Read(root);
   for (const std::string& text : overrides) ApplyOverride(text, keys, &source);
+  ReadAirframe(keys, &source);
   SuitDefaults(registries, &source);
   CheckScenario(source, registries);
   return source.scenario;
@@ -284,20 +304,20 @@ std::string DumpScenario(const Scenario& scenario) {
   }
   text += DumpOpenKeys(scenario);
   std::string lists;
-  ForEachObstacleList(scenario, [&lists](const std::string& name, const auto& elements,
-                                         const auto& keys) {
-    if (elements.empty()) return;
-    lists += "  " + name.substr(std::string(kObstacles).size() + 1) + ":\n";
-    const typename std::decay_t<decltype(elements)>::value_type usual;
-    for (const auto& element : elements) {
-      std::string line;
-      for (const auto& key : keys) {
-        if (key.optional && key.get(element) == key.get(usual)) continue;
-        line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
-      }
-      lists += "    - {" + line + "}\n";
-    }
-  });
+  ForEachObstacleList(scenario,
+                      [&lists](const std::string& name, const auto& elements, const auto& keys) {
+                        if (elements.empty()) return;
+                        lists += "  " + name.substr(std::string(kObstacles).size() + 1) + ":\n";
+                        const typename std::decay_t<decltype(elements)>::value_type usual;
+                        for (const auto& element : elements) {
+                          std::string line;
+                          for (const auto& key : keys) {
+                            if (key.optional && key.get(element) == key.get(usual)) continue;
+                            line += (line.empty() ? "" : ", ") + key.name + ": " + key.get(element);
+                          }
+                          lists += "    - {" + line + "}\n";
+                        }
+                      });
   return lists.empty() ? text : text + kObstacles + ":\n" + lists;
 }
 

@@ -64,6 +64,42 @@ void AddPadKeys(KeyList& keys) {
 
 namespace {
 
+// `file`, `auto` or a list of 1 and -1.
+SchemaKey<Scenario> RotorSenses() {
+  const std::string name = "airframe.rotor_senses";
+  const std::string allowed = "file, auto or a list of 1 and -1";
+  return {
+      name,
+      "choice or list of numbers",
+      "",
+      allowed,
+      "imported vehicles: sign of each rotor's reaction torque about z, in the file's order; auto: "
+      "neighbours turn against each other where the file's senses cannot steer",
+      [=](Scenario& s, const YAML::Node& n, const Where& w) {
+        s.airframe.rotor_senses.clear();
+        s.airframe.alternate_senses = false;
+        if (n.IsScalar() && (n.Scalar() == "file" || n.Scalar() == "auto")) {
+          s.airframe.alternate_senses = n.Scalar() == "auto";
+          return;
+        }
+        if (!n.IsSequence() || n.size() == 0) RefuseValue(w, name, allowed, n);
+        for (const YAML::Node& element : n) {
+          const int sense = ReadWhole(element, w, name, -1, 1);
+          if (sense == 0) RefuseValue(w, name, allowed, n);
+          s.airframe.rotor_senses.push_back(sense);
+        }
+      },
+      [](const Scenario& s) {
+        const std::vector<double>& senses = s.airframe.rotor_senses;
+        if (senses.empty()) return std::string(s.airframe.alternate_senses ? "auto" : "file");
+        std::string text;
+        for (const double sense : senses) {
+          text += (text.empty() ? "[" : ", ") + WriteNumber(sense);
+        }
+        return text + "]";
+      }};
+}
+
 // Of vehicles whose MJCF file is not in the form of sim/vehicle/vehicle_file.h.
 void AddAirframeKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("airframe.rotor_lag", In(0.005, 1, "s"),
@@ -86,6 +122,12 @@ void AddAirframeKeys(KeyList& keys) {
       "their soles below the "
       "centre of mass; zeros: 0.6 of the hull's radius, below the hull by 0.35 of that",
       TOUCHDOWN_AT(airframe.feet)));
+  keys.push_back(RotorSenses());
+  keys.push_back(Vector<3, Scenario>(
+      "airframe.moment_max", In(0, 1000, "N m"),
+      "imported vehicles: greatest moments about x, y and z of actuators that make a moment alone; "
+      "zeros: the file's",
+      TOUCHDOWN_AT(airframe.moment_max)));
 }
 
 }  // namespace

@@ -66,11 +66,23 @@ sim::PadGeometry PadGeometryOf(const Scenario& scenario) {
   return geometry;
 }
 
+sim::AirframeExtras AirframeOf(const Scenario& scenario) {
+  const Scenario::Airframe& frame = scenario.airframe;
+  sim::AirframeExtras extras;
+  extras.rotor_lag = frame.rotor_lag;
+  extras.rotor_drag = frame.rotor_drag;
+  extras.body_drag_area = frame.body_drag_area;
+  extras.hull = frame.hull;
+  extras.feet = frame.feet;
+  extras.rotor_senses = frame.rotor_senses;
+  extras.alternate_senses = frame.alternate_senses;
+  extras.moment_max = frame.moment_max;
+  return extras;
+}
+
 std::string VehicleMjcf(const Scenario& scenario) {
   if (scenario.vehicle == "default") return sim::DefaultVehicleMjcf();
-  const Scenario::Airframe& frame = scenario.airframe;
-  return sim::ImportVehicle(scenario.vehicle, {frame.rotor_lag, frame.rotor_drag,
-                                               frame.body_drag_area, frame.hull, frame.feet});
+  return sim::ImportVehicle(scenario.vehicle, AirframeOf(scenario));
 }
 
 OutsideFiles OutsideFilesOf(const Scenario& scenario) {

@@ -9,6 +9,7 @@
 #include "evaluation/scenario/world_obstacles.h"
 #include "sim/air/wind.h"
 #include "sim/pad/pad_geometry.h"
+#include "sim/vehicle/vehicle_import.h"
 #include "sim/world/world.h"
 #include "touchdown/evaluation/scenario/scenario.h"
 #include "touchdown/planning/replan/goal.h"
@@ -32,6 +33,9 @@ std::unique_ptr<estimation::PadPredictor> PredictorOf(const Scenario& scenario,
                                                       std::shared_ptr<const sim::PadCourse> truth);
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario);
+
+/// What the scenario says of a vehicle's file in the common form.
+sim::AirframeExtras AirframeOf(const Scenario& scenario);
 
 /// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
 std::string VehicleMjcf(const Scenario& scenario);

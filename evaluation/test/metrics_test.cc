@@ -18,7 +18,7 @@ TEST(Metrics, TheErrorIsAveragedOverTheLastFiveSecondsOnly) {
     vehicle.p_WB = t < 4.99 ? Eigen::Vector3d(100.0, 0.0, 0.0)
                             : Eigen::Vector3d(-0.2, i % 2 == 0 ? 0.1 : -0.1, 0.0);
     metrics.Sample(t, vehicle, pad);
-    metrics.Step({}, false, 0.02);
+    metrics.Step(estimation::Commands(), false, 0.02);
   }
   TrialResult result;
   result.touchdown = Touchdown{};
@@ -76,7 +76,7 @@ TEST(Metrics, TheOwnStatesErrorIsMeanSquareAndLargest) {
 
 TEST(Metrics, EffortAndSaturationAddUp) {
   Metrics metrics;
-  for (int i = 0; i < 100; ++i) metrics.Step({1.0, 2.0, 3.0, 4.0}, i < 25, 0.002);
+  for (int i = 0; i < 100; ++i) metrics.Step(Eigen::Vector4d(1.0, 2.0, 3.0, 4.0), i < 25, 0.002);
   TrialResult result;
   metrics.Fill(&result);
   EXPECT_NEAR(result.effort_n2s, 30.0 * 0.2, 1e-12);

@@ -217,7 +217,7 @@ const std::vector<Misuse>& Misuses() {
       {"thrusts that are no number", "thrust",
        [] {
          sim::World({.start = {.p_WB = {0.0, 0.0, 5.0}}})
-             .Step({kNan, 1.0, 1.0, 1.0}, Vector3d::Zero());
+             .Step(Eigen::Vector4d(kNan, 1.0, 1.0, 1.0), Vector3d::Zero());
        }},
       {"a pad that drives backwards through time", "speed",
        [] { sim::PadMotion({.speed = -1.0}); }},

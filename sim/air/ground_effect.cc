@@ -37,14 +37,15 @@ double GroundEffectRatio(double radius, double height, double thrust, double air
 
 GroundEffect GroundEffectOf(const estimation::VehicleModel& model,
                             const estimation::VehicleState& vehicle,
-                            const std::array<double, 4>& thrusts, const Box& deck,
-                            double airspeed) {
+                            const estimation::Commands& thrusts, const Box& deck, double airspeed) {
   GroundEffect effect;
-  for (std::size_t i = 0; i < thrusts.size(); ++i) {
-    const Eigen::Vector3d& p_BR = model.rotors[i].p_BR;
+  for (Eigen::Index i = 0; i < thrusts.size(); ++i) {
+    const estimation::Actuator& rotor = model.actuators[static_cast<std::size_t>(i)];
+    if (rotor.thrust == 0.0) continue;
+    const Eigen::Vector3d& p_BR = rotor.p_BR;
     const double height = HeightAbove(deck, vehicle.p_WB + vehicle.q_WB * p_BR);
-    const double ratio = GroundEffectRatio(model.rotor_radius, height, thrusts[i], airspeed);
-    const double more = (ratio - 1.0) * thrusts[i];
+    const double ratio = GroundEffectRatio(model.rotor_radius, height, thrusts(i), airspeed);
+    const double more = (ratio - 1.0) * thrusts(i);
     effect.thrust += more;
     effect.moment_B += more * p_BR.cross(Eigen::Vector3d::UnitZ());
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
 
 #include "sim/obstacles/obstacle.h"
@@ -31,6 +29,6 @@ struct GroundEffect {
 /// @param airspeed horizontal speed through the air [m/s].
 GroundEffect GroundEffectOf(const estimation::VehicleModel& model,
                             const estimation::VehicleState& vehicle,
-                            const std::array<double, 4>& thrusts, const Box& deck, double airspeed);
+                            const estimation::Commands& thrusts, const Box& deck, double airspeed);
 
 }  // namespace touchdown::sim

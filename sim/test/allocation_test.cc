@@ -41,7 +41,7 @@ TEST(Allocation, NoneInStepsAndMeasurements) {
   long contacts = 0;
   long sightings = 0;
   for (int i = 0; i < 1000; ++i) {
-    world.Step({0.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+    world.Step(Eigen::Vector4d(0.0, 0.0, 0.0, 0.0), {1.0, 0.0, 0.0});
     contacts += static_cast<long>(world.contacts().size());
     gps.Poll(world.time(), world.pad());
     own.Step(world.vehicle());

@@ -13,7 +13,7 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr std::array<double, 4> kThrusts = {3.0, 3.0, 3.0, 3.0};
+const estimation::Commands kThrusts = Eigen::Vector4d::Constant(3.0);
 
 estimation::VehicleState At(double x, double y, double z) {
   estimation::VehicleState vehicle;
@@ -57,7 +57,7 @@ TEST(GroundEffect, WorldFeelsItOnlyIfAsked) {
   const auto rise = [](const WorldConfig& c) {
     World world(c);
     const double hover = world.model().HoverThrust() / 4.0;
-    world.Step({hover, hover, hover, hover});
+    world.Step(Eigen::Vector4d(hover, hover, hover, hover));
     return std::pair(world.vehicle().v_WB.z() / world.timestep(), world.ground_effect_thrust());
   };
   EXPECT_NEAR(rise(config).first, 0.0, 1e-9);

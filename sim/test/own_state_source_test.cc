@@ -39,8 +39,9 @@ Errors Fly(const OwnStateSourceConfig& config, std::uint64_t seed) {
   for (int k = 0; k < steps; ++k) {
     const double push = 0.004 * hover * std::sin(0.012 * k);
     const double lift = 0.2 * hover * std::cos(0.02 * k);
-    world.Step({hover + lift + push, hover + lift, hover + lift - push, hover + lift},
-               {3.0, 1.0, 0.0});
+    world.Step(
+        Eigen::Vector4d(hover + lift + push, hover + lift, hover + lift - push, hover + lift),
+        {3.0, 1.0, 0.0});
     const estimation::VehicleState truth = world.vehicle();
     const estimation::VehicleState estimate = source.Step(truth);
     EXPECT_EQ(estimate.t, truth.t);
@@ -90,7 +91,7 @@ Nees MeanNees(const OwnStateSourceConfig& config, int runs) {
     const double hover = world.model().HoverThrust() / 4.0;
     for (int k = 0; k < 1000; ++k) {
       const double push = 0.004 * hover * std::sin(0.012 * k + run);
-      world.Step({hover + push, hover, hover - push, hover}, {3.0, 1.0, 0.0});
+      world.Step(Eigen::Vector4d(hover + push, hover, hover - push, hover), {3.0, 1.0, 0.0});
       source.Step(world.vehicle());
     }
     const estimation::VehicleState truth = world.vehicle();
@@ -157,7 +158,7 @@ TEST(OwnStateSource, OutliersAreGatedAndAnOutageIsSaid) {
   OwnStateSource source(config, 5, world.vehicle(), world.timestep());
   const double hover = world.model().HoverThrust() / 4.0;
   for (int k = 1; k <= 2000; ++k) {
-    world.Step({hover, hover, hover, hover});
+    world.Step(Eigen::Vector4d(hover, hover, hover, hover));
     source.Step(world.vehicle());
     const bool without = k > 800 && k < 1500;
     if (k % 490 != 0) continue;  // at 0.98, 1.96, 2.94 and 3.92 s
@@ -181,7 +182,7 @@ TEST(OwnStateSource, SameSeedSameBits) {
   OwnStateSource b({}, 7, world.vehicle(), world.timestep());
   OwnStateSource other({}, 8, world.vehicle(), world.timestep());
   for (int k = 0; k < 200; ++k) {
-    world.Step({3.0, 3.0, 3.0, 3.0});
+    world.Step(Eigen::Vector4d(3.0, 3.0, 3.0, 3.0));
     EXPECT_EQ(a.Step(world.vehicle()).p_WB, b.Step(world.vehicle()).p_WB);
     other.Step(world.vehicle());
     EXPECT_LT((a.EstimateAt(world.time()).p_WB - a.estimate().p_WB).norm(), 1e-9);

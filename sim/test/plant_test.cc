@@ -21,7 +21,7 @@ World Altered(const std::function<void(PlantFactors*)>& alter) {
   return World(config);
 }
 
-std::array<double, 4> All(double thrust) { return {thrust, thrust, thrust, thrust}; }
+Eigen::Vector4d All(double thrust) { return Eigen::Vector4d::Constant(thrust); }
 
 TEST(Plant, PilotsModelStaysWhatItWas) {
   const World usual(test::OpenSky());
@@ -58,7 +58,8 @@ TEST(Plant, InertiaDividesTheAngularAcceleration) {
   const auto rolled = [](double factor) {
     World world = Altered([&](PlantFactors* f) { f->inertia = factor; });
     const double hover = world.model().HoverThrust() / 4.0;
-    for (int i = 0; i < 10; ++i) world.Step({hover + 0.1, hover + 0.1, hover - 0.1, hover - 0.1});
+    for (int i = 0; i < 10; ++i)
+      world.Step(Eigen::Vector4d(hover + 0.1, hover + 0.1, hover - 0.1, hover - 0.1));
     return world.vehicle().w_WB_B.x();
   };
   EXPECT_NEAR(rolled(1.0) / rolled(1.2), 1.2, 1e-3);

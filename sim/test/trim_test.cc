@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/air/drag.h"
+#include "sim/vehicle/vehicle_file.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 
@@ -19,7 +20,7 @@ TEST(Trim, IsUprightInStillAir) {
 }
 
 TEST(Trim, BalancesQuadraticDrag) {
-  estimation::VehicleModel model;
+  estimation::VehicleModel model = LoadVehicleModel(DefaultVehicleMjcf());
   model.rotor_drag.setZero();
   model.body_drag_area = 0.05;
   const double drag = 0.5 * 1.225 * model.body_drag_area * 100.0;

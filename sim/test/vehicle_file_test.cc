@@ -37,13 +37,12 @@ TEST(VehicleFile, ModelIsWhatTheFileSays) {
   const std::array<Eigen::Vector3d, 4> hubs = {
       {{0.12, 0.12, 0.04}, {-0.12, 0.12, 0.04}, {-0.12, -0.12, 0.04}, {0.12, -0.12, 0.04}}};
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_TRUE(model.rotors[i].p_BR.isApprox(hubs[i], 1e-12));
-    EXPECT_EQ(model.rotors[i].spin, i % 2 == 0 ? 1.0 : -1.0);
+    EXPECT_TRUE(model.actuators[i].p_BR.isApprox(hubs[i], 1e-12));
+    EXPECT_EQ(model.actuators[i].moment_B.z(), i % 2 == 0 ? 0.016 : -0.016);
+    EXPECT_EQ(model.actuators[i].min, 0.0);
+    EXPECT_EQ(model.actuators[i].max, 7.0);
   }
-  EXPECT_EQ(model.rotor_thrust_min, 0.0);
-  EXPECT_EQ(model.rotor_thrust_max, 7.0);
   EXPECT_EQ(model.rotor_lag_s, 0.035);
-  EXPECT_EQ(model.torque_per_thrust, 0.016);
   EXPECT_TRUE(model.rotor_drag.isApprox(Eigen::Vector3d(0.19, 0.19, 0.0)));
   EXPECT_EQ(model.body_drag_area, 0.03);
   EXPECT_DOUBLE_EQ(model.hull_radius, 0.30);
@@ -56,7 +55,7 @@ TEST(VehicleFile, ModelIsWhatTheFileSays) {
 TEST(VehicleFile, ChangesInTheFileAreRead) {
   EXPECT_EQ(LoadVehicleModel(Changed("mass=\"1.18\"", "mass=\"1.5\"")).mass_kg, 1.5);
   EXPECT_EQ(LoadVehicleModel(Changed("pos=\" 0.12  0.12 0.04\"", "pos=\" 0.13  0.12 0.04\""))
-                .rotors[0]
+                .actuators[0]
                 .p_BR.x(),
             0.13);
 }
@@ -71,9 +70,10 @@ TEST(VehicleFile, RefusesWhatIsMissingOrDifferent) {
   EXPECT_THAT(Refusal("<body name=\"vehicle\"", "<body name=\"drone\""), HasSubstr("\"vehicle\""));
   EXPECT_THAT(Refusal("<site name=\"rotor2\"", "<site name=\"rotor7\""), HasSubstr("rotor2"));
   EXPECT_THAT(Refusal("gear=\"0 0 1 0 0  0.016\"", "gear=\"0 1 1 0 0  0.016\""), HasSubstr("gear"));
-  EXPECT_THAT(Refusal("ctrlrange=\"0 7\"", "ctrlrange=\"0 8\""), HasSubstr("differs"));
+  EXPECT_THAT(Refusal("dynprm=\"0.035\"", "dynprm=\"0.04\""),
+              HasSubstr("differs from that of rotor0"));
   EXPECT_THAT(Refusal("dynprm=\"0.035\"", "dynprm=\"0\""),
-              HasSubstr("lag of rotor0 is 0; allowed is [0.005, 1]"));
+              HasSubstr("lag of rotor0 is 0 s: allowed is 0.005 to 1 s"));
   EXPECT_THAT(Refusal("<inertial pos=\"0 0 0\"", "<inertial pos=\"0.01 0 0\""),
               HasSubstr("<inertial>"));
   EXPECT_THAT(Refusal("mass=\"1.18\"", "mass=\"4\""),
@@ -83,7 +83,7 @@ TEST(VehicleFile, RefusesWhatIsMissingOrDifferent) {
   EXPECT_THAT(Refusal("\"body_drag_area\"", "\"drag_area\""), HasSubstr("body_drag_area"));
   EXPECT_THAT(Refusal("name=\"foot0\"", "name=\"toe0\""), ::testing::IsEmpty());
   EXPECT_THAT(Refusal("0.113137  0.113137 -0.105", "0.113137  0.113137 -0.1"),
-              HasSubstr("feet must reach down equally far"));
+              HasSubstr("they must reach down equally far"));
   EXPECT_THAT(Refusal("mass=\"1.18\"", "mass=\"heavy\""), HasSubstr("MJCF"));
 }
 

@@ -18,10 +18,10 @@
 namespace touchdown::sim {
 namespace {
 
-using Thrusts = std::array<double, 4>;
+using Thrusts = Eigen::Vector4d;
 using Kind = PadMotionConfig::Kind;
 
-constexpr Thrusts kOff = {0.0, 0.0, 0.0, 0.0};
+const Thrusts kOff = Thrusts::Zero();
 
 bool Touches(const World& world, ContactKind kind) {
   return std::any_of(world.contacts().begin(), world.contacts().end(),
@@ -123,7 +123,8 @@ TEST(WorldContact, ObstacleIsNamedByItsIndex) {
   config.start.v_WB.x() = 3.0;
   World world(config);
   const double hover = world.model().HoverThrust() / 4.0;
-  while (world.contacts().empty() && world.time() < 2.0) world.Step({hover, hover, hover, hover});
+  while (world.contacts().empty() && world.time() < 2.0)
+    world.Step(Eigen::Vector4d(hover, hover, hover, hover));
   ASSERT_FALSE(world.contacts().empty());
   const Contact& contact = world.contacts().front();
   EXPECT_EQ(contact.kind, ContactKind::kObstacle);
@@ -171,7 +172,7 @@ TEST(WorldContact, PadPassesObstaclesAndStaysOnItsHeight) {
   World world(config);
   const double hover = world.model().HoverThrust() / 4.0;
   while (world.time() < 5.0) {
-    world.Step({hover, hover, hover, hover});
+    world.Step(Eigen::Vector4d(hover, hover, hover, hover));
     ASSERT_TRUE(world.contacts().empty());
   }
   EXPECT_NEAR(world.pad().p_WP.x(), 14.0, 0.003);
@@ -201,7 +202,7 @@ std::vector<std::uint64_t> Flight() {
   std::vector<std::uint64_t> bits;
   for (int i = 0; i < 2000; ++i) {
     const double thrust = random.Uniform(0.0, 4.0);
-    world.Step({thrust, thrust, thrust, thrust},
+    world.Step(Eigen::Vector4d(thrust, thrust, thrust, thrust),
                test::RandomPoint({-3, -3, -1}, {3, 3, 1}, &random));
     const estimation::VehicleState state = world.vehicle();
     for (const double x : state.p_WB) bits.push_back(std::bit_cast<std::uint64_t>(x));

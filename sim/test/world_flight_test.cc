@@ -15,10 +15,10 @@
 namespace touchdown::sim {
 namespace {
 
-using Thrusts = std::array<double, 4>;
+using Thrusts = Eigen::Vector4d;
 using Kind = PadMotionConfig::Kind;
 
-Thrusts All(double thrust) { return {thrust, thrust, thrust, thrust}; }
+Thrusts All(double thrust) { return Thrusts::Constant(thrust); }
 
 double Hover(const World& world) { return world.model().HoverThrust() / 4.0; }
 
@@ -71,8 +71,8 @@ TEST(WorldFlight, RotorsLagByTheirTimeConstant) {
 
 TEST(WorldFlight, CommandsAreClippedToTheLimits) {
   World world(test::OpenSky());
-  for (int i = 0; i < 300; ++i) world.Step({20.0, -5.0, 20.0, -5.0});
-  EXPECT_NEAR(world.rotor_thrusts()[0], world.model().rotor_thrust_max, 1e-6);
+  for (int i = 0; i < 300; ++i) world.Step(Thrusts(20.0, -5.0, 20.0, -5.0));
+  EXPECT_NEAR(world.rotor_thrusts()[0], world.model().actuators[0].max, 1e-6);
   EXPECT_NEAR(world.rotor_thrusts()[1], 0.0, 1e-6);
 }
 
@@ -80,17 +80,17 @@ TEST(WorldFlight, CommandsAreClippedToTheLimits) {
 Eigen::Vector3d AngularAcceleration(const Thrusts& difference) {
   World world(test::OpenSky());
   Thrusts commands = All(Hover(world));
-  for (std::size_t i = 0; i < 4; ++i) commands[i] += difference[i];
+  commands += difference;
   world.Step(commands);
   const Eigen::Vector3d before = world.vehicle().w_WB_B;
   const Thrusts thrusts = world.rotor_thrusts();
   world.Step(commands);
   const Eigen::Vector3d measured = (world.vehicle().w_WB_B - before) / world.timestep();
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < 4; ++i) {
-    const estimation::Rotor& rotor = world.model().rotors[i];
+  for (int i = 0; i < 4; ++i) {
+    const estimation::Actuator& rotor = world.model().actuators[static_cast<std::size_t>(i)];
     torque += rotor.p_BR.cross(thrusts[i] * Eigen::Vector3d::UnitZ());
-    torque.z() += rotor.spin * world.model().torque_per_thrust * thrusts[i];
+    torque += rotor.moment_B * thrusts[i];
   }
   EXPECT_LT((measured - torque.cwiseQuotient(world.model().inertia)).norm(),
             1e-6 + 1e-3 * measured.norm());
@@ -99,15 +99,15 @@ Eigen::Vector3d AngularAcceleration(const Thrusts& difference) {
 
 TEST(WorldFlight, TorquesHaveSignAndSize) {
   // Rotors 0 and 2 spin +: more of them turns the vehicle to the left.
-  const Eigen::Vector3d yaw = AngularAcceleration({0.5, -0.5, 0.5, -0.5});
+  const Eigen::Vector3d yaw = AngularAcceleration(Thrusts{0.5, -0.5, 0.5, -0.5});
   EXPECT_GT(yaw.z(), 0.0);
   EXPECT_LT(yaw.head<2>().norm(), 1e-9);
   // More thrust on the left (0, 1) rolls to the right: positive about x.
-  const Eigen::Vector3d roll = AngularAcceleration({0.2, 0.2, -0.2, -0.2});
+  const Eigen::Vector3d roll = AngularAcceleration(Thrusts{0.2, 0.2, -0.2, -0.2});
   EXPECT_GT(roll.x(), 0.0);
   EXPECT_LT(std::abs(roll.y()) + std::abs(roll.z()), 1e-9);
   // More thrust behind (1, 2) lowers the nose: positive about y.
-  const Eigen::Vector3d pitch = AngularAcceleration({-0.2, 0.2, 0.2, -0.2});
+  const Eigen::Vector3d pitch = AngularAcceleration(Thrusts{-0.2, 0.2, 0.2, -0.2});
   EXPECT_GT(pitch.y(), 0.0);
   EXPECT_LT(std::abs(pitch.x()) + std::abs(pitch.z()), 1e-9);
 }
@@ -219,9 +219,8 @@ TEST(WorldFlight, VelocityOverTheDeckKnowsItsTurning) {
 
 TEST(WorldFlight, RefusesCommandsThatAreNoNumbers) {
   World world(test::OpenSky());
-  EXPECT_THAT(test::MessageOf<std::invalid_argument>([&] {
-                world.Step({1.0, std::nan(""), 1.0, 1.0});
-              }),
+  EXPECT_THAT(test::MessageOf<std::invalid_argument>(
+                  [&] { world.Step(Eigen::Vector4d(1.0, std::nan(""), 1.0, 1.0)); }),
               ::testing::HasSubstr("rotor 1 [N] is nan"));
   EXPECT_THAT(test::MessageOf<std::invalid_argument>([&] {
                 world.Step(All(1.0), {200.0, 0.0, 0.0});

@@ -47,9 +47,10 @@ TriangleMesh Hills(RandomStream* random) {
 ObstacleField AnyWorld(RandomStream* random) {
   std::vector<Obstacle> all = test::RandomField(10, 5.0, random).obstacles();
   for (int i = 0; i < 4; ++i) {
-    all.emplace_back(Sphere{test::RandomPoint({-5, -5, 0}, {5, 5, 4}, random), random->Uniform(0.1, 1.0)});
-    all.emplace_back(Mesh{Shared(
-        BoxMesh(test::RandomPoint({0.1, 0.1, 0.1}, {1.0, 1.0, 1.5}, random), AnyPlacement(random)))});
+    all.emplace_back(
+        Sphere{test::RandomPoint({-5, -5, 0}, {5, 5, 4}, random), random->Uniform(0.1, 1.0)});
+    all.emplace_back(Mesh{Shared(BoxMesh(
+        test::RandomPoint({0.1, 0.1, 0.1}, {1.0, 1.0, 1.5}, random), AnyPlacement(random)))});
   }
   all.emplace_back(Mesh{Shared(Hills(random))});
   return ObstacleField(std::move(all));
@@ -129,7 +130,8 @@ TEST(WorldGeometry, RaysAgreeWithMuJoCo) {
     }
   }
   EXPECT_GT(compared, 5000);
-  EXPECT_LE(different, 2);  // through an edge, to rounding: MuJoCo's corners are of single precision
+  EXPECT_LE(different,
+            2);  // through an edge, to rounding: MuJoCo's corners are of single precision
   EXPECT_LT(largest, 1e-4);
   RecordProperty("largest_difference_m", std::to_string(largest));
 }
@@ -137,22 +139,23 @@ TEST(WorldGeometry, RaysAgreeWithMuJoCo) {
 // What the vehicle touches first is where it comes nearest, and then, not before.
 TEST(WorldGeometry, AVehicleThatFallsTouchesEachKind) {
   const Placement tilted{TurnOf(0.3, 0.2, 0.5), {0.0, 0.0, 2.0}};
-  const std::vector<Obstacle> kinds = {Box{{0, 0, 1}, {1, 1, 1}, 0.3}, Cylinder{{0, 0, 1}, 1.0, 2.0},
-                                       Sphere{{0, 0, 1}, 1.0},
+  const std::vector<Obstacle> kinds = {Box{{0, 0, 1}, {1, 1, 1}, 0.3},
+                                       Cylinder{{0, 0, 1}, 1.0, 2.0}, Sphere{{0, 0, 1}, 1.0},
                                        Mesh{Shared(BoxMesh({1.0, 1.0, 0.3}, tilted))}};
   for (const Obstacle& obstacle : kinds) {
     WorldConfig config = test::OpenSky();
     config.start.p_WB = {0.0, 0.0, 4.0};
     config.obstacles = ObstacleField({Box{{9, 9, 1}, {1, 1, 1}, 0.0}, obstacle});
     World world(config);
-    while (world.contacts().empty() && world.time() < 2.0) world.Step({0, 0, 0, 0});
+    while (world.contacts().empty() && world.time() < 2.0) world.Step(Eigen::Vector4d(0, 0, 0, 0));
     ASSERT_FALSE(world.contacts().empty()) << obstacle.index();
     const Contact& contact = world.contacts().front();
     EXPECT_EQ(contact.kind, ContactKind::kObstacle);
     EXPECT_EQ(contact.obstacle, 1);
     EXPECT_NEAR(SignedDistance(obstacle, contact.p_W), 0.0, 0.02) << obstacle.index();
     // Of one step at this speed the vehicle is at most so deep.
-    const double clearance = TrueClearance(config.obstacles, world.model()).Distance(world.vehicle());
+    const double clearance =
+        TrueClearance(config.obstacles, world.model()).Distance(world.vehicle());
     EXPECT_LE(clearance, 0.0) << obstacle.index();
     EXPECT_GT(clearance, -0.35) << obstacle.index();
   }
@@ -170,7 +173,8 @@ TEST(TriangleMesh, SaysWhatIsWrongWithASurface) {
   EXPECT_THAT(said(corners, {closed[0], closed[1], closed[2]}), HasSubstr("is open"));
   EXPECT_THAT(said(corners, {{0, 1, 2}, closed[1], closed[2], closed[3]}), HasSubstr("same sense"));
   EXPECT_THAT(said(corners, {{0, 2, 2}, closed[1], closed[2], closed[3]}), HasSubstr("no area"));
-  EXPECT_THAT(said(corners, {{0, 2, 7}, closed[1], closed[2], closed[3]}), HasSubstr("corner 7 of 4"));
+  EXPECT_THAT(said(corners, {{0, 2, 7}, closed[1], closed[2], closed[3]}),
+              HasSubstr("corner 7 of 4"));
   auto broken = corners;
   broken[2].y() = std::nan("");
   EXPECT_THAT(said(broken, closed), HasSubstr("not finite"));
@@ -188,16 +192,18 @@ TEST(TriangleMesh, MeetsWhatItReachesInto) {
   const auto meets = [&](const Eigen::Vector3d& p, double half) {
     return box.Meets({p.array() - half, p.array() + half});
   };
-  EXPECT_TRUE(meets({0, 0, 0}, 0.1));      // within
-  EXPECT_TRUE(meets({0, 0, 0}, 9.0));      // around
-  EXPECT_TRUE(meets({1.4, 0, 0}, 0.05));   // a corner
+  EXPECT_TRUE(meets({0, 0, 0}, 0.1));       // within
+  EXPECT_TRUE(meets({0, 0, 0}, 9.0));       // around
+  EXPECT_TRUE(meets({1.4, 0, 0}, 0.05));    // a corner
   EXPECT_FALSE(meets({1.0, 1.0, 0}, 0.2));  // within its bounds, beyond its side
   EXPECT_FALSE(meets({0, 0, 1.2}, 0.1));
 }
 
 TEST(MeshShapes, SolidsAreToldApart) {
-  const TriangleMesh one = BoxMesh({1, 1, 1}, {}), other = BoxMesh({1, 1, 1}, {TurnOf(0, 0, 0), {5, 0, 0}});
-  std::vector<Eigen::Vector3d> corners;  // three of its own to each triangle, as an STL file has them
+  const TriangleMesh one = BoxMesh({1, 1, 1}, {}),
+                     other = BoxMesh({1, 1, 1}, {TurnOf(0, 0, 0), {5, 0, 0}});
+  std::vector<Eigen::Vector3d>
+      corners;  // three of its own to each triangle, as an STL file has them
   std::vector<Eigen::Vector3i> triangles;
   for (const TriangleMesh* mesh : {&one, &other}) {
     for (const Eigen::Vector3i& of : mesh->triangles()) {
@@ -214,7 +220,8 @@ TEST(MeshShapes, SolidsAreToldApart) {
 
 // Two boxes that share a face, an edge or a corner are two solids.
 TEST(MeshShapes, SolidsMayTouch) {
-  for (const Eigen::Vector3d& off : {Eigen::Vector3d(2, 0, 0), {2, 2, 0}, {2, 2, 2}, {0, -2, 0}, {0, 2, -2}}) {
+  for (const Eigen::Vector3d& off :
+       {Eigen::Vector3d(2, 0, 0), {2, 2, 0}, {2, 2, 2}, {0, -2, 0}, {0, 2, -2}}) {
     std::vector<Eigen::Vector3d> corners;
     std::vector<Eigen::Vector3i> triangles;
     for (const Eigen::Vector3d& p : {Eigen::Vector3d(0, 0, 0), off}) {
@@ -245,11 +252,14 @@ TEST(MeshShapes, InsideOutAndCavities) {
     }
     return SolidsOf(corners, triangles);
   };
-  const TriangleMesh box = BoxMesh({1, 1, 1}, {}), beside = BoxMesh({1, 1, 1}, {TurnOf(0, 0, 0), {2, 0, 0}});
+  const TriangleMesh box = BoxMesh({1, 1, 1}, {}),
+                     beside = BoxMesh({1, 1, 1}, {TurnOf(0, 0, 0), {2, 0, 0}});
   const TriangleMesh within = BoxMesh({0.5, 0.5, 0.5}, {});
   EXPECT_EQ(solids({box, beside}, {true, true}).size(), 2u);
   EXPECT_EQ(solids({box, within}, {false, false}).size(), 2u);
-  EXPECT_THAT(test::MessageOf<std::invalid_argument>([&] { solids({box, within}, {false, true}); }),
+  EXPECT_THAT(test::MessageOf<std::invalid_argument>([&] {
+                solids({box, within}, {false, true});
+              }),
               HasSubstr("is a cavity"));
 }
 
@@ -296,7 +306,8 @@ TEST(CellBoxes, FillTheCellsAndNothingElse) {
   }
   EXPECT_NEAR(volume, static_cast<double>(cells.size()) * std::pow(side, 3), 1e-9);
   for (const Eigen::Vector3i& cell : cells) {
-    const Eigen::Vector3d middle = TurnOf(0, 0, yaw) * (side * (cell.cast<double>().array() + 0.5).matrix());
+    const Eigen::Vector3d middle =
+        TurnOf(0, 0, yaw) * (side * (cell.cast<double>().array() + 0.5).matrix());
     EXPECT_LT(field.SignedDistance(place + middle), 0.0);
   }
 }

@@ -28,13 +28,16 @@ estimation::VehicleModel AlteredVehicle(const estimation::VehicleModel& known,
   plant.rotor_drag *= factors.drag;
   plant.body_drag_area *= factors.drag;
   plant.rotor_lag_s *= factors.rotor_lag;
-  plant.rotor_thrust_min *= factors.thrust;
-  plant.rotor_thrust_max *= factors.thrust;
-  if (plant.MaxThrust() <= plant.HoverThrust()) {
+  for (estimation::Actuator& actuator : plant.actuators) {
+    actuator.min *= factors.thrust;
+    actuator.max *= factors.thrust;
+  }
+  const double thrust_max = estimation::AllocationOf(plant).thrust_max;
+  if (thrust_max <= plant.HoverThrust()) {
     throw std::invalid_argument("plant.mass is " + estimation::NumberText(factors.mass) +
                                 " and plant.thrust is " + estimation::NumberText(factors.thrust) +
                                 "; allowed is what leaves more thrust, " +
-                                estimation::NumberText(plant.MaxThrust()) + " N, than weight, " +
+                                estimation::NumberText(thrust_max) + " N, than weight, " +
                                 estimation::NumberText(plant.HoverThrust()) + " N");
   }
   return plant;

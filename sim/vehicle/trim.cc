@@ -35,7 +35,8 @@ std::optional<Trim> TrimAt(const estimation::VehicleModel& model, const Eigen::V
     change = (thrust_W - before).norm();
   }
   const double thrust = thrust_W.norm();
-  if (change > kConverged * thrust || thrust > model.MaxThrust()) return std::nullopt;
+  if (change > kConverged * thrust || thrust > estimation::AllocationOf(model).thrust_max)
+    return std::nullopt;
   return Trim{Eigen::Quaterniond(Attitude(thrust_W.normalized(), yaw)), thrust};
 }
 

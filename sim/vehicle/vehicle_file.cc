@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 
 #include "estimation/base/argument_check.h"
 #include "sim/mujoco/mujoco_model.h"
@@ -22,153 +22,224 @@
 namespace touchdown::sim {
 namespace {
 
+using estimation::NumberText;
 using estimation::VehicleModel;
 
 constexpr double kTolerance = 1.0e-6;
-constexpr double kUnevenFeet = 1.0e-4;  // [m]
-
-int Find(const mjModel& m, int type, const std::string& kind, const std::string& name) {
-  const int id = mj_name2id(&m, type, name.c_str());
-  if (id < 0) RefuseVehicle("there is no " + kind + " named \"" + name + "\"");
-  return id;
-}
+constexpr double kUnevenFeet = 1.0e-4;        // [m]
+constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
+constexpr double kLeastTurn = 10.0;           // of roll and pitch [rad/s^2] ...
+constexpr double kLeastYawTurn = 0.5;         // ... and of the heading
 
 std::string_view GeomName(const mjModel& m, int geom) { return m.names + m.name_geomadr[geom]; }
 
 bool IsUpright(const mjtNum* quat) { return std::abs(std::abs(quat[0]) - 1.0) < kTolerance; }
 
-void ReadBody(const mjModel& m, int body, VehicleModel* model) {
-  const int joint = m.body_jntadr[body];
-  if (m.body_jntnum[body] != 1 || m.jnt_type[joint] != mjJNT_FREE || m.nbody != 2) {
-    RefuseVehicle("body \"vehicle\" must be the only body and have one joint, a free joint");
-  }
-  if (mju_norm3(m.body_ipos + 3 * body) > kTolerance || !IsUpright(m.body_iquat + 4 * body)) {
-    RefuseVehicle(
-        "the <inertial> of body \"vehicle\" must be at its origin, principal axes along its own");
-  }
-  model->mass_kg = m.body_mass[body];
-  model->inertia = Eigen::Map<const Eigen::Vector3d>(m.body_inertia + 3 * body);
-}
+Eigen::Vector3d Three(const mjtNum* p) { return {p[0], p[1], p[2]}; }
 
-void ReadHull(const mjModel& m, VehicleModel* model) {
-  const int hull = Find(m, mjOBJ_GEOM, "geom", "hull");
-  const mjtNum* pos = m.geom_pos + 3 * hull;
-  if (m.geom_type[hull] != mjGEOM_CYLINDER || std::hypot(pos[0], pos[1]) > kTolerance ||
-      !IsUpright(m.geom_quat + 4 * hull)) {
-    RefuseVehicle("geom \"hull\" must be a cylinder about z_B");
-  }
-  model->hull_radius = m.geom_size[3 * hull];
-  model->hull_top = pos[2] + m.geom_size[3 * hull + 1];
-  model->hull_bottom = m.geom_size[3 * hull + 1] - pos[2];
+class Reader {
+ public:
+  Reader(const mjModel& m, VehicleFindings* findings) : m_(m), findings_(*findings) {}
 
-  int feet = 0;
-  double shortest = std::numeric_limits<double>::infinity();
-  model->foot_depth = 0.0;
-  model->foot_radius = 0.0;
-  model->foot_reach = 0.0;
-  for (int geom = 0; geom < m.ngeom; ++geom) {
-    if (!GeomName(m, geom).starts_with("foot")) continue;
-    const mjtNum* p = m.geom_pos + 3 * geom;
-    const double radius = m.geom_size[3 * geom];
-    if (m.geom_type[geom] != mjGEOM_SPHERE ||
-        std::hypot(p[0], p[1]) + radius > model->hull_radius) {
-      RefuseVehicle("geom \"" + std::string(GeomName(m, geom)) +
-                    "\" must be a sphere within the hull's radius");
+  std::optional<VehicleModel> Read() {
+    const std::size_t before = findings_.faults().size();
+    body_ = Find(mjOBJ_BODY, "body", "vehicle");
+    if (body_ < 0) return std::nullopt;
+    ReadBody();
+    ReadHull();
+    ReadFeet();
+    ReadDrag();
+    if (m_.nu < estimation::kLeastActuators || m_.nu > estimation::kMostActuators) {
+      Fault("it has " + std::to_string(m_.nu) + " actuators", "allowed are 4 to 8");
+    } else {
+      for (int i = 0; i < m_.nu; ++i) ReadRotor(i);
     }
-    model->foot_depth = std::max(model->foot_depth, radius - p[2]);
-    shortest = std::min(shortest, radius - p[2]);
-    model->foot_radius = std::max(model->foot_radius, std::hypot(p[0], p[1]));
-    model->foot_reach = std::max(model->foot_reach, mju_norm3(p) + radius);
-    model->foot_azimuths.push_back(std::atan2(p[1], p[0]));
-    ++feet;
+    if (findings_.faults().size() == before) CheckFlight();
+    if (findings_.faults().size() != before) return std::nullopt;
+    return model_;
   }
-  if (feet < 3)
-    RefuseVehicle("it has " + std::to_string(feet) + " geoms named foot...; allowed is >= 3");
-  if (model->foot_depth - shortest > kUnevenFeet) {
-    RefuseVehicle("the feet must reach down equally far, not " + std::to_string(shortest) + " to " +
-                  std::to_string(model->foot_depth) + " m");
-  }
-  if (model->foot_depth <= model->hull_bottom)
-    RefuseVehicle("the feet must reach below geom \"hull\"");
-}
 
-void ReadRotor(const mjModel& m, int body, int index, VehicleModel* model) {
-  const std::string name = "rotor" + std::to_string(index);
-  const int site = Find(m, mjOBJ_SITE, "site", name);
-  const int actuator = Find(m, mjOBJ_ACTUATOR, "actuator", name);
-  const mjtNum* gear = m.actuator_gear + 6 * actuator;
-  const bool along_z = gear[0] == 0.0 && gear[1] == 0.0 && gear[2] == 1.0 && gear[3] == 0.0 &&
-                       gear[4] == 0.0 && gear[5] != 0.0;
-  if (m.actuator_trntype[actuator] != mjTRN_SITE || m.actuator_trnid[2 * actuator] != site ||
-      m.site_bodyid[site] != body || !IsUpright(m.site_quat + 4 * site) || !along_z) {
-    RefuseVehicle("actuator \"" + name + "\" must act on site \"" + name +
-                  "\" of body \"vehicle\", upright, with gear 0 0 1 0 0 k, k not 0");
+ private:
+  void Fault(std::string what, std::string remedy) {
+    findings_.Fault(std::move(what), std::move(remedy));
   }
-  if (m.actuator_dyntype[actuator] != mjDYN_FILTER ||
-      m.actuator_gaintype[actuator] != mjGAIN_FIXED ||
-      m.actuator_gainprm[mjNGAIN * actuator] != 1.0 ||
-      m.actuator_biastype[actuator] != mjBIAS_NONE || m.actuator_ctrllimited[actuator] == 0) {
-    RefuseVehicle("actuator \"" + name +
-                  "\" must have dyntype filter, gainprm 1, no bias and a limited control range");
-  }
-  const double lag = m.actuator_dynprm[mjNDYN * actuator];
-  const double low = m.actuator_ctrlrange[2 * actuator];
-  const double high = m.actuator_ctrlrange[2 * actuator + 1];
-  estimation::CheckWithin("vehicle file: lag of " + name, lag, 0.005, 1.0);
-  estimation::CheckWithin("vehicle file: lower end of the control range of " + name, low, 0.0,
-                          high);
-  const double torque = std::abs(gear[5]);
-  if (index == 0) {
-    model->rotor_lag_s = lag;
-    model->rotor_thrust_min = low;
-    model->rotor_thrust_max = high;
-    model->torque_per_thrust = torque;
-  } else if (lag != model->rotor_lag_s || low != model->rotor_thrust_min ||
-             high != model->rotor_thrust_max || torque != model->torque_per_thrust) {
-    RefuseVehicle("actuator \"" + name +
-                  "\" differs from \"rotor0\" in lag, range or torque per thrust");
-  }
-  estimation::Rotor& rotor = model->rotors[static_cast<std::size_t>(index)];
-  rotor.p_BR = Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site);
-  const double radius = m.site_type[site] == mjGEOM_CYLINDER ? m.site_size[3 * site] : 0.0;
-  model->rotor_radius = index == 0 ? radius : std::min(model->rotor_radius, radius);
-  rotor.spin = gear[5] > 0.0 ? 1.0 : -1.0;
-}
 
-void ReadDrag(const mjModel& m, VehicleModel* model) {
-  const int linear = Find(m, mjOBJ_NUMERIC, "numeric", "rotor_drag");
-  const int area = Find(m, mjOBJ_NUMERIC, "numeric", "body_drag_area");
-  if (m.numeric_size[linear] != 3 || m.numeric_size[area] != 1) {
-    RefuseVehicle("numeric \"rotor_drag\" must have three numbers and \"body_drag_area\" one");
+  int Find(int type, const std::string& kind, const std::string& name) {
+    const int id = mj_name2id(&m_, type, name.c_str());
+    if (id < 0)
+      Fault("there is no " + kind + " named \"" + name + "\"",
+            "docs/vehicles.md lists what there must be");
+    return id;
   }
-  model->rotor_drag = Eigen::Map<const Eigen::Vector3d>(m.numeric_data + m.numeric_adr[linear]);
-  model->body_drag_area = m.numeric_data[m.numeric_adr[area]];
-  estimation::CheckWithin("vehicle file: smallest of rotor_drag", model->rotor_drag.minCoeff(), 0.0,
-                          10.0);
-  estimation::CheckWithin("vehicle file: largest of rotor_drag", model->rotor_drag.maxCoeff(), 0.0,
-                          10.0);
-  estimation::CheckWithin("vehicle file: body_drag_area", model->body_drag_area, 0.0, 10.0);
-}
 
-// The rotors' wrench is linear in their thrusts; z_B's column is thrust, then the three moments.
-void CheckSteerable(const VehicleModel& model) {
-  Eigen::Matrix4d wrench;
-  for (int i = 0; i < 4; ++i) {
-    const estimation::Rotor& rotor = model.rotors[static_cast<std::size_t>(i)];
-    wrench.col(i) << 1.0, rotor.p_BR.y(), -rotor.p_BR.x(), rotor.spin * model.torque_per_thrust;
+  void ReadBody() {
+    const int joint = m_.body_jntadr[body_];
+    if (m_.body_jntnum[body_] != 1 || m_.jnt_type[joint] != mjJNT_FREE || m_.nbody != 2) {
+      Fault("body \"vehicle\" is not the only body with one joint, a free joint",
+            "put all geoms and sites into it");
+    }
+    if (mju_norm3(m_.body_ipos + 3 * body_) > kTolerance) {
+      Fault("the <inertial> of body \"vehicle\" is not at its origin",
+            "move geoms and sites so that the centre of mass is");
+    }
+    model_.mass_kg = m_.body_mass[body_];
+    model_.inertia = Three(m_.body_inertia + 3 * body_);
+    const mjtNum* q = m_.body_iquat + 4 * body_;
+    if (!IsUpright(q)) {
+      model_.R_BI = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    }
   }
-  const Eigen::FullPivLU<Eigen::Matrix4d> lu(wrench);
-  if (!lu.isInvertible() || lu.inverse().col(0).minCoeff() <= 0.0) {
-    RefuseVehicle(
-        "its rotors cannot make thrust and three moments: their places and senses of rotation");
+
+  void ReadHull() {
+    const int hull = Find(mjOBJ_GEOM, "geom", "hull");
+    if (hull < 0) return;
+    const mjtNum* pos = m_.geom_pos + 3 * hull;
+    if (m_.geom_type[hull] != mjGEOM_CYLINDER || std::hypot(pos[0], pos[1]) > kTolerance ||
+        !IsUpright(m_.geom_quat + 4 * hull)) {
+      Fault("geom \"hull\" is not a cylinder about z_B",
+            "make it one that holds all of the vehicle");
+    }
+    model_.hull_radius = m_.geom_size[3 * hull];
+    model_.hull_top = pos[2] + m_.geom_size[3 * hull + 1];
+    model_.hull_bottom = m_.geom_size[3 * hull + 1] - pos[2];
   }
-}
+
+  void ReadFeet() {
+    int feet = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    model_.foot_depth = 0.0;
+    model_.foot_radius = 0.0;
+    model_.foot_reach = 0.0;
+    for (int geom = 0; geom < m_.ngeom; ++geom) {
+      if (!GeomName(m_, geom).starts_with("foot")) continue;
+      const mjtNum* p = m_.geom_pos + 3 * geom;
+      const double radius = m_.geom_size[3 * geom];
+      if (m_.geom_type[geom] != mjGEOM_SPHERE ||
+          std::hypot(p[0], p[1]) + radius > model_.hull_radius) {
+        Fault("geom \"" + std::string(GeomName(m_, geom)) +
+                  "\" is not a sphere within the hull's radius",
+              "make it one");
+      }
+      model_.foot_depth = std::max(model_.foot_depth, radius - p[2]);
+      shortest = std::min(shortest, radius - p[2]);
+      model_.foot_radius = std::max(model_.foot_radius, std::hypot(p[0], p[1]));
+      model_.foot_reach = std::max(model_.foot_reach, mju_norm3(p) + radius);
+      model_.foot_azimuths.push_back(std::atan2(p[1], p[0]));
+      ++feet;
+    }
+    if (feet < 3) {
+      Fault("it has " + std::to_string(feet) + " geoms named foot...", "allowed are 3 and more");
+      return;
+    }
+    if (model_.foot_depth - shortest > kUnevenFeet) {
+      Fault("the feet reach down " + NumberText(shortest) + " to " + NumberText(model_.foot_depth) +
+                " m",
+            "they must reach down equally far");
+    }
+    if (model_.foot_depth <= model_.hull_bottom) {
+      Fault("the feet do not reach below geom \"hull\"",
+            "lower them, or raise the hull's lower face");
+    }
+  }
+
+  // Gear 0 0 1 and a reaction torque is a rotor; without the 1 it is a moment alone.
+  void ReadRotor(int index) {
+    const std::string name = "rotor" + std::to_string(index);
+    const int site = Find(mjOBJ_SITE, "site", name);
+    const int actuator = Find(mjOBJ_ACTUATOR, "actuator", name);
+    if (site < 0 || actuator < 0) return;
+    const mjtNum* gear = m_.actuator_gear + 6 * actuator;
+    if (m_.actuator_trntype[actuator] != mjTRN_SITE || m_.actuator_trnid[2 * actuator] != site ||
+        m_.site_bodyid[site] != body_ || !IsUpright(m_.site_quat + 4 * site) || gear[0] != 0.0 ||
+        gear[1] != 0.0 || (gear[2] != 1.0 && gear[2] != 0.0)) {
+      Fault("actuator \"" + name + "\" does not act on site \"" + name +
+                "\" of body \"vehicle\", upright, with gear 0 0 1 0 0 k",
+            "make it do so; a moment alone has gear 0 0 0 x y z");
+    }
+    if (m_.actuator_dyntype[actuator] != mjDYN_FILTER ||
+        m_.actuator_gaintype[actuator] != mjGAIN_FIXED ||
+        m_.actuator_gainprm[mjNGAIN * actuator] != 1.0 ||
+        m_.actuator_biastype[actuator] != mjBIAS_NONE || m_.actuator_ctrllimited[actuator] == 0) {
+      Fault("actuator \"" + name + "\" is not a <general> of this form",
+            "dyntype filter, gainprm 1, no bias and a limited control range");
+    }
+    const double lag = m_.actuator_dynprm[mjNDYN * actuator];
+    if (!(lag >= 0.005 && lag <= 1.0)) {
+      Fault("lag of " + name + " is " + NumberText(lag) + " s", "allowed is 0.005 to 1 s");
+    }
+    if (index == 0) model_.rotor_lag_s = lag;
+    if (lag != model_.rotor_lag_s) {
+      Fault("lag of " + name + " differs from that of rotor0", "give all the same");
+    }
+    estimation::Actuator rotor;
+    rotor.p_BR = Three(m_.site_pos + 3 * site);
+    rotor.thrust = gear[2];
+    rotor.moment_B = Three(gear + 3);
+    rotor.min = m_.actuator_ctrlrange[2 * actuator];
+    rotor.max = m_.actuator_ctrlrange[2 * actuator + 1];
+    if (rotor.thrust > 0.0 && rotor.min < 0.0) {
+      Fault("lower end of the control range of " + name + " is " + NumberText(rotor.min),
+            "allowed is 0 and more");
+    }
+    model_.actuators.push_back(rotor);
+    if (rotor.thrust == 0.0) return;
+    const double radius = m_.site_type[site] == mjGEOM_CYLINDER ? m_.site_size[3 * site] : 0.0;
+    model_.rotor_radius = index == 0 ? radius : std::min(model_.rotor_radius, radius);
+  }
+
+  void ReadDrag() {
+    const int linear = Find(mjOBJ_NUMERIC, "numeric", "rotor_drag");
+    const int area = Find(mjOBJ_NUMERIC, "numeric", "body_drag_area");
+    if (linear < 0 || area < 0) return;
+    if (m_.numeric_size[linear] != 3 || m_.numeric_size[area] != 1) {
+      Fault("numeric \"rotor_drag\" has not three numbers or \"body_drag_area\" not one",
+            "give three [N s/m] and one [m^2]");
+      return;
+    }
+    model_.rotor_drag = Three(m_.numeric_data + m_.numeric_adr[linear]);
+    model_.body_drag_area = m_.numeric_data[m_.numeric_adr[area]];
+    const auto within = [&](const char* what, double value) {
+      if (!(value >= 0.0 && value <= 10.0)) {
+        Fault(what + (" is " + NumberText(value)), "allowed is 0 to 10");
+      }
+    };
+    within("smallest of rotor_drag", model_.rotor_drag.minCoeff());
+    within("largest of rotor_drag", model_.rotor_drag.maxCoeff());
+    within("body_drag_area", model_.body_drag_area);
+  }
+
+  void CheckFlight() {
+    try {
+      const double most = estimation::AllocationOf(model_).thrust_max;
+      if (most < kLeastThrustToWeight * model_.HoverThrust()) {
+        Fault("the rotors' largest thrust, " + NumberText(most) +
+                  " N, does not carry its weight 1.2 times, " +
+                  NumberText(kLeastThrustToWeight * model_.HoverThrust()) + " N",
+              "look at mass and thrust ranges");
+        return;
+      }
+      const Eigen::Vector3d turn = estimation::HoverTurn(model_);
+      if (turn.head<2>().minCoeff() < kLeastTurn || turn.z() < kLeastYawTurn) {
+        Fault(
+            "from hover it can be turned about x, y and z with " + NumberText(turn.x()) + ", " +
+                NumberText(turn.y()) + " and " + NumberText(turn.z()) + " rad/s^2",
+            "allowed are 10, 10 and 0.5 and more: look at inertia, arms and thrust ranges, or give "
+            "airframe.moment_max where the file has moments for actuators");
+      }
+    } catch (const std::invalid_argument& error) {
+      Fault(std::string("its rotors cannot make thrust and three moments (") + error.what() + ")",
+            "look at their places and senses of rotation; airframe.rotor_senses: auto lets them "
+            "alternate around the body");
+    }
+  }
+
+  const mjModel& m_;
+  VehicleFindings& findings_;
+  int body_ = -1;
+  VehicleModel model_;
+};
 
 }  // namespace
-
-void RefuseVehicle(const std::string& what) {
-  throw std::invalid_argument("vehicle file: " + what);
-}
 
 std::string ReadVehicleFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -179,24 +250,17 @@ std::string ReadVehicleFile(const std::string& path) {
   return text;
 }
 
-estimation::VehicleModel LoadVehicleModel(const std::string& mjcf) {
+std::optional<estimation::VehicleModel> ReadVehicleModel(const std::string& mjcf,
+                                                         VehicleFindings* findings) {
   const MujocoModel compiled = CompileMjcf(mjcf);
-  const mjModel& m = *compiled;
-  const int body = Find(m, mjOBJ_BODY, "body", "vehicle");
-  VehicleModel model;
-  ReadBody(m, body, &model);
-  ReadHull(m, &model);
-  if (m.nu != 4) RefuseVehicle("it has " + std::to_string(m.nu) + " actuators; allowed is 4");
-  for (int i = 0; i < 4; ++i) ReadRotor(m, body, i, &model);
-  ReadDrag(m, &model);
-  CheckSteerable(model);
-  constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to steer with
-  if (model.MaxThrust() < kLeastThrustToWeight * model.HoverThrust()) {
-    RefuseVehicle("the rotors' largest thrust, " + estimation::NumberText(model.MaxThrust()) +
-                  " N, does not carry its weight 1.2 times, " +
-                  estimation::NumberText(kLeastThrustToWeight * model.HoverThrust()) + " N");
-  }
-  return model;
+  return Reader(*compiled, findings).Read();
+}
+
+estimation::VehicleModel LoadVehicleModel(const std::string& mjcf) {
+  VehicleFindings findings;
+  const std::optional<estimation::VehicleModel> model = ReadVehicleModel(mjcf, &findings);
+  findings.ThrowFaults();
+  return *model;
 }
 
 }  // namespace touchdown::sim

@@ -12,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -25,11 +27,12 @@
 namespace touchdown::sim {
 namespace {
 
+using estimation::NumberText;
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double kUpright = 0.9998;        // cosine of one degree
 constexpr double kSame = 1e-6;             // relative, of figures that must agree
-constexpr double kSkewInertia = 0.05;      // products over the least moment
+constexpr double kNoProduct = 1e-9;        // of inertia, over the moments
 constexpr double kFeetShare = 0.6;         // of the hull's radius
 constexpr double kFeetClearance = 0.35;    // hull above soles, over the feet's distance from z_B
 constexpr double kLeastHullHeight = 0.01;  // [m]
@@ -43,10 +46,8 @@ std::string Quoted(const mjModel& m, int address, const char* kind, int index) {
 }
 
 struct Motor {
-  Eigen::Vector3d p_BR = Eigen::Vector3d::Zero();
-  double low = 0.0, high = 0.0;  // thrust [N]
-  double torque = 0.0;           // about z_B per newton [m]
-  double lag = 0.0;              // [s]
+  estimation::Actuator actuator;
+  double lag = 0.0;  // [s]
 };
 
 struct Outline {
@@ -60,27 +61,33 @@ struct Outline {
 
 class Import {
  public:
-  Import(const mjModel& m, const AirframeExtras& extras)
-      : m_(m), data_(MakeMujocoData(m)), d_(*data_), extras_(extras) {
+  Import(const mjModel& m, const AirframeExtras& extras, VehicleFindings* findings)
+      : m_(m), data_(MakeMujocoData(m)), d_(*data_), extras_(extras), findings_(*findings) {
     CallMujoco([&] { mj_kinematics(&m_, data_.get()); });
     FindBase();
+    if (base_ < 0) return;
     ReadMass();
-    if (m_.nu != 4)
-      RefuseVehicle("it has " + std::to_string(m_.nu) + " actuators; allowed is 4, one a rotor");
-    for (int i = 0; i < 4; ++i) motors_.push_back(ReadMotor(i));
-    CheckMotorsAgree();
+    ReadMotors();
     ReadOutline();
+    if (!findings_.faults().empty()) return;
+    SetSenses();
+    SetMoments();
   }
 
   std::string Text() const;
 
  private:
+  void Fault(std::string what, std::string remedy) {
+    findings_.Fault(std::move(what), std::move(remedy));
+  }
+
   void FindBase() {
     int free_joints = 0;
     for (int j = 0; j < m_.njnt; ++j) {
       if (m_.jnt_type[j] != mjJNT_FREE) {
-        RefuseVehicle(Quoted(m_, m_.name_jntadr[j], "joint", j) +
-                      " moves; allowed is one free joint alone");
+        Fault(Quoted(m_, m_.name_jntadr[j], "joint", j) + " moves",
+              "allowed is one free joint alone; take the joint out, its body then stands still");
+        continue;
       }
       const int dof = m_.jnt_dofadr[j];
       CheckNothingHolds(Quoted(m_, m_.name_jntadr[j], "joint", j), m_.jnt_stiffness[j], dof);
@@ -88,13 +95,15 @@ class Import {
       ++free_joints;
     }
     if (free_joints != 1) {
-      RefuseVehicle("it has " + std::to_string(free_joints) + " free joints; allowed is 1");
+      Fault("it has " + std::to_string(free_joints) + " free joints",
+            "allowed is 1: the body that flies has a <freejoint/>");
     }
+    if (base_ < 0) return;
     R_WB_ = Eigen::Map<const Matrix>(d_.xmat + 9 * base_);
   }
 
   // What the free joint adds to inertia and drag would be lost.
-  void CheckNothingHolds(const std::string& joint, double stiffness, int dof) const {
+  void CheckNothingHolds(const std::string& joint, double stiffness, int dof) {
     for (int i = dof; i < dof + 6; ++i) {
       const char* has = m_.dof_damping[i] != 0.0        ? "damping"
                         : m_.dof_armature[i] != 0.0     ? "armature"
@@ -102,8 +111,9 @@ class Import {
                         : stiffness != 0.0              ? "stiffness"
                                                         : nullptr;
       if (has != nullptr) {
-        RefuseVehicle(joint + " has " + has +
-                      "; allowed is 0: drag is a matter of airframe.rotor_drag");
+        Fault(joint + " has " + has,
+              "take it out, it would be lost; drag is a matter of airframe.rotor_drag");
+        return;
       }
     }
   }
@@ -119,7 +129,10 @@ class Import {
       mass_ += m_.body_mass[body];
       moment += m_.body_mass[body] * Vec3(d_.xipos + 3 * body);
     }
-    if (!(mass_ > 0.0)) RefuseVehicle("it has no mass");
+    if (!(mass_ > 0.0)) {
+      Fault("it has no mass", "give the body an <inertial>, or its geoms a mass");
+      return;
+    }
     p_WB_ = moment / mass_;
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     for (int body = 1; body < m_.nbody; ++body) {
@@ -130,16 +143,7 @@ class Import {
       inertia += m_.body_mass[body] *
                  (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
     }
-    inertia = (R_WB_.transpose() * inertia * R_WB_).eval();
-    inertia_ = inertia.diagonal();
-    inertia.diagonal().setZero();
-    const double skew = inertia.cwiseAbs().maxCoeff() / inertia_.minCoeff();
-    if (skew > kSkewInertia) {
-      RefuseVehicle(
-          "its largest product of inertia is " + estimation::NumberText(skew) +
-          " of its least moment about the centre of mass; allowed is 0.05: its axes must be those "
-          "of its inertia");
-    }
+    inertia_ = R_WB_.transpose() * inertia * R_WB_;
   }
 
   // Of the actuator before its gear, as MuJoCo clamps it: control, activation, gain, force.
@@ -154,63 +158,165 @@ class Import {
     return range;
   }
 
-  Motor ReadMotor(int i) const {
+  void ReadMotors() {
+    if (m_.nu < estimation::kLeastActuators || m_.nu > estimation::kMostActuators) {
+      Fault("it has " + std::to_string(m_.nu) + " actuators",
+            "allowed are 4 to 8: one a rotor, or one thrust and three moments");
+      return;
+    }
+    for (int i = 0; i < m_.nu; ++i) {
+      if (const std::optional<Motor> motor = ReadMotor(i)) motors_.push_back(*motor);
+    }
+    if (static_cast<int>(motors_.size()) == m_.nu) CheckLags();
+  }
+
+  // What it does to the body, from the force and the moment of its gear in the site's frame.
+  std::optional<Motor> ReadMotor(int i) {
     const std::string name = Quoted(m_, m_.name_actuatoradr[i], "actuator", i);
+    const std::size_t before = findings_.faults().size();
     const int site = m_.actuator_trnid[2 * i];
     if (m_.actuator_trntype[i] != mjTRN_SITE || !OfVehicle(m_.site_bodyid[site])) {
-      RefuseVehicle(
-          name + " does not act on a site of the vehicle; allowed are four thrust motors at sites");
+      Fault(name + " does not act on a site of the vehicle",
+            "give it a site at the rotor's hub and the gear \"0 0 1 0 0 k\"");
+      return std::nullopt;
     }
     const mjtNum* gear = m_.actuator_gear + 6 * i;
-    if (gear[0] != 0.0 || gear[1] != 0.0 || gear[3] != 0.0 || gear[4] != 0.0 || gear[2] == 0.0) {
-      RefuseVehicle(name + " must have gear \"0 0 f 0 0 k\", f not 0");
+    const Matrix R_WS = Eigen::Map<const Matrix>(d_.site_xmat + 9 * site);
+    const Eigen::Matrix3d R_BS = R_WB_.transpose() * R_WS;
+    const Eigen::Vector3d force_B = R_BS * Vec3(gear), moment_B = R_BS * Vec3(gear + 3);
+    const double push = force_B.norm();
+    if (push > 0.0 && std::abs(force_B.z()) < kUpright * push) {
+      Fault(name + " does not push along the z axis of the body with the free joint",
+            "its gear is \"0 0 f 0 0 k\", and its site's z axis that of the body");
     }
-    if (gear[5] == 0.0)
-      RefuseVehicle(name + " has no reaction torque, the last number of its gear");
+    if (push == 0.0 && !(moment_B.norm() > 0.0)) {
+      Fault(name + " has a gear of zeros", "\"0 0 f 0 0 k\" is a rotor, \"0 0 0 x y z\" a moment");
+    }
     if (m_.actuator_gaintype[i] != mjGAIN_FIXED || m_.actuator_biastype[i] != mjBIAS_NONE) {
-      RefuseVehicle(name + " must have a fixed gain and no bias, as a motor has");
+      Fault(name + " has no fixed gain, or a bias", "make it a <motor>");
     }
     if (m_.actuator_trnid[2 * i + 1] >= 0) {
-      RefuseVehicle(name + " has a refsite; allowed are motors that act on one site");
+      Fault(name + " has a refsite", "take it out: a motor acts on one site");
     }
-    if (m_.actuator_ctrllimited[i] == 0) RefuseVehicle(name + " has no ctrlrange");
-    const Matrix R_WS = Eigen::Map<const Matrix>(d_.site_xmat + 9 * site);
-    const double upright = R_WS.col(2).dot(R_WB_.col(2));
-    const double scale = gear[2] * upright;
-    if (std::abs(upright) < kUpright) {
-      RefuseVehicle(name + " does not push along the z axis of the body with the free joint");
+    if (m_.actuator_ctrllimited[i] == 0) {
+      Fault(name + " has no ctrlrange", "give it the least and the greatest control");
     }
     Motor motor;
-    motor.p_BR = ToB(Vec3(d_.site_xpos + 3 * site));
-    const std::array<double, 2> force = ForceRange(i);
-    motor.low = std::min(scale * force[0], scale * force[1]);
-    motor.high = std::max(scale * force[0], scale * force[1]);
-    if (!(motor.low >= 0.0 && motor.high > motor.low)) {
-      RefuseVehicle(name + " pushes with " + estimation::NumberText(motor.low) + " to " +
-                    estimation::NumberText(motor.high) + " N along z; allowed is a range above 0");
-    }
-    motor.torque = gear[5] / gear[2];
-    if (m_.actuator_dyntype[i] == mjDYN_NONE) {
-      motor.lag = extras_.rotor_lag;
-    } else if (m_.actuator_dyntype[i] == mjDYN_FILTER) {
+    motor.lag = extras_.rotor_lag;
+    if (m_.actuator_dyntype[i] == mjDYN_FILTER) {
       motor.lag = m_.actuator_dynprm[mjNDYN * i];
-    } else {
-      RefuseVehicle(name + " must have dyntype none or filter");
+    } else if (m_.actuator_dyntype[i] != mjDYN_NONE) {
+      Fault(name + " has dynamics that are no lag", "allowed is dyntype none or filter");
+    }
+    if (findings_.faults().size() != before) return std::nullopt;
+    // A unit of its command is a newton, or a newton metre of what makes a moment alone.
+    const double unit = push > 0.0 ? force_B.z() : moment_B.norm();
+    const std::array<double, 2> force = ForceRange(i);
+    estimation::Actuator& actuator = motor.actuator;
+    actuator.p_BR = ToB(Vec3(d_.site_xpos + 3 * site));
+    actuator.thrust = push > 0.0 ? 1.0 : 0.0;
+    actuator.moment_B = moment_B / unit;
+    actuator.min = std::min(unit * force[0], unit * force[1]);
+    actuator.max = std::max(unit * force[0], unit * force[1]);
+    if (push > 0.0 && !(actuator.min >= 0.0 && actuator.max > actuator.min)) {
+      Fault(name + " pushes with " + NumberText(actuator.min) + " to " + NumberText(actuator.max) +
+                " N along z",
+            "allowed is a range above 0: look at ctrlrange, forcerange and the gear's sign");
+      return std::nullopt;
+    }
+    if (push == 0.0 && !(actuator.min < 0.0 && actuator.max > 0.0)) {
+      Fault(name + " turns with " + NumberText(actuator.min) + " to " + NumberText(actuator.max) +
+                " N m",
+            "allowed is a range about 0: look at its ctrlrange");
+      return std::nullopt;
     }
     return motor;
   }
 
-  void CheckMotorsAgree() const {
-    const auto same = [](double a, double b) { return std::abs(a - b) <= kSame * std::abs(b); };
-    const Motor& first = motors_.front();
+  void CheckLags() {
     for (std::size_t i = 1; i < motors_.size(); ++i) {
-      const Motor& motor = motors_[i];
-      if (!same(motor.low, first.low) || !same(motor.high, first.high) ||
-          !same(motor.lag, first.lag) || !same(std::abs(motor.torque), std::abs(first.torque))) {
-        RefuseVehicle(Quoted(m_, m_.name_actuatoradr[i], "actuator", static_cast<int>(i)) +
-                      " differs from the first one in thrust, lag or torque per thrust");
+      if (std::abs(motors_[i].lag - motors_[0].lag) <= kSame * motors_[0].lag) continue;
+      Fault(Quoted(m_, m_.name_actuatoradr[i], "actuator", static_cast<int>(i)) + " lags by " +
+                NumberText(motors_[i].lag) + " s, the first one by " + NumberText(motors_[0].lag) +
+                " s",
+            "give all the same");
+    }
+  }
+
+  bool CanSteer() const {
+    estimation::VehicleModel model;
+    for (const Motor& motor : motors_) model.actuators.push_back(motor.actuator);
+    try {
+      estimation::AllocationOf(model);
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+    return true;
+  }
+
+  // The senses that the user gives; else, on request, where those of the file cannot steer, each other than its
+  // neighbour's around the body.
+  void SetSenses() {
+    std::vector<estimation::Actuator*> rotors;
+    for (Motor& motor : motors_) {
+      if (motor.actuator.thrust > 0.0) rotors.push_back(&motor.actuator);
+    }
+    const auto turn = [](estimation::Actuator& rotor, double sense) {
+      rotor.moment_B.z() = std::copysign(rotor.moment_B.z(), sense);
+    };
+    const std::vector<double>& given = extras_.rotor_senses;
+    if (!given.empty()) {
+      if (given.size() != rotors.size()) {
+        Fault("airframe.rotor_senses has " + std::to_string(given.size()) +
+                  " senses, the vehicle " + std::to_string(rotors.size()) + " rotors",
+              "give one a rotor, in the order of the file's actuators");
+        return;
+      }
+      for (std::size_t i = 0; i < rotors.size(); ++i) turn(*rotors[i], given[i]);
+      return;
+    }
+    if (!extras_.alternate_senses || CanSteer()) return;
+    std::vector<std::size_t> around(rotors.size());
+    std::iota(around.begin(), around.end(), 0);
+    const auto azimuth = [&](std::size_t i) {
+      return std::atan2(rotors[i]->p_BR.y(), rotors[i]->p_BR.x());
+    };
+    std::sort(around.begin(), around.end(),
+              [&](std::size_t a, std::size_t b) { return azimuth(a) < azimuth(b); });
+    // The first rotor of the file keeps its sense.
+    const auto first = std::find(around.begin(), around.end(), 0u) - around.begin();
+    const double sense = std::copysign(1.0, rotors[0]->moment_B.z());
+    std::string signs;
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      const bool as_first = (static_cast<std::ptrdiff_t>(k) - first) % 2 == 0;
+      turn(*rotors[around[k]], as_first ? sense : -sense);
+    }
+    for (const estimation::Actuator* rotor : rotors) {
+      signs.append(signs.empty() ? "" : ", ").append(rotor->moment_B.z() > 0.0 ? "1" : "-1");
+    }
+    findings_.Warn(
+        "the file's senses of rotation cannot make a yaw moment; they were made to alternate "
+        "around the body",
+        "look whether your rotors turn so: airframe.rotor_senses: [" + signs + "]");
+  }
+
+  // What the user says of actuators that make a moment alone, about the axis that each turns about most.
+  void SetMoments() {
+    if (extras_.moment_max.isZero()) return;
+    bool any = false;
+    for (Motor& motor : motors_) {
+      if (motor.actuator.thrust > 0.0) continue;
+      Eigen::Index axis = 0;
+      motor.actuator.moment_B.cwiseAbs().maxCoeff(&axis);
+      motor.actuator.max = extras_.moment_max(axis);
+      motor.actuator.min = -motor.actuator.max;
+      any = true;
+      if (!(motor.actuator.max > 0.0)) {
+        Fault("airframe.moment_max has a zero", "give the greatest moment about x, y and z");
+        return;
       }
     }
+    if (!any) Fault("airframe.moment_max has no effect: the file has rotors", "take it out");
   }
 
   // Points that hold the geom: its mesh's, else those of a prism around it.
@@ -248,7 +354,7 @@ class Import {
     for (int geom = 0; geom < m_.ngeom; ++geom) {
       if (OfVehicle(m_.geom_bodyid[geom])) HoldGeom(geom, &outline_);
     }
-    for (const Motor& motor : motors_) outline_.Hold(motor.p_BR);
+    for (const Motor& motor : motors_) outline_.Hold(motor.actuator.p_BR);
   }
 
   Eigen::Vector3d ToB(const Eigen::Vector3d& p_W) const {
@@ -259,14 +365,24 @@ class Import {
   MujocoData data_;
   const mjData& d_;
   AirframeExtras extras_;
+  VehicleFindings& findings_;
   int base_ = -1;
   Eigen::Matrix3d R_WB_ = Eigen::Matrix3d::Identity();
   double mass_ = 0.0;
   Eigen::Vector3d p_WB_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d inertia_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d inertia_ = Eigen::Matrix3d::Zero();
   std::vector<Motor> motors_;
   Outline outline_;
 };
+
+std::string InertiaText(const Eigen::Matrix3d& inertia) {
+  const Eigen::Vector3d products(inertia(0, 1), inertia(0, 2), inertia(1, 2));
+  const Eigen::Vector3d moments = inertia.diagonal();
+  if (products.cwiseAbs().maxCoeff() <= kNoProduct * moments.minCoeff()) {
+    return "diaginertia='" + VectorText(moments) + "'";
+  }
+  return "fullinertia='" + VectorText(moments) + " " + VectorText(products) + "'";
+}
 
 std::string Import::Text() const {
   const bool own_hull = !extras_.hull.isZero(), own_feet = !extras_.feet.isZero();
@@ -282,32 +398,31 @@ std::string Import::Text() const {
   const double ball = std::min({0.015, 0.1 * radius, 0.5 * (depth + bottom), radius - at});
 
   std::ostringstream xml;
-  xml << "<mujoco model='imported quadrotor'>\n<custom>\n<numeric name='rotor_drag' data='"
+  xml << "<mujoco model='imported vehicle'>\n<custom>\n<numeric name='rotor_drag' data='"
       << VectorText({extras_.rotor_drag, extras_.rotor_drag, 0.0})
-      << "'/>\n<numeric name='body_drag_area' data='"
-      << estimation::NumberText(extras_.body_drag_area)
+      << "'/>\n<numeric name='body_drag_area' data='" << NumberText(extras_.body_drag_area)
       << "'/>\n</custom>\n<worldbody>\n<body name='vehicle' pos='0 0 1'>\n"
-      << "<freejoint name='vehicle'/>\n<inertial pos='0 0 0' mass='"
-      << estimation::NumberText(mass_) << "' diaginertia='" << VectorText(inertia_) << "'/>\n"
-      << "<geom name='hull' type='cylinder' size='" << estimation::NumberText(radius) << " "
-      << estimation::NumberText(0.5 * (top - bottom)) << "' pos='0 0 "
-      << estimation::NumberText(0.5 * (top + bottom))
+      << "<freejoint name='vehicle'/>\n<inertial pos='0 0 0' mass='" << NumberText(mass_) << "' "
+      << InertiaText(inertia_) << "/>\n"
+      << "<geom name='hull' type='cylinder' size='" << NumberText(radius) << " "
+      << NumberText(0.5 * (top - bottom)) << "' pos='0 0 " << NumberText(0.5 * (top + bottom))
       << "' condim='3' friction='0.6 0.005 0.0001' group='3' rgba='0.5 0.5 0.5 0.3'/>\n";
   for (int i = 0; i < 4; ++i) {
     const double angle = (0.25 + 0.5 * i) * std::numbers::pi;
-    xml << "<geom name='foot" << i << "' type='sphere' size='" << estimation::NumberText(ball)
-        << "' pos='" << VectorText({at * std::cos(angle), at * std::sin(angle), ball - depth})
+    xml << "<geom name='foot" << i << "' type='sphere' size='" << NumberText(ball) << "' pos='"
+        << VectorText({at * std::cos(angle), at * std::sin(angle), ball - depth})
         << "' condim='4' friction='1 0.005 0.0001' rgba='0.1 0.1 0.1 1'/>\n";
-    xml << "<site name='rotor" << i << "' pos='" << VectorText(motors_[i].p_BR) << "'/>\n";
+  }
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    xml << "<site name='rotor" << i << "' pos='" << VectorText(motors_[i].actuator.p_BR) << "'/>\n";
   }
   xml << "</body>\n</worldbody>\n<actuator>\n";
-  for (int i = 0; i < 4; ++i) {
-    const Motor& motor = motors_[i];
-    xml << "<general name='rotor" << i << "' site='rotor" << i << "' gear='0 0 1 0 0 "
-        << estimation::NumberText(std::copysign(motors_.front().torque, motor.torque))
-        << "' ctrllimited='true' ctrlrange='" << estimation::NumberText(motors_.front().low) << " "
-        << estimation::NumberText(motors_.front().high) << "' dyntype='filter' dynprm='"
-        << estimation::NumberText(motors_.front().lag)
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const estimation::Actuator& actuator = motors_[i].actuator;
+    xml << "<general name='rotor" << i << "' site='rotor" << i << "' gear='0 0 "
+        << NumberText(actuator.thrust) << " " << VectorText(actuator.moment_B)
+        << "' ctrllimited='true' ctrlrange='" << NumberText(actuator.min) << " "
+        << NumberText(actuator.max) << "' dyntype='filter' dynprm='" << NumberText(motors_[0].lag)
         << "' gaintype='fixed' gainprm='1' biastype='none'/>\n";
   }
   xml << "</actuator>\n</mujoco>\n";
@@ -325,12 +440,21 @@ bool IsInOwnForm(const std::string& path) {
   return OwnForm(*CompileMjcfFile(path));
 }
 
-std::string ImportVehicle(const std::string& path, const AirframeExtras& extras) {
+std::string ImportVehicle(const std::string& path, const AirframeExtras& extras,
+                          VehicleFindings* findings) {
   std::string text = ReadVehicleFile(path);  // names a file that is not there
   const MujocoModel model = CompileMjcfFile(path);
   if (OwnForm(*model)) return text;
   estimation::CheckWithin("lag of the rotors [s]", extras.rotor_lag, 0.005, 1.0);
-  return Import(*model, extras).Text();
+  const Import import(*model, extras, findings);
+  return findings->faults().empty() ? import.Text() : "";
+}
+
+std::string ImportVehicle(const std::string& path, const AirframeExtras& extras) {
+  VehicleFindings findings;
+  std::string text = ImportVehicle(path, extras, &findings);
+  findings.ThrowFaults();
+  return text;
 }
 
 }  // namespace touchdown::sim

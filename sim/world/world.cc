@@ -97,11 +97,11 @@ class World::Impl {
  public:
   explicit Impl(const WorldConfig& config);
 
-  void Step(const std::array<double, 4>& commands, const Eigen::Vector3d& wind_W);
+  void Step(const estimation::Commands& commands, const Eigen::Vector3d& wind_W);
   estimation::VehicleState Vehicle() const;
   estimation::PadState Pad() const;
-  std::array<double, 4> RotorThrusts() const;
-  std::array<double, 4> RotorCommands() const;
+  estimation::Commands RotorThrusts() const;
+  estimation::Commands RotorCommands() const;
   double Time() const { return static_cast<double>(steps_) * config_.timestep; }
 
   WorldConfig config_;
@@ -135,8 +135,8 @@ class World::Impl {
   std::array<int, 3> pad_qpos_{};  // x, y, yaw
   std::array<int, 3> pad_qvel_{};
   std::array<int, 3> pad_actuator_{};
-  std::array<int, 4> rotor_actuator_{};
-  std::array<int, 4> rotor_activation_{};
+  std::vector<int> rotor_actuator_;
+  std::vector<int> rotor_activation_;
 };
 
 World::Impl::Impl(const WorldConfig& config) : config_(config), course_(CourseOf(config)) {
@@ -177,10 +177,10 @@ void World::Impl::FindIndices() {
   }
   // Activations belong to the last na actuators, in their order.
   const int first_stateful = m->nu - m->na;
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < model_.actuators.size(); ++i) {
     const std::string name = "rotor" + std::to_string(i);
-    rotor_actuator_[i] = mj_name2id(m, mjOBJ_ACTUATOR, name.c_str());
-    rotor_activation_[i] = rotor_actuator_[i] - first_stateful;
+    rotor_actuator_.push_back(mj_name2id(m, mjOBJ_ACTUATOR, name.c_str()));
+    rotor_activation_.push_back(rotor_actuator_.back() - first_stateful);
   }
   vehicle_body_ = mj_name2id(m, mjOBJ_BODY, "vehicle");
   vehicle_qpos_ = m->jnt_qposadr[m->body_jntadr[vehicle_body_]];
@@ -234,8 +234,11 @@ void World::Impl::SetInitialState(double thrust) {
   Put(start.v_WB, qvel);
   Put(start.w_WB_B, qvel + 3);
   // Activations are what the rotors were told, with its lag.
-  const double told = thrust / 4.0 / config_.plant.thrust;
-  for (const int activation : rotor_activation_) d->act[activation] = told;
+  const estimation::Commands told =
+      estimation::AllocationOf(model_).Shares() * thrust / config_.plant.thrust;
+  for (Eigen::Index i = 0; i < told.size(); ++i) {
+    d->act[rotor_activation_[static_cast<std::size_t>(i)]] = told(i);
+  }
 }
 
 void World::Impl::DrivePad() {
@@ -249,19 +252,26 @@ void World::Impl::DrivePad() {
   }
 }
 
-void World::Impl::Step(const std::array<double, 4>& commands, const Eigen::Vector3d& wind_W) {
+void World::Impl::Step(const estimation::Commands& commands, const Eigen::Vector3d& wind_W) {
   if (failed_) throw std::runtime_error("this simulation failed at an earlier step");
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!std::isfinite(commands[i])) {
+  const std::size_t count = rotor_actuator_.size();
+  if (static_cast<std::size_t>(commands.size()) != count) {
+    estimation::ThrowOutOfRange("number of thrust commands", static_cast<double>(commands.size()),
+                                std::to_string(count));
+  }
+  for (Eigen::Index i = 0; i < commands.size(); ++i) {
+    if (!std::isfinite(commands(i))) {
       estimation::ThrowOutOfRange("thrust command of rotor " + std::to_string(i) + " [N]",
-                                  commands[i], "a finite number");
+                                  commands(i), "a finite number");
     }
   }
   estimation::CheckWithin("wind speed [m/s]", wind_W.norm(), 0.0, kMaxWind);
 
   mjData* d = data_.get();
   DrivePad();
-  for (std::size_t i = 0; i < 4; ++i) d->ctrl[rotor_actuator_[i]] = commands[i];
+  for (std::size_t i = 0; i < count; ++i) {
+    d->ctrl[rotor_actuator_[i]] = commands(static_cast<Eigen::Index>(i));
+  }
   PushByAir(wind_W);
 
   failed_ = true;  // until the step came back whole
@@ -358,16 +368,16 @@ estimation::PadState World::Impl::Pad() const {
   return pad;
 }
 
-std::array<double, 4> World::Impl::RotorCommands() const {
-  std::array<double, 4> commands{};
-  for (std::size_t i = 0; i < 4; ++i) commands[i] = data_->act[rotor_activation_[i]];
+estimation::Commands World::Impl::RotorCommands() const {
+  estimation::Commands commands(static_cast<Eigen::Index>(rotor_activation_.size()));
+  for (Eigen::Index i = 0; i < commands.size(); ++i) {
+    commands(i) = data_->act[rotor_activation_[static_cast<std::size_t>(i)]];
+  }
   return commands;
 }
 
-std::array<double, 4> World::Impl::RotorThrusts() const {
-  std::array<double, 4> thrusts = RotorCommands();
-  for (double& thrust : thrusts) thrust *= config_.plant.thrust;
-  return thrusts;
+estimation::Commands World::Impl::RotorThrusts() const {
+  return RotorCommands() * config_.plant.thrust;
 }
 
 World::World(const WorldConfig& config) : impl_(std::make_unique<Impl>(config)) {}
@@ -375,8 +385,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-void World::Step(const std::array<double, 4>& rotor_thrust_commands,
-                 const Eigen::Vector3d& wind_W) {
+void World::Step(const estimation::Commands& rotor_thrust_commands, const Eigen::Vector3d& wind_W) {
   impl_->Step(rotor_thrust_commands, wind_W);
 }
 
@@ -412,8 +421,8 @@ World::PadLag World::MaxPadLag() const {
 const WorldConfig& World::config() const { return impl_->config_; }
 estimation::VehicleState World::vehicle() const { return impl_->Vehicle(); }
 estimation::PadState World::pad() const { return impl_->Pad(); }
-std::array<double, 4> World::rotor_thrusts() const { return impl_->RotorThrusts(); }
-std::array<double, 4> World::rotor_commands() const { return impl_->RotorCommands(); }
+estimation::Commands World::rotor_thrusts() const { return impl_->RotorThrusts(); }
+estimation::Commands World::rotor_commands() const { return impl_->RotorCommands(); }
 Eigen::Vector3d World::drag_force() const { return impl_->drag_; }
 double World::ground_effect_thrust() const { return impl_->ground_effect_; }
 const std::vector<Contact>& World::contacts() const { return impl_->contacts_; }

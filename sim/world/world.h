@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,8 +45,8 @@ enum class ContactKind {
   kFootDeck,    ///< a foot on the deck: how a landing looks
   kHullDeck,    ///< any other part of the vehicle on the deck
   kPadVehicle,  ///< any part of the vehicle on the pad vehicle's body below the deck
-  kObstacle,    ///< any part of the vehicle on an obstacle; it is not pushed back, the flight is over
-  kGround,      ///< any part of the vehicle on the ground
+  kObstacle,  ///< any part of the vehicle on an obstacle; it is not pushed back, the flight is over
+  kGround,    ///< any part of the vehicle on the ground
 };
 
 /// Name as used in results: "foot-deck", "hull-deck", "pad-vehicle", "obstacle", "ground".
@@ -81,7 +80,7 @@ class World {
   /// @param wind_W velocity of the air [m/s].
   /// Throws std::invalid_argument if a command or the wind is not finite, std::runtime_error if the
   /// physics failed (the sentence says how); such a World throws at every later step too.
-  void Step(const std::array<double, 4>& rotor_thrust_commands,
+  void Step(const estimation::Commands& rotor_thrust_commands,
             const Eigen::Vector3d& wind_W = Eigen::Vector3d::Zero());
 
   double time() const;                            ///< steps taken times the time step [s]
@@ -107,10 +106,10 @@ class World {
   estimation::PadState pad() const;
 
   /// Thrust of each rotor now, after its lag [N].
-  std::array<double, 4> rotor_thrusts() const;
+  estimation::Commands rotor_thrusts() const;
 
   /// What the rotors were told, after their lag [N]: a plant's thrusts are others.
-  std::array<double, 4> rotor_commands() const;
+  estimation::Commands rotor_commands() const;
 
   /// Drag applied in the step just taken, in W [N].
   Eigen::Vector3d drag_force() const;

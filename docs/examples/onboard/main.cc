@@ -24,7 +24,7 @@ struct World {
     vehicle.p_WB = {0.0, 0.0, 2.0};
     for (int i = 0; i < 4; ++i) {
       const Vector3d hub(i == 0 || i == 3 ? 0.12 : -0.12, i < 2 ? 0.12 : -0.12, 0.04);
-      model.rotors[i] = {hub, i % 2 == 0 ? 1.0 : -1.0};
+      model.actuators.push_back(estimation::RotorAt(hub, i % 2 == 0 ? 0.016 : -0.016, 7.0));
     }
   }
   Vector3d Pad() const { return Vector3d(6.0 + 0.5 * vehicle.t, 1.0, kDeck); }

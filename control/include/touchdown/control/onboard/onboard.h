@@ -23,11 +23,11 @@ namespace touchdown::control {
 
 /// What the vehicle is to do from now on, at three depths: whoever has an autopilot takes the middle or the last.
 struct Setpoint {
-  double t = 0.0;                                      ///< [s]
-  bool armed = true;                                   ///< false: the rotors are to stand still
-  Eigen::Vector4d thrusts = Eigen::Vector4d::Zero();   ///< of the rotors, in the model's order [N]
-  bool saturated = false;                              ///< of those, one is at a limit
-  Wrench wrench;                                       ///< collective thrust and moment
+  double t = 0.0;                ///< [s]
+  bool armed = true;             ///< false: the rotors are to stand still
+  estimation::Commands thrusts;  ///< of the actuators, in the model's order [N], of moments [N m]
+  bool saturated = false;        ///< of those, one is at a limit
+  Wrench wrench;                 ///< collective thrust and moment
   Eigen::Matrix3d R_WB = Eigen::Matrix3d::Identity();  ///< the attitude that the law wants
   planning::FlatState reference;                       ///< p, v, a, j, yaw of the committed plan
 };
@@ -95,7 +95,7 @@ class Onboard {
   /// from later than t, by more than a moment, are forgotten.
   /// @throws std::invalid_argument if its state at t is not known then or not below the ceiling, if the flight has
   /// begun, or for a time or a thrust out of its range.
-  void Begin(double t, const Eigen::Vector4d& thrusts);
+  void Begin(double t, const estimation::Commands& thrusts);
 
   /// The set-point for the time t [s], which is later than all before; if it is not, or is not finite, the last one
   /// again. Before Begin: the rotors stand still.

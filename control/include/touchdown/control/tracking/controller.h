@@ -37,7 +37,7 @@ struct ControlOutput {
 };
 
 /// Gains as closed-loop frequencies and damping ratios; mass and inertia scale them. The defaults
-/// leave room for a rotor lag of 35 ms.
+/// leave room for a rotor lag of 35 ms; OptionsFor has those of a vehicle.
 struct ControllerOptions {
   double position_frequency = 2.8;    ///< horizontal [rad/s]
   double position_damping = 0.9;      ///< [-]
@@ -52,6 +52,10 @@ struct ControllerOptions {
   double thrust_fraction_min =
       0.15;  ///< of the hover thrust: the desired force's least vertical [-]
 };
+
+/// The default options, with lower frequencies for a vehicle whose rotors lag more or that cannot be turned as fast
+/// (docs/vehicles.md). Throws std::invalid_argument as estimation::AllocationOf does.
+ControllerOptions OptionsFor(const estimation::VehicleModel& model);
 
 /// Throws std::invalid_argument naming the first option out of its range.
 void Validate(const ControllerOptions& options);

@@ -77,8 +77,8 @@ struct HeightFieldObstacle {
 /// The occupied cells of an OctoMap file.
 struct OctomapObstacle {
   std::string file;
-  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< of the file's origin in W [m]
-  double yaw_deg = 0.0;                          ///< [deg]
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();                ///< of the file's origin in W [m]
+  double yaw_deg = 0.0;                                        ///< [deg]
   Eigen::Vector3d crop_min = Eigen::Vector3d::Constant(-1e4);  ///< in the file's frame [m] ...
   Eigen::Vector3d crop_max = Eigen::Vector3d::Constant(1e4);   ///< ... cells' middles within count
 };
@@ -277,6 +277,9 @@ struct Scenario {
     double body_drag_area = 0.0;                     ///< [m^2]
     Eigen::Vector3d hull = Eigen::Vector3d::Zero();  ///< radius, bottom, top; 0: from the geoms [m]
     Eigen::Vector2d feet = Eigen::Vector2d::Zero();  ///< radius, depth; 0: from the hull [m]
+    std::vector<double> rotor_senses;                ///< +1 or -1; empty: the file's
+    bool alternate_senses = false;                   ///< where those of the file cannot steer
+    Eigen::Vector3d moment_max = Eigen::Vector3d::Zero();  ///< 0: the file's [N m]
   } airframe;
   double timeout = 60.0;     ///< [s]
   double stand_limit = 0.0;  ///< a flight that stands for so long is over [s]; 0: never

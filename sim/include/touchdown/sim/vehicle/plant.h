@@ -12,7 +12,7 @@ struct PlantFactors {
   double inertia = 1.0;    ///< all three principal moments
   double drag = 1.0;       ///< rotor drag and body drag
   double rotor_lag = 1.0;  ///< time constant of the thrust
-  double thrust = 1.0;     ///< of each rotor, over what it was told; reaction torque with it
+  double thrust = 1.0;     ///< of each actuator, over what it was told; reaction torques with it
 
   bool operator==(const PlantFactors&) const = default;
 };

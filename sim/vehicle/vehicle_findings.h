@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace touchdown::sim {
+
+/// Something about a vehicle's file, and what mends it; each a clause without a full stop.
+struct VehicleFinding {
+  std::string what;
+  std::string remedy;
+};
+
+/// All that was found in a vehicle's file: a user mends it in one go.
+class VehicleFindings {
+ public:
+  /// Without this mended the vehicle cannot be flown.
+  void Fault(std::string what, std::string remedy) {
+    faults_.push_back({std::move(what), std::move(remedy)});
+  }
+  /// It flies, but not quite as the file says.
+  void Warn(std::string what, std::string remedy) {
+    warnings_.push_back({std::move(what), std::move(remedy)});
+  }
+
+  const std::vector<VehicleFinding>& faults() const { return faults_; }
+  const std::vector<VehicleFinding>& warnings() const { return warnings_; }
+
+  /// Throws std::invalid_argument with every fault and its remedy, if there is one.
+  void ThrowFaults() const;
+
+ private:
+  std::vector<VehicleFinding> faults_;
+  std::vector<VehicleFinding> warnings_;
+};
+
+}  // namespace touchdown::sim
