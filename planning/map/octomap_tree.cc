@@ -18,9 +18,9 @@
 namespace touchdown::planning {
 namespace {
 
-constexpr int kTreeSide = 65536;         // of a tree [cells]
-constexpr double kOverlap = 1e-3;        // that is none [cells]
-constexpr int kMostLeaves = 5'000'000;   // of a resampled tree
+constexpr int kTreeSide = 65536;        // of a tree [cells]
+constexpr double kOverlap = 1e-3;       // that is none [cells]
+constexpr int kMostLeaves = 5'000'000;  // of a resampled tree
 
 CellIndex ChildOf(unsigned i) { return {i & 1 ? 1 : 0, i & 2 ? 1 : 0, i & 4 ? 1 : 0}; }
 
@@ -142,8 +142,9 @@ class ResampledTree : public octomap::OcTree {
 
   void Set(const CellIndex& low, int side, int log_odds) {
     if (++leaves_ > kMostLeaves) {
-      throw std::invalid_argument("in cells of " + std::to_string(getResolution()) +
-                                  " m it has more than five million leaves; crop it to where is flown");
+      throw std::invalid_argument(
+          "in cells of " + std::to_string(getResolution()) +
+          " m it has more than five million leaves; crop it to where is flown");
     }
     if (root == nullptr) {
       root = new Node;

@@ -128,6 +128,20 @@ struct PersistentMap::Impl {
     });
   }
 
+  /// What the octree says of a cell.
+  std::optional<std::int8_t> ReadLogOdds(const CellIndex& cell) const {
+    const octomap::OcTreeNode* node = InTree(cell) ? tree->search(KeyOf(cell)) : nullptr;
+    if (node == nullptr) return std::nullopt;
+    return StepsOf(node->getLogOdds());
+  }
+  /// The octree holds all of its 26 neighbours free, or they are ground.
+  bool IsAmidFree(const CellIndex& cell) const {
+    bool amid = true;
+    ForEachCell({cell.array() - 1, cell.array() + 2}, [&](const CellIndex& near) {
+      amid &= IsGround(near, options) || ReadLogOdds(near).value_or(0) < 0;
+    });
+    return amid;
+  }
   /// Calls visit(cube) for every leaf of the octree that is occupied.
   template <class Visit>
   void ForEachObstacle(Visit&& visit) const {
@@ -195,9 +209,7 @@ std::optional<std::int8_t> PersistentMap::LogOdds(const CellIndex& cell) const {
     if ((*block)[cell] == kUnknownLogOdds) return std::nullopt;
     return (*block)[cell];
   }
-  const octomap::OcTreeNode* node = impl_->tree->search(KeyOf(cell));
-  if (node == nullptr) return std::nullopt;
-  return StepsOf(node->getLogOdds());
+  return impl_->ReadLogOdds(cell);
 }
 
 bool PersistentMap::IsOccupied(const CellIndex& cell) const {
@@ -226,21 +238,20 @@ void PersistentMap::Read(std::istream& in) {
 
 PriorCheck PersistentMap::CheckPrior() const {
   PriorCheck check;
-  const octomap::OcTree& prior = *impl_->tree;
   const int occupied = impl_->occupied();
   impl_->ForEachObstacle([&](const CellCube& cube) {
     for (int z = cube.low.z(); z < cube.low.z() + cube.side; ++z) {
-      if (!IsGround({0, 0, z}, impl_->options)) check.occupied += std::int64_t{cube.side} * cube.side;
+      if (!IsGround({0, 0, z}, impl_->options))
+        check.occupied += std::int64_t{cube.side} * cube.side;
     }
   });
   impl_->blocks->ForEachPut([&](const CellValue& sensed) {
-    const octomap::OcTreeNode* node = prior.search(KeyOf(sensed.cell));
-    if (node == nullptr || IsGround(sensed.cell, impl_->options)) return;
-    const int said = StepsOf(node->getLogOdds());
-    if (said >= occupied) {
+    const auto said = impl_->ReadLogOdds(sensed.cell);
+    if (!said || IsGround(sensed.cell, impl_->options)) return;
+    if (*said >= occupied) {
       ++check.looked_at;
       if (sensed.log_odds < 0) check.gone.push_back(sensed.cell);
-    } else if (said < 0 && sensed.log_odds >= occupied) {
+    } else if (*said < 0 && sensed.log_odds >= occupied && impl_->IsAmidFree(sensed.cell)) {
       check.appeared.push_back(sensed.cell);
     }
   });

@@ -29,7 +29,9 @@ octomap::OcTree RandomTree(double resolution, unsigned seed) {
   octomap::OcTree tree(resolution);
   Draw draw(seed);
   for (int i = 0; i < 60; ++i) {
-    const float log_odds = i % 3 == 0 ? 1.5f : i % 3 == 1 ? -1.0f : 0.1f * static_cast<float>(i % 7);
+    const float log_odds = i % 3 == 0   ? 1.5f
+                           : i % 3 == 1 ? -1.0f
+                                        : 0.1f * static_cast<float>(i % 7);
     CellIndex low, high;
     for (int c = 0; c < 3; ++c) {
       low[c] = static_cast<int>(std::floor(draw.Uniform(-1.5, 1.2) / resolution));
@@ -50,8 +52,8 @@ std::vector<Leaf> LeavesOf(const octomap::OcTree& tree) {
     const int side = 1 << (16 - leaf.getDepth());
     const octomap::OcTreeKey key = leaf.getIndexKey();
     const Eigen::Array3d low = Eigen::Array3d(key[0], key[1], key[2]) - 32768.0;
-    leaves.push_back({low * tree.getResolution(), (low + side) * tree.getResolution(),
-                      leaf->getLogOdds()});
+    leaves.push_back(
+        {low * tree.getResolution(), (low + side) * tree.getResolution(), leaf->getLogOdds()});
   }
   return leaves;
 }
@@ -168,26 +170,31 @@ TEST(PriorCheck, CountsWhatWasSensedSince) {
   PersistentMap memory = ReadFrom(&tree, true);
   OccupancyMap map{OccupancyMapOptions{}};
   memory.Refill(&map);
+  EXPECT_TRUE(map.IsBlocked(CellIndex(20, 0, 5)));
+  EXPECT_EQ(map.CountObservedFree(), 0);  // no stop may use what the file holds free
   memory.Flush(&map);
   PriorCheck check = memory.CheckPrior();
   EXPECT_EQ(check.occupied, 2 * 20 * 9);  // the lowest cells are ground
   EXPECT_EQ(check.looked_at, 0);          // a file is not compared with itself
   map.SetState({20, 0, 5}, CellState::kFree);
   map.SetState({20, 1, 5}, CellState::kOccupied);
-  map.SetState({20, 2, 0}, CellState::kFree);       // ground
+  map.SetState({20, 2, 0}, CellState::kFree);  // ground
   map.SetState({12, 0, 5}, CellState::kOccupied);
-  map.SetState({12, 0, 0}, CellState::kOccupied);   // ground
-  map.SetState({12, 5, 5}, CellState::kFree);       // as it says
-  map.SetState({40, 0, 5}, CellState::kOccupied);   // it says nothing there
+  map.SetState({12, 0, 0}, CellState::kOccupied);  // ground
+  map.SetState({19, 5, 5},
+               CellState::kOccupied);  // of the wall's face: at the border of free space
+  map.SetState({18, 0, 5}, CellState::kOccupied);
+  map.SetState({12, 5, 5}, CellState::kFree);      // as it says
+  map.SetState({40, 0, 5}, CellState::kOccupied);  // it says nothing there
   map.SetState({20, 4, 5}, CellState::kFree);
-  memory.Recentre({30.0, 0.0, 1.0}, &map);          // all of it leaves the window, and comes back
+  memory.Recentre({30.0, 0.0, 1.0}, &map);  // all of it leaves the window, and comes back
   memory.Recentre({0.0, 0.0, 1.0}, &map);
-  map.SetState({20, 4, 5}, CellState::kOccupied);   // the latest look counts
+  map.SetState({20, 4, 5}, CellState::kOccupied);  // the latest look counts
   memory.Flush(&map);
   check = memory.CheckPrior();
   EXPECT_EQ(check.looked_at, 3);
   EXPECT_THAT(check.gone, ElementsAre(CellIndex(20, 0, 5)));
-  EXPECT_THAT(check.appeared, ElementsAre(CellIndex(12, 0, 5)));
+  EXPECT_THAT(check.appeared, ElementsAre(CellIndex(12, 0, 5), CellIndex(18, 0, 5)));
 }
 
 TEST(PriorCheck, ObstaclesNearABox) {

@@ -30,7 +30,9 @@ struct PriorCheck {
   std::int64_t occupied = 0;        ///< cells that the file holds occupied
   std::int64_t looked_at = 0;       ///< of these, those that were observed, occupied or not
   std::vector<CellIndex> gone;      ///< of these, those that are free in the end; in order
-  std::vector<CellIndex> appeared;  ///< that the file holds free, and that are occupied in the end; in order
+  /// That the file holds free, and that are occupied in the end; in order. Not those at the border of its free space:
+  /// of an obstacle behind that a return may fall a cell short.
+  std::vector<CellIndex> appeared;
 };
 
 /// Everything that was ever observed: what a rolling map forgets when its window moves on, it gets
