@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 
@@ -91,10 +92,13 @@ class Trial {
                                            world_.time(), result_.seed, error.what()));
     }
     Finish();
+    if (has_prior_) solvers::AddThreadCpu(&result_.timing.judging_cpu_s, [&] { ComparePrior(); });
     return result_;
   }
 
-  planning::PersistentMap TakePersistentMap() { return onboard_.TakeMemory(); }
+  planning::PersistentMap TakePersistentMap() {
+    return memory_ ? std::move(*memory_) : onboard_.TakeMemory();
+  }
 
  private:
   Trial(const Scenario& scenario, std::uint64_t seed, const TrialDraw& draw,
@@ -105,6 +109,7 @@ class Trial {
         perception_(scenario, world_, seed),
         onboard_(MakeOnboard(scenario, world_.model(), world_.pad_course(), registries)),
         clearance_(world_.config().obstacles, world_.model()),
+        has_prior_(scenario.map_prior != "none"),
         task_(scenario.task),
         stay_(StayOf(scenario)),
         goal_(GoalOf(scenario)),
@@ -363,6 +368,27 @@ class Trial {
     Note(world_.time(), "outcome", ToString(result_.outcome));
   }
 
+  // What was sensed of the prior, and for the record what of it is near.
+  void ComparePrior() {
+    memory_ = onboard_.TakeMemory();
+    const planning::PriorCheck check = memory_->CheckPrior();
+    PriorFigures& figures = result_.prior.emplace();
+    figures.occupied = check.occupied;
+    figures.looked_at = check.looked_at;
+    figures.gone = std::ssize(check.gone);
+    figures.appeared = std::ssize(check.appeared);
+    if (record_ == nullptr || record_->samples.empty()) return;
+    const planning::OccupancyMap& map = onboard_.map();
+    planning::CellBox near = {map.origin(), map.origin() + map.size()};
+    for (const RecordSample& sample : record_->samples) {
+      if (!map.HasIndex(sample.vehicle.p_WB)) continue;
+      const planning::CellIndex cell = map.CellOf(sample.vehicle.p_WB);
+      near.low = near.low.cwiseMin(cell - map.size() / 2);
+      near.high = near.high.cwiseMax(cell + map.size() / 2);
+    }
+    record_->prior = {memory_->PriorObstacles(near), check.gone, check.appeared};
+  }
+
   void BoundLandingTime() {
     const sim::OraclePadPrediction pad(world_.pad_course());
     result_.t_star_s = LandingTimeLowerBound(landing_time_, pad);
@@ -376,6 +402,7 @@ class Trial {
   Perception perception_;
   control::Onboard onboard_;
   sim::LeastClearance clearance_;
+  bool has_prior_;
   TaskKind task_;
   std::optional<StayTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to
@@ -396,6 +423,7 @@ class Trial {
   std::string touched_;
   std::string no_plan_reason_;   ///< of the last replanning step; empty: it made a plan
   std::string physics_failure_;  ///< empty while the physics works
+  std::optional<planning::PersistentMap> memory_;  ///< of a flight with a prior, at its end
 };
 
 // What the simulator or a backend refuses before the flight is the user's to mend.

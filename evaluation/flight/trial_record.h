@@ -12,7 +12,7 @@
 #include "touchdown/control/tracking/controller.h"
 #include "touchdown/estimation/base/vehicle_state.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
-#include "touchdown/planning/map/occupancy_map.h"
+#include "touchdown/planning/map/persistent_map.h"
 #include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::evaluation {
@@ -69,6 +69,12 @@ struct RecordPlan {
   ReplanOutcome result;
 };
 
+/// What a picture shows of map.prior near the flight.
+struct RecordPrior {
+  std::vector<planning::CellCube> occupied;  ///< what the prior holds occupied
+  std::vector<planning::CellIndex> gone, appeared;
+};
+
 /// Everything of one trial that is worth keeping, in memory until it is written at the end.
 struct TrialRecord {
   double map_resolution = 0.1;                                 ///< [m]
@@ -80,6 +86,7 @@ struct TrialRecord {
   std::vector<RecordSample> samples;
   std::vector<RecordEvent> events;
   std::vector<RecordPlan> plans;
+  RecordPrior prior;
 };
 
 }  // namespace touchdown::evaluation

@@ -42,6 +42,14 @@ struct Following {
   double relative_speed_mps = 0.0;  ///< mean norm of the velocity relative to the pad
 };
 
+/// What the flight found of its map.prior (docs/worlds.md): numbers of cells.
+struct PriorFigures {
+  std::int64_t occupied = 0;   ///< that the prior holds occupied
+  std::int64_t looked_at = 0;  ///< of these, those that were observed
+  std::int64_t gone = 0;       ///< of these, those that are free
+  std::int64_t appeared = 0;   ///< that the prior holds free and that are occupied
+};
+
 /// Wall-clock figures of one trial. Nothing else depends on them.
 struct TrialTiming {
   double wall_s = 0.0;         ///< the whole trial
@@ -89,6 +97,7 @@ struct TrialResult {
   /// max_speed_mps and max_acceleration_mps2 are within the scenario's limits, as T* supposes.
   bool within_limits = false;
   std::optional<SafetyFigures> safety;  ///< of a planner that flies by the safety rule
+  std::optional<PriorFigures> prior;    ///< where the scenario has one
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }

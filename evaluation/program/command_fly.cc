@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown fly and land: one closed-loop flight, its summary, and on request its record and picture.
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,6 +34,25 @@ struct FlyArguments {
   std::string save_map;
   bool json = false;
 };
+
+// 5,031
+std::string Grouped(std::int64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t i = digits.size(); i > 3;) digits.insert(i -= 3, ",");
+  return digits;
+}
+
+std::string PriorSentences(const PriorFigures& prior) {
+  std::string text = fmt::format(
+      "map.prior: {} of its {} occupied cells were looked at; {} of them are free. {} cells that "
+      "it holds free are occupied.\n",
+      Grouped(prior.looked_at), Grouped(prior.occupied), Grouped(prior.gone),
+      Grouped(prior.appeared));
+  if (prior.gone + prior.appeared > 0) {
+    text += "warning: what was seen contradicts map.prior; --save-map writes a newer one.\n";
+  }
+  return text;
+}
 
 double ClearanceOf(const Scenario& scenario, const Registries& registries) {
   return PlanClearance(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)), registries);
@@ -116,6 +137,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
       r.timing.simulated_s / r.timing.wall_s, 100.0 * r.timing.planning_cpu_s / r.timing.cpu_s,
       100.0 * r.timing.physics_cpu_s / r.timing.cpu_s,
       100.0 * (r.timing.sensing_cpu_s + r.timing.mapping_cpu_s) / r.timing.cpu_s);
+  if (r.prior) text += PriorSentences(*r.prior);
   return text;
 }
 

@@ -74,6 +74,7 @@ CREATE TABLE obstacle(id INTEGER PRIMARY KEY, key TEXT, kind TEXT, cx REAL, cy R
 CREATE TABLE surface(obstacle INTEGER, corners BLOB, triangles BLOB);
 CREATE TABLE zone(id INTEGER PRIMARY KEY, term TEXT, shape TEXT, cx REAL, cy REAL, cz REAL,
   size_x REAL, size_y REAL, size_z REAL);
+CREATE TABLE prior(state TEXT PRIMARY KEY, cubes BLOB);
 CREATE TABLE timing(stage TEXT PRIMARY KEY, cpu_s REAL);
 )sql";
 
@@ -268,7 +269,13 @@ void WritePlans(SqliteDb& db, const std::vector<RecordPlan>& plans) {
   }
 }
 
-// As float32 and int32, little-endian as all machines are that this runs on.
+// Little-endian, as all machines are that this runs on.
+template <typename Value>
+SqlBlob BytesOf(const std::vector<Value>& values) {
+  return {{reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)}};
+}
+
+// As float32 and int32.
 void WriteSurface(SqliteDb& db, int obstacle, const sim::TriangleMesh& surface) {
   std::vector<float> corners;
   std::vector<std::int32_t> triangles;
@@ -278,11 +285,8 @@ void WriteSurface(SqliteDb& db, int obstacle, const sim::TriangleMesh& surface) 
   for (const Eigen::Vector3i& of : surface.triangles()) {
     triangles.insert(triangles.end(), of.begin(), of.end());
   }
-  const auto bytes = [](const auto& values) {
-    return SqlBlob{
-        {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values.front())}};
-  };
-  db.Prepare("INSERT INTO surface VALUES(?, ?, ?)").Run(obstacle, bytes(corners), bytes(triangles));
+  db.Prepare("INSERT INTO surface VALUES(?, ?, ?)")
+      .Run(obstacle, BytesOf(corners), BytesOf(triangles));
 }
 
 struct ObstacleWords {
@@ -332,6 +336,23 @@ void WriteZones(SqliteDb& db, const std::vector<planning::NamedZone>& zones) {
   }
 }
 
+void WritePrior(SqliteDb& db, const RecordPrior& prior) {
+  SqliteStatement insert = db.Prepare("INSERT INTO prior VALUES(?, ?)");
+  const auto write = [&](const char* state, const auto& cubes, const auto& cube_of) {
+    if (cubes.empty()) return;
+    std::vector<std::int32_t> values;
+    for (const auto& cube : cubes) {
+      const auto [low, side] = cube_of(cube);
+      values.insert(values.end(), {low.x(), low.y(), low.z(), side});
+    }
+    insert.Run(state, BytesOf(values));
+  };
+  const auto one = [](const planning::CellIndex& cell) { return planning::CellCube{cell, 1}; };
+  write("occupied", prior.occupied, [](const planning::CellCube& cube) { return cube; });
+  write("gone", prior.gone, one);
+  write("new", prior.appeared, one);
+}
+
 void WriteTiming(SqliteDb& db, const TrialTiming& timing) {
   SqliteStatement insert = db.Prepare("INSERT INTO timing VALUES(?, ?)");
   insert.Run("physics", timing.physics_cpu_s);
@@ -369,6 +390,7 @@ void WriteRecord(const std::string& path, const Scenario& scenario, const TrialR
     WriteRequests(db, record.plans);
     WriteObstacles(db, scenario);
     WriteZones(db, record.zones);
+    WritePrior(db, record.prior);
     WriteTiming(db, result.timing);
     transaction.Commit();
   }

@@ -69,6 +69,14 @@ Json SafetyJson(const std::optional<SafetyFigures>& safety) {
           {"falsely_free_cells", safety->falsely_free_cells}};
 }
 
+Json PriorJson(const std::optional<PriorFigures>& prior) {
+  if (!prior) return nullptr;
+  return {{"occupied_cells", prior->occupied},
+          {"looked_at_cells", prior->looked_at},
+          {"gone_cells", prior->gone},
+          {"new_cells", prior->appeared}};
+}
+
 Json FollowingJson(const std::optional<Following>& following) {
   if (!following) return nullptr;
   return {{"mean_error_m", following->mean_error_m},
@@ -142,6 +150,7 @@ Json LandJson(const Scenario& scenario, const TrialResult& result) {
   json["estimator"] = EstimatorJson(result.estimator);
   json["own_state"] = OwnStateJson(result.own_state);
   json["safety"] = SafetyJson(result.safety);
+  json["map_prior"] = PriorJson(result.prior);
   json["planner"] = scenario.planner;
   json["backend"] = scenario.solver_name();
   json["scenario"] = scenario.name;

@@ -79,9 +79,10 @@ void AddSensorKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("depth.rate", Above(0, 100, "Hz"), "rate of the depth camera",
                                   TOUCHDOWN_AT(depth_rate)));
   AddDepthKeys(keys);
-  keys.push_back(Text("map.prior", "none or the path of an OctoMap file (.bt or .ot)",
-                      "what is known of the obstacles before the flight, in cells of 0.1 m",
-                      TOUCHDOWN_AT(map_prior)));
+  keys.push_back(Text(
+      "map.prior", "none or the path of an OctoMap file (.bt or .ot)",
+      "what is believed of the obstacles before the flight, in cells of any size (docs/worlds.md)",
+      TOUCHDOWN_AT(map_prior)));
   keys.push_back(
       Choice("map.observed_free", {"sensed", "truth"},
              "which cells stops may use: what the depth camera saw free, or, for studies "

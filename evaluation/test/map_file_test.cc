@@ -11,7 +11,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
+#include <nlohmann/json.hpp>
 
+#include "evaluation/base/sqlite_db.h"
 #include "evaluation/flight/closed_loop.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 #include "touchdown/evaluation/program/program.h"
@@ -26,7 +28,7 @@ using ::testing::IsEmpty;
 
 struct Ran {
   int status = 0;
-  std::string err;
+  std::string out, err;
 };
 
 Ran Call(std::vector<const char*> arguments) {
@@ -36,7 +38,7 @@ Ran Call(std::vector<const char*> arguments) {
   ::testing::internal::CaptureStdout();
   ::testing::internal::CaptureStderr();
   ran.status = RunProgram(static_cast<int>(arguments.size()), arguments.data(), registries);
-  ::testing::internal::GetCapturedStdout();
+  ran.out = ::testing::internal::GetCapturedStdout();
   ran.err = ::testing::internal::GetCapturedStderr();
   return ran;
 }
@@ -157,10 +159,96 @@ TEST_F(MapFile, AMapThatCannotBeUsedIsBadInput) {
   refuses(Path(""), "this is a directory");
   std::ofstream(Path("text.bt")) << "Hello.\n";
   refuses(Path("text.bt"), "it is no OctoMap file");
-  octomap::OcTree coarse(0.2);
+  octomap::OcTree coarse(99.97);
   coarse.updateNode(1.0, 1.0, 1.0, true);
   ASSERT_TRUE(coarse.write(Path("coarse.ot")));
-  refuses(Path("coarse.ot"), "its resolution is 0.2");
+  refuses(Path("coarse.ot"), "more than five million leaves; crop it");
+}
+
+constexpr const char* kBeliefs = TOUCHDOWN_SOURCE_DIR "/docs/examples/worlds/";
+
+// Cells of 0.1 m that wall_gone.bt holds occupied: two walls of 0.2 m, the lowest cells are ground.
+constexpr int kGoneWall = 2 * 60 * 29;
+constexpr int kStandingWall = 2 * 40 * 29;
+
+Scenario Believing(const std::string& world, const std::string& belief) {
+  return LoadScenario(kBeliefs + world + ".yaml", {"map.prior=" + (kBeliefs + belief + ".bt")},
+                      StandardRegistries());
+}
+
+TEST_F(MapFile, AWallThatDoesNotStandIsFoundGone) {
+  TrialRecord record;
+  const TrialResult result =
+      RunTrial(Believing("wall_gone", "wall_gone"), 1, StandardRegistries(), &record);
+  EXPECT_TRUE(result.landed()) << result.detail;
+  ASSERT_TRUE(result.prior.has_value());
+  EXPECT_EQ(result.prior->occupied, kGoneWall + kStandingWall);
+  EXPECT_GT(result.prior->gone, 500);
+  EXPECT_GE(result.prior->looked_at, result.prior->gone);
+  EXPECT_EQ(result.prior->appeared, 0);
+  ASSERT_EQ(std::ssize(record.prior.gone), result.prior->gone);
+  for (const planning::CellIndex& cell : record.prior.gone) {
+    EXPECT_TRUE(cell.x() == 80 || cell.x() == 81) << cell.transpose();
+  }
+  std::int64_t drawn = 0;  // both walls, with what of their cubes is ground
+  for (const planning::CellCube& cube : record.prior.occupied) {
+    drawn += std::int64_t{cube.side} * cube.side * cube.side;
+  }
+  EXPECT_EQ(drawn, (kGoneWall + kStandingWall) / 29 * 30);
+}
+
+TEST_F(MapFile, AWallThatThePriorLacksIsFoundNew) {
+  TrialRecord record;
+  const TrialResult result =
+      RunTrial(Believing("wall_new", "wall_new"), 1, StandardRegistries(), &record);
+  EXPECT_TRUE(result.landed()) << result.detail;
+  ASSERT_TRUE(result.prior.has_value());
+  EXPECT_EQ(result.prior->occupied, kStandingWall);
+  EXPECT_EQ(result.prior->gone, 0);
+  EXPECT_GT(result.prior->appeared, 500);
+  ASSERT_EQ(std::ssize(record.prior.appeared), result.prior->appeared);
+  for (const planning::CellIndex& cell : record.prior.appeared) {
+    EXPECT_TRUE(cell.x() >= 79 && cell.x() <= 82) << cell.transpose();
+  }
+}
+
+TEST_F(MapFile, APriorThatAgreesIsNotContradicted) {
+  const TrialResult result =
+      RunTrial(Believing("wall_new", "wall_gone"), 1, StandardRegistries(), nullptr);
+  EXPECT_TRUE(result.landed()) << result.detail;
+  ASSERT_TRUE(result.prior.has_value());
+  EXPECT_GT(result.prior->looked_at, 500);
+  EXPECT_EQ(result.prior->gone, 0);
+  EXPECT_EQ(result.prior->appeared, 0);
+}
+
+std::string InRecord(const std::string& path, const std::string& query) {
+  SqliteDb db(path, SqliteDb::Mode::kReadOnly);
+  SqliteStatement statement = db.Prepare(query);
+  return statement.Step() ? statement.Text(0) : "none";
+}
+
+TEST_F(MapFile, WhatBecameOfThePriorIsSaidAndKept) {
+  const std::string scenario = std::string(kBeliefs) + "wall_gone.yaml";
+  const std::string prior = std::string("map.prior=") + kBeliefs + "wall_gone.bt";
+  const std::string path = Path("flight.db");
+  const Ran said =
+      Call({"land", scenario.c_str(), "--set", prior.c_str(), "--record", path.c_str()});
+  EXPECT_EQ(said.status, 0) << said.err;
+  const auto kept = nlohmann::json::parse(InRecord(
+      path, "SELECT json_extract(value, '$.map_prior') FROM meta WHERE key = 'result_json'"));
+  EXPECT_EQ(kept.at("occupied_cells"), kGoneWall + kStandingWall);
+  EXPECT_EQ(
+      InRecord(path, "SELECT CAST(length(cubes) / 16 AS TEXT) FROM prior WHERE state = 'gone'"),
+      kept.at("gone_cells").dump());
+  EXPECT_EQ(InRecord(path, "SELECT CAST(length(cubes) AS TEXT) FROM prior WHERE state = 'new'"),
+            "none");
+  EXPECT_THAT(said.out, HasSubstr(" of its 5,800 occupied cells were looked at; "));
+  EXPECT_THAT(said.out, HasSubstr("\nwarning: "));
+  const Ran json = Call({"land", scenario.c_str(), "--set", prior.c_str(), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(json.out).at("map_prior"), kept);
+  const Ran without = Call({"land", scenario.c_str(), "--set", "map.prior=none"});
+  EXPECT_THAT(without.out, ::testing::Not(HasSubstr("map.prior")));
 }
 
 TEST_F(MapFile, APlaceForNoMapIsBadInputBeforeTheFlight) {

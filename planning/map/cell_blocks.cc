@@ -42,7 +42,7 @@ CellIndex CellBlocks::LowOf(Key key) {
 void CellBlocks::Put(const CellValue& value) {
   const CellIndex& cell = value.cell;
   if ((cell.array() < -kReach).any() || (cell.array() >= kReach).any()) return;
-  (*Make(cell))[cell] = value.log_odds;
+  Make(cell)->Put(value);
 }
 
 const CellBlock* CellBlocks::Find(const CellIndex& cell) const {

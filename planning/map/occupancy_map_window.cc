@@ -80,8 +80,7 @@ void OccupancyMap::Forget(const CellIndex& cell, const CellBox& stays, CellBlock
 void OccupancyMap::Restore(const CellValue& value) {
   if (!InWindow(value.cell)) return;
   const std::int8_t log_odds = std::clamp(value.log_odds, min_, max_);
-  const double top = (value.cell.z() + 1) * options_.resolution;
-  if (log_odds >= 0 && top <= options_.ground_height) return;
+  if (log_odds >= 0 && IsGround(value.cell, options_)) return;
   Cell restored;
   restored.log_odds = log_odds;
   restored.hit_range = 0;  // from where it was hit is forgotten: only a sharp look outweighs it

@@ -8,7 +8,7 @@
 
 #include <octomap/octomap.h>
 
-#include "planning/map/octomap_file.h"
+#include "planning/map/octomap_tree.h"
 
 namespace touchdown::planning {
 namespace {
@@ -22,17 +22,9 @@ OccupiedCells ReadOccupiedCells(std::istream& in) {
   text << in.rdbuf();
   const std::string bytes = text.str();
   const OctomapFile file = CheckOctomapFile(bytes);
-  if (!(file.resolution >= 1e-3 && file.resolution <= 100.0)) {
-    throw std::invalid_argument("its resolution is " + std::to_string(file.resolution) +
-                                " m; allowed is [0.001, 100] m");
-  }
   OccupiedCells occupied{file.resolution, {}};
   octomap::OcTree tree(file.resolution);
-  if (file.nodes.empty()) return occupied;
-  std::istringstream nodes{std::string(file.nodes)};
-  file.format == MapFormat::kBinary ? tree.readBinaryData(nodes) : tree.readData(nodes);
-  // OctoMap reads a root without children, a file in which nothing is known, as one occupied leaf.
-  if (tree.size() == 1) return occupied;
+  ReadNodes(file, &tree);
   for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
     if (!tree.isNodeOccupied(*leaf)) continue;
     const int side = static_cast<int>(std::lround(leaf.getSize() / file.resolution));

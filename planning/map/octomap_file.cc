@@ -100,6 +100,10 @@ OctomapFile CheckOctomapFile(std::string_view file) {
     data = word == "data";
   }
   if (id != "OcTree") Refuse("it holds a tree of type '" + id + "', and only OcTree is read");
+  if (!(result.resolution >= 1e-3 && result.resolution <= 100.0)) {
+    Refuse("its resolution is " + std::to_string(result.resolution) +
+           " m; allowed is [0.001, 100] m");
+  }
   NodeWalk walk(file);
   if (size > 0) {
     result.format == MapFormat::kBinary ? walk.BinaryNode(0) : walk.LogOddsNode(0);

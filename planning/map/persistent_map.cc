@@ -13,19 +13,16 @@
 
 #include <octomap/octomap.h>
 
-#include "planning/map/octomap_file.h"
+#include "planning/map/octomap_tree.h"
 
 namespace touchdown::planning {
 
 namespace {
 
 constexpr int kKeyOffset = CellBlocks::kReach;
-constexpr unsigned kBlockDepth = 16 - CellBlock::kSideLog2;  // in the octree
-
-std::int8_t Steps(float log_odds) {
-  return static_cast<std::int8_t>(
-      std::clamp(std::lround(log_odds / OccupancyMap::kLogOddsStep), -127L, 127L));
-}
+constexpr double kSameSize = 1e-6;  // within it a file's cells are the map's
+constexpr unsigned kLeafDepth = 16;
+constexpr unsigned kBlockDepth = kLeafDepth - CellBlock::kSideLog2;  // in the octree
 
 bool InTree(const CellIndex& cell) {
   return (cell.array() >= -kKeyOffset).all() && (cell.array() < kKeyOffset).all();
@@ -40,7 +37,7 @@ octomap::OcTreeKey KeyOf(const CellIndex& cell) {
 void CopyCells(const octomap::OcTree& tree, const octomap::OcTreeNode* node, const CellIndex& low,
                int side, CellBlock* block) {
   if (!tree.nodeHasChildren(node)) {
-    const std::int8_t log_odds = Steps(node->getLogOdds());
+    const std::int8_t log_odds = StepsOf(node->getLogOdds());
     ForEachCell({low, low.array() + side},
                 [&](const CellIndex& cell) { (*block)[cell] = log_odds; });
     return;
@@ -117,6 +114,9 @@ struct PersistentMap::Impl {
     of->setOccupancyThres(options.probability_occupied);
   }
 
+  /// Least log-odds of what is occupied [steps].
+  int occupied() const { return StepsOf(tree->getOccupancyThresLog()); }
+
   /// The octree's node of a block, or the leaf above that stands for it; nullptr: nothing is known.
   const octomap::OcTreeNode* NodeOf(const CellIndex& low) const {
     return tree->search(KeyOf(low), kBlockDepth);
@@ -126,6 +126,31 @@ struct PersistentMap::Impl {
       const octomap::OcTreeNode* node = NodeOf(low);
       if (node != nullptr) CopyCells(*tree, node, low, CellBlock::kSide, block);
     });
+  }
+
+  /// What the octree says of a cell.
+  std::optional<std::int8_t> ReadLogOdds(const CellIndex& cell) const {
+    const octomap::OcTreeNode* node = InTree(cell) ? tree->search(KeyOf(cell)) : nullptr;
+    if (node == nullptr) return std::nullopt;
+    return StepsOf(node->getLogOdds());
+  }
+  /// The octree holds all of its 26 neighbours free, or they are ground.
+  bool IsAmidFree(const CellIndex& cell) const {
+    bool amid = true;
+    ForEachCell({cell.array() - 1, cell.array() + 2}, [&](const CellIndex& near) {
+      amid &= IsGround(near, options) || ReadLogOdds(near).value_or(0) < 0;
+    });
+    return amid;
+  }
+  /// Calls visit(cube) for every leaf of the octree that is occupied.
+  template <class Visit>
+  void ForEachObstacle(Visit&& visit) const {
+    for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {
+      if (StepsOf(leaf->getLogOdds()) < occupied()) continue;
+      const octomap::OcTreeKey low = leaf.getIndexKey();
+      visit(CellCube{CellIndex(low[0], low[1], low[2]).array() - kKeyOffset,
+                     1 << (kLeafDepth - leaf.getDepth())});
+    }
   }
 
   OccupancyMapOptions options;
@@ -184,15 +209,12 @@ std::optional<std::int8_t> PersistentMap::LogOdds(const CellIndex& cell) const {
     if ((*block)[cell] == kUnknownLogOdds) return std::nullopt;
     return (*block)[cell];
   }
-  const octomap::OcTreeNode* node = impl_->tree->search(KeyOf(cell));
-  if (node == nullptr) return std::nullopt;
-  return Steps(node->getLogOdds());
+  return impl_->ReadLogOdds(cell);
 }
 
 bool PersistentMap::IsOccupied(const CellIndex& cell) const {
   const auto log_odds = LogOdds(cell);
-  return log_odds && *log_odds * OccupancyMap::kLogOddsStep >=
-                         impl_->tree->getOccupancyThresLog() - 0.5 * OccupancyMap::kLogOddsStep;
+  return log_odds && *log_odds >= impl_->occupied();
 }
 
 std::size_t PersistentMap::size() const {
@@ -206,21 +228,51 @@ void PersistentMap::Read(std::istream& in) {
   text << in.rdbuf();
   const std::string bytes = text.str();
   const OctomapFile file = CheckOctomapFile(bytes);
-  const double resolution = impl_->options.resolution;
-  if (!(std::abs(file.resolution - resolution) < 1e-6 * resolution)) {
-    throw std::invalid_argument("its resolution is " + std::to_string(file.resolution) +
-                                " m, it must be " + std::to_string(resolution) +
-                                " m, the side of the map's cells");
-  }
   std::unique_ptr<octomap::OcTree> tree = impl_->NewTree();
-  if (!file.nodes.empty()) {
-    std::istringstream nodes{std::string(file.nodes)};
-    file.format == MapFormat::kBinary ? tree->readBinaryData(nodes) : tree->readData(nodes);
-  }
-  // OctoMap reads a root without children, a file in which nothing is known, as one occupied leaf.
-  if (tree->size() == 1) tree = impl_->NewTree();
+  ReadNodes(file, tree.get());
+  const double scale = file.resolution / impl_->options.resolution;
+  if (!(std::abs(scale - 1.0) < kSameSize)) tree = Resampled(*tree, scale, impl_->occupied());
   impl_->tree = std::move(tree);
   impl_->blocks = impl_->NewBlocks();
+}
+
+PriorCheck PersistentMap::CheckPrior() const {
+  PriorCheck check;
+  const int occupied = impl_->occupied();
+  impl_->ForEachObstacle([&](const CellCube& cube) {
+    for (int z = cube.low.z(); z < cube.low.z() + cube.side; ++z) {
+      if (!IsGround({0, 0, z}, impl_->options))
+        check.occupied += std::int64_t{cube.side} * cube.side;
+    }
+  });
+  impl_->blocks->ForEachPut([&](const CellValue& sensed) {
+    const auto said = impl_->ReadLogOdds(sensed.cell);
+    if (!said || IsGround(sensed.cell, impl_->options)) return;
+    if (*said >= occupied) {
+      ++check.looked_at;
+      if (sensed.log_odds < 0) check.gone.push_back(sensed.cell);
+    } else if (*said < 0 && sensed.log_odds >= occupied && impl_->IsAmidFree(sensed.cell)) {
+      check.appeared.push_back(sensed.cell);
+    }
+  });
+  for (std::vector<CellIndex>* cells : {&check.gone, &check.appeared}) {
+    std::sort(cells->begin(), cells->end(), [](const CellIndex& a, const CellIndex& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    });
+  }
+  return check;
+}
+
+std::vector<CellCube> PersistentMap::PriorObstacles(const CellBox& within) const {
+  std::vector<CellCube> obstacles;
+  impl_->ForEachObstacle([&](const CellCube& cube) {
+    const bool outside = ((cube.low.array() + cube.side <= within.low.array()) ||
+                          (cube.low.array() >= within.high.array()))
+                             .any();
+    const CellIndex top = cube.low.array() + (cube.side - 1);
+    if (!outside && !IsGround(top, impl_->options)) obstacles.push_back(cube);
+  });
+  return obstacles;
 }
 
 void PersistentMap::Write(std::ostream& out, MapFormat format) {

@@ -12,7 +12,7 @@ namespace touchdown::sim {
 namespace {
 
 TEST(Trim, IsUprightInStillAir) {
-  const estimation::VehicleModel model;
+  const estimation::VehicleModel model = LoadVehicleModel(DefaultVehicleMjcf());
   const Trim trim = TrimAt(model, Eigen::Vector3d::Zero(), 0.7).value();
   EXPECT_NEAR(estimation::Tilt(trim.q_WB), 0.0, 1e-9);
   EXPECT_NEAR(estimation::Yaw(trim.q_WB), 0.7, 1e-12);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the files of the example worlds: building.bt (OctoMap), courtyard.obj (triangle mesh), hills.png (heights).
+"""Makes the files of the example worlds: building.bt (OctoMap), courtyard.obj (triangle mesh), hills.png (heights),
+and of the example beliefs wall_gone.bt and wall_new.bt (OctoMap).
 
     make_worlds.py FOLDER [SEED]
 
@@ -15,6 +16,8 @@ from pathlib import Path
 import numpy as np
 
 CELL = 0.1  # of the building [m]
+BELIEF_CELL = 0.2  # of the beliefs [m]
+FREE, OCCUPIED, INNER = 1, 2, 3  # what OctoMap's binary format says of a child; 0: not known
 
 
 def building(rng):
@@ -48,42 +51,51 @@ def building(rng):
         for y in (0.0, 11.8):  # windows
             for x in (1.0, 4.0, 11.0, 14.0):
                 fill((x, y, base + 0.9), (x + 1.2, y + 0.2, base + 2.1), False)
+    return np.where(cells, OCCUPIED, 0)
+
+
+def belief(walls):
+    """A yard of 16 x 12 x 4 m that is free but for walls of 3 m: each from (x, y) to (x, y), in m."""
+    cells = np.full((80, 60, 20), FREE)
+    for low, high in walls:
+        (x0, y0), (x1, y1) = ((np.asarray(p) / BELIEF_CELL).round().astype(int) for p in (low, high))
+        cells[x0:x1, y0:y1, :15] = OCCUPIED
     return cells
 
 
-def write_octomap(path, cells):
-    """OctoMap's binary format: two bits to a child, 01 free, 10 occupied, 11 has children, first bit lowest."""
+def write_octomap(path, cells, edge):
+    """OctoMap's binary format: two bits to a child, the first bit lowest."""
     count = 0
 
     def node(low, side):
-        """None: all free; True: all occupied; else the bytes of the node."""
+        """What all of it is, or the bytes of the node."""
         nonlocal count
         x, y, z = low
         part = cells[x : x + side, y : y + side, z : z + side]
         if part.size == 0 or not part.any():
-            return None
-        if part.shape == (side,) * 3 and part.all():
-            return True
+            return 0
+        if part.shape == (side,) * 3 and (part == part[0, 0, 0]).all():
+            return int(part[0, 0, 0])
         half = side // 2
         kinds, below = 0, b""
         for i in range(8):
             child = node((x + half * (i & 1), y + half * (i >> 1 & 1), z + half * (i >> 2 & 1)), half)
-            if child is None:
+            if child == 0:
                 continue
             count += 1
-            kinds |= (2 if child is True else 3) << 2 * i
-            below += b"" if child is True else child
+            kinds |= (child if isinstance(child, int) else INNER) << 2 * i
+            below += b"" if isinstance(child, int) else child
         return struct.pack("<H", kinds) + below
 
     root = node((0, 0, 0), 256)
     # The tree's own root spans 65536 cells, whose middle is the origin: eight levels above this one.
     side = 256
     while side < 32768:
-        root = struct.pack("<H", 3) + root
+        root = struct.pack("<H", INNER) + root
         count, side = count + 1, side * 2
-    root = struct.pack("<H", 3 << 14) + root  # the octant of positive coordinates
+    root = struct.pack("<H", INNER << 14) + root  # the octant of positive coordinates
     count += 2
-    head = f"# Octomap OcTree binary file\nid OcTree\nsize {count}\nres {CELL}\ndata\n"
+    head = f"# Octomap OcTree binary file\nid OcTree\nsize {count}\nres {edge}\ndata\n"
     path.write_bytes(head.encode() + root)
 
 
@@ -189,9 +201,12 @@ def write_png(path, heights):
 def main(folder, seed=1):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    write_octomap(folder / "building.bt", building(np.random.default_rng([seed, 1])))
+    write_octomap(folder / "building.bt", building(np.random.default_rng([seed, 1])), CELL)
     courtyard(np.random.default_rng([seed, 2])).write(folder / "courtyard.obj")
     write_png(folder / "hills.png", hills(np.random.default_rng([seed, 3])))
+    stands = ((5.0, 4.0), (5.2, 8.0))
+    write_octomap(folder / "wall_gone.bt", belief([stands, ((8.0, 0.0), (8.2, 6.0))]), BELIEF_CELL)
+    write_octomap(folder / "wall_new.bt", belief([stands]), BELIEF_CELL)
 
 
 if __name__ == "__main__":

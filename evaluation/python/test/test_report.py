@@ -4,7 +4,7 @@ import sqlite3
 import numpy as np
 import pytest
 
-from touchdown_report import bspline, landing, plan
+from touchdown_report import bspline, landing, plan, prior
 from touchdown_report.record import Record, RecordError
 
 
@@ -48,6 +48,36 @@ def test_the_picture_is_drawn(record_path, tmp_path):
     out = tmp_path / "landing.png"
     assert landing.main([record_path, str(out)]) == 0
     assert out.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_columns_of_cubes_and_the_line_around_them():
+    cubes = np.array([[0, 0, 0, 2], [2, 0, 5, 1], [2, 0, 7, 1], [90, 0, 0, 4]])
+    low = np.array([-1, -1])
+    filled = prior.columns(cubes, 1, low, np.array([4, 4]))
+    assert np.argwhere(filled).tolist() == [[1, 1], [1, 2], [2, 1], [2, 2], [3, 1]]
+    boxes = [shape.get_bbox().bounds for shape in prior.rectangles(filled, low, 0.5)]
+    assert boxes == [(0.0, 0.0, 1.5, 0.5), (0.0, 0.5, 1.0, 0.5)]
+    line = prior.outline(filled, low, 0.5)
+    assert line.shape == (10, 2, 2)
+    assert line.min() == 0.0 and line[:, :, 0].max() == 1.5 and line[:, :, 1].max() == 1.0
+
+
+def test_a_prior_is_drawn_without_its_file(record_path, tmp_path):
+    path = tmp_path / "prior.db"
+    path.write_bytes(open(record_path, "rb").read())
+    cubes = {"new": [30, 0, 5, 1], "occupied": [20, 0, 0, 8]}
+    with sqlite3.connect(path) as db:
+        db.executemany(
+            "INSERT INTO prior VALUES(?, ?)",
+            [(state, np.array(cube, "<i4").tobytes()) for state, cube in cubes.items()],
+        )
+    record = Record(str(path))
+    assert [entry.get_label() for entry in prior.legend_entries(record)] == [
+        "prior: occupied",
+        "prior: free, seen occupied",
+    ]
+    assert landing.main([str(path), str(tmp_path / "prior.png")]) == 0
+    assert prior.legend_entries(Record(record_path)) == []
 
 
 def test_the_headline_says_how_it_ended(record_path):

@@ -15,7 +15,7 @@ from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
 
-from touchdown_report import bspline, command_line, zones  # noqa: E402
+from touchdown_report import bspline, command_line, prior, zones  # noqa: E402
 from touchdown_report.outcomes import DONE  # noqa: E402
 from touchdown_report.record import Record, RecordError  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
@@ -35,6 +35,7 @@ PLAN_COLOUR = "#56B4E9"
 BUILDING_FACE = "#DDD8CF"
 BUILDING_EDGE = "#8C857A"
 HIGHEST_SHADE = 8.0  # of a mesh from above [m]
+MOST_IN_A_ROW = 8  # of the legend
 MOST_NUMBERED = 40  # obstacles whose height stands in the picture
 PICTURE_STYLE = {
     **STYLE,
@@ -135,6 +136,7 @@ def draw_world(axes, record, contact, half, side):
     down = 3 if side else 2
     vehicle, pad = record.vehicle[: contact + 1], record.pad[: contact + 1]
     draw_obstacles(axes, record.obstacles, side)
+    prior.draw(axes, record, down - 1)
     zones.draw(axes, record.zones, down - 1)
     for points in record.plans.values():
         curve = bspline.sample(points)
@@ -259,7 +261,7 @@ def legend_entries(record, contact):
         handles.append(
             Line2D([], [], marker="X", ls="", ms=9, mfc="#CC0000", mec="white", label="end, not done")
         )
-    return handles
+    return handles + prior.legend_entries(record)
 
 
 def draw(record, out_path):
@@ -283,9 +285,10 @@ def draw(record, out_path):
         figure.text(0.055, 0.955, headline, fontsize=15, fontweight="bold", color="#222222")
         figure.text(0.055, 0.925, figures, fontsize=10, color="#555555")
         handles = legend_entries(record, contact)
+        rows = 1 if len(handles) <= MOST_IN_A_ROW else 2
         figure.legend(
-            handles=handles, loc="lower center", ncol=len(handles), frameon=False,
-            bbox_to_anchor=(0.5, 0.008),
+            handles=handles, loc="lower center", ncol=-(-len(handles) // rows), frameon=False,
+            bbox_to_anchor=(0.5, 0.008 if rows == 1 else -0.006),
         )  # fmt: skip
         figure.savefig(out_path)
         plt.close(figure)

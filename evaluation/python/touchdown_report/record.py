@@ -38,6 +38,7 @@ class Record:
                 "SELECT term, shape, cx, cy, cz, size_x, size_y, size_z FROM zone ORDER BY id"
             )
         ]
+        self.prior = self._prior(db)
         self.plans = self._plans(db)
 
     @staticmethod
@@ -69,6 +70,16 @@ class Record:
             }
             for row in rows
         ]
+
+    @staticmethod
+    def _prior(db):
+        """Cubes of map.prior by their state, what lies below first: lowest cell and side, shape (n, 4)."""
+        rows = dict(db.execute("SELECT state, cubes FROM prior"))
+        return {
+            state: np.frombuffer(rows[state], "<i4").reshape(-1, 4)
+            for state in ("occupied", "gone", "new")
+            if state in rows
+        }
 
     @staticmethod
     def _plans(db):

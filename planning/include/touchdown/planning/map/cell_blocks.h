@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -31,8 +32,15 @@ struct CellBlock {
 
   std::int8_t& operator[](const CellIndex& cell) { return log_odds[Place(cell)]; }
   std::int8_t operator[](const CellIndex& cell) const { return log_odds[Place(cell)]; }
+  /// It was put there, not filled in.
+  bool WasPut(const CellIndex& cell) const { return was_put[Place(cell)]; }
+  void Put(const CellValue& value) {
+    log_odds[Place(value.cell)] = value.log_odds;
+    was_put[Place(value.cell)] = true;
+  }
 
   std::array<std::int8_t, kSide * kSide * kSide> log_odds;
+  std::bitset<kSide * kSide * kSide> was_put;
 
  private:
   static std::size_t Place(const CellIndex& cell) {
@@ -65,6 +73,9 @@ class CellBlocks {
   /// Calls visit(value) for every cell that is known.
   template <class Visit>
   void ForEach(Visit&& visit) const;
+  /// The same for those that were put there, as they are now.
+  template <class Visit>
+  void ForEachPut(Visit&& visit) const;
 
  private:
   using Key = std::uint64_t;
@@ -92,6 +103,18 @@ void CellBlocks::ForEach(Visit&& visit) const {
     const CellIndex low = LowOf(entry.first);
     ForEachCell({low, low.array() + CellBlock::kSide}, [&](const CellIndex& cell) {
       if (block[cell] != kUnknownLogOdds) visit(CellValue{cell, block[cell]});
+    });
+  }
+}
+
+template <class Visit>
+void CellBlocks::ForEachPut(Visit&& visit) const {
+  for (const auto& entry : blocks_) {
+    const CellBlock& block = entry.second;
+    if (block.was_put.none()) continue;
+    const CellIndex low = LowOf(entry.first);
+    ForEachCell({low, low.array() + CellBlock::kSide}, [&](const CellIndex& cell) {
+      if (block.WasPut(cell)) visit(CellValue{cell, block[cell]});
     });
   }
 }

@@ -41,6 +41,11 @@ struct OccupancyMapOptions {
   double ground_height = 0.15;     ///< returns below are ground, not obstacles [m]
 };
 
+/// It lies below the ground's height as a whole: there are no obstacles.
+inline bool IsGround(const CellIndex& cell, const OccupancyMapOptions& options) {
+  return (cell.z() + 1) * options.resolution <= options.ground_height;
+}
+
 /// What a planner can tell of a cell: kFree is observed free. All else that does not block is unknown to it.
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
