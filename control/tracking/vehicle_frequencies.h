@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast a vehicle's loops can be: its rotors' lag and the moments that they have left at hover bound them.
+// How fast a vehicle's loops can be: the moments that its actuators have left at hover bound them.
 #pragma once
 
 #include "control/tracking/disturbance_observer.h"
@@ -7,11 +7,10 @@
 
 namespace touchdown::control {
 
-/// How fast a vehicle can follow over what the defaults ask; each in (0, 1].
+/// How fast a vehicle can follow over what the default frequencies ask; each in (0, 1].
 struct Quickness {
   double tilt = 1.0;  ///< of roll and pitch, and of what is steered by them
   double yaw = 1.0;
-  double height = 1.0;
 };
 
 /// Throws std::invalid_argument as estimation::AllocationOf does.

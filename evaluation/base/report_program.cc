@@ -119,6 +119,10 @@ void DrawSweep(const std::string& table_path, const std::string& picture_path) {
   Draw("touchdown_report.sweep", "--picture", table_path, picture_path);
 }
 
+void DrawVehicle(const std::string& document_path, const std::string& picture_path) {
+  Draw("touchdown_report.vehicle", "--picture", document_path, picture_path);
+}
+
 void DrawPlan(const std::string& document_path, const std::string& picture_path) {
   Draw("touchdown_report.plan", "--picture", document_path, picture_path);
 }

@@ -36,6 +36,9 @@ void DrawSweep(const std::string& table_path, const std::string& picture_path);
 /// Draws the picture of a solved step from its document (plan_report.h). @throws as DrawLanding
 void DrawPlan(const std::string& document_path, const std::string& picture_path);
 
+/// Draws a vehicle from its document (vehicle_check.h). @throws as DrawLanding
+void DrawVehicle(const std::string& document_path, const std::string& picture_path);
+
 /// Whether the report of a study could be written. @throws std::runtime_error naming the packages that are missing
 void CheckStudyReport();
 

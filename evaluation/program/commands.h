@@ -26,6 +26,7 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
 void AddSweepCommand(Command app, const Registries& registries, CommandRun* run);
 void AddMergeCommand(Command app, CommandRun* run);
 void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* run);
+void AddCheckVehicleCommand(Command app, const Registries& registries, CommandRun* run);
 void AddListCommand(Command app, const Registries& registries, CommandRun* run);
 void AddPlanCommand(Command app, const Registries& registries, CommandRun* run);
 void AddProfileCommand(Command app, const Registries& registries, CommandRun* run);
@@ -41,7 +42,7 @@ struct ScenarioArguments {
   void AddTo(Command command, bool scenario_required);
   /// --set and its short forms, in the order in which they count.
   std::vector<std::string> Overrides() const;
-  /// The scenario with these. @throws BadInput as LoadScenario does, and for a --backend of a planner that
+  /// The scenario with these; says what to look at in its vehicle. @throws BadInput as LoadScenario does, and for a --backend of a planner that
   /// has its own.
   Scenario Load(const Registries& registries) const;
 };

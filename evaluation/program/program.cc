@@ -23,6 +23,7 @@
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
 #include "evaluation/scenario/scenario_value.h"
+#include "evaluation/scenario/scenario_world.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
@@ -55,6 +56,9 @@ Scenario ScenarioArguments::Load(const Registries& registries) const {
   if (!backend.empty() && !PlannerOf(loaded, registries).solver.empty()) {
     throw BadInput(fmt::format("--backend {}: the planner {} has no choice of solvers.", backend,
                                loaded.planner));
+  }
+  for (const sim::VehicleFinding& finding : VehicleWarnings(loaded)) {
+    spdlog::warn("warning: vehicle {}: {}; {}.", loaded.vehicle, finding.what, finding.remedy);
   }
   return loaded;
 }
@@ -148,6 +152,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddPlanCommand(Command(&app), registries, &run);
   AddProfileCommand(Command(&app), registries, &run);
   AddCheckTermCommand(Command(&app), registries, &run);
+  AddCheckVehicleCommand(Command(&app), registries, &run);
   AddListCommand(Command(&app), registries, &run);
   try {
     CheckCommand(app, argv + std::min(1, argc), argv + argc);

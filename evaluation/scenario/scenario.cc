@@ -16,6 +16,7 @@
 #include "evaluation/scenario/obstacle_keys.h"
 #include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_schema.h"
+#include "evaluation/scenario/scenario_world.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -259,6 +260,17 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
 }
 
 }  // namespace
+
+Scenario UncheckedVehicleScenario(const std::string& vehicle,
+                                  const std::vector<std::string>& overrides,
+                                  const Registries& registries) {
+  ScenarioSource source;
+  source.scenario.vehicle = vehicle;
+  const Keys keys = ScenarioKeys(registries);
+  for (const std::string& text : overrides) ApplyOverride(text, keys, &source);
+  ReadAirframe(keys, &source);
+  return source.scenario;
+}
 
 void ApplyOverride(const std::string& text, const Registries& registries, Scenario* scenario) {
   ScenarioSource source;

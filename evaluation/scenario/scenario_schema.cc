@@ -149,7 +149,8 @@ std::string ScenarioKeysMarkdown(const Registries& registries) {
       "| `terms.<term>.<parameter>` | number |  | as `touchdown list terms --json` says | the "
       "term's | a parameter of the term |\n";
   const Scenario none;
-  ForEachObstacleList(none, [&text](const std::string& list, const auto& elements, const auto& keys) {
+  ForEachObstacleList(none, [&text](const std::string& list, const auto& elements,
+                                    const auto& keys) {
     const typename std::decay_t<decltype(elements)>::value_type element;
     for (const auto& key : keys) {
       const std::string value = key.optional ? fmt::format("`{}`", key.get(element)) : "required";

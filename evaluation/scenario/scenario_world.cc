@@ -85,6 +85,14 @@ std::string VehicleMjcf(const Scenario& scenario) {
   return sim::ImportVehicle(scenario.vehicle, AirframeOf(scenario));
 }
 
+std::vector<sim::VehicleFinding> VehicleWarnings(const Scenario& scenario) {
+  if (scenario.vehicle == "default") return {};
+  sim::VehicleFindings findings;
+  const std::string mjcf = sim::ImportVehicle(scenario.vehicle, AirframeOf(scenario), &findings);
+  sim::ReadVehicleModel(mjcf, &findings);
+  return findings.warnings();
+}
+
 OutsideFiles OutsideFilesOf(const Scenario& scenario) {
   OutsideFiles files;
   if (scenario.pad.waypoints != "none") {

@@ -37,8 +37,17 @@ sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 /// What the scenario says of a vehicle's file in the common form.
 sim::AirframeExtras AirframeOf(const Scenario& scenario);
 
+/// The default scenario with a vehicle's file, what stands in the airframe file beside it, and overrides KEY=VALUE. The
+/// vehicle is not looked at. @throws BadInput as LoadScenario does for keys and values.
+Scenario UncheckedVehicleScenario(const std::string& vehicle,
+                                  const std::vector<std::string>& overrides,
+                                  const Registries& registries);
+
 /// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
 std::string VehicleMjcf(const Scenario& scenario);
+
+/// What to look at in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
+std::vector<sim::VehicleFinding> VehicleWarnings(const Scenario& scenario);
 
 /// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
 /// points of the waypoint file, the hashes of the vehicle's MJCF text and of the files of obstacles; each `none` without

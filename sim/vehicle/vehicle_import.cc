@@ -23,6 +23,7 @@
 #include "sim/mujoco/mujoco_call.h"
 #include "sim/mujoco/mujoco_model.h"
 #include "sim/vehicle/vehicle_file.h"
+#include "sim/vehicle/vehicle_outline.h"
 
 namespace touchdown::sim {
 namespace {
@@ -319,40 +320,10 @@ class Import {
     if (!any) Fault("airframe.moment_max has no effect: the file has rotors", "take it out");
   }
 
-  // Points that hold the geom: its mesh's, else those of a prism around it.
-  void HoldGeom(int geom, Outline* outline) const {
-    const Eigen::Vector3d p = Vec3(d_.geom_xpos + 3 * geom);
-    const Matrix R = Eigen::Map<const Matrix>(d_.geom_xmat + 9 * geom);
-    const auto hold = [&](const Eigen::Vector3d& q) { outline->Hold(ToB(p + R * q)); };
-    const Eigen::Vector3d size = Vec3(m_.geom_size + 3 * geom);
-    const int type = m_.geom_type[geom];
-    if (type == mjGEOM_MESH) {
-      const int mesh = m_.geom_dataid[geom];
-      for (int i = 0; i < m_.mesh_vertnum[mesh]; ++i) {
-        const float* v = m_.mesh_vert + 3 * (m_.mesh_vertadr[mesh] + i);
-        hold({v[0], v[1], v[2]});
-      }
-      return;
-    }
-    Eigen::Vector3d half = size;
-    if (type == mjGEOM_SPHERE) half.setConstant(size.x());
-    if (type == mjGEOM_CYLINDER) half << size.x(), size.x(), size.y();
-    if (type == mjGEOM_CAPSULE) half << size.x(), size.x(), size.x() + size.y();
-    constexpr int kSides = 16;  // of the prism around what is round
-    const bool box = type == mjGEOM_BOX;
-    const int corners = box ? 4 : kSides;
-    const double out = 1.0 / std::cos(std::numbers::pi / corners);
-    for (int i = 0; i < corners; ++i) {
-      const double angle = (2.0 * i + 1.0) * std::numbers::pi / corners;
-      // A box's corners are where the circle of radius sqrt(2) has them.
-      const double x = out * std::cos(angle) * half.x(), y = out * std::sin(angle) * half.y();
-      for (const double z : {-half.z(), half.z()}) hold({x, y, z});
-    }
-  }
-
   void ReadOutline() {
     for (int geom = 0; geom < m_.ngeom; ++geom) {
-      if (OfVehicle(m_.geom_bodyid[geom])) HoldGeom(geom, &outline_);
+      if (!OfVehicle(m_.geom_bodyid[geom])) continue;
+      for (const Eigen::Vector3d& p_W : PointsAround(m_, d_, geom)) outline_.Hold(ToB(p_W));
     }
     for (const Motor& motor : motors_) outline_.Hold(motor.actuator.p_BR);
   }

@@ -53,8 +53,7 @@ struct ControllerOptions {
       0.15;  ///< of the hover thrust: the desired force's least vertical [-]
 };
 
-/// The default options, with lower frequencies for a vehicle whose rotors lag more or that cannot be turned as fast
-/// (docs/vehicles.md). Throws std::invalid_argument as estimation::AllocationOf does.
+/// The default options, with lower frequencies for a vehicle that cannot be turned as fast (docs/vehicles.md). Throws std::invalid_argument as estimation::AllocationOf does.
 ControllerOptions OptionsFor(const estimation::VehicleModel& model);
 
 /// Throws std::invalid_argument naming the first option out of its range.
