@@ -230,7 +230,7 @@ class Reader {
       const double tilt = turn.head<2>().minCoeff();
       if (tilt < kLeastTurn || turn.z() < kLeastYawTurn) {
         Fault(
-            turns,
+            turns.str(),
             "allowed are 10, 10 and 0.5 and more: look at inertia, arms and thrust ranges, or give "
             "airframe.moment_max where the file has moments for actuators");
       } else if (tilt < kEasyTurn) {
