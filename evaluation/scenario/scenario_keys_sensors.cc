@@ -95,8 +95,8 @@ void AddSensorKeys(KeyList& keys) {
                        TOUCHDOWN_AT(map_thinnest_obstacle)));
   keys.push_back(
       Number<Scenario>("map.start_free", In(0.5, 3, "m"),
-                       "this far around the start cells are given as free; those that are "
-                       "not count as falsely free",
+                       "this far around the start, and 0.45 m from the hull at least, cells are "
+                       "given as free; those that are not count as falsely free",
                        TOUCHDOWN_AT(map_start_free)));
   keys.push_back(Choice("sensing", {"fast", "rendered"},
                         "fast: models of both cameras; rendered: images, in which the pad is found",

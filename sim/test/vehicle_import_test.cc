@@ -18,6 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 
 const std::string kModels = std::string(TOUCHDOWN_SOURCE_DIR) + "/sim/models/";
+const std::string kExamples = std::string(TOUCHDOWN_SOURCE_DIR) + "/docs/examples/vehicles/";
 
 estimation::VehicleModel Imported(const std::string& file, const AirframeExtras& extras = {}) {
   return LoadVehicleModel(ImportVehicle(kModels + file, extras));
@@ -133,6 +134,125 @@ TEST(VehicleImport, HoversInTheWorld) {
     EXPECT_LT((world.vehicle().p_WB - start).norm(), 3e-3) << file;
     EXPECT_LT(world.vehicle().w_WB_B.norm(), 0.02) << file;
   }
+}
+
+// The tensor about the centre of mass, in the body's axes, comes through whole.
+TEST(VehicleImport, InertiaMayBeAboutAnyAxes) {
+  const std::string path =
+      ChangedMini("diaginertia=\"1.6e-5 1.7e-5 2.9e-5\"",
+                  "fullinertia=\"1.6e-5 1.7e-5 2.9e-5 0.3e-5 -0.2e-5 0.1e-5\"");
+  const estimation::VehicleModel model = LoadVehicleModel(ImportVehicle(path, {}));
+  Eigen::Matrix3d inertia;
+  inertia << 1.6e-5, 0.3e-5, -0.2e-5, 0.3e-5, 1.7e-5, 0.1e-5, -0.2e-5, 0.1e-5, 2.9e-5;
+  const Eigen::Vector3d axis(0.3, -0.5, 0.7);
+  EXPECT_TRUE(model.MomentFor(axis).isApprox(inertia * axis, 1e-6));
+  EXPECT_TRUE(model.AccelerationUnder(inertia * axis).isApprox(axis, 1e-6));
+  // The physics turns it so, too.
+  WorldConfig config = test::OpenSky();
+  config.vehicle_mjcf = ImportVehicle(path, {});
+  World world(config);
+  const estimation::Allocation allocation = estimation::AllocationOf(model);
+  Eigen::Vector4d wrench(model.HoverThrust(), 1e-5, 0.0, 0.0);
+  const estimation::Commands thrusts = allocation.commands_of_wrench * wrench;
+  while (world.time() < 0.3) world.Step(thrusts);  // the lag is over
+  const Eigen::Vector3d w = world.vehicle().w_WB_B;
+  const Eigen::Vector3d expected = model.AccelerationUnder(
+      allocation.wrench_of_commands.bottomRows<3>() * world.rotor_thrusts() -
+      model.GyroscopicMoment(w));
+  world.Step(thrusts);
+  EXPECT_TRUE(((world.vehicle().w_WB_B - w) / world.timestep()).isApprox(expected, 0.01));
+}
+
+TEST(VehicleImport, RotorsMayBeSix) {
+  const std::string mjcf = ImportVehicle(kExamples + "hexa.xml", {});
+  const estimation::VehicleModel model = LoadVehicleModel(mjcf);
+  ASSERT_EQ(model.actuators.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(model.actuators[i].thrust, 1.0);
+    EXPECT_EQ(model.actuators[i].moment_B.z() > 0.0, i % 2 == 0);
+  }
+  WorldConfig config = test::OpenSky();
+  config.vehicle_mjcf = mjcf;
+  World world(config);
+  const estimation::VehicleState start = world.vehicle();
+  const estimation::Commands thrusts =
+      estimation::AllocationOf(model).Shares() * model.HoverThrust();
+  for (int i = 0; i < 500; ++i) world.Step(thrusts);
+  EXPECT_LT((world.vehicle().p_WB - start.p_WB).norm(), 1e-3);
+}
+
+// Gears of -1 turn the moments round; how much each can is the caller's to say.
+TEST(VehicleImport, OneThrustAndThreeMomentsAreAVehicle) {
+  AirframeExtras extras;
+  EXPECT_THAT(test::MessageOf<std::invalid_argument>(
+                  [&] { LoadVehicleModel(ImportVehicle(kExamples + "wrench.xml", extras)); }),
+              HasSubstr("airframe.moment_max"));
+  extras.moment_max = {0.4, 0.5, 0.1};
+  const std::string mjcf = ImportVehicle(kExamples + "wrench.xml", extras);
+  const estimation::VehicleModel model = LoadVehicleModel(mjcf);
+  ASSERT_EQ(model.actuators.size(), 4u);
+  EXPECT_EQ(model.actuators[0].thrust, 1.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const estimation::Actuator& moment = model.actuators[static_cast<std::size_t>(axis) + 1];
+    EXPECT_EQ(moment.thrust, 0.0);
+    EXPECT_TRUE(moment.moment_B.isApprox(-Eigen::Vector3d::Unit(axis)));
+    EXPECT_EQ(moment.max, extras.moment_max(axis));
+    EXPECT_EQ(moment.min, -extras.moment_max(axis));
+  }
+  WorldConfig config = test::OpenSky();
+  config.vehicle_mjcf = mjcf;
+  World world(config);
+  for (int i = 0; i < 100; ++i) {
+    world.Step(Eigen::Vector4d(model.HoverThrust(), -0.01, 0.0, 0.0));  // a moment of 0.01 about x
+  }
+  EXPECT_GT(world.vehicle().w_WB_B.x(), 0.3);
+  EXPECT_LT(world.vehicle().w_WB_B.tail<2>().norm(), 1e-6);
+}
+
+TEST(VehicleImport, SensesOfRotationCanBeGiven) {
+  const std::string path =
+      ChangedMini("0 0 0.17 0 0 -0.00102\"/>\n    <motor class=\"mini\" name=\"m2\"",
+                  "0 0 0.17 0 0 0.00102\"/>\n    <motor class=\"mini\" name=\"m2\"");
+  AirframeExtras extras;
+  extras.alternate_senses = true;
+  VehicleFindings findings;
+  const auto signs = [](const estimation::VehicleModel& model) {
+    std::vector<double> found;
+    for (const estimation::Actuator& rotor : model.actuators) {
+      found.push_back(std::copysign(1.0, rotor.moment_B.z()));
+    }
+    return found;
+  };
+  const std::vector<double> alternating = {1.0, -1.0, 1.0,
+                                           -1.0};  // as the first one of the file is
+  EXPECT_EQ(signs(LoadVehicleModel(ImportVehicle(path, extras, &findings))), alternating);
+  ASSERT_EQ(findings.warnings().size(), 1u);
+  EXPECT_THAT(findings.warnings()[0].remedy, HasSubstr("[1, -1, 1, -1]"));
+  // A file that can steer is left alone.
+  VehicleFindings none;
+  EXPECT_EQ(signs(LoadVehicleModel(ImportVehicle(kModels + "mini.xml", extras, &none))),
+            std::vector<double>({-1.0, 1.0, -1.0, 1.0}));
+  EXPECT_TRUE(none.warnings().empty());
+  extras.alternate_senses = false;
+  extras.rotor_senses = {-1.0, 1.0, -1.0, 1.0};
+  EXPECT_EQ(signs(LoadVehicleModel(ImportVehicle(path, extras))), extras.rotor_senses);
+  extras.rotor_senses = {1.0, -1.0};
+  EXPECT_THAT(test::MessageOf<std::invalid_argument>([&] { ImportVehicle(path, extras); }),
+              HasSubstr("2 senses, the vehicle 4 rotors"));
+}
+
+TEST(VehicleImport, AllFaultsAreSaidAtOnce) {
+  const std::string path = ChangedMini("<freejoint/>", "<joint type=\"free\" damping=\"0.1\"/>");
+  std::string text = ReadVehicleFile(path);
+  const std::string site = "<site name=\"back_left\"",
+                    gear = "0 0 0.17 0 0 0.00102\"/>\n  </actuator>";
+  text.replace(text.find(site), site.size(), "<site euler=\"0 30 0\" name=\"back_left\"");
+  text.replace(text.find(gear), gear.size(), "0 0 -0.17 0 0 0.00102\"/>\n  </actuator>");
+  std::ofstream(path) << text;
+  const std::string all = test::MessageOf<std::invalid_argument>([&] { ImportVehicle(path, {}); });
+  EXPECT_THAT(all, ::testing::AllOf(HasSubstr("3 faults"), HasSubstr("(1) joint 0 has damping"),
+                                    HasSubstr("(2) actuator \"m3\" does not push"),
+                                    HasSubstr("(3) actuator \"m4\" pushes with -0.17")));
 }
 
 TEST(VehicleImport, RefusesWhatCannotBeFlown) {

@@ -72,7 +72,8 @@ struct OnboardOptions {
   double history = 1.0;  ///< given states are kept so long, for what comes late [s], in (0, 100]
   estimation::PadFilterOptions pad;
   planning::OccupancyMapOptions map;
-  double start_free = 0.8;  ///< the space around the start is taken for free, so far [m]
+  double start_free =
+      0.8;  ///< the space around the start is taken for free, so far, and 0.45 m from the hull [m]
 };
 
 /// What an Onboard is made of, besides.
