@@ -111,6 +111,42 @@ TEST(Mixer, MoreRotorsMakeTheSameWrenchWithTheLeastSquares) {
   }
 }
 
+// A thrust beside the centre of mass needs a moment for each newton, whichever side it is on.
+TEST(Mixer, MomentsMayShareInTheThrust) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const double x : {-0.01, 0.01}) {
+    estimation::VehicleModel model = WrenchVehicle();
+    model.actuators[0].p_BR.x() = x;
+    const Mixer mixer(model);
+    EXPECT_NEAR(estimation::AllocationOf(model).thrust_max, 28.0, 1e-12);
+    for (int trial = 0; trial < 2000; ++trial) {
+      const Wrench wrench = {15.0 + 25.0 * uniform(random),
+                             {4.0 * uniform(random), 4.0 * uniform(random), 0.6 * uniform(random)}};
+      const MixerOutput output = mixer.Mix(wrench);
+      ASSERT_TRUE((output.thrusts.array() >= mixer.min().array()).all());
+      ASSERT_TRUE((output.thrusts.array() <= mixer.max().array()).all());
+      const Eigen::Vector2d got = mixer.Apply(output.thrusts).moment_B.head<2>();
+      const Eigen::Vector2d wanted = wrench.moment_B.head<2>();
+      const double scale = got.dot(wanted) / wanted.squaredNorm();
+      ASSERT_LE(scale, 1.0 + 1e-9);
+      ASSERT_GT(scale, 0.0);
+      ASSERT_LT((got - scale * wanted).norm(), 1e-9);
+    }
+  }
+}
+
+// A wheel that makes little yaw, however the units compare, takes nothing from what the rotors can.
+TEST(Mixer, OneMoreActuatorTakesNoAuthorityAway) {
+  const double alone = estimation::HoverTurn(TestVehicle()).z();
+  for (const double most : {0.001, 0.1, 1.0}) {
+    estimation::VehicleModel model = TestVehicle();
+    model.actuators.push_back(
+        {Eigen::Vector3d::Zero(), 0.0, Eigen::Vector3d::UnitZ(), -most, most});
+    EXPECT_GE(estimation::HoverTurn(model).z(), alone * (1.0 - 1e-9)) << most;
+  }
+}
+
 TEST(Mixer, SaturatedKeepsLimitsAndPriority) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

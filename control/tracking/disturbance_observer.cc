@@ -53,7 +53,8 @@ double GreatestMoment(const estimation::VehicleModel& model) {
       thrust += actuator.max;
       arm = std::max(arm, actuator.p_BR.head<2>().norm());
     } else {
-      alone = std::max(alone, actuator.moment_B.norm() * actuator.max);
+      alone = std::max(alone, actuator.moment_B.norm() *
+                                  std::max(std::abs(actuator.min), std::abs(actuator.max)));
     }
   }
   return std::max(thrust * arm, alone);
@@ -124,7 +125,7 @@ void DisturbanceObserver::Hover(const estimation::VehicleState& state,
     hover.t = state.t - left * kHoverStep;
     Update(hover, false);
   }
-  // Thrusts that are told alike tell nothing of the moment.
+  // What the actuators are told at a start is the model's: it tells nothing of the moment.
   disturbance_.moment_B.setZero();
 }
 

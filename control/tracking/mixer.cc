@@ -55,15 +55,17 @@ MixerOutput Mixer::Mix(const Wrench& wrench) const noexcept {
     if (needed > 0.0 && needed * scale > available) scale = std::max(0.0, available / needed);
   };
   for (Eigen::Index i = 0; i < count; ++i) {
-    shorten(-thrusts(i), highest_thrust * share(i) - min_(i));
     if (share(i) == 0.0) {
+      shorten(-thrusts(i), -min_(i));
       shorten(thrusts(i), max_(i));
       continue;
     }
+    const double sign = share(i) > 0.0 ? 1.0 : -1.0;
+    shorten(-sign * thrusts(i), sign * (highest_thrust * share(i) - AtLeastThrust(i)));
     for (Eigen::Index j = 0; j < count; ++j) {
       if (share(j) == 0.0) continue;
       shorten(thrusts(j) / share(j) - thrusts(i) / share(i),
-              max_(j) / share(j) - min_(i) / share(i));
+              AtMostThrust(j) / share(j) - AtLeastThrust(i) / share(i));
     }
   }
   thrusts *= scale;
@@ -71,8 +73,8 @@ MixerOutput Mixer::Mix(const Wrench& wrench) const noexcept {
   double low = -std::numeric_limits<double>::infinity(), highest = -low;
   for (Eigen::Index i = 0; i < count; ++i) {
     if (share(i) == 0.0) continue;
-    low = std::max(low, (min_(i) - thrusts(i)) / share(i));
-    highest = std::min(highest, (max_(i) - thrusts(i)) / share(i));
+    low = std::max(low, (AtLeastThrust(i) - thrusts(i)) / share(i));
+    highest = std::min(highest, (AtMostThrust(i) - thrusts(i)) / share(i));
   }
   const double high = std::max(low, highest);  // equal up to rounding if scale < 1
   thrusts += share * std::clamp(wrench.thrust, low, high);

@@ -41,6 +41,14 @@ class Mixer {
  private:
   using Commands = estimation::Commands;
 
+  // The end of an actuator's range at which it allows no less, or no more, thrust.
+  double AtLeastThrust(Eigen::Index i) const {
+    return allocation_.Shares()(i) > 0.0 ? min_(i) : max_(i);
+  }
+  double AtMostThrust(Eigen::Index i) const {
+    return allocation_.Shares()(i) > 0.0 ? max_(i) : min_(i);
+  }
+
   estimation::Allocation allocation_;
   Commands min_, max_;
   double raised_thrust_;  ///< up to which moments may raise the thrust [N]

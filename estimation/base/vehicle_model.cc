@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The wrench is linear in the commands: column i is what actuator i does per unit. With four actuators that do not
-// depend on each other the matrix is inverted; with more, of all commands that make a wrench the shortest is
-// taken, B^T (B B^T)^-1 w.
+// depend on each other the matrix B is inverted; with more, of all commands that make a wrench the shortest is taken,
+// each as a share of its range: W B^T (B W B^T)^-1 w with the squares of the ranges in W. Without W a weak actuator
+// of another unit would have to do most of the work.
 
 #include "touchdown/estimation/base/vehicle_model.h"
 
@@ -53,8 +54,14 @@ Allocation AllocationOf(const VehicleModel& model) {
     wrench.col(i) << actuator.thrust, actuator.thrust * p.y() + actuator.moment_B.x(),
         -actuator.thrust * p.x() + actuator.moment_B.y(), actuator.moment_B.z();
   }
-  const Eigen::Matrix4d square = count == 4 ? Eigen::Matrix4d(wrench.leftCols<4>())
-                                            : Eigen::Matrix4d(wrench * wrench.transpose());
+  Commands squares(count);  // of the ranges
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(i)];
+    squares(i) = (actuator.max - actuator.min) * (actuator.max - actuator.min);
+  }
+  const Eigen::Matrix4d square =
+      count == 4 ? Eigen::Matrix4d(wrench.leftCols<4>())
+                 : Eigen::Matrix4d(wrench * squares.asDiagonal() * wrench.transpose());
   const Eigen::FullPivLU<Eigen::Matrix4d> lu(square);
   if (!lu.isInvertible()) {
     Refuse("their places and reaction torques do not span thrust and three moments");
@@ -63,20 +70,23 @@ Allocation AllocationOf(const VehicleModel& model) {
   if (count == 4) {
     commands = lu.inverse();
   } else {
-    commands = wrench.transpose() * lu.inverse();
+    commands = squares.asDiagonal() * wrench.transpose() * lu.inverse();
   }
   allocation.thrust_max = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < count; ++i) {
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(i)];
     double& share = commands(i, 0);
     if (std::abs(share) < kNoShare && actuator.thrust == 0.0) share = 0.0;
-    if (share < 0.0 || (share == 0.0 && actuator.thrust > 0.0)) {
+    if (actuator.thrust > 0.0 && !(share > 0.0)) {
       Refuse("share of number " + std::to_string(i) + " in thrust without a moment = " +
              NumberText(share) + ", allowed: > 0 (centre of mass between the rotors)");
     }
     if (share == 0.0) continue;
-    allocation.thrust_min = std::max(allocation.thrust_min, actuator.min / share);
-    allocation.thrust_max = std::min(allocation.thrust_max, actuator.max / share);
+    const bool with = share > 0.0;
+    allocation.thrust_min =
+        std::max(allocation.thrust_min, (with ? actuator.min : actuator.max) / share);
+    allocation.thrust_max =
+        std::min(allocation.thrust_max, (with ? actuator.max : actuator.min) / share);
   }
   return allocation;
 }
@@ -87,15 +97,16 @@ Eigen::Vector3d HoverTurn(const VehicleModel& model) {
       model.R_BI * model.inertia.asDiagonal() * model.R_BI.transpose();
   Eigen::Vector3d turn;
   for (int axis = 0; axis < 3; ++axis) {
-    double moment = std::numeric_limits<double>::infinity();
+    turn(axis) = std::numeric_limits<double>::infinity();
     for (Eigen::Index i = 0; i < allocation.commands_of_wrench.rows(); ++i) {
       const Actuator& actuator = model.actuators[static_cast<std::size_t>(i)];
       const double level = allocation.Shares()(i) * model.HoverThrust();
       const double room = std::max(0.0, std::min(level - actuator.min, actuator.max - level));
-      const double per_moment = std::abs(allocation.commands_of_wrench(i, axis + 1));
-      if (per_moment > 0.0) moment = std::min(moment, room / per_moment);
+      // About one axis alone: the moment that takes has parts about the others.
+      const double per_turn =
+          std::abs(allocation.commands_of_wrench.row(i).tail<3>().dot(inertia_B.col(axis)));
+      if (per_turn > 0.0) turn(axis) = std::min(turn(axis), room / per_turn);
     }
-    turn(axis) = moment / inertia_B(axis, axis);
   }
   return turn;
 }

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "estimation/base/degrees.h"
+#include "evaluation/base/bad_input.h"
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/vehicle/vehicle_file.h"
@@ -22,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kHoverTime = 5.0;  // [s]
+constexpr double kSettling = 1.0;   // from 0.15 m off, where the task's time begins [s]
 
 // MuJoCo's own words may have several lines.
 std::string OneLine(std::string text) {
@@ -50,7 +53,7 @@ HoverCheck Hover(const std::string& file, const std::vector<std::string>& overri
   const std::string text = "vehicle: " + Json(file).dump() +
                            "\ntask: go_to\nstart: {position: [-1, 0, 3], yaw_deg: 60}\n"
                            "go_to: {goal: [0, 0, 3], time: " +
-                           std::to_string(kHoverTime) + "}\ntimeout: 20\n";
+                           std::to_string(kSettling + kHoverTime) + "}\ntimeout: 20\n";
   const Scenario scenario = ParseScenario(text, "hover", "check-vehicle", overrides, registries);
   TrialRecord record;
   const TrialResult result = RunTrial(scenario, scenario.seed, registries, &record);
@@ -118,10 +121,22 @@ Json FindingsJson(const std::vector<sim::VehicleFinding>& findings) {
 
 VehicleCheck CheckVehicle(const std::string& file, const std::vector<std::string>& overrides,
                           const Registries& registries) {
+  for (const std::string& text : overrides) {
+    for (const char* own : {"vehicle", "task", "go_to", "start", "pad", "timeout", "seed"}) {
+      const std::string key = text.substr(0, text.find_first_of("=."));
+      if (key == own)
+        throw BadInput(fmt::format("--set {}: check-vehicle sets {} itself.", text, own));
+    }
+  }
   VehicleCheck check;
   check.file = file;
   Read(UncheckedVehicleScenario(file, overrides, registries), &check);
-  if (check.model) check.hover = Hover(file, overrides, registries);
+  if (!check.model) return check;
+  try {
+    check.hover = Hover(file, overrides, registries);
+  } catch (const BadInput& error) {
+    check.findings.Fault(OneLine(error.what()), "look at the hull and at the keys that were set");
+  }
   return check;
 }
 

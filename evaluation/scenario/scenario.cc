@@ -161,21 +161,22 @@ class Reader {
   const Keys& keys_;
 };
 
-// `load` gives the YAML documents of what sentences call `path`.
+// `load` gives the YAML documents of what sentences call `path`, a file of the kind `what`.
 template <typename Load>
-YAML::Node OneDocument(const std::string& path, const Load& load) {
+YAML::Node OneDocument(const std::string& path, const Load& load,
+                       const std::string& what = "scenario") {
   try {
     const std::vector<YAML::Node> documents = load();
     if (documents.empty() || documents.front().IsNull()) {
-      throw BadInput(fmt::format("{}: the scenario file holds no key.", path));
+      throw BadInput(fmt::format("{}: the {} file holds no key.", path, what));
     }
     if (documents.size() > 1) {
-      throw BadInput(fmt::format("{}: a scenario file holds one YAML document, and this one {}.",
-                                 path, documents.size()));
+      throw BadInput(fmt::format("{}: the {} file holds {} YAML documents; allowed is one.", path,
+                                 what, documents.size()));
     }
     return documents.front();
   } catch (const YAML::BadFile&) {
-    throw BadInput(fmt::format("{}: the scenario file cannot be read.", path));
+    throw BadInput(fmt::format("{}: the {} file cannot be read.", path, what));
   } catch (const YAML::Exception& error) {
     throw BadInput(fmt::format("{}:{}: {}.", path, error.mark.line + 1, error.msg));
   }
@@ -205,8 +206,10 @@ void ReadAirframe(const Keys& keys, ScenarioSource* source) {
   if (source->scenario.vehicle == "default") return;
   const std::string path =
       std::filesystem::path(source->scenario.vehicle).replace_extension(".airframe.yaml").string();
-  if (!std::filesystem::exists(path)) return;
-  const YAML::Node root = OneDocument(path, [&path] { return YAML::LoadAllFromFile(path); });
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  const auto load = [&path] { return YAML::LoadAllFromFile(path); };
+  const YAML::Node root = OneDocument(path, load, "airframe");
   ScenarioSource beside;
   beside.scenario = source->scenario;
   Reader(&beside, path, true, keys).ReadMap(root, "airframe", Where{path, 0});
@@ -275,7 +278,9 @@ Scenario UncheckedVehicleScenario(const std::string& vehicle,
 void ApplyOverride(const std::string& text, const Registries& registries, Scenario* scenario) {
   ScenarioSource source;
   source.scenario = *scenario;
-  ApplyOverride(text, ScenarioKeys(registries), &source);
+  const Keys keys = ScenarioKeys(registries);
+  ApplyOverride(text, keys, &source);
+  if (source.where.count("vehicle") != 0) ReadAirframe(keys, &source);
   *scenario = std::move(source.scenario);
 }
 

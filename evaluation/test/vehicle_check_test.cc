@@ -100,6 +100,23 @@ TEST(VehicleCheck, LargeVehiclesLeaveTheirStart) {
   EXPECT_TRUE(check.passed());
 }
 
+TEST(VehicleCheck, WhatCannotBeFlownIsAFaultAmongOthers) {
+  const VehicleCheck check = CheckVehicle(
+      kVehicles + "hexa.xml", {"airframe.hull=[1.5, -0.06, 0.08]"}, StandardRegistries());
+  ASSERT_EQ(check.findings.faults().size(), 1u);
+  EXPECT_THAT(check.findings.faults()[0].what, HasSubstr("hull"));
+  EXPECT_TRUE(check.model.has_value());
+  EXPECT_THROW(CheckVehicle(kVehicles + "hexa.xml", {"task=land"}, StandardRegistries()), BadInput);
+  EXPECT_FALSE(CheckVehicle(kVehicles, {}, StandardRegistries()).passed());  // a folder
+}
+
+// As the studies do that draw a scenario and override keys of it.
+TEST(VehicleCheck, AnOverriddenVehicleBringsItsAirframe) {
+  Scenario scenario;
+  ApplyOverride("vehicle=" + kVehicles + "hexa.xml", StandardRegistries(), &scenario);
+  EXPECT_EQ(scenario.airframe.rotor_drag, 0.384);
+}
+
 TEST(VehicleCheck, ProgramSaysWhatIsWrongAndWhatMendsIt) {
   const std::string file = Copied("wrench", "rotor_lag: 0.03\n");  // without its moments
   const Checked faulty = Call({"check-vehicle", file.c_str()});

@@ -241,6 +241,41 @@ TEST(VehicleImport, SensesOfRotationCanBeGiven) {
               HasSubstr("2 senses, the vehicle 4 rotors"));
 }
 
+// Hubs that are not quite square make a little yaw with senses that cannot: too little.
+TEST(VehicleImport, SensesThatHardlySteerAreCorrectedToo) {
+  const std::string path =
+      ChangedMini("pos=\" 0.033 -0.033 0.012\"", "pos=\" 0.0335 -0.0325 0.012\"");
+  std::string text = ReadVehicleFile(path);
+  const std::string first = "-0.00102\"/>\n    <motor class=\"mini\" name=\"m2\"";
+  text.replace(text.find(first), 8, "0.00102");
+  const std::string last = "0 0 0.17 0 0 0.00102\"/>\n  </actuator>";
+  text.replace(text.find(last), last.size(), "0 0 0.17 0 0 -0.00102\"/>\n  </actuator>");
+  std::ofstream(path) << text;
+  EXPECT_THAT(
+      test::MessageOf<std::invalid_argument>([&] { LoadVehicleModel(ImportVehicle(path, {})); }),
+      HasSubstr("senses of rotation"));
+  AirframeExtras extras;
+  extras.alternate_senses = true;
+  EXPECT_GT(estimation::HoverTurn(LoadVehicleModel(ImportVehicle(path, extras))).z(), 5.0);
+}
+
+// In the user's own words, not in those of the text that is made from the file.
+TEST(VehicleImport, FaultsSpeakOfTheFileAndTheAirframe) {
+  const auto said = [](const AirframeExtras& extras) {
+    return test::MessageOf<std::invalid_argument>(
+        [&] { LoadVehicleModel(ImportVehicle(kModels + "mini.xml", extras)); });
+  };
+  AirframeExtras feet, hull, moments;
+  feet.feet = {0.065, 0.03};
+  EXPECT_THAT(said(feet), HasSubstr("airframe.feet"));
+  hull.hull = {6.0, -0.1, 0.1};
+  EXPECT_THAT(said(hull), HasSubstr("airframe.hull"));
+  moments.moment_max = {1.0, 1.0, 1.0};
+  EXPECT_THAT(said(moments), HasSubstr("airframe.moment_max has no effect"));
+  EXPECT_THAT(Refusal("0 0 0.17 0 0 -0.00102", "0 0 0.17 0 0 0"),
+              HasSubstr("actuator \"m1\" has no reaction torque"));
+}
+
 TEST(VehicleImport, AllFaultsAreSaidAtOnce) {
   const std::string path = ChangedMini("<freejoint/>", "<joint type=\"free\" damping=\"0.1\"/>");
   std::string text = ReadVehicleFile(path);

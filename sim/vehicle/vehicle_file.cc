@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -187,8 +188,9 @@ class Reader {
     }
     model_.actuators.push_back(rotor);
     if (rotor.thrust == 0.0) return;
+    const bool first = ++rotors_ == 1;
     const double radius = m_.site_type[site] == mjGEOM_CYLINDER ? m_.site_size[3 * site] : 0.0;
-    model_.rotor_radius = index == 0 ? radius : std::min(model_.rotor_radius, radius);
+    model_.rotor_radius = first ? radius : std::min(model_.rotor_radius, radius);
   }
 
   void ReadDrag() {
@@ -228,10 +230,10 @@ class Reader {
       turns << "from hover it can be turned about x, y and z with " << turn.x() << ", " << turn.y()
             << " and " << turn.z() << " rad/s^2";
       const double tilt = turn.head<2>().minCoeff();
-      if (tilt < kLeastTurn || turn.z() < kLeastYawTurn) {
+      if (!TurnsEnough(model_)) {
         Fault(
             turns.str(),
-            "allowed are 10, 10 and 0.5 and more: look at inertia, arms and thrust ranges, or give "
+            "allowed are 10, 10 and 0.5 and more: look at inertia, arms, thrust ranges and senses of rotation, or give "
             "airframe.moment_max where the file has moments for actuators");
       } else if (tilt < kEasyTurn) {
         findings_.Warn(turns.str(), "fly it with limits.acceleration: 2 beside obstacles");
@@ -240,20 +242,30 @@ class Reader {
       const std::string_view why = error.what();
       Fault("its rotors cannot make thrust and three moments, " +
                 std::string(why.substr(why.find(": ") + 2)),
-            "look at their places and senses of rotation; airframe.rotor_senses: auto lets them "
-            "alternate around the body");
+            "look at their places about the centre of mass and at their senses of rotation; "
+            "airframe.rotor_senses: auto turns neighbours against each other");
     }
   }
 
   const mjModel& m_;
   VehicleFindings& findings_;
   int body_ = -1;
+  int rotors_ = 0;  // read so far
   VehicleModel model_;
 };
 
 }  // namespace
 
+bool TurnsEnough(const estimation::VehicleModel& model) {
+  const Eigen::Vector3d turn = estimation::HoverTurn(model);
+  return turn.head<2>().minCoeff() >= kLeastTurn && turn.z() >= kLeastYawTurn;
+}
+
 std::string ReadVehicleFile(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw std::invalid_argument("vehicle file " + path + " is not there, or no file");
+  }
   std::ifstream file(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   if (!file.is_open() || file.bad() || text.empty()) {

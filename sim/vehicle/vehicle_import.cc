@@ -18,6 +18,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
+
 #include "estimation/base/argument_check.h"
 #include "sim/mujoco/mjcf_text.h"
 #include "sim/mujoco/mujoco_call.h"
@@ -31,10 +33,12 @@ namespace {
 using estimation::NumberText;
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr double kUpright = 0.9998;        // cosine of one degree
-constexpr double kSame = 1e-6;             // relative, of figures that must agree
-constexpr double kNoProduct = 1e-9;        // of inertia, over the moments
-constexpr double kFeetShare = 0.6;         // of the hull's radius
+constexpr double kUpright = 0.9998;                  // cosine of one degree
+constexpr double kSame = 1e-6;                       // relative, of figures that must agree
+constexpr double kNoProduct = 1e-9;                  // of inertia, over the moments
+constexpr double kLeastLag = 0.005, kMostLag = 1.0;  // [s]
+constexpr double kFeetMost = 0.98;                   // of the hull's radius
+constexpr double kFeetShare = 0.6;                   // of the hull's radius
 constexpr double kFeetClearance = 0.35;    // hull above soles, over the feet's distance from z_B
 constexpr double kLeastHullHeight = 0.01;  // [m]
 
@@ -70,14 +74,17 @@ class Import {
     ReadMass();
     ReadMotors();
     ReadOutline();
+    SetBody();
     if (!findings_.faults().empty()) return;
-    SetSenses();
     SetMoments();
+    SetSenses();
   }
 
   std::string Text() const;
 
  private:
+  void SetBody();
+
   void Fault(std::string what, std::string remedy) {
     findings_.Fault(std::move(what), std::move(remedy));
   }
@@ -186,6 +193,9 @@ class Import {
     const Eigen::Matrix3d R_BS = R_WB_.transpose() * R_WS;
     const Eigen::Vector3d force_B = R_BS * Vec3(gear), moment_B = R_BS * Vec3(gear + 3);
     const double push = force_B.norm();
+    if (!force_B.allFinite() || !moment_B.allFinite()) {
+      Fault(name + " has a gear that is not finite", "give it numbers");
+    }
     if (push > 0.0 && std::abs(force_B.z()) < kUpright * push) {
       Fault(name + " does not push along the z axis of the body with the free joint",
             "its gear is \"0 0 f 0 0 k\", and its site's z axis that of the body");
@@ -209,6 +219,9 @@ class Import {
     } else if (m_.actuator_dyntype[i] != mjDYN_NONE) {
       Fault(name + " has dynamics that are no lag", "allowed is dyntype none or filter");
     }
+    if (!(motor.lag >= kLeastLag && motor.lag <= kMostLag)) {
+      Fault(name + " lags by " + NumberText(motor.lag) + " s", "allowed is 0.005 to 1 s");
+    }
     if (findings_.faults().size() != before) return std::nullopt;
     // A unit of its command is a newton, or a newton metre of what makes a moment alone.
     const double unit = push > 0.0 ? force_B.z() : moment_B.norm();
@@ -219,6 +232,10 @@ class Import {
     actuator.moment_B = moment_B / unit;
     actuator.min = std::min(unit * force[0], unit * force[1]);
     actuator.max = std::max(unit * force[0], unit * force[1]);
+    if (!std::isfinite(actuator.min) || !std::isfinite(actuator.max)) {
+      Fault(name + " has a range that is not finite", "give it a ctrlrange");
+      return std::nullopt;
+    }
     if (push > 0.0 && !(actuator.min >= 0.0 && actuator.max > actuator.min)) {
       Fault(name + " pushes with " + NumberText(actuator.min) + " to " + NumberText(actuator.max) +
                 " N along z",
@@ -246,13 +263,16 @@ class Import {
 
   bool CanSteer() const {
     estimation::VehicleModel model;
+    model.mass_kg = mass_;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(inertia_);
+    model.inertia = principal.eigenvalues();
+    model.R_BI = principal.eigenvectors();
     for (const Motor& motor : motors_) model.actuators.push_back(motor.actuator);
     try {
-      estimation::AllocationOf(model);
+      return TurnsEnough(model);
     } catch (const std::invalid_argument&) {
       return false;
     }
-    return true;
   }
 
   // The senses that the user gives; else, on request, where those of the file cannot steer, each other than its
@@ -262,21 +282,33 @@ class Import {
     for (Motor& motor : motors_) {
       if (motor.actuator.thrust > 0.0) rotors.push_back(&motor.actuator);
     }
+    const std::vector<double>& given = extras_.rotor_senses;
+    if (rotors.size() != motors_.size()) {
+      if (given.empty()) return;
+      return Fault("airframe.rotor_senses has no effect: the file has moments for actuators",
+                   "take it out");
+    }
+    for (std::size_t i = 0; i < rotors.size(); ++i) {
+      if (rotors[i]->moment_B.z() != 0.0) continue;
+      Fault(Quoted(m_, m_.name_actuatoradr[i], "actuator", static_cast<int>(i)) +
+                " has no reaction torque",
+            "give it in the gear, \"0 0 f 0 0 k\", with a sign");
+    }
+    if (!findings_.faults().empty()) return;
     const auto turn = [](estimation::Actuator& rotor, double sense) {
       rotor.moment_B.z() = std::copysign(rotor.moment_B.z(), sense);
     };
-    const std::vector<double>& given = extras_.rotor_senses;
     if (!given.empty()) {
       if (given.size() != rotors.size()) {
-        Fault("airframe.rotor_senses has " + std::to_string(given.size()) +
-                  " senses, the vehicle " + std::to_string(rotors.size()) + " rotors",
-              "give one a rotor, in the order of the file's actuators");
-        return;
+        return Fault("airframe.rotor_senses has " + std::to_string(given.size()) +
+                         " senses, the vehicle " + std::to_string(rotors.size()) + " rotors",
+                     "give one a rotor, in the order of the file's actuators");
       }
       for (std::size_t i = 0; i < rotors.size(); ++i) turn(*rotors[i], given[i]);
       return;
     }
     if (!extras_.alternate_senses || CanSteer()) return;
+    const std::vector<Motor> before = motors_;
     std::vector<std::size_t> around(rotors.size());
     std::iota(around.begin(), around.end(), 0);
     const auto azimuth = [&](std::size_t i) {
@@ -286,12 +318,16 @@ class Import {
               [&](std::size_t a, std::size_t b) { return azimuth(a) < azimuth(b); });
     // The first rotor of the file keeps its sense.
     const auto first = std::find(around.begin(), around.end(), 0u) - around.begin();
-    const double sense = std::copysign(1.0, rotors[0]->moment_B.z());
-    std::string signs;
+    const double sense = rotors[0]->moment_B.z();
     for (std::size_t k = 0; k < around.size(); ++k) {
       const bool as_first = (static_cast<std::ptrdiff_t>(k) - first) % 2 == 0;
       turn(*rotors[around[k]], as_first ? sense : -sense);
     }
+    if (!CanSteer()) {  // the senses are not what it lacks
+      motors_ = before;
+      return;
+    }
+    std::string signs;
     for (const estimation::Actuator* rotor : rotors) {
       signs.append(signs.empty() ? "" : ", ").append(rotor->moment_B.z() > 0.0 ? "1" : "-1");
     }
@@ -344,6 +380,8 @@ class Import {
   Eigen::Matrix3d inertia_ = Eigen::Matrix3d::Zero();
   std::vector<Motor> motors_;
   Outline outline_;
+  double radius_ = 0.0, bottom_ = 0.0, top_ = 0.0;  // of the hull [m]
+  double feet_at_ = 0.0, depth_ = 0.0;              // [m]
 };
 
 std::string InertiaText(const Eigen::Matrix3d& inertia) {
@@ -355,17 +393,29 @@ std::string InertiaText(const Eigen::Matrix3d& inertia) {
   return "fullinertia='" + VectorText(moments) + " " + VectorText(products) + "'";
 }
 
-std::string Import::Text() const {
+// The cylinder that collides and the feet, of the user or around what there is.
+void Import::SetBody() {
   const bool own_hull = !extras_.hull.isZero(), own_feet = !extras_.feet.isZero();
-  const double radius = own_hull ? extras_.hull[0] : outline_.radius;
-  const double at = own_feet ? extras_.feet[0] : kFeetShare * radius;
-  const double bottom = own_hull ? extras_.hull[1] : outline_.bottom;
-  const double depth = own_feet ? extras_.feet[1] : -bottom + kFeetClearance * at;
-  const double top = own_hull ? extras_.hull[2] : std::max(outline_.top, bottom + kLeastHullHeight);
-  estimation::CheckAbove("radius of the hull [m]", radius, 0.0, 5.0);
-  estimation::CheckAbove("top of the hull above its bottom [m]", top - bottom, 0.0, 5.0);
-  estimation::CheckWithin("radius of the feet [m]", at, 0.0, radius);
-  estimation::CheckAbove("depth of the feet below the hull [m]", depth + bottom, 0.0, 5.0);
+  radius_ = own_hull ? extras_.hull[0] : outline_.radius;
+  bottom_ = own_hull ? extras_.hull[1] : outline_.bottom;
+  top_ = own_hull ? extras_.hull[2] : std::max(outline_.top, bottom_ + kLeastHullHeight);
+  feet_at_ = own_feet ? extras_.feet[0] : kFeetShare * radius_;
+  depth_ = own_feet ? extras_.feet[1] : -bottom_ + kFeetClearance * feet_at_;
+  const auto within = [&](const char* what, double value, double high, const char* remedy) {
+    if (value > 0.0 && value <= high) return;
+    Fault(what + (" is " + NumberText(value)),
+          "allowed is above 0 and up to " + NumberText(high) + remedy);
+  };
+  within("radius of the hull [m]", radius_, 5.0, "; look at the geoms, or give airframe.hull");
+  within("height of the hull [m]", top_ - bottom_, 5.0,
+         "; look at the geoms, or give airframe.hull");
+  within("distance of the feet from the middle [m]", feet_at_, kFeetMost * radius_,
+         ": airframe.feet");
+  within("depth of the feet below the hull [m]", depth_ + bottom_, 5.0, ": airframe.feet");
+}
+
+std::string Import::Text() const {
+  const double radius = radius_, bottom = bottom_, top = top_, at = feet_at_, depth = depth_;
   const double ball = std::min({0.015, 0.1 * radius, 0.5 * (depth + bottom), radius - at});
 
   std::ostringstream xml;
@@ -416,7 +466,6 @@ std::string ImportVehicle(const std::string& path, const AirframeExtras& extras,
   std::string text = ReadVehicleFile(path);  // names a file that is not there
   const MujocoModel model = CompileMjcfFile(path);
   if (OwnForm(*model)) return text;
-  estimation::CheckWithin("lag of the rotors [s]", extras.rotor_lag, 0.005, 1.0);
   const Import import(*model, extras, findings);
   return findings->faults().empty() ? import.Text() : "";
 }

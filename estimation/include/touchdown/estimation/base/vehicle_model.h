@@ -75,12 +75,12 @@ struct VehicleModel {
 /// Which commands make which wrench: (thrust along z_B, moment about x_B, y_B, z_B) [N, N m].
 struct Allocation {
   Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kMostActuators> wrench_of_commands;
-  /// Its inverse; with more than four actuators that of least squares of the commands.
+  /// Its inverse; with more than four actuators that of least squares of the commands as shares of their ranges.
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::ColMajor, kMostActuators, 4> commands_of_wrench;
   /// Of the thrust without any moment that the actuators' ranges allow [N].
   double thrust_min = 0.0, thrust_max = 0.0;
 
-  /// Each actuator's part in a thrust without a moment, per newton; none is below 0.
+  /// Each actuator's part in a thrust without a moment, per newton; above 0 of those that make thrust.
   auto Shares() const { return commands_of_wrench.col(0); }
 };
 
