@@ -73,7 +73,7 @@ void WorldStep(benchmark::State& state, const std::string& kind, int count) {
   config.start = Amid();
   sim::World world(config);
   const double hover = 0.25 * world.model().HoverThrust();
-  for (auto _ : state) world.Step({hover, hover, hover, hover});
+  for (auto _ : state) world.Step(Eigen::Vector4d(hover, hover, hover, hover));
 }
 
 void TrueClearance(benchmark::State& state, const std::string& kind, int count) {
