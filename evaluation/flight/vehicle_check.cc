@@ -43,7 +43,7 @@ void Read(const Scenario& scenario, VehicleCheck* check) {
     if (mjcf.empty()) return;
     check->model = sim::ReadVehicleModel(mjcf, &check->findings);
   } catch (const std::invalid_argument& error) {
-    check->findings.Fault(OneLine(error.what()), "mend the file");
+    check->findings.Fault(OneLine(error.what()), "look at the path and at the file's text");
   }
 }
 
@@ -130,6 +130,7 @@ VehicleCheck CheckVehicle(const std::string& file, const std::vector<std::string
   }
   VehicleCheck check;
   check.file = file;
+  check.airframe_file = AirframeFile(file);
   Read(UncheckedVehicleScenario(file, overrides, registries), &check);
   if (!check.model) return check;
   try {
@@ -142,6 +143,7 @@ VehicleCheck CheckVehicle(const std::string& file, const std::vector<std::string
 
 Json VehicleCheckJson(const VehicleCheck& check) {
   Json document = {{"file", check.file},
+                   {"airframe_file", check.airframe_file},
                    {"passed", check.passed()},
                    {"faults", FindingsJson(check.findings.faults())},
                    {"warnings", FindingsJson(check.findings.warnings())},

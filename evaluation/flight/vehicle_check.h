@@ -27,6 +27,7 @@ struct HoverCheck {
 /// All that is found in a vehicle's file.
 struct VehicleCheck {
   std::string file;
+  std::string airframe_file;  ///< beside it; empty: there is none
   sim::VehicleFindings findings;
   std::optional<estimation::VehicleModel> model;       ///< without faults
   std::optional<HoverCheck> hover;                     ///< alike

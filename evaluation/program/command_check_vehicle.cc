@@ -34,14 +34,17 @@ std::string FindingsText(const char* kind, const std::vector<sim::VehicleFinding
 std::string ModelText(const estimation::VehicleModel& model) {
   const estimation::Allocation allocation = estimation::AllocationOf(model);
   const Eigen::Vector3d turn = estimation::HoverTurn(model);
+  Eigen::Matrix3d inertia_B = model.R_BI * model.inertia.asDiagonal() * model.R_BI.transpose();
+  const double product =
+      (inertia_B - Eigen::Matrix3d(inertia_B.diagonal().asDiagonal())).cwiseAbs().maxCoeff();
   std::string text = fmt::format(
       "  mass                 {:.4g} kg, lag of the rotors {:.4g} s\n"
-      "  moments of inertia   {:.4g}, {:.4g}, {:.4g} kg m^2\n"
+      "  inertia              {:.4g}, {:.4g}, {:.4g} kg m^2 about x, y, z, products up to {:.2g}\n"
       "  thrust               {:.2f} times the weight\n"
       "  turns from hover by  {:.4g}, {:.4g}, {:.4g} rad/s^2 about x, y, z\n"
       "  hull                 radius {:.4g} m, from {:.4g} to {:.4g} m; soles at {:.4g} m\n"
       "  drag                 {:.4g} N s/m, {:.4g} m^2\n",
-      model.mass_kg, model.rotor_lag_s, model.inertia.x(), model.inertia.y(), model.inertia.z(),
+      model.mass_kg, model.rotor_lag_s, inertia_B(0, 0), inertia_B(1, 1), inertia_B(2, 2), product,
       allocation.thrust_max / model.HoverThrust(), turn.x(), turn.y(), turn.z(), model.hull_radius,
       -model.hull_bottom, model.hull_top, -model.foot_depth, model.rotor_drag.x(),
       model.body_drag_area);
@@ -64,7 +67,11 @@ std::string ModelText(const estimation::VehicleModel& model) {
 std::string Text(const VehicleCheck& check) {
   std::string text = FindingsText("fault", check.findings.faults()) +
                      FindingsText("warning", check.findings.warnings());
-  if (check.model) text += check.file + "\n" + ModelText(*check.model);
+  if (check.model) {
+    text += fmt::format("{}\n  airframe file        {}\n", check.file,
+                        check.airframe_file.empty() ? "none beside it" : check.airframe_file);
+    text += ModelText(*check.model);
+  }
   if (check.hover) {
     text += fmt::format(
         "  a metre, then hover  {} after {:.1f} s: {:.3f} m off at most, {:.1f} deg of tilt on the "

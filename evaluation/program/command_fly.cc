@@ -138,6 +138,12 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
       100.0 * r.timing.physics_cpu_s / r.timing.cpu_s,
       100.0 * (r.timing.sensing_cpu_s + r.timing.mapping_cpu_s) / r.timing.cpu_s);
   if (r.prior) text += PriorSentences(*r.prior);
+  if (r.prior && !r.succeeded()) {
+    text +=
+        "Occupied cells of map.prior block plans until they are seen free: look whether it stands "
+        "in the "
+        "way, at the start for one.\n";
+  }
   return text;
 }
 

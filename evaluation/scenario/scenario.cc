@@ -203,11 +203,8 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
 // What a vehicle's own file beside it says of its airframe, where the scenario does not: FILE.airframe.yaml beside
 // FILE.xml, with the keys of `airframe`.
 void ReadAirframe(const Keys& keys, ScenarioSource* source) {
-  if (source->scenario.vehicle == "default") return;
-  const std::string path =
-      std::filesystem::path(source->scenario.vehicle).replace_extension(".airframe.yaml").string();
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return;
+  const std::string path = AirframeFile(source->scenario.vehicle);
+  if (path.empty()) return;
   const auto load = [&path] { return YAML::LoadAllFromFile(path); };
   const YAML::Node root = OneDocument(path, load, "airframe");
   ScenarioSource beside;
@@ -263,6 +260,14 @@ Scenario Complete(const YAML::Node& root, const std::string& name, const std::st
 }
 
 }  // namespace
+
+std::string AirframeFile(const std::string& vehicle) {
+  if (vehicle == "default") return "";
+  const std::string path =
+      std::filesystem::path(vehicle).replace_extension(".airframe.yaml").string();
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error) ? path : "";
+}
 
 Scenario UncheckedVehicleScenario(const std::string& vehicle,
                                   const std::vector<std::string>& overrides,

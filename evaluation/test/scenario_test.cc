@@ -193,7 +193,7 @@ TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
 }
 
 TEST_F(ScenarioTest, ASecondDocumentIsRefused) {
-  EXPECT_THAT(Refusal("seed: 1\n---\nseed: 2\n"), HasSubstr("one YAML document, and this one 2"));
+  EXPECT_THAT(Refusal("seed: 1\n---\nseed: 2\n"), HasSubstr("holds 2 YAML documents; allowed is one"));
 }
 
 TEST_F(ScenarioTest, AKeyThatIsNoTextIsRefused) {

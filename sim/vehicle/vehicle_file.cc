@@ -12,7 +12,6 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -24,7 +23,6 @@
 namespace touchdown::sim {
 namespace {
 
-using estimation::NumberText;
 using estimation::VehicleModel;
 
 constexpr double kTolerance = 1.0e-6;
@@ -137,8 +135,7 @@ class Reader {
       return;
     }
     if (model_.foot_depth - shortest > kUnevenFeet) {
-      Fault("the feet reach down " + NumberText(shortest) + " to " + NumberText(model_.foot_depth) +
-                " m",
+      Fault("the feet reach down " + Figure(shortest) + " to " + Figure(model_.foot_depth) + " m",
             "they must reach down equally far");
     }
     if (model_.foot_depth <= model_.hull_bottom) {
@@ -170,7 +167,7 @@ class Reader {
     }
     const double lag = m_.actuator_dynprm[mjNDYN * actuator];
     if (!(lag >= 0.005 && lag <= 1.0)) {
-      Fault("lag of " + name + " is " + NumberText(lag) + " s", "allowed is 0.005 to 1 s");
+      Fault("lag of " + name + " is " + Figure(lag) + " s", "allowed is 0.005 to 1 s");
     }
     if (index == 0) model_.rotor_lag_s = lag;
     if (lag != model_.rotor_lag_s) {
@@ -183,7 +180,7 @@ class Reader {
     rotor.min = m_.actuator_ctrlrange[2 * actuator];
     rotor.max = m_.actuator_ctrlrange[2 * actuator + 1];
     if (rotor.thrust > 0.0 && rotor.min < 0.0) {
-      Fault("lower end of the control range of " + name + " is " + NumberText(rotor.min),
+      Fault("lower end of the control range of " + name + " is " + Figure(rotor.min),
             "allowed is 0 and more");
     }
     model_.actuators.push_back(rotor);
@@ -206,7 +203,7 @@ class Reader {
     model_.body_drag_area = m_.numeric_data[m_.numeric_adr[area]];
     const auto within = [&](const char* what, double value) {
       if (!(value >= 0.0 && value <= 10.0)) {
-        Fault(what + (" is " + NumberText(value)), "allowed is 0 to 10");
+        Fault(what + (" is " + Figure(value)), "allowed is 0 to 10");
       }
     };
     within("smallest of rotor_drag", model_.rotor_drag.minCoeff());
@@ -218,25 +215,24 @@ class Reader {
     try {
       const double most = estimation::AllocationOf(model_).thrust_max;
       if (most < kLeastThrustToWeight * model_.HoverThrust()) {
-        Fault("the rotors' largest thrust, " + NumberText(most) +
+        Fault("the rotors' largest thrust, " + Figure(most) +
                   " N, does not carry its weight 1.2 times, " +
-                  NumberText(kLeastThrustToWeight * model_.HoverThrust()) + " N",
+                  Figure(kLeastThrustToWeight * model_.HoverThrust()) + " N",
               "look at mass and thrust ranges");
         return;
       }
       const Eigen::Vector3d turn = estimation::HoverTurn(model_);
-      std::ostringstream turns;
-      turns.precision(3);
-      turns << "from hover it can be turned about x, y and z with " << turn.x() << ", " << turn.y()
-            << " and " << turn.z() << " rad/s^2";
+      const std::string turns = "from hover it can be turned about x, y and z with " +
+                                Figure(turn.x()) + ", " + Figure(turn.y()) + " and " +
+                                Figure(turn.z()) + " rad/s^2";
       const double tilt = turn.head<2>().minCoeff();
       if (!TurnsEnough(model_)) {
-        Fault(
-            turns.str(),
-            "allowed are 10, 10 and 0.5 and more: look at inertia, arms, thrust ranges and senses of rotation, or give "
-            "airframe.moment_max where the file has moments for actuators");
+        Fault(turns,
+              "allowed are 10, 10 and 0.5 and more: look at inertia, arms, thrust ranges and "
+              "senses of rotation, or give "
+              "airframe.moment_max where the file has moments for actuators");
       } else if (tilt < kEasyTurn) {
-        findings_.Warn(turns.str(), "fly it with limits.acceleration: 2 beside obstacles");
+        findings_.Warn(turns, "fly it with limits.acceleration: 2 beside obstacles");
       }
     } catch (const std::invalid_argument& error) {
       const std::string_view why = error.what();

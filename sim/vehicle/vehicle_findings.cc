@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/vehicle/vehicle_findings.h"
 
+#include <sstream>
 #include <stdexcept>
 
 namespace touchdown::sim {
+
+std::string Figure(double value) {
+  std::ostringstream text;
+  text.precision(4);
+  text << value;
+  return text.str();
+}
 
 void VehicleFindings::ThrowFaults() const {
   if (faults_.empty()) return;

@@ -12,6 +12,9 @@ struct VehicleFinding {
   std::string remedy;
 };
 
+/// A figure as a sentence has it: four digits.
+std::string Figure(double value);
+
 /// All that was found in a vehicle's file: a user mends it in one go.
 class VehicleFindings {
  public:

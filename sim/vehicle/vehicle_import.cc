@@ -220,7 +220,7 @@ class Import {
       Fault(name + " has dynamics that are no lag", "allowed is dyntype none or filter");
     }
     if (!(motor.lag >= kLeastLag && motor.lag <= kMostLag)) {
-      Fault(name + " lags by " + NumberText(motor.lag) + " s", "allowed is 0.005 to 1 s");
+      Fault(name + " lags by " + Figure(motor.lag) + " s", "allowed is 0.005 to 1 s");
     }
     if (findings_.faults().size() != before) return std::nullopt;
     // A unit of its command is a newton, or a newton metre of what makes a moment alone.
@@ -237,14 +237,13 @@ class Import {
       return std::nullopt;
     }
     if (push > 0.0 && !(actuator.min >= 0.0 && actuator.max > actuator.min)) {
-      Fault(name + " pushes with " + NumberText(actuator.min) + " to " + NumberText(actuator.max) +
+      Fault(name + " pushes with " + Figure(actuator.min) + " to " + Figure(actuator.max) +
                 " N along z",
             "allowed is a range above 0: look at ctrlrange, forcerange and the gear's sign");
       return std::nullopt;
     }
     if (push == 0.0 && !(actuator.min < 0.0 && actuator.max > 0.0)) {
-      Fault(name + " turns with " + NumberText(actuator.min) + " to " + NumberText(actuator.max) +
-                " N m",
+      Fault(name + " turns with " + Figure(actuator.min) + " to " + Figure(actuator.max) + " N m",
             "allowed is a range about 0: look at its ctrlrange");
       return std::nullopt;
     }
@@ -255,8 +254,7 @@ class Import {
     for (std::size_t i = 1; i < motors_.size(); ++i) {
       if (std::abs(motors_[i].lag - motors_[0].lag) <= kSame * motors_[0].lag) continue;
       Fault(Quoted(m_, m_.name_actuatoradr[i], "actuator", static_cast<int>(i)) + " lags by " +
-                NumberText(motors_[i].lag) + " s, the first one by " + NumberText(motors_[0].lag) +
-                " s",
+                Figure(motors_[i].lag) + " s, the first one by " + Figure(motors_[0].lag) + " s",
             "give all the same");
     }
   }
@@ -403,8 +401,7 @@ void Import::SetBody() {
   depth_ = own_feet ? extras_.feet[1] : -bottom_ + kFeetClearance * feet_at_;
   const auto within = [&](const char* what, double value, double high, const char* remedy) {
     if (value > 0.0 && value <= high) return;
-    Fault(what + (" is " + NumberText(value)),
-          "allowed is above 0 and up to " + NumberText(high) + remedy);
+    Fault(what + (" is " + Figure(value)), "allowed is above 0 and up to " + Figure(high) + remedy);
   };
   within("radius of the hull [m]", radius_, 5.0, "; look at the geoms, or give airframe.hull");
   within("height of the hull [m]", top_ - bottom_, 5.0,

@@ -64,7 +64,8 @@ def belief(walls):
 
 
 def write_octomap(path, cells, edge):
-    """OctoMap's binary format: two bits to a child, the first bit lowest."""
+    """OctoMap's binary format: two bits to a child, the first bit lowest. `cells[x, y, z]`, from the origin on: 0 unknown,
+    FREE or OCCUPIED; `edge` [m]."""
     count = 0
 
     def node(low, side):
@@ -96,7 +97,7 @@ def write_octomap(path, cells, edge):
     root = struct.pack("<H", INNER << 14) + root  # the octant of positive coordinates
     count += 2
     head = f"# Octomap OcTree binary file\nid OcTree\nsize {count}\nres {edge}\ndata\n"
-    path.write_bytes(head.encode() + root)
+    Path(path).write_bytes(head.encode() + root)
 
 
 class Solids:

@@ -113,7 +113,7 @@ def draw_view(axes, document, across, up):
         end = 0.9 * size * np.array([axis[across], axis[up]])
         axes.plot([-end[0], end[0]], [-end[1], end[1]], color=INERTIA, lw=0.8, ls=":",
                   label="axes of inertia" if k == 0 else None)  # fmt: skip
-    reach = 1.15 * size
+    reach = max(1.1 * size, *(1.1 * (np.hypot(*a["p_BR"][:2]) + radius) for _, a in rotors))
     low = min(feet["bottom"], hull["bottom"]) - 0.3 * size if up == 2 else -reach
     axes.set(xlim=(-reach, reach), ylim=(low, reach if up == 1 else max(hull["top"] + 0.5 * size, 0.6 * size)),
              aspect="equal", xlabel=f"{'xyz'[across]} [m]", ylabel=f"{'xyz'[up]} [m]")  # fmt: skip
@@ -127,7 +127,7 @@ def draw(document, path):
         for panel, (title, across, up) in zip(axes, VIEWS):
             draw_view(panel, document, across, up)
             panel.set_title(title)
-        axes[1].legend(loc="upper right", fontsize=7.5, frameon=False)
+        axes[1].legend(loc="lower right", fontsize=7.5, frameon=False)
         hover = document["hover"]
         said = f"hover {'held' if hover['held'] else 'not held'}" if hover else "not flown"
         figure.suptitle(f"{os.path.basename(document['file'])}: {model['mass_kg']:.3g} kg, thrust {model['thrust_to_weight']:.2f} "
@@ -135,6 +135,8 @@ def draw(document, path):
         lines = [f"warning: {w['what']}" for w in document["warnings"]]
         lines.append("A rotor's number is its place in the file; its thrust in hover, of its greatest. "
                      "Blue turns left, seen from above, orange right.")  # fmt: skip
+        if not model["rotor_radius_m"]:
+            lines.append("The file does not say how large the discs are: they are drawn for the eye.")
         figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7.5, color="#555555")
         figure.savefig(path, dpi=130)
         plt.close(figure)
