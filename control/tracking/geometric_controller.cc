@@ -36,9 +36,10 @@ double NearerHeading(double yaw, const Eigen::Matrix3d& R_WB) {
 
 GeometricController::GeometricController(const estimation::VehicleModel& model,
                                          const ControllerOptions& options)
-    : model_(model), options_(options), thrust_max_(estimation::AllocationOf(model).thrust_max) {
+    : model_(model), options_(options) {
   Validate(model_);
   Validate(options_);
+  thrust_max_ = estimation::AllocationOf(model_).thrust_max;
 }
 
 ControlOutput GeometricController::Update(const estimation::VehicleState& state,

@@ -20,7 +20,7 @@ class GeometricController final : public Controller {
  private:
   estimation::VehicleModel model_;
   ControllerOptions options_;
-  double thrust_max_;  ///< without a moment [N]
+  double thrust_max_ = 0.0;  ///< without a moment [N]
 };
 
 }  // namespace touchdown::control

@@ -16,9 +16,10 @@ namespace touchdown::control {
 
 PaperController::PaperController(const estimation::VehicleModel& model,
                                  const ControllerOptions& options)
-    : model_(model), options_(options), thrust_max_(estimation::AllocationOf(model).thrust_max) {
+    : model_(model), options_(options) {
   Validate(model_);
   Validate(options_);
+  thrust_max_ = estimation::AllocationOf(model_).thrust_max;
 }
 
 ControlOutput PaperController::Update(const estimation::VehicleState& state,

@@ -21,7 +21,7 @@ class PaperController final : public Controller {
  private:
   estimation::VehicleModel model_;
   ControllerOptions options_;
-  double thrust_max_;  ///< without a moment [N]
+  double thrust_max_ = 0.0;  ///< without a moment [N]
 };
 
 }  // namespace touchdown::control
