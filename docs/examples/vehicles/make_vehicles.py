@@ -3,7 +3,7 @@
 """Writes the vehicles of this folder, each a model in the common form with its airframe file beside it, and
 vehicles drawn at random.
 
-    make_vehicles.py                    the four of this folder
+    make_vehicles.py                    the five of this folder
     make_vehicles.py --random 7 FOLDER  one of seed 7: FOLDER/vehicle_7.xml and its airframe file
 """
 import argparse
@@ -33,6 +33,7 @@ class Vehicle:
     rises: tuple = (0.0,)  # of the hubs, by turns
     order: tuple = ()  # of the actuators in the file; empty: around the body
     said_moments: float = 1.0  # of those that the model can make, in its file
+    senses: tuple = ()  # of the reaction torques in the file, where they are wrong; empty: by turns
 
     @property
     def radius(self):  # of a rotor's disc: those beside each other leave a tenth of their radius
@@ -65,7 +66,7 @@ def actuators(v):
         return rows
     most = v.thrust / v.rotors
     rows = [f'<motor name="motor{i}" site="hub{i}" ctrlrange="0 1" gear="0 0 {numbers(most)} 0 0 '
-            f'{numbers(most * v.torque * (1 if i % 2 == 0 else -1))}"/>' for i in range(v.rotors)]
+            f'{numbers(most * v.torque * (v.senses[i] if v.senses else 1 - 2 * (i % 2)))}"/>' for i in range(v.rotors)]
     return [rows[i] for i in v.order or range(v.rotors)]
 
 
@@ -92,6 +93,8 @@ def airframe(v):
     if v.rotors == 0 and v.said_moments != 1.0:
         roll, yaw = 0.35 * v.thrust * v.arm, 0.7 * v.thrust * v.torque
         lines.append(f"moment_max: [{roll:.4g}, {roll:.4g}, {yaw:.4g}]")
+    if v.senses:
+        lines.append("rotor_senses: auto")
     return "\n".join([*lines, ""])
 
 
@@ -138,6 +141,8 @@ NAMED = [
                    turn_deg=(0, 12, 0), thrust_to_weight=2.0), 5.0),
     scaled(Vehicle("hexa", "A hexarotor of 2.4 kg; every other rotor sits higher.", 0, 0, rotors=6, first_deg=30.0,
                    rises=(0.0, 0.03)), 2.4),
+    scaled(Vehicle("survey", "A quadrotor of 1.3 kg, front rotors higher, axes of inertia turned. The file's senses of rotation are wrong: "
+                   "-, +, +, - around the body.", 0, 0, turn_deg=(0, 9, 0), rises=(0.03, 0.0, 0.0, 0.03), senses=(-1, 1, 1, -1)), 1.3),
     scaled(Vehicle("wrench", "One thrust and three moments, as models that know no rotors have them. The moments of the file "
                    "are a hundredth of what 0.5 kg need.", 0, 0, rotors=0, said_moments=0.01), 0.5),
 ]
