@@ -93,7 +93,8 @@ TEST(ClosedLoop, PhysicsThatFailsIsTheOutcomeUnstableAndIsRecorded) {
   const auto replace = [&mjcf](const std::string& from, const std::string& to) {
     mjcf.replace(mjcf.find(from), from.size(), to);
   };
-  replace("mass=\"1.18\"", "mass=\"0.0002\"");
+  replace("mass=\"1.18\" diaginertia=\"0.010 0.010 0.018\"",
+          "mass=\"0.0002\" diaginertia=\"1e-6 1e-6 1.8e-6\"");
   replace("0.19 0.19 0.0", "10 10 10");
   const std::string path = ::testing::TempDir() + "touchdown_feather.xml";
   std::ofstream(path) << mjcf;
@@ -122,9 +123,10 @@ TEST(ClosedLoop, AScenarioThatCannotBeSetUpIsBadInput) {
 
 TEST(ClosedLoop, PlansAccelerateNoMoreThanTheTiltAllows) {
   const Scenario scenario = Shipped("open", {"limits.tilt_deg=10"});
-  EXPECT_NEAR(PlannerOptions(scenario, {}, planning::StandardTerms()).limits.acceleration,
+  const estimation::VehicleModel model = sim::LoadVehicleModel(sim::DefaultVehicleMjcf());
+  EXPECT_NEAR(PlannerOptions(scenario, model, planning::StandardTerms()).limits.acceleration,
               9.81 * 0.17633, 1e-3);
-  EXPECT_EQ(PlannerOptions(Scenario{}, {}, planning::StandardTerms()).limits.acceleration, 6.0);
+  EXPECT_EQ(PlannerOptions(Scenario{}, model, planning::StandardTerms()).limits.acceleration, 6.0);
 }
 
 TEST(ClosedLoop, AClearanceBelowWhatPairsKeepIsRaised) {

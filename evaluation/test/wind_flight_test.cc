@@ -15,6 +15,7 @@
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/air/pad_wake.h"
+#include "sim/vehicle/vehicle_file.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
@@ -109,8 +110,8 @@ TEST(WindFlight, TheLawLeansFartherThanStopsCountOn) {
   const Scenario scenario = Open({"limits.tilt_deg=35"});
   constexpr double kDeg = 3.14159265358979323846 / 180.0;
   EXPECT_NEAR(EnvelopeOf(scenario).TrackingTilt(), 55.0 * kDeg, 1e-12);
-  const planning::ReplannerOptions options =
-      PlannerOptions(scenario, estimation::VehicleModel{}, StandardRegistries().terms);
+  const planning::ReplannerOptions options = PlannerOptions(
+      scenario, sim::LoadVehicleModel(sim::DefaultVehicleMjcf()), StandardRegistries().terms);
   EXPECT_NEAR(options.problem.vehicle.stop_tilt_max, 45.0 * kDeg, 1e-12);
 }
 
