@@ -141,8 +141,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   if (r.prior && !r.succeeded()) {
     text +=
         "Occupied cells of map.prior block plans until they are seen free: look whether it stands "
-        "in the "
-        "way, at the start for one.\n";
+        "in the way, at the start for one.\n";
   }
   return text;
 }
