@@ -176,6 +176,10 @@ class Trial {
            fmt::format("{} ({})", control::ToString(mission.mode),
                        control::ToString(mission.reason)));
     }
+    if (status.mission_step && mission.descent_hold != descent_hold_) {
+      descent_hold_ = mission.descent_hold;
+      Note(t, "descent", std::string(control::ToString(descent_hold_)));
+    }
   }
 
   void NotePlan(double t) {
@@ -209,6 +213,9 @@ class Trial {
     row.before = onboard_.plan().before;
     row.map_change = map_recorder_.Take(onboard_.map());
     row.result = OutcomeOf(*plan);
+    row.latency_s = asked.latency_s;
+    row.wall_s = total.wall;
+    row.cpu_s = total.cpu;
     record_->plans.push_back(std::move(row));
   }
 
@@ -414,6 +421,7 @@ class Trial {
   estimation::SampleClock map_look_clock_;
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
+  control::DescentHold descent_hold_ = control::DescentHold::kNone;
   SlidingMean through_air_;
   estimation::SampleClock sample_clock_;
   TrialRecord* record_;

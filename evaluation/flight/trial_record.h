@@ -34,7 +34,7 @@ struct RecordSample {
 
 struct RecordEvent {
   double t = 0.0;
-  std::string kind;  ///< "mode", "own_state", "contact", "outcome"
+  std::string kind;  ///< "mode", "descent", "own_state", "contact", "outcome"
   std::string text;
 };
 
@@ -67,6 +67,8 @@ struct RecordPlan {
   MapChange map_change;             ///< since the previous replanning step
   estimation::PadState pad;         ///< the prediction at t_now
   ReplanOutcome result;
+  double latency_s = 0.0;            ///< with which it was flown
+  double wall_s = 0.0, cpu_s = 0.0;  ///< that it took; does not repeat
 };
 
 /// What a picture shows of map.prior near the flight.

@@ -76,6 +76,7 @@ CREATE TABLE zone(id INTEGER PRIMARY KEY, term TEXT, shape TEXT, cx REAL, cy REA
   size_x REAL, size_y REAL, size_z REAL);
 CREATE TABLE prior(state TEXT PRIMARY KEY, cubes BLOB);
 CREATE TABLE timing(stage TEXT PRIMARY KEY, cpu_s REAL);
+CREATE TABLE plan_timing(plan INTEGER PRIMARY KEY, latency_s REAL, wall_s REAL, cpu_s REAL);
 )sql";
 
 void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result,
@@ -96,7 +97,7 @@ void WriteMeta(SqliteDb& db, const Scenario& scenario, const TrialResult& result
   insert.Run("vehicle_hash", record.outside.vehicle_hash);
   insert.Run("world_hash", record.outside.world_hash);
   nlohmann::ordered_json json = LandJson(scenario, result);
-  json.erase("wall_clock");  // wall-clock figures stand only in the table timing
+  json.erase("wall_clock");  // wall-clock figures stand only in the tables timing and plan_timing
   insert.Run("result_json", json.dump());
   for (const auto& [key, value] : BuildManifest()) insert.Run(key, value);
 }
@@ -369,6 +370,13 @@ void WriteTiming(SqliteDb& db, const TrialTiming& timing) {
   insert.Run("total", timing.cpu_s);
 }
 
+void WritePlanTiming(SqliteDb& db, const std::vector<RecordPlan>& plans) {
+  SqliteStatement insert = db.Prepare("INSERT INTO plan_timing VALUES(?, ?, ?, ?)");
+  for (int id = 0; const RecordPlan& plan : plans) {
+    insert.Run(id++, plan.latency_s, plan.wall_s, plan.cpu_s);
+  }
+}
+
 }  // namespace
 
 void WriteRecord(const std::string& path, const Scenario& scenario, const TrialResult& result,
@@ -392,6 +400,7 @@ void WriteRecord(const std::string& path, const Scenario& scenario, const TrialR
     WriteZones(db, record.zones);
     WritePrior(db, record.prior);
     WriteTiming(db, result.timing);
+    WritePlanTiming(db, record.plans);
     transaction.Commit();
   }
   file.Commit();

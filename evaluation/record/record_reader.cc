@@ -287,6 +287,15 @@ void ReadMap(SqliteDb& db, std::vector<RecordPlan>* plans) {
            });
 }
 
+void ReadPlanTiming(SqliteDb& db, std::vector<RecordPlan>* plans) {
+  ReadEach(TableRows(db, "plan_timing", "plan, latency_s, wall_s, cpu_s", "plan"), plans,
+           [](TableRows& row, RecordPlan* plan) {
+             plan->latency_s = row.Number();
+             plan->wall_s = row.Number();
+             plan->cpu_s = row.Number();
+           });
+}
+
 using Meta = std::map<std::string, std::string>;
 
 // Every other file of the program has a manifest.
@@ -306,9 +315,12 @@ Meta ReadMeta(SqliteDb& db) {
 }
 
 // Nor may the grid that this build makes for the scenario differ from the one that was recorded.
-void CheckMap(const Meta& meta, const Scenario& scenario, const Registries& registries) {
+void CheckMap(const Meta& meta, const Registries& registries, RecordedFlight* flight) {
+  const Scenario& scenario = flight->scenario;
   const planning::OccupancyMap map(
       MapOptions(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)), registries));
+  flight->map_resolution = map.resolution();
+  flight->map_size = map.size();
   const std::string resolution = fmt::format("{}", map.resolution());
   const std::string size = fmt::format("{} {} {}", map.size().x(), map.size().y(), map.size().z());
   if (meta.at("map_resolution") != resolution || meta.at("map_size") != size) {
@@ -383,7 +395,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   flight.scenario = ParseScenario(meta.at("scenario_yaml"), meta.at("scenario"),
                                   path + " (scenario_yaml)", all, registries);
   CheckOutsideFiles(meta, flight.scenario);
-  CheckMap(meta, flight.scenario, registries);
+  CheckMap(meta, registries, &flight);
   std::istringstream hover(meta.at("hover"));
   for (double& axis : flight.hover_W) hover >> axis;
   std::istringstream idle(meta.at("idle_steps"));
@@ -396,6 +408,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   ReadRequests(db, &flight.plans);
   ReadStates(db, &flight.plans);
   ReadMap(db, &flight.plans);
+  ReadPlanTiming(db, &flight.plans);
   return flight;
 }
 

@@ -15,9 +15,11 @@ struct RecordedFlight {
   Scenario scenario;  ///< the effective one, its seed that of the flight
   std::string build_hash;
   std::string revision;
-  Eigen::Vector3d hover_W = Eigen::Vector3d::Zero();  ///< before the first of them [m]
-  int idle_steps = 0;                                 ///< that are not among them
-  std::vector<RecordPlan> plans;                      ///< in the order in which they were made
+  Eigen::Vector3d hover_W = Eigen::Vector3d::Zero();           ///< before the first of them [m]
+  double map_resolution = 0.1;                                 ///< [m]
+  planning::CellIndex map_size = planning::CellIndex::Ones();  ///< of the map's window
+  int idle_steps = 0;                                          ///< that are not among them
+  std::vector<RecordPlan> plans;  ///< in the order in which they were made
 };
 
 /// What of a recorded flight can be changed, as a help text says it.
