@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace touchdown::sim {
+
+/// A geom of a vehicle, for pictures. G: the geom's own axes.
+struct VehicleShape {
+  enum class Kind { kSphere, kCapsule, kEllipsoid, kCylinder, kBox, kMesh };
+  Kind kind = Kind::kBox;
+  /// Half extents along G's axes (box, ellipsoid); radius (sphere); radius and half the height, a capsule's without its caps [m].
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_BG = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Quaterniond q_BG = Eigen::Quaterniond::Identity();
+  Eigen::Vector4d rgba = Eigen::Vector4d::Ones();
+  std::vector<Eigen::Vector3d> corners;    ///< of a mesh, in G [m]
+  std::vector<Eigen::Vector3i> triangles;  ///< of a mesh, by their corners
+};
+const char* ToString(VehicleShape::Kind kind);
+
+/// What is to be seen of the vehicle whose MJCF text is `mjcf` (vehicle_file.h): its geoms but for those that are wholly
+/// transparent; without `hull` where there are others besides the feet. Throws std::invalid_argument as LoadVehicleModel.
+std::vector<VehicleShape> VehicleShapes(const std::string& mjcf);
+
+}  // namespace touchdown::sim
