@@ -9,6 +9,7 @@
 
 #include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
+#include "sim/sensors/depth_camera.h"
 #include "sim/sensors/frame_delivery.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -18,6 +19,9 @@
 #include "touchdown/planning/replan/replan_result.h"
 
 namespace touchdown::evaluation {
+
+/// The camera that a scenario describes.
+sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario);
 
 /// A depth image, and what it took to make it.
 struct DepthGlimpse {

@@ -42,19 +42,9 @@ class FastPadEye final : public PadEye {
 class RenderedPadEye final : public PadEye {
  public:
   RenderedPadEye(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
-      : PadEye(scenario, seed), camera_(ConfigOf(scenario), SceneOf(scenario, world), seed) {}
+      : PadEye(scenario, seed), camera_(PadCameraOf(scenario), SceneOf(scenario, world), seed) {}
 
  private:
-  static sim::PadCameraConfig ConfigOf(const Scenario& scenario) {
-    sim::PadCameraConfig config;
-    config.width = scenario.camera.width;
-    config.height = scenario.camera.height;
-    config.fov_y_deg = scenario.camera.fov_deg;
-    config.noise_sigma = scenario.camera.noise;
-    config.exposure_ms = scenario.camera.exposure_ms;
-    return config;
-  }
-
   static sim::VisualScene SceneOf(const Scenario& scenario, const sim::WorldConfig& world) {
     sim::VisualScene scene;
     scene.obstacles = world.obstacles;
@@ -80,6 +70,16 @@ class RenderedPadEye final : public PadEye {
 };
 
 }  // namespace
+
+sim::PadCameraConfig PadCameraOf(const Scenario& scenario) {
+  sim::PadCameraConfig config;
+  config.width = scenario.camera.width;
+  config.height = scenario.camera.height;
+  config.fov_y_deg = scenario.camera.fov_deg;
+  config.noise_sigma = scenario.camera.noise;
+  config.exposure_ms = scenario.camera.exposure_ms;
+  return config;
+}
 
 PadEye::PadEye(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.tag_rate),

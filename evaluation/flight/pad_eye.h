@@ -9,6 +9,7 @@
 #include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
 #include "sim/sensors/frame_delivery.h"
+#include "sim/sensors/pad_camera.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/measurements.h"
 #include "touchdown/estimation/base/vehicle_state.h"
@@ -16,6 +17,9 @@
 #include "touchdown/evaluation/scenario/scenario.h"
 
 namespace touchdown::evaluation {
+
+/// The downward camera that a scenario describes.
+sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
 
 /// What the vehicle gets: an image, or else what would have been found in it.
 struct PadSeen {

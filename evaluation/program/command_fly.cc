@@ -17,6 +17,7 @@
 #include "evaluation/base/report_program.h"
 #include "evaluation/base/statistics.h"
 #include "evaluation/flight/closed_loop.h"
+#include "evaluation/page/replay_page.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/record/record.h"
 #include "evaluation/record/trial_json.h"
@@ -31,6 +32,7 @@ struct FlyArguments {
   ScenarioArguments scenario;
   std::string record;
   std::string plot;
+  std::string html;
   std::string save_map;
   bool json = false;
 };
@@ -152,6 +154,7 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
   }
   if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
+  if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
@@ -159,7 +162,8 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
 int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
   CheckFlightOutputs(arguments);
   TrialRecord record;
-  const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
+  const bool recorded =
+      !arguments.record.empty() || !arguments.plot.empty() || !arguments.html.empty();
   std::optional<planning::PersistentMap> map;
   const TrialResult result =
       RunTrial(scenario, scenario.seed, registries, recorded ? &record : nullptr,
@@ -173,6 +177,13 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
   if (!arguments.record.empty()) write(arguments.record);
   if (map) WriteMapFile(arguments.save_map, &*map);
   if (!arguments.plot.empty()) DrawFrom(arguments.record, arguments.plot, write, DrawLanding);
+  if (!arguments.html.empty()) {
+    DrawFrom(arguments.record, arguments.html, write,
+             [&](const std::string& kept, const std::string& page) {
+               const std::string& name = arguments.record.empty() ? scenario.name : kept;
+               WriteReplayPage(page, {{kept, name}}, registries, TellReplay());
+             });
+  }
   return result.succeeded() ? kDone : kFellShort;
 }
 
@@ -187,6 +198,10 @@ void AddFlight(Command app, const char* name, const char* help, bool lands,
                   "Write the record, an SQLite file; an older one is overwritten", "F.db");
   command.AddFile("--plot", &arguments->plot,
                   "Draw plan and side view; an older file is overwritten", "F.png");
+  command.AddFile("--html", &arguments->html,
+                  "Write a page that shows the flight in three dimensions (`touchdown replay`); an "
+                  "older file is overwritten",
+                  "F.html");
   command.AddFile(
       "--save-map", &arguments->save_map,
       "Write what was seen of the world, an OctoMap file; an older file is overwritten; see "

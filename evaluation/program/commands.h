@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/page/replay_page.h"
 #include "evaluation/program/command_line.h"
 #include "touchdown/evaluation/program/program.h"
 #include "touchdown/evaluation/scenario/scenario.h"
@@ -29,6 +30,7 @@ void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* 
 void AddCheckVehicleCommand(Command app, const Registries& registries, CommandRun* run);
 void AddListCommand(Command app, const Registries& registries, CommandRun* run);
 void AddPlanCommand(Command app, const Registries& registries, CommandRun* run);
+void AddReplayCommand(Command app, const Registries& registries, CommandRun* run);
 void AddProfileCommand(Command app, const Registries& registries, CommandRun* run);
 
 /// The options that choose a scenario, shared by the commands that fly.
@@ -49,6 +51,12 @@ struct ScenarioArguments {
 
 /// @throws BadInput if the timings of this build mean nothing and the user did not ask for them.
 void CheckTimings(bool allow_debug);
+
+/// Tells the log how far a page of flights is.
+ReplayProgress TellReplay();
+
+/// `--record` of campaigns: which flights are recorded; with the words that it takes.
+void AddRecorded(Command command, std::string* which, const std::string& help);
 
 /// CheckOutputPath for a study, which is never overwritten. @throws BadInput
 void CheckNewStudy(const std::string& option, const std::string& path);

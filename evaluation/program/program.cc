@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
+#include "evaluation/base/progress.h"
 #include "evaluation/base/words.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/planner_options.h"
@@ -68,6 +70,20 @@ void CheckTimings(bool allow_debug) {
   throw BadInput(
       "This build is not optimised, so its timings mean nothing: use the preset release or native, "
       "or give --allow-debug.");
+}
+
+ReplayProgress TellReplay() {
+  const auto lines = std::make_shared<std::map<std::string, Progress>>();
+  return [lines](const std::string& name, int done, int all) {
+    lines->try_emplace(name, ProgressText{"steps asked again", name}).first->second(done, all);
+  };
+}
+
+void AddRecorded(Command command, std::string* which, const std::string& help) {
+  command.Add("--record", *which, help)
+      .Check(OneOf({"none", "failures", "all"}))
+      .TypeName("WHICH")
+      .ShowDefault();
 }
 
 void CheckNewStudy(const std::string& option, const std::string& path) {
@@ -150,6 +166,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddSweepCommand(Command(&app), registries, &run);
   AddMergeCommand(Command(&app), &run);
   AddPlanCommand(Command(&app), registries, &run);
+  AddReplayCommand(Command(&app), registries, &run);
   AddProfileCommand(Command(&app), registries, &run);
   AddCheckTermCommand(Command(&app), registries, &run);
   AddCheckVehicleCommand(Command(&app), registries, &run);

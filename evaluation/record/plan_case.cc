@@ -115,41 +115,49 @@ RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registr
   }
 }
 
-SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& registries) {
-  Replay replay(flight, registries);
-  replay.Seek(step);
+SolvedStep SolveSought(const RecordedFlight& flight, Replay* replay) {
   SolvedStep solved;
   solved.scenario = flight.scenario;
-  solved.step = step;
-  solved.recorded = replay.recorded();
-  if (replay.replanner() == nullptr) {
+  solved.step = replay->step();
+  solved.recorded = replay->recorded();
+  if (replay->replanner() == nullptr) {
     throw BadInput(fmt::format("{}: only plans of the planner landing are drawn, not those of {}.",
                                flight.path, flight.scenario.planner));
   }
-  const planning::ReplannerOptions& options = replay.replanner()->options();
+  const planning::ReplannerOptions& options = replay->replanner()->options();
   solved.limits = planning::LimitsUnder(options.limits, options.problem.vehicle,
                                         solved.recorded.request.input.pull_W);
-  replay.Solve();  // the first time finds cold caches
   {
     planning::SpanLog unkept;  // asks for the CPU time of the stages
     const planning::SpanLog::Listening listening(&unkept);
-    solved.times = replay.Solve().times;
+    solved.times = replay->Solve().times;
   }
-  replay.replanner()->set_log(&solved.log);
-  const planning::ReplanResult& result = replay.Solve();
+  replay->replanner()->set_log(&solved.log);
+  const planning::ReplanResult& result = replay->Solve();
+  replay->replanner()->set_log(nullptr);
   solved.outcome = OutcomeOf(result);
+  solved.pair = result.pair();
+  solved.committed = result.committed;
   solved.unseen_W = result.unseen_W;
   for (const solvers::TermCost& term : result.solver.cost_by_term)
     solved.terms.push_back(term.name);
   solved.zones = ZonesOf(options);
-  solved.resolution = replay.map().resolution();
-  if (const estimation::PadPrediction* prediction = replay.prediction()) {
+  solved.resolution = replay->map().resolution();
+  if (const estimation::PadPrediction* prediction = replay->prediction()) {
     solved.t_pad = solved.recorded.request.input.t_now;
     const double end = std::max(solved.outcome.curve.t_end(), solved.t_pad);
     for (int i = 0; solved.t_pad + i * SolvedStep::kPadStep <= end; ++i) {
       solved.pad.push_back(prediction->At(solved.t_pad + i * SolvedStep::kPadStep));
     }
   }
+  return solved;
+}
+
+SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& registries) {
+  Replay replay(flight, registries);
+  replay.Seek(step);
+  replay.Solve();  // the first time finds cold caches
+  SolvedStep solved = SolveSought(flight, &replay);
   solved.occupied = CellsNear(solved, replay.map());
   return solved;
 }

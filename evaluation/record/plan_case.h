@@ -25,6 +25,8 @@ struct SolvedStep {
   RecordPlan recorded;                      ///< the question; of a record the answer, too
   std::optional<bool> same;                 ///< as recorded, bit for bit; of a record
   ReplanOutcome outcome;                    ///< of the step solved again
+  planning::FlightPair pair;                ///< that is flown from t_start on ...
+  bool committed = false;                   ///< ... and was proven in this step
   std::optional<Eigen::Vector3d> unseen_W;  ///< cell that this step's pairs lack, or the next's [m]
   planning::StageTimes times;               ///< without the log
   planning::ReplanLog log;
@@ -38,8 +40,11 @@ struct SolvedStep {
   static constexpr double kPadStep = 0.1;     ///< [s]
 };
 
-/// Solves step `step` of `flight`: once for its times, once more written down. @throws BadInput as
-/// Replay.
+/// Solves the step that `replay`, of `flight`, was brought to: once for its times, once more written down. Without the
+/// map's cells. @throws BadInput if it is the step of another planner than landing.
+SolvedStep SolveSought(const RecordedFlight& flight, Replay* replay);
+
+/// Solves step `step` of `flight`, with the map's cells. @throws BadInput as Replay and SolveSought.
 SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& registries);
 
 }  // namespace touchdown::evaluation

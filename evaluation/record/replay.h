@@ -19,6 +19,8 @@ class Replay {
   /// planner not all of whose steps are recorded.
   Replay(const RecordedFlight& flight, const Registries& registries);
 
+  /// That was sought last; -1: none.
+  int step() const { return step_; }
   int steps() const { return static_cast<int>(flight_.plans.size()); }
 
   /// Brings the map, and the planner, to a step in [0, steps()).

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "evaluation/record/record_reader.h"
+
+namespace touchdown::evaluation {
+
+/// Every replanning step of a flight for a replay's document: what was asked and answered, and
+/// of the landing planner, asked again, the ways that it tried, its pairs, stages and words. `done(n, all)` is told after each.
+/// @throws BadInput as Replay.
+nlohmann::ordered_json StepsDocument(const RecordedFlight& flight, const Registries& registries,
+                                     const std::function<void(int, int)>& done);
+
+/// What was known of the map at each step, as changes: `resolution` [m], `size` of its window [cells], `steps` with the window's lowest
+/// cell and runs: x y z count state x y z count state ...
+nlohmann::ordered_json MapDocument(const RecordedFlight& flight);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "touchdown/evaluation/scenario/scenario.h"
+
+namespace touchdown::evaluation {
+
+/// A record, and what it is called on the page.
+struct ShownRecord {
+  std::string path;
+  std::string name;
+};
+
+using ReplayProgress = std::function<void(const std::string& name, int done, int all)>;
+
+/// Writes one self-contained page that shows one flight, or two on one clock (docs/replay.md). `progress`, where it is not
+/// empty, is told the record's name and how many of its steps have been asked again.
+/// The file appears whole or not at all. @throws BadInput as FlightDocument, and if the page's parts are not installed;
+/// std::filesystem::filesystem_error, std::runtime_error
+void WriteReplayPage(const std::string& path, const std::vector<ShownRecord>& records,
+                     const Registries& registries, const ReplayProgress& progress);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/page/rounded.h"
+
+#include <cmath>
+
+namespace touchdown::evaluation {
+
+using Json = nlohmann::ordered_json;
+
+Json Rounded(double x, int decimals) {
+  if (!std::isfinite(x)) return nullptr;
+  const double scale = std::pow(10.0, decimals);
+  const double scaled = std::round(x * scale);
+  // Whole numbers are written without a point.
+  if (decimals == 0 || scaled == 0.0) return static_cast<std::int64_t>(scaled);
+  return scaled / scale;
+}
+
+Json RoundedPoint(const Eigen::Vector3d& p_W) {
+  return {Rounded(p_W.x(), kMilli), Rounded(p_W.y(), kMilli), Rounded(p_W.z(), kMilli)};
+}
+
+Json RoundedPoints(const Eigen::Ref<const Eigen::Matrix3Xd>& points_W) {
+  Json json = Json::array();
+  for (const auto& p : points_W.colwise()) {
+    for (const double x : p) json.push_back(Rounded(x, kMilli));
+  }
+  return json;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page: reads its flights, builds the picture, moves time.
+import { Color, DirectionalLight, Fog, HemisphereLight, Scene, Vector3, WebGLRenderer } from "three";
+import "uplot/dist/uPlot.min.css";
+import { BLACK, BLUE, FLIGHTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
+import { Flight } from "./flight.js";
+import { resizeLines } from "./lines.js";
+import { KnownMap } from "./map.js";
+import { Pad } from "./pad.js";
+import { Panel, outcomeWords } from "./panel.js";
+import { Flown, Plans } from "./plans.js";
+import { Plots } from "./plots.js";
+import { Timeline } from "./timeline.js";
+import { unpack } from "./unpack.js";
+import { Vehicle } from "./vehicle.js";
+import { VIEWS, Views } from "./views.js";
+import { makePrior, makeWorld, makeZones } from "./world.js";
+
+const SKY_COLOUR = "#EDF2F6";
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
+const CLICK = 9; // a plan is taken within so many pixels
+
+const at = (id) => document.getElementById(id);
+
+function say(sentence) {
+  at("message").textContent = sentence;
+  at("message").hidden = false;
+}
+
+/** Everything of one flight that is in the picture. */
+class Shown {
+  constructor(flight, scene) {
+    this.flight = flight;
+    const colour = FLIGHTS[flight.number];
+    this.vehicle = new Vehicle(flight, colour);
+    this.pad = new Pad(flight);
+    this.map = new KnownMap(flight);
+    this.plans = new Plans(flight);
+    const { samples } = flight.document;
+    this.flown = new Flown(samples.vehicle, colour, 3);
+    this.reference = new Flown(samples.reference, GREEN, 1.5, { dashed: true, dashSize: 0.12, gapSize: 0.08 });
+    this.track = new Flown(samples.pad, BLACK, 1.5, { dashed: true, dashSize: 0.25, gapSize: 0.15 });
+    this.zones = makeZones(flight.document.zones);
+    this.prior = makePrior(flight.document.prior, flight.document.map.resolution);
+    for (const part of [this.vehicle, this.pad, this.map, this.plans, this.flown, this.reference, this.track]) scene.add(part.object);
+    scene.add(this.zones, this.prior);
+    this.label = at("labels").appendChild(Object.assign(document.createElement("div"), { className: "label" }));
+    this.label.style.setProperty("--colour", colour);
+    this.on = { reference: true, zones: true, prior: true, flown: true };
+  }
+
+  /** `chosen`: its map, plans and beliefs are shown. */
+  update(t, step, selected, chosen) {
+    const row = this.flight.row(t);
+    this.vehicle.update(t);
+    this.pad.update(t, chosen ?? step);
+    this.flown.update(row);
+    this.track.update(row);
+    this.reference.update(row);
+    this.flown.object.visible &&= this.on.flown;
+    this.reference.object.visible = selected && this.on.reference && row > 0;
+    this.zones.visible = selected && this.on.zones;
+    this.prior.visible = selected && this.on.prior;
+    this.plans.object.visible = selected;
+    this.pad.foretold.visible &&= selected;
+    if (selected) this.plans.update(step, chosen);
+    this.map.update(step, this.vehicle.body.position.z, selected);
+  }
+}
+
+class Replay {
+  constructor(documents) {
+    this.flights = documents.map((document, number) => new Flight(document, number));
+    this.begin = Math.min(...this.flights.map((flight) => flight.begin));
+    this.end = Math.max(...this.flights.map((flight) => flight.end));
+    this.t = this.begin;
+    this.playing = false;
+    this.speed = 1;
+    this.selected = 0;
+    this.chosen = null;
+    this.makePicture();
+    this.makeControls();
+    this.resize();
+    this.seek(this.begin);
+  }
+
+  get shown() {
+    return this.all[this.selected];
+  }
+  get flight() {
+    return this.flights[this.selected];
+  }
+
+  makePicture() {
+    const canvas = at("picture");
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.shadowMap.enabled = true;
+    this.scene = new Scene();
+    this.scene.background = new Color(SKY_COLOUR);
+    this.scene.fog = new Fog(SKY_COLOUR, 60, 180);
+    this.scene.add(new HemisphereLight("#FFFFFF", "#B9B4A8", 2.2));
+    this.sun = new DirectionalLight("#FFFFFF", 2.0);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    Object.assign(this.sun.shadow.camera, { left: -14, right: 14, top: 14, bottom: -14, near: 1, far: 60 });
+    this.scene.add(this.sun, this.sun.target);
+    const begin = this.flights[0].vehicleAt(this.begin, new Vector3());
+    const worlds = new Set();
+    for (const flight of this.flights) {
+      const key = JSON.stringify(flight.document.obstacles);
+      if (!worlds.has(key)) this.scene.add(makeWorld(flight.document.obstacles, begin));
+      worlds.add(key);
+    }
+    this.differ = worlds.size > 1;
+    this.all = this.flights.map((flight) => new Shown(flight, this.scene));
+    this.views = new Views(canvas, this.flights);
+    this.views.controls.addEventListener("change", () => (this.stale = true));
+    canvas.addEventListener("pointerdown", (event) => (this.pressed = [event.clientX, event.clientY]));
+    canvas.addEventListener("pointerup", (event) => this.click(event));
+  }
+
+  makeControls() {
+    const heading = this.flights.map((flight) => `${flight.document.scenario}, ${flight.document.planner}: ${outcomeWords(flight)}`).join("   |   ");
+    at("heading").textContent = this.differ ? `${heading} (they flew in different worlds)` : heading;
+    document.title = heading;
+    at("slider").min = this.begin;
+    at("slider").max = this.end;
+    at("slider").addEventListener("input", () => this.seek(Number(at("slider").value)));
+    at("play").addEventListener("click", () => this.play(!this.playing));
+    at("speed").append(...SPEEDS.map((speed) => new Option(`${speed} ×`, speed, speed === 1, speed === 1)));
+    at("speed").addEventListener("change", () => (this.speed = Number(at("speed").value)));
+    at("view").append(...VIEWS.map((view, i) => new Option(`${i + 1}  ${view}`, view)));
+    at("view").addEventListener("change", () => this.look(at("view").value));
+    at("which").hidden = this.flights.length < 2;
+    at("which").append(...this.flights.map((flight, i) => new Option(`${i + 1}  ${flight.document.name}`, i)));
+    at("which").addEventListener("change", () => this.select(Number(at("which").value)));
+    this.timeline = new Timeline(at("marks"), at("slider"), at("tip"), this.flights, this.begin, this.end);
+    this.plots = new Plots(at("plots"), this.flights, this.begin, this.end, (t) => this.seek(t));
+    this.panel = new Panel({ now: at("now"), step: at("step"), layers: at("layers"), flight: at("about") }, { release: () => this.choose(null), layers: this.layers() });
+    this.panel.about_(this.flight);
+    document.addEventListener("keydown", (event) => this.key(event));
+    window.addEventListener("resize", () => this.resize());
+  }
+
+  /** What can be switched on and off: a name, a key, what it looks like. */
+  layers() {
+    const any = (has) => this.flights.some(has);
+    const each = (act) => (on) => {
+      for (const shown of this.all) act(shown, on);
+      this.stale = true;
+    };
+    const plan = (name) => each((shown, on) => {
+      shown.plans.show[name] = on;
+      shown.plans.touch();
+    });
+    return [
+      { name: "occupied cells", key: "o", colour: "#A6652B", mark: "box", on: true, set: each((shown, on) => (shown.map.showOccupied = on)) },
+      { name: "free, unknown at the vehicle's height", key: "u", colour: SKY, mark: "box", on: false, set: each((shown, on) => { shown.map.layer.visible = on; shown.map.touch(); }) },
+      { name: "prior map", key: "m", colour: "#8C7BB5", mark: "box", on: true, there: any((f) => Object.keys(f.document.prior).length > 0), set: each((shown, on) => (shown.on.prior = on)) },
+      { name: "zones of terms", key: "z", colour: GREEN, mark: "box", on: true, there: any((f) => f.document.zones.length > 0), set: each((shown, on) => (shown.on.zones = on)) },
+      { name: "all plans until now", key: "a", colour: SKY, on: true, set: plan("all") },
+      { name: "plan of the step", key: "l", colour: BLUE, on: true, set: plan("plan") },
+      { name: "its stop", key: "s", colour: VERMILLION, on: true, set: plan("stop") },
+      { name: "ways that lost", key: "w", colour: GREY, on: true, set: plan("lost") },
+      { name: "guide paths", key: "g", colour: GREEN, on: true, set: plan("guides") },
+      { name: "obstacle pairs", key: "i", colour: ORANGE, on: true, set: plan("pairs") },
+      { name: "flown way", key: "f", colour: BLUE, on: true, set: each((shown, on) => { shown.on.flown = on; shown.flown.count = -1; }) },
+      { name: "reference", key: "r", colour: GREEN, mark: "dash", on: true, set: each((shown, on) => (shown.on.reference = on)) },
+      { name: "pad as believed, 3 σ", key: "b", colour: BLUE, on: true, set: each((shown, on) => (shown.pad.believed.scale.setScalar(on ? 1 : 1e-6), shown.pad.spread.scale.setScalar(on ? 1 : 1e-6))) },
+      { name: "deck: no obstacle there", key: "d", colour: ORANGE, mark: "dash", on: true, set: each((shown, on) => shown.pad.deck.scale.setScalar(on ? 1 : 1e-6)) },
+      { name: "pad as foretold", key: "e", colour: PURPLE, mark: "dash", on: true, set: each((shown, on) => (shown.pad.foretold.visible = on)) },
+      { name: "cameras", key: "c", colour: SKY, on: true, set: each((shown, on) => (shown.vehicle.frusta.visible = on)) },
+      { name: "thrusts of the rotors", key: "t", colour: ORANGE, on: true, set: each((shown, on) => (shown.vehicle.show.thrusts = on)) },
+      { name: "wind at the vehicle", key: "v", colour: GREEN, on: true, there: any((f) => f.document.samples.air.vx.some((x) => x !== 0)), set: each((shown, on) => (shown.vehicle.show.wind = on)) },
+    ];
+  }
+
+  seek(t) {
+    this.t = Math.min(Math.max(t, this.begin), this.end);
+    at("slider").value = this.t;
+    this.stale = true;
+  }
+
+  play(on) {
+    this.playing = on;
+    if (on && this.t >= this.end) this.seek(this.begin);
+    at("play").textContent = on ? "⏸" : "▶";
+    at("play").title = on ? "Pause (space)" : "Play (space)";
+    this.before = undefined;
+  }
+
+  look(view) {
+    at("view").value = view;
+    this.views.choose(view, this.shown.vehicle);
+    this.stale = true;
+  }
+
+  select(number) {
+    this.selected = number;
+    this.chosen = null;
+    at("which").value = number;
+    this.panel.about_(this.flight);
+    this.look(this.views.name);
+  }
+
+  /** A step is explained and drawn, whatever the time; null: the newest one. */
+  choose(step) {
+    this.chosen = step;
+    this.stale = true;
+  }
+
+  click(event) {
+    if (!this.pressed || Math.hypot(event.clientX - this.pressed[0], event.clientY - this.pressed[1]) > 4) return;
+    const box = at("picture").getBoundingClientRect();
+    const current = this.flight.stepAt(this.t);
+    if (current < 0) return;
+    const step = this.shown.plans.near(event.clientX - box.left, event.clientY - box.top, CLICK, current, this.views.camera, box.width, box.height);
+    this.choose(step >= 0 ? step : null);
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName) && event.target.type !== "checkbox" && event.target.type !== "range") return;
+    const { key } = event;
+    const step = this.chosen ?? this.flight.stepAt(this.t);
+    const to = (next) => {
+      const n = Math.min(Math.max(next, 0), this.flight.steps.length - 1);
+      if (n < 0) return;
+      this.play(false);
+      this.chosen = null;
+      this.seek(this.flight.stepTimes[n] + 1e-4);
+    };
+    const acts = {
+      " ": () => this.play(!this.playing),
+      ArrowRight: () => (event.shiftKey ? this.seek(this.t + 1) : to(step + 1)),
+      ArrowLeft: () => (event.shiftKey ? this.seek(this.t - 1) : to(step - 1)),
+      ArrowUp: () => this.faster(1),
+      ArrowDown: () => this.faster(-1),
+      Home: () => this.seek(this.begin),
+      End: () => this.seek(this.end),
+      n: () => this.seek(this.timeline.markFrom(this.t, true)),
+      p: () => this.seek(this.timeline.markFrom(this.t, false)),
+      Tab: () => this.flights.length > 1 && this.select(1 - this.selected),
+      Escape: () => this.choose(null),
+      "0": () => { this.look("orbit"); this.views.reset(); },
+      "?": () => (at("help").hidden = !at("help").hidden),
+    };
+    const view = VIEWS[Number(key) - 1];
+    if (view) this.look(view);
+    else if (acts[key]) acts[key]();
+    else {
+      const layer = [...at("layers").querySelectorAll("label")].find((label) => label.querySelector("kbd").textContent === key);
+      if (!layer) return;
+      layer.querySelector("input").click();
+    }
+    if (key === "Tab" && this.flights.length < 2) return;
+    event.preventDefault();
+  }
+
+  faster(by) {
+    const i = Math.min(Math.max(SPEEDS.indexOf(this.speed) + by, 0), SPEEDS.length - 1);
+    this.speed = SPEEDS[i];
+    at("speed").value = this.speed;
+  }
+
+  resize() {
+    const box = at("stage").getBoundingClientRect();
+    this.renderer.setPixelRatio(window.devicePixelRatio || 1);
+    this.renderer.setSize(box.width, box.height, false);
+    resizeLines(box.width, box.height);
+    this.size = [box.width, box.height];
+    this.timeline.resize();
+    this.plots.resize();
+    this.stale = true;
+  }
+
+  /** Called by the browser for every frame; draws only what has changed. */
+  frame(now) {
+    if (this.playing) {
+      if (this.before !== undefined) this.seek(this.t + (this.speed * (now - this.before)) / 1000);
+      this.before = now;
+      if (this.t >= this.end) this.play(false);
+    }
+    if (!this.stale) return;
+    this.stale = false;
+    this.draw();
+  }
+
+  draw() {
+    const { t } = this;
+    this.all.forEach((shown, i) => {
+      const selected = i === this.selected;
+      shown.update(t, shown.flight.stepAt(t), selected, selected ? this.chosen : null);
+      // Where both have the same pad it is drawn once.
+      shown.pad.true.visible = i === 0 || shown.pad.true.position.distanceTo(this.all[0].pad.true.position) > 1e-3;
+      shown.pad.believed.visible &&= selected;
+      shown.pad.deck.visible &&= selected;
+      shown.pad.spread.visible &&= selected;
+    });
+    const body = this.shown.vehicle.body.position;
+    this.sun.target.position.copy(body);
+    this.sun.position.copy(body).add(new Vector3(6, -10, 18));
+    this.views.update(this.shown.vehicle, this.size[0] / this.size[1]);
+    this.renderer.render(this.scene, this.views.camera);
+    this.drawLabels();
+    this.plots.update(t);
+    at("time").textContent = `${t.toFixed(2)} s`;
+    this.panel.update(this.flight, t, this.flight.stepAt(t), this.chosen);
+  }
+
+  drawLabels() {
+    const p = new Vector3();
+    this.all.forEach((shown, i) => {
+      shown.label.hidden = this.flights.length < 2 || this.views.onBoard;
+      if (shown.label.hidden) return;
+      p.copy(shown.vehicle.body.position).add(new Vector3(0, 0, 0.35)).project(this.views.camera);
+      shown.label.hidden = p.z > 1;
+      shown.label.textContent = `${i + 1}  ${shown.flight.document.planner}`;
+      shown.label.style.transform = `translate(${((p.x + 1) / 2) * this.size[0]}px, ${((1 - p.y) / 2) * this.size[1]}px) translate(-50%, -100%)`;
+    });
+  }
+}
+
+async function begin() {
+  const packed = [...document.querySelectorAll("script.flight")].map((script) => script.textContent);
+  if (packed.length === 0 || !at("complete")) {
+    throw new Error("This page is damaged: a part of it is missing. Write it again with `touchdown replay`.");
+  }
+  const documents = await Promise.all(packed.map(unpack));
+  // For scripts and the browser's console: replay.seek(3.2), replay.choose(17), replay.look("top").
+  const replay = (window.replay = new Replay(documents));
+  const frame = (now) => {
+    replay.frame(now);
+    requestAnimationFrame(frame);
+  };
+  frame(performance.now());
+  at("message").hidden = true;
+  document.body.classList.add("ready");
+}
+
+document.addEventListener("DOMContentLoaded", () => begin().catch((error) => say(error.message)));

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plans as they were made: all up to now, thin; the one at hand with its stop, the ways that lost, guide paths and pairs.
+import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Vector3 } from "three";
+import { BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
+import { Strokes, Way, pieces } from "./lines.js";
+import { sample } from "./spline.js";
+
+const ARROW = 0.3; // of a pair [m]
+
+/** The curves of all new plans, in the order in which they were made; some are drawn by how many are past. */
+class AllPlans {
+  constructor(steps) {
+    this.curves = steps.map((step) => (step.status === "planned" ? sample(step.curve) : null));
+    this.upTo = [];
+    const ends = [];
+    for (const curve of this.curves) {
+      if (curve) pieces(curve, ends);
+      this.upTo.push(ends.length / 3);
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(ends), 3));
+    this.object = new LineSegments(geometry, new LineBasicMaterial({ color: SKY, transparent: true, opacity: 0.35 }));
+    this.object.frustumCulled = false;
+  }
+  update(step) {
+    this.object.geometry.setDrawRange(0, step >= 0 ? this.upTo[step] : 0);
+  }
+}
+
+export class Plans {
+  constructor(flight) {
+    this.flight = flight;
+    this.all = new AllPlans(flight.steps);
+    this.curve = new Way(BLUE, 3.5);
+    this.stop = new Way(VERMILLION, 3);
+    this.lost = new Strokes(GREY, 2);
+    this.guides = new Strokes(GREEN, 2);
+    this.pairs = new Strokes(ORANGE, 2);
+    this.unseen = new Strokes(PURPLE, 2.5);
+    this.object = new Group();
+    for (const part of [this.all, this.curve, this.stop, this.lost, this.guides, this.pairs, this.unseen]) this.object.add(part.object);
+    this.step = null;
+    this.show = { all: true, plan: true, stop: true, lost: true, guides: true, pairs: true };
+  }
+
+  update(current, chosen) {
+    this.all.update(current);
+    this.all.object.visible = this.show.all;
+    const step = chosen ?? current;
+    if (step === this.step) return;
+    this.step = step;
+    this.draw(step >= 0 ? this.flight.steps[step] : null);
+  }
+
+  touch() {
+    this.step = null;
+  }
+
+  draw(step) {
+    const { show } = this;
+    this.curve.set(step && show.plan ? sample(step.curve) : null);
+    this.stop.set(step?.stop && show.stop ? sample(step.stop) : null);
+    const lost = [];
+    if (step && show.lost) for (const q of step.lost ?? []) pieces(sample({ q, h: 1, t0: 0 }), lost);
+    this.lost.set(lost);
+    const guides = [];
+    if (step && show.guides) for (const path of step.guides) pieces(path, guides);
+    this.guides.set(guides);
+    const pairs = [];
+    if (step && show.pairs) {
+      const p = step.pairs ?? [];
+      for (let i = 0; i + 5 < p.length; i += 6) {
+        pairs.push(p[i], p[i + 1], p[i + 2], p[i] + ARROW * p[i + 3], p[i + 1] + ARROW * p[i + 4], p[i + 2] + ARROW * p[i + 5]);
+      }
+    }
+    this.pairs.set(pairs);
+    const unseen = [];
+    if (step?.unseen && show.plan) {
+      const [x, y, z] = step.unseen, d = 0.12;
+      unseen.push(x - d, y, z, x + d, y, z, x, y - d, z, x, y + d, z, x, y, z - d, x, y, z + d);
+    }
+    this.unseen.set(unseen);
+  }
+
+  /** The newest plan up to `current` that is drawn within `reach` pixels of a place in the picture; -1: none. */
+  near(x, y, reach, current, camera, width, height) {
+    const p = new Vector3();
+    let best = -1, least = reach;
+    const first = this.show.all ? 0 : current;
+    for (let step = current; step >= first; --step) {
+      const curve = step === current ? sample(this.flight.steps[step].curve) : this.all.curves[step];
+      for (let i = 0; curve && i < curve.length; i += 3) {
+        p.set(curve[i], curve[i + 1], curve[i + 2]).project(camera);
+        if (p.z > 1) continue;
+        const away = Math.hypot(((p.x + 1) / 2) * width - x, ((1 - p.y) / 2) * height - y);
+        if (away < least) [best, least] = [step, away];
+      }
+    }
+    return best;
+  }
+}
+
+/** Reference and flown way until now, of samples. */
+export class Flown {
+  constructor(table, colour, width, options) {
+    this.table = table;
+    this.way = new Way(colour, width, options);
+    this.object = this.way.object;
+    this.count = -1;
+    this.points = [];
+    for (let i = 0; i < table.t.length; ++i) this.points.push(table.px[i], table.py[i], table.pz[i]);
+  }
+  update(row) {
+    const count = Math.min(row + 1, this.table.t.length);
+    if (count === this.count) return;
+    this.count = count;
+    // Ten a second are enough for the eye, and the last.
+    const shown = [];
+    for (let i = 0; i < count; i += 5) shown.push(this.points[3 * i], this.points[3 * i + 1], this.points[3 * i + 2]);
+    const last = count - 1;
+    if (last >= 0) shown.push(this.points[3 * last], this.points[3 * last + 1], this.points[3 * last + 2]);
+    this.way.set(shown);
+  }
+}

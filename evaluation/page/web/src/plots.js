@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Figures over time, under one cursor. Of two flights the second is dashed.
+import uPlot from "uplot";
+import { BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
+
+const distance = (a, b, i) => Math.hypot(a.px[i] - b.px[i], a.py[i] - b.py[i], a.pz[i] - b.pz[i]);
+
+/** What is plotted of a flight: [title, unit, [times, [name, colour, values] ...]]. */
+function figuresOf(flight) {
+  const { samples, pad, vehicle: model } = flight.document;
+  const { vehicle, believed, reference, pad: truth, pad_believed } = samples;
+  const each = (of) => vehicle.t.map((_, i) => of(i));
+  const first = truth.t.length - pad_believed.t.length; // the pad is believed from here on
+  const steps = flight.steps;
+  const of_steps = (value) => steps.map(value);
+  const stages = Object.keys(steps.find((step) => step.stages)?.stages ?? {}).filter((stage) => stage !== "total");
+  const stageColours = [PURPLE, GREEN, ORANGE, SKY, BLUE, BLACK];
+  return [
+    ["To the pad", "m", [
+      [vehicle.t, [
+        ["beside", BLUE, each((i) => Math.hypot(vehicle.px[i] - truth.px[i], vehicle.py[i] - truth.py[i]))],
+        ["feet above", VERMILLION, each((i) => vehicle.pz[i] - truth.pz[i] - model.foot_depth)],
+      ]],
+    ]],
+    ["Errors", "m", [
+      [vehicle.t, [
+        ["of tracking", BLUE, each((i) => distance(reference, vehicle, i))],
+        ["of own place", GREEN, each((i) => distance(believed, vehicle, i))],
+        ["of the pad", VERMILLION, each((i) => (i < first ? null : Math.hypot(pad_believed.px[i - first] - truth.px[i], pad_believed.py[i - first] - truth.py[i])))],
+      ]],
+    ]],
+    ["Clearance", "m", [
+      [vehicle.t, samples.clearance.length ? [["of the hull, true", BLUE, samples.clearance]] : []],
+      [flight.stepTimes, [["of the plan", ORANGE, of_steps((step) => (step.earlier ? null : step.clearance))]]],
+    ]],
+    ["Step", "ms", [
+      [flight.stepTimes, [
+        ["in flight", BLACK, of_steps((step) => step.wall_ms)],
+        ...stages.map((stage, k) => [stage, stageColours[k % stageColours.length], of_steps((step) => step.stages?.[stage] ?? null)]),
+      ]],
+    ]],
+    ["Work", "", [
+      [flight.stepTimes, [
+        ["solves", BLUE, of_steps((step) => step.solves)],
+        ["iterations / 10", ORANGE, of_steps((step) => step.iterations / 10)],
+        ["% of the budget / 10", VERMILLION, of_steps((step) => (10 * step.work) / Math.max(flight.document.max_work, 1))],
+      ]],
+    ]],
+    ["Speed", "m/s", [
+      [vehicle.t, [
+        ["of the vehicle", BLUE, each((i) => Math.hypot(vehicle.vx[i], vehicle.vy[i], vehicle.vz[i]))],
+        ["of the pad", PURPLE, each((i) => Math.hypot(truth.vx[i], truth.vy[i]))],
+        ["of the air", GREEN, each((i) => Math.hypot(samples.air.vx[i], samples.air.vy[i], samples.air.vz[i]))],
+      ]],
+    ]],
+  ];
+}
+
+/** uPlot wants one list of times for all series: they are joined. */
+function tableOf(figures, begin, end) {
+  const tables = [[[begin, end]]], series = [{}];
+  figures.forEach((parts, number) => {
+    for (const [times, list] of parts) {
+      if (times.length === 0 || list.length === 0) continue;
+      tables.push([times, ...list.map(([, , values]) => values)]);
+      for (const [name, colour] of list) {
+        series.push({ label: figures.length > 1 ? `${name} (${number + 1})` : name, stroke: colour, width: 1.4, spanGaps: true, points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
+      }
+    }
+  });
+  return { data: uPlot.join(tables), series };
+}
+
+export class Plots {
+  constructor(holder, flights, begin, end, seek) {
+    this.plots = [];
+    this.begin = begin;
+    const all = flights.map(figuresOf);
+    all[0].forEach(([title, unit], k) => {
+      const box = document.createElement("div");
+      box.className = "plot";
+      holder.append(box);
+      const { data, series } = tableOf(all.map((figures) => figures[k][2]), begin, end);
+      const plot = new uPlot({
+        width: 200, height: 150, series,
+        title: unit ? `${title} [${unit}]` : title,
+        scales: { x: { time: false, range: [begin, end] }, y: { range: (u, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1e-3) * 1.05] } },
+        axes: [{ size: 24, font: "10px sans-serif", grid: { stroke: "#eee" } }, { size: 38, font: "10px sans-serif", grid: { stroke: "#eee" } }],
+        cursor: { sync: { key: "replay" }, drag: { x: false, y: false }, points: { size: 5 } },
+        legend: { live: true },
+      }, data, box);
+      const now = document.createElement("div");
+      now.className = "now";
+      plot.over.append(now);
+      plot.over.addEventListener("click", (event) => seek(plot.posToVal(event.offsetX, "x")));
+      this.plots.push({ plot, now, box });
+    });
+  }
+
+  resize() {
+    for (const { plot, box } of this.plots) plot.setSize({ width: Math.max(box.clientWidth, 120), height: Math.max(box.clientHeight - 42, 60) });
+  }
+
+  update(t) {
+    for (const { plot, now } of this.plots) now.style.transform = `translateX(${plot.valToPos(t, "x")}px)`;
+  }
+}

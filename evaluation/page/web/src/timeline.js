@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The line of time: modes as a band, marks for what happened, a handle for now.
+import { BLACK, MODES, ORANGE, PURPLE, VERMILLION, GREEN } from "./colours.js";
+
+const KINDS = {
+  stop: { colour: VERMILLION, shape: "square", words: "a stored stop begins" },
+  late: { colour: ORANGE, shape: "tick", words: "a step later than its latency" },
+  mode: { colour: BLACK, shape: "triangle", words: "mode" },
+  descent: { colour: PURPLE, shape: "triangle", words: "descent" },
+  own_state: { colour: PURPLE, shape: "diamond", words: "own state" },
+  contact: { colour: GREEN, shape: "diamond", words: "first contact" },
+  outcome: { colour: BLACK, shape: "diamond", words: "outcome" },
+};
+
+/** All that happened in a flight, in time's order: {t, kind, text, step}. */
+export function marksOf(flight) {
+  const marks = flight.document.events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? descentWords(text) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
+  flight.steps.forEach((step, i) => {
+    if (step.stops && !flight.steps[i - 1]?.stops) marks.push({ t: step.t, kind: "stop", text: `step ${i}: ${KINDS.stop.words}`, step: i });
+    if (step.wall_ms > step.latency_ms) marks.push({ t: step.t, kind: "late", text: `step ${i}: took ${step.wall_ms.toFixed(1)} ms, its latency is ${step.latency_ms} ms`, step: i });
+  });
+  return marks.sort((a, b) => a.t - b.t);
+}
+
+export function descentWords(text) {
+  return {
+    none: "descent goes on",
+    gate: "descent waits: the gate is closed (the tags are not seen, or the pad is not known well enough)",
+    corridor: "descent waits: too far beside the pad for this height",
+    lag: "descent waits: the vehicle is higher than commanded",
+  }[text] ?? `descent: ${text}`;
+}
+
+function draw(pen, mark, x, y) {
+  const { colour, shape } = KINDS[mark.kind] ?? KINDS.mode;
+  pen.fillStyle = colour;
+  pen.beginPath();
+  if (shape === "square") pen.rect(x - 3.5, y - 3.5, 7, 7);
+  else if (shape === "tick") pen.rect(x - 1, y - 5, 2, 10);
+  else if (shape === "diamond") {
+    pen.moveTo(x, y - 5.5);
+    pen.lineTo(x + 5, y);
+    pen.lineTo(x, y + 5.5);
+    pen.lineTo(x - 5, y);
+  } else {
+    pen.moveTo(x - 4.5, y - 4);
+    pen.lineTo(x + 4.5, y - 4);
+    pen.lineTo(x, y + 4.5);
+  }
+  pen.fill();
+}
+
+export class Timeline {
+  constructor(canvas, slider, tip, flights, begin, end) {
+    Object.assign(this, { canvas, slider, tip, flights, begin, end });
+    this.marks = flights.map(marksOf);
+    canvas.addEventListener("mousemove", (event) => this.hover(event));
+    canvas.addEventListener("mouseleave", () => (tip.hidden = true));
+  }
+
+  x(t) {
+    return ((t - this.begin) / Math.max(this.end - this.begin, 1e-6)) * this.width;
+  }
+
+  resize() {
+    const ratio = window.devicePixelRatio || 1;
+    this.width = this.canvas.clientWidth;
+    this.canvas.width = this.width * ratio;
+    this.canvas.height = this.canvas.clientHeight * ratio;
+    const pen = this.canvas.getContext("2d");
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    const each = this.canvas.clientHeight / this.flights.length;
+    this.flights.forEach((flight, i) => this.drawFlight(pen, flight, this.marks[i], i * each, each));
+  }
+
+  drawFlight(pen, flight, marks, top, height) {
+    const { names, of } = flight.modes;
+    for (let from = 0, i = 1; i <= of.length; ++i) {
+      if (i < of.length && of[i] === of[from]) continue;
+      const a = this.x(flight.times[from]), b = this.x(flight.times[Math.min(i, of.length - 1)]);
+      pen.globalAlpha = 0.3;
+      pen.fillStyle = MODES[names[of[from]]] ?? BLACK;
+      pen.fillRect(a, top + 1, Math.max(b - a, 1), height - 2);
+      pen.globalAlpha = 1;
+      pen.fillStyle = "#333";
+      pen.font = "10px system-ui, sans-serif";
+      const words = names[of[from]].replace("_", " ");
+      if (pen.measureText(words).width < b - a - 8) pen.fillText(words, a + 4, top + height - 4);
+      from = i;
+    }
+    for (const mark of marks) draw(pen, mark, this.x(mark.t), top + 7);
+  }
+
+  hover(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const x = event.clientX - box.left;
+    const flight = Math.min(Math.floor(((event.clientY - box.top) / box.height) * this.flights.length), this.flights.length - 1);
+    const near = this.marks[flight].filter((mark) => Math.abs(this.x(mark.t) - x) < 6).slice(0, 6);
+    this.tip.hidden = near.length === 0;
+    this.tip.textContent = near.map((mark) => `${mark.t.toFixed(2)} s  ${mark.text}`).join("\n");
+    this.tip.style.left = `${Math.min(Math.max(x - 20, 0), Math.max(box.width - 320, 0))}px`;
+  }
+
+  /** The next mark of any flight beyond t, or the last before it. */
+  markFrom(t, forward) {
+    const times = this.marks.flat().map((mark) => mark.t);
+    return forward ? Math.min(...times.filter((x) => x > t + 1e-3), this.end) : Math.max(...times.filter((x) => x < t - 1e-3), this.begin);
+  }
+}

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page in a browser: Debian's Chromium, driven by puppeteer. Flies, writes pages, looks at them.
+//   TOUCHDOWN_PROGRAM=.../touchdown node --test test/
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import puppeteer from "puppeteer-core";
+
+const program = process.env.TOUCHDOWN_PROGRAM;
+const folder = mkdtempSync(join(tmpdir(), "touchdown-page-"));
+const file = (name) => join(folder, name);
+let browser;
+
+function run(...words) {
+  return execFileSync(program, words, { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] });
+}
+
+/** A flight that may fail: its exit status is then 1. */
+function fly(record, ...words) {
+  try {
+    run("land", "straight_turn", "--record", file(record), ...words);
+  } catch (error) {
+    assert.equal(error.status, 1, error.message);
+  }
+}
+
+/** Opens a page; what it says on the console, or fails to load, is kept in `said`. */
+async function open(name) {
+  const page = await browser.newPage();
+  page.said = [];
+  page.on("console", (message) => page.said.push(message.text()));
+  page.on("pageerror", (error) => page.said.push(error.message));
+  page.on("requestfailed", (request) => page.said.push(request.url()));
+  page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || page.said.push(request.url()));
+  await page.setViewport({ width: 1100, height: 760 });
+  await page.goto(`file://${file(name)}`);
+  return page;
+}
+
+async function ready(name) {
+  const page = await open(name);
+  await page.waitForSelector("body.ready", { timeout: 60000 });
+  return page;
+}
+
+/** How many pixels of the picture are near a colour, and how many colours there are, coarsely. */
+async function look(page, colour = [0, 0, 0]) {
+  return page.evaluate((wanted) => {
+    replay.draw();
+    const canvas = document.createElement("canvas"), source = document.getElementById("picture");
+    [canvas.width, canvas.height] = [source.width, source.height];
+    const pen = canvas.getContext("2d");
+    pen.drawImage(source, 0, 0);
+    const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+    const colours = new Set();
+    let near = 0, sum = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      colours.add((data[i] >> 4) * 256 + (data[i + 1] >> 4) * 16 + (data[i + 2] >> 4));
+      near += Math.hypot(data[i] - wanted[0], data[i + 1] - wanted[1], data[i + 2] - wanted[2]) < 40;
+      sum = (Math.imul(sum, 31) + data[i] + 3 * data[i + 1] + 7 * data[i + 2]) | 0;
+    }
+    return { colours: colours.size, near, sum };
+  }, colour);
+}
+
+const position = (page, number = 0) => page.evaluate((n) => replay.all[n].vehicle.body.position.toArray(), number);
+
+async function slide(page, t) {
+  await page.evaluate((to) => {
+    const slider = document.getElementById("slider");
+    slider.value = to;
+    slider.dispatchEvent(new Event("input"));
+    replay.draw();
+  }, t);
+}
+
+before(async () => {
+  assert.ok(program, "TOUCHDOWN_PROGRAM names the program");
+  browser = await puppeteer.launch({
+    executablePath: process.env.TOUCHDOWN_CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+  });
+  fly("ours.db", "--html", file("land.html"), "--set", "timeout=5", "--set", "wind.mean=2");
+  fly("ego.db", "--planner", "ego", "--set", "timeout=4");
+  run("replay", file("ours.db"), "--html", file("one.html"));
+  run("replay", file("ours.db"), "--html", file("two.html"), "--beside", file("ego.db"));
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+describe("a page of one flight", () => {
+  let page;
+  before(async () => (page = await ready("one.html")));
+  after(() => page.close());
+
+  test("says nothing on the console and asks for nothing outside", () => assert.deepEqual(page.said, []));
+
+  test("shows a picture", async () => {
+    const seen = await look(page);
+    assert.ok(seen.colours > 60, `${seen.colours} colours`);
+  });
+
+  test("moves the vehicle with the slider to where the record has it", async () => {
+    const sample = await page.evaluate(() => {
+      const { t, px, py, pz } = replay.flight.document.samples.vehicle;
+      return [t[150], px[150], py[150], pz[150]];
+    });
+    const at_first = await position(page), before = await look(page);
+    await slide(page, sample[0]);
+    const moved = await position(page), after = await look(page);
+    for (let k = 0; k < 3; ++k) assert.ok(Math.abs(moved[k] - sample[k + 1]) < 1e-3);
+    assert.ok(Math.hypot(...moved.map((x, k) => x - at_first[k])) > 1);
+    assert.notEqual(before.sum, after.sum);
+    assert.equal(await page.$eval("#time", (time) => time.textContent), `${sample[0].toFixed(2)} s`);
+  });
+
+  test("explains the plan that is clicked on, as `plan --from` does", async () => {
+    await slide(page, 2.5);
+    const place = await page.evaluate(() => {
+      const step = replay.flight.stepAt(replay.t) - 6, { q } = replay.flight.steps[step].curve;
+      const m = Math.floor(q.length / 6) * 3;
+      const camera = replay.views.camera, p = camera.position.clone().set(q[m], q[m + 1], q[m + 2]).project(camera);
+      const box = document.getElementById("picture").getBoundingClientRect();
+      return [box.left + ((p.x + 1) / 2) * box.width, box.top + ((1 - p.y) / 2) * box.height];
+    });
+    await page.mouse.click(...place);
+    await page.evaluate(() => replay.draw());
+    const title = await page.$eval(".step-title", (element) => element.textContent);
+    assert.match(title, /^Step \d+ of \d+ \(chosen\)$/);
+    const number = title.split(" ")[1];
+    const words = await page.$eval("#words", (element) => element.textContent);
+    const untimed = (text) => text.split("\n").filter((line) => line && !line.includes("thread CPU time") && !line.startsWith("replanning step"));
+    const command = await page.$eval(".command code", (element) => element.textContent);
+    assert.equal(command, `touchdown plan --from ${file("ours.db")}:${number}`);
+    const asked = run("plan", "--from", `${file("ours.db")}:${number}`);
+    assert.deepEqual(untimed(words), untimed(asked));
+    assert.ok(untimed(words).length > 8);
+    await page.keyboard.press("Escape");
+    await page.evaluate(() => replay.draw());
+    assert.doesNotMatch(await page.$eval(".step-title", (element) => element.textContent), /chosen/);
+  });
+
+  test("is moved by keys", async () => {
+    await slide(page, 1);
+    await page.focus("#picture");
+    await page.keyboard.press("ArrowRight");
+    const step = await page.evaluate(() => replay.flight.stepAt(replay.t));
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.evaluate(() => replay.flight.stepAt(replay.t)), step + 1);
+    await page.keyboard.press("3");
+    assert.equal(await page.$eval("#view", (view) => view.value), "top");
+    const above = await look(page);
+    await page.keyboard.press("4");
+    assert.notEqual((await look(page)).sum, above.sum);
+    const from = await page.evaluate(() => replay.t);
+    await page.keyboard.press("Space");
+    await page.waitForFunction((t) => replay.t > t + 0.05, {}, from);
+    await page.keyboard.press("Space");
+    await page.keyboard.press("1");
+  });
+
+  test("shows and hides its layers", async () => {
+    await slide(page, 2);
+    const brown = [110, 66, 28];
+    const shown = await look(page, brown);
+    await page.click("#layer-occupied-cells");
+    const hidden = await look(page, brown);
+    assert.ok(shown.near > 10 * (hidden.near + 1), `${shown.near} and ${hidden.near} pixels`);
+    await page.click("#layer-occupied-cells");
+    assert.equal((await look(page, brown)).sum, shown.sum);
+    for (const key of "ualswgifrbdectv") {
+      await page.keyboard.press(key);
+      await page.evaluate(() => replay.draw());
+    }
+    assert.deepEqual(page.said, []);
+  });
+
+  test("has plots with a cursor at the time", async () => {
+    await slide(page, 2.5);
+    const places = await page.$$eval(".now", (lines) => lines.map((line) => line.style.transform));
+    assert.equal(places.length, 6);
+    await slide(page, 4);
+    const later = await page.$$eval(".now", (lines) => lines.map((line) => line.style.transform));
+    places.forEach((place, i) => assert.notEqual(place, later[i]));
+  });
+});
+
+test("`land --html` writes the same page as `replay --html`", async () => {
+  const page = await ready("land.html");
+  assert.deepEqual(page.said, []);
+  await slide(page, 3);
+  const other = await ready("one.html");
+  await slide(other, 3);
+  assert.deepEqual(await position(page), await position(other));
+  await page.close();
+  await other.close();
+});
+
+test("two flights fly on one clock, each with its own words", async () => {
+  const page = await ready("two.html");
+  assert.deepEqual(page.said, []);
+  await slide(page, 2);
+  const ours = await position(page, 0), theirs = await position(page, 1);
+  assert.ok(Math.hypot(...ours.map((x, k) => x - theirs[k])) > 0.2);
+  const labels = await page.$$eval(".label:not([hidden])", (found) => found.map((label) => label.textContent));
+  assert.deepEqual(labels, ["1  landing", "2  ego"]);
+  const words = await page.$eval("#words", (element) => element.textContent);
+  await page.select("#which", "1");
+  await page.evaluate(() => replay.draw());
+  assert.notEqual(await page.$eval("#words", (element) => element.textContent), words);
+  assert.equal(await page.$eval(".command", (element) => element.hidden), true);
+  await page.close();
+});
+
+describe("a page that is damaged", () => {
+  const whole = () => readFileSync(file("one.html"), "utf8");
+  const at = (text, share) => Math.floor(text.indexOf('class="flight"') + share * (text.length - text.indexOf('class="flight"')));
+  const damages = {
+    "its end is missing": (text) => text.slice(0, at(text, 0.5)),
+    "its flights are missing": (text) => text.slice(0, text.indexOf('<script type="text/plain"')),
+    "a letter is another": (text) => text.slice(0, at(text, 0.6)) + (text[at(text, 0.6)] === "A" ? "B" : "A") + text.slice(at(text, 0.6) + 1),
+    "it holds something else": (text) => text.replace(/class="flight">[^<]*/, 'class="flight">Zm9yZWlnbg=='),
+  };
+  for (const [name, damage] of Object.entries(damages)) {
+    test(`says so in a sentence: ${name}`, async () => {
+      writeFileSync(file("damaged.html"), damage(whole()));
+      const page = await open("damaged.html");
+      await page.waitForFunction(() => document.getElementById("message").textContent.startsWith("This page is damaged"), { timeout: 20000 });
+      assert.equal(await page.$eval("#message", (message) => message.hidden), false);
+      assert.match(await page.$eval("#message", (message) => message.textContent), /Write it again with `touchdown replay`\.$/);
+      assert.equal(await page.$("body.ready"), null);
+      assert.deepEqual(page.said, []);
+      await page.close();
+    });
+  }
+});
