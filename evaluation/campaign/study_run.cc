@@ -15,14 +15,7 @@
 
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/build_info.h"
-#include "evaluation/base/progress.h"
-#include "evaluation/base/sqlite_db.h"
-#include "evaluation/base/work_sharing.h"
-#include "evaluation/campaign/campaign_facts.h"
 #include "evaluation/campaign/campaign_progress.h"
-#include "evaluation/flight/closed_loop.h"
-#include "evaluation/record/record.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -31,7 +24,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr char kFlights[] = "flights";
-constexpr double kRecordLimit = 600.0;  // wall time of a flight [s]
 
 void MakeFolder(const std::string& folder) {
   std::error_code error;
@@ -61,73 +53,20 @@ void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& fli
   file.Commit();
 }
 
-// Whether the file is a record of this trial, flown by the build of this hash.
-bool IsRecordOf(const std::string& path, const SweepTrial& trial, const std::string& build_hash) {
-  if (!fs::exists(path)) return false;
-  try {
-    SqliteDb db(path, SqliteDb::Mode::kReadOnly);
-    SqliteStatement rows = db.Prepare("SELECT key, value FROM meta");
-    Manifest meta;
-    while (rows.Step()) meta[rows.Text(0)] = rows.Text(1);
-    return meta["build_hash"] == build_hash && meta["seed"] == std::to_string(trial.seed) &&
-           meta["scenario_yaml"] == DumpScenario(trial.scenario);
-  } catch (const SqliteError&) {
-    return false;
-  }
-}
-
-struct RecordedTrial {
-  const SweepTrial* trial;
-  std::string path;
-};
-
-// Why there is no record; empty: there is one.
-std::string Record(const RecordedTrial& flight, const Registries& registries) {
-  try {
-    TrialRecord record;
-    const Scenario& scenario = flight.trial->scenario;
-    const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
-    WriteRecord(flight.path, scenario, result, record);
-    return "";
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-}
-
-// Every trial can be flown again from its scenario and seed: so are those that are to be drawn.
-void RecordFirstTrials(const StudyPlan& plan, const std::string& folder, int jobs,
-                       const Registries& registries) {
-  std::vector<RecordedTrial> together, alone;
-  const std::string build_hash = BuildHash();
+// Of each part that is to be recorded the first trial, and others that are asked for.
+void Record(const StudyPlan& plan, const std::string& folder, const std::vector<SweepRow>& rows,
+            Recorded which, int jobs, const Registries& registries) {
+  std::vector<RecordedTrial> trials;
   for (const StudyPart& part : plan.parts) {
-    const std::string path = fmt::format("{}/records/{}-{}.db", folder, plan.CellOf(part).name,
-                                         plan.MethodOf(part).name);
     if (!plan.Records(part) || part.trials == 0) continue;
-    const SweepTrial& first = plan.campaign.trials.at(static_cast<std::size_t>(part.first));
-    if (IsRecordOf(path, first, build_hash)) continue;
-    (first.FliesAlone() ? alone : together).push_back({&first, path});
+    trials.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)),
+                      fmt::format("{}/records/{}-{}", folder, plan.CellOf(part).name,
+                                  plan.MethodOf(part).name)});
   }
-  Progress progress({.things = "recorded flights"});
-  const int all = static_cast<int>(together.size() + alone.size());
-  int done = 0;
-  const auto record = [&](const std::vector<RecordedTrial>& flights, int at_a_time) {
-    const auto fly = [&](int i) {
-      return Record(flights[static_cast<std::size_t>(i)], registries);
-    };
-    const auto take = [&](const WorkerReply& reply) {
-      // The study itself is complete: without this record only its picture is missing.
-      const std::string& path = flights[static_cast<std::size_t>(reply.item)].path;
-      if (reply.end == WorkerReply::End::kTimedOut) {
-        spdlog::warn("{}: not recorded within {} s", path, kRecordLimit);
-      } else if (!reply.text.empty()) {
-        spdlog::warn("{}: not recorded: {}", path, reply.text);
-      }
-      progress(++done, all);
-    };
-    ShareAll(static_cast<int>(flights.size()), at_a_time, fly, kRecordLimit, take);
-  };
-  record(together, jobs);
-  record(alone, 1);
+  for (const SweepRow* row : ToRecord(rows, which)) {
+    trials.push_back({&row->trial, fmt::format("{}/records/trial_{}", folder, row->trial.index)});
+  }
+  RecordTrials(trials, jobs, registries);
 }
 
 }  // namespace
@@ -138,7 +77,7 @@ std::string StudyTablePath(const std::string& folder, const Shard& shard) {
 }
 
 CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, CampaignOptions options,
-                        const Registries& registries) {
+                        Recorded which, const Registries& registries) {
   MakeFolder(folder);
   options.db = StudyTablePath(folder, options.shard);
   const bool whole = options.shard.of == 1;
@@ -162,7 +101,7 @@ CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, Campai
     WritePlan(plan, folder, flights);
   }
   if (result.state.flown == result.state.all) {
-    RecordFirstTrials(plan, folder, options.jobs, registries);
+    Record(plan, folder, result.rows, which, options.jobs, registries);
   }
   return result;
 }

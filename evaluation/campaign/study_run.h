@@ -3,16 +3,18 @@
 
 #include <string>
 
+#include "evaluation/campaign/recorded_trials.h"
 #include "evaluation/campaign/study_plan.h"
 
 namespace touchdown::evaluation {
 
 /// Flies a planned study into a folder, which is made where it is missing: `study.db` (every trial, see
 /// campaign.h), `study.json` (the plan and how it was flown), `records/CELL-METHOD.db` (of parts that are
-/// to be recorded the first trial). Trials that are there already are kept. A shard goes to a file of its own,
+/// to be recorded the first trial) and `records/trial_N.db` (of those that `which` says), each with its page beside it
+/// (recorded_trials.h). Trials that are there already are kept. A shard goes to a file of its own,
 /// StudyTablePath, and brings nothing else; `options.db` is set here. @throws as RunCampaign does
 CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, CampaignOptions options,
-                        const Registries& registries);
+                        Recorded which, const Registries& registries);
 
 /// Where the trials of a study are.
 std::string StudyTablePath(const std::string& folder, const Shard& shard = {});

@@ -4,7 +4,6 @@
 #include "evaluation/program/command_study_hostile.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <thread>
@@ -12,10 +11,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/html.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/campaign/campaign_progress.h"
+#include "evaluation/campaign/recorded_trials.h"
 #include "evaluation/studies/hostile/hostile_family.h"
 #include "evaluation/studies/hostile/hostile_report.h"
 #include "evaluation/studies/hostile/hostile_study.h"
@@ -36,6 +36,7 @@ struct HostileArguments {
   bool retry = false;
   std::string db;
   std::string html;
+  std::string record = "none";
   std::string against;
   bool json = false;
 };
@@ -43,7 +44,7 @@ struct HostileArguments {
 void CheckArguments(const HostileArguments& arguments, const Command& command) {
   for (const char* alone : {"--only", "--show", "--ways"}) {
     if (!command.Given(alone)) continue;
-    for (const char* other : {"--db", "--html", "--shard", "--retry", "--against"}) {
+    for (const char* other : {"--db", "--html", "--shard", "--retry", "--against", "--record"}) {
       if (command.Given(other))
         throw BadInput(fmt::format("{} does not go with {}.", other, alone));
     }
@@ -66,6 +67,9 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
   if (!arguments.against.empty()) ReadHostileTimes(arguments.options, arguments.against);
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
+  if (arguments.record != "none" && arguments.html.empty()) {
+    throw BadInput("--record: the flights stand beside the report, so it needs --html.");
+  }
 }
 
 int Show(const HostileArguments& arguments, const Registries& registries) {
@@ -76,15 +80,6 @@ int Show(const HostileArguments& arguments, const Registries& registries) {
   text.back() = '\n';
   std::cout << text << DumpScenario(flight.trial.scenario) << std::flush;
   return kDone;
-}
-
-void WritePage(const std::string& path, const std::string& page) {
-  AtomicFile file(path);
-  std::ofstream stream(file.working_path());
-  stream << page;
-  stream.close();
-  if (!stream) throw BadInput(fmt::format("--html {}: it cannot be written.", path));
-  file.Commit();
 }
 
 // All flights, or the one that is asked for as a campaign of its own.
@@ -115,8 +110,12 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, arguments.db);
   if (arguments.only) result.rows.front().trial.index = *arguments.only;
-  if (!arguments.html.empty())
-    WritePage(arguments.html, HostilePage(arguments.options, result.rows, registries));
+  if (!arguments.html.empty()) {
+    const auto flights = RecordFlown(arguments.html, result.rows, RecordedNamed(arguments.record),
+                                     arguments.jobs, registries);
+    WriteHtml("--html", arguments.html,
+              HostilePage(arguments.options, result.rows, flights, registries));
+  }
   if (arguments.json) {
     std::cout << HostileJson(arguments.options, result.rows).dump(2) << std::endl;
   } else {
@@ -188,6 +187,9 @@ void AddHostileStudyCommand(Command study, const Registries& registries, Command
       "--db", &arguments->db,
       "Keep the flights, an SQLite file; with one of the same study go on where it ends", "F.db");
   command.AddFile("--html", &arguments->html, "Write the report as a page", "F.html");
+  AddRecorded(command, &arguments->record,
+              "Fly these again, with a record and a page that shows the flight, which the report "
+              "links: failures, or all");
   command.AddFile("--against", &arguments->against,
                   "Compare times with this file: the same flights with --set "
                   "map.observed_free=truth, or otherwise",

@@ -34,6 +34,7 @@ struct StudyRunArguments {
   std::string seed;
   std::string shard = "1/1";
   bool retry = false;
+  std::string record = "none";
   bool json = false;
 };
 
@@ -94,7 +95,8 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   options.jobs = arguments.jobs;
   options.shard = shard;
   options.retry = arguments.retry;
-  const CampaignResult result = FlyStudy(plan, folder, options, registries);
+  const CampaignResult result =
+      FlyStudy(plan, folder, options, RecordedNamed(arguments.record), registries);
   if (!result.reports) return kDone;
   if (result.interrupted_by != 0) return Interrupted(result, StudyTablePath(folder, shard));
   if (shard.of == 1) return Tell(arguments, folder, report && (alone || CanReport()));
@@ -128,6 +130,9 @@ void AddOptions(Command command, const std::shared_ptr<StudyRunArguments>& argum
       .ShowDefault();
   command.AddFlag("--retry", arguments->retry,
                   "Fly again what crashed, hung or ended in an error, of the trials in the folder");
+  AddRecorded(command, &arguments->record,
+              "Beside the first trial of some parts, fly these again, with a record and a page "
+              "that shows the flight, which the report links: failures, or all");
   command.AddFlag("--report-only", arguments->report_only,
                   "Write the report of what the folder holds, without flying");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");

@@ -9,10 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/html.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/report_program.h"
 #include "evaluation/campaign/campaign_progress.h"
+#include "evaluation/campaign/recorded_trials.h"
 #include "evaluation/campaign/sweep.h"
+#include "evaluation/campaign/sweep_page.h"
 #include "evaluation/campaign/sweep_report.h"
 #include "evaluation/campaign/trial_store.h"
 #include "evaluation/program/commands.h"
@@ -32,6 +35,8 @@ struct SweepArguments {
   bool retry = false;
   std::string db;
   std::string picture;
+  std::string html;
+  std::string record = "none";
   bool json = false;
 };
 
@@ -61,6 +66,10 @@ void CheckSweepOutputs(const SweepArguments& arguments) {
   }
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
+  if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
+  if (arguments.record != "none" && arguments.html.empty()) {
+    throw BadInput("--record: the flights stand beside the report, so it needs --html.");
+  }
 }
 
 int Sweep(const SweepArguments& arguments, const Registries& registries) {
@@ -94,6 +103,11 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   }
   const auto write = [&](const std::string& path) { WriteTrials(path, campaign, result.rows); };
   if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawSweep);
+  if (!arguments.html.empty()) {
+    const auto flights = RecordFlown(arguments.html, result.rows, RecordedNamed(arguments.record),
+                                     arguments.jobs, registries);
+    WriteHtml("--html", arguments.html, SweepPage(campaign, result.rows, flights));
+  }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
                                 [](const SweepRow& row) { return IsLost(row.result.outcome); });
   return lost ? kFellShort : kDone;
@@ -132,6 +146,10 @@ void AddSweepCommand(Command app, const Registries& registries, CommandRun* run)
                   "F.db");
   command.AddFile("--picture", &arguments->picture, "Draw success and time to land over --vary",
                   "F.png");
+  command.AddFile("--html", &arguments->html, "Write the report as a page", "F.html");
+  AddRecorded(command, &arguments->record,
+              "Fly these again, with a record and a page that shows the flight, which the report "
+              "links: failures, or all");
   command.AddFlag("--retry", arguments->retry,
                   "Fly again what crashed, hung or ended in an error, of the trials in --db");
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");

@@ -319,8 +319,10 @@ TEST(HostileReport, PageAndDocumentNameWhatWasFlown) {
   row.result.outcome = Outcome::kCollision;
   row.result.cause = "obstacle 0";
   row.result.detail = "It touched <something>.";
-  const std::string page = HostilePage(options, {row}, StandardRegistries());
+  const std::string page =
+      HostilePage(options, {row}, {{row.trial.index, "f/3.html"}}, StandardRegistries());
   EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_THAT(page, HasSubstr("<a href='f/3.html'>"));
   EXPECT_THAT(page, HasSubstr("It touched &lt;something&gt;."));
   EXPECT_THAT(page, HasSubstr("--families roof"));
   const auto json = HostileJson(options, {row});
@@ -339,7 +341,7 @@ TEST(HostileReport, WhatStoodIsListed) {
   row.result.cause = "search_failed";
   row.result.safety.emplace().uncertified_steps = 7;
   for (const std::string& report :
-       {HostileText(options, {row}), HostilePage(options, {row}, StandardRegistries())}) {
+       {HostileText(options, {row}), HostilePage(options, {row}, {}, StandardRegistries())}) {
     EXPECT_THAT(report, HasSubstr("Stood, or out of time"));
     EXPECT_THAT(report, HasSubstr("--show 3"));
     EXPECT_THAT(report, HasSubstr("steps without a proven pair"));

@@ -13,7 +13,7 @@ def some_document(folder):
     (folder / "dot.png").write_bytes(b"\x89PNG...")
     document = Document("A <study>")
     document.heading(2, "First part")
-    document.text("With `code | pipe` and **weight** & more.")
+    document.text("With `code | pipe` and **weight** & more, [a page](records/a.html).")
     document.table(["name", "value"], [["a | b", "1.5"], ["c", "2 of 3"]])
     document.table(["never"], [])
     document.picture("dot.png", "A dot.")
@@ -30,7 +30,7 @@ def test_markdown_escapes_what_would_end_a_cell(tmp_path):
 def test_html_stands_alone(tmp_path):
     text = some_document(tmp_path).html(str(tmp_path))
     assert "<h1>A &lt;study&gt;</h1>" in text
-    assert "<code>code | pipe</code> and <b>weight</b> &amp; more." in text
+    assert "<code>code | pipe</code> and <b>weight</b> &amp; more, <a href=\"records/a.html\">a page</a>." in text
     assert '<td class="number">1.5</td>' in text and "<td>2 of 3</td>" in text
     assert 'src="data:image/png;base64,iVBORy4uLg=="' in text
     assert "http" not in text and 'href="#first-part"' in text

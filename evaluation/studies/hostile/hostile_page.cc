@@ -10,6 +10,8 @@
 
 #include "estimation/base/degrees.h"
 #include "evaluation/base/build_info.h"
+#include "evaluation/base/html.h"
+#include "evaluation/campaign/sweep_page.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "evaluation/studies/hostile/hostile_conditions.h"
 #include "evaluation/studies/hostile/hostile_family.h"
@@ -23,30 +25,6 @@ constexpr double kPictureWidth = 280.0;  // [pixel]
 constexpr double kBorder = 1.5;          // around the world [m]
 constexpr double kLaneTime = 60.0;       // of the pad's lane that is drawn [s]
 constexpr double kLaneStep = 0.5;        // [s]
-
-constexpr char kStyle[] =
-    "body{font:15px/1.45 sans-serif;margin:2em auto;max-width:75em;color:#222}"
-    "table{border-collapse:collapse;margin:1em 0}td,th{border-bottom:1px solid #ccc;padding:.25em "
-    ".7em;"
-    "text-align:right}td:first-child,th:first-child{text-align:left}tr.bad td{background:#fde4dc}"
-    "code{font-size:85%;word-break:break-all}figure{display:inline-block;margin:.6em;"
-    "vertical-align:top;width:290px}figcaption{font-size:85%}svg{border:1px solid "
-    "#ddd;background:#fafafa}";
-
-std::string Escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else
-      safe += c;
-  }
-  return safe;
-}
 
 // A box that starts above the ground, or ends low, is lighter.
 const char* Fill(double base, double top) {
@@ -127,14 +105,16 @@ std::string Table(const std::vector<SweepRow>& rows, bool within) {
 }
 
 template <typename Holds>
-std::string List(const std::string& title, const std::vector<SweepRow>& rows, const Holds& holds) {
+std::string List(const std::string& title, const std::vector<SweepRow>& rows,
+                 const std::map<int, std::string>& flights, const Holds& holds) {
   std::string items;
   for (const SweepRow& row : rows) {
     if (!holds(row.result)) continue;
-    items += fmt::format("<li>flight {}, {}, beyond: {}, at {:.1f} s. {}<br><code>{}</code></li>\n",
-                         row.trial.index, LabelOf(row.trial, "family"),
-                         LabelOf(row.trial, "beyond"), row.result.simulated_s,
-                         Escaped(row.result.detail), Escaped(row.trial.Replay()));
+    items +=
+        fmt::format("<li>flight {}, {}, beyond: {}, at {:.1f} s. {} {}<br><code>{}</code></li>\n",
+                    row.trial.index, LabelOf(row.trial, "family"), LabelOf(row.trial, "beyond"),
+                    row.result.simulated_s, FlightLink(flights, row.trial.index),
+                    Escaped(row.result.detail), Escaped(row.trial.Replay()));
   }
   return items.empty() ? std::string() : fmt::format("<h2>{}</h2>\n<ul>\n{}</ul>\n", title, items);
 }
@@ -199,7 +179,7 @@ std::string Conditions() {
 }  // namespace
 
 std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows,
-                        const Registries& registries) {
+                        const std::map<int, std::string>& flights, const Registries& registries) {
   const HostileTally within = TallyOf(rows, "", true), beyond = TallyOf(rows, "", false);
   std::string build;
   for (const auto& [key, value] : BuildManifest()) {
@@ -208,19 +188,18 @@ std::string HostilePage(const HostileOptions& options, const std::vector<SweepRo
     }
   }
   std::string html = fmt::format(
-      "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>Hostile worlds</title>"
-      "<style>{}</style></head><body>\n<h1>Hostile worlds: {} "
+      "<h1>Hostile worlds: {} "
       "flights</h1>\n<p><code>{}</code><br>{}. "
       "Rates stand with their 95 % Clopper-Pearson interval.</p>\n",
-      kStyle, rows.size(), Escaped(HostileCommand(options)), Escaped(build));
+      rows.size(), Escaped(HostileCommand(options)), Escaped(build));
   html += Table(rows, true) + Table(rows, false) + Safety(within, beyond);
-  html += List("Collisions with what stands", rows, HitWhatStands);
+  html += List("Collisions with what stands", rows, flights, HitWhatStands);
   html += CountTable("Other contacts, by kind", within.contacts, beyond.contacts);
-  html += List("Other contacts", rows, WrongContact);
+  html += List("Other contacts", rows, flights, WrongContact);
   html += CountTable("Why flights stood", within.stood, beyond.stood);
-  html += List("Stood, or out of time", rows, CameToNothing);
-  html += List("Ended otherwise", rows, EndedOtherwise);
-  return html + Worlds(rows, registries) + Conditions() + "</body></html>\n";
+  html += List("Stood, or out of time", rows, flights, CameToNothing);
+  html += List("Ended otherwise", rows, flights, EndedOtherwise);
+  return HtmlPage("Hostile worlds", html + Worlds(rows, registries) + Conditions());
 }
 
 }  // namespace touchdown::evaluation

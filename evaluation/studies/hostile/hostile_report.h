@@ -23,9 +23,10 @@ std::string HostileText(const HostileOptions& options, const std::vector<SweepRo
 nlohmann::ordered_json HostileJson(const HostileOptions& options,
                                    const std::vector<SweepRow>& rows);
 
-/// The same as one HTML page, with a top view of one world of each family.
+/// The same as one HTML page, with a top view of one world of each family. `flights` are pages that show single ones
+/// (recorded_trials.h).
 std::string HostilePage(const HostileOptions& options, const std::vector<SweepRow>& rows,
-                        const Registries& registries);
+                        const std::map<int, std::string>& flights, const Registries& registries);
 
 /// Where a way exists, by family, of flights that are not flown.
 std::string HostileWaysText(const std::vector<HostileFlight>& flights);

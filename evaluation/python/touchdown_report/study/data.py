@@ -98,6 +98,11 @@ class Study:
     def reference(self):
         return self.plan["reference"]
 
+    def page_link(self, name):
+        """What links to the page that shows a recorded flight; '' where there is none."""
+        page = f"records/{name}.html"
+        return f"[look at it]({page})" if os.path.exists(os.path.join(self.folder, page)) else ""
+
     def record_path(self, cell, method):
         """The recorded flight of the first trial, or None."""
         path = os.path.join(self.folder, "records", f"{cell}-{method}.db")

@@ -21,10 +21,11 @@ NUMBER = re.compile(r"^[-+<]?\s?[\d.]+(e-?\d+)?( ?%)?$")
 
 
 def _inline(text):
-    """HTML of a line with `code` and **bold**."""
+    """HTML of a line with `code`, **bold** and [links](to/a/file)."""
     text = html.escape(text, quote=False)
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
-    return re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
+    text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
+    return re.sub(r"\[([^]]+)\]\(([^)]+)\)", r'<a href="\2">\1</a>', text)
 
 
 def _anchor(title):

@@ -141,18 +141,37 @@ def _failures(study, document, failures):
         return
     document.text(
         f"{len(failures)} trials, all in `csv/failures.csv`. The command for any trial, failed or not, stands in "
-        "`csv/trials.csv`; add `--record F.db --plot F.png` to look at it."
+        "`csv/trials.csv`; add `--html F.html` to look at it. `--record failures` makes such a page of every failure."
     )
     by_method = failures.sort_values(
         "method", key=lambda names: names.map(study.methods().index), kind="stable"
     )
     rows = [
-        [study.cell_title(r.cell), study.method_title(r.method), r.outcome, f"`{r.command}`"]
+        [
+            study.cell_title(r.cell),
+            study.method_title(r.method),
+            r.outcome,
+            study.page_link(f"trial_{r.trial}"),
+            f"`{r.command}`",
+        ]
         for r in by_method.groupby("method", sort=False).head(MOST_FAILURES).itertuples()
     ]
-    document.table(["cell", "method", "outcome", "command"], rows)
+    document.table(["cell", "method", "outcome", "flight", "command"], rows)
     if len(rows) < len(failures):
         document.text(f"Of each method the first {MOST_FAILURES}; the others are in `csv/failures.csv`.")
+
+
+def _recorded(study, document):
+    rows = [
+        [study.cell_title(cell), study.method_title(method), study.page_link(f"{cell}-{method}")]
+        for cell in study.cells()
+        for method in study.methods()
+    ]
+    rows = [row for row in rows if row[2]]
+    if rows:
+        document.heading(2, "Flights to look at")
+        document.text("The first trial of these, each in a page of its own, beside its record in `records/`.")
+        document.table(["cell", "method", "flight"], rows)
 
 
 def _how(study, document):
@@ -280,6 +299,7 @@ def write_report(study):
     _times(study, document, gallery, parts)
     _comparisons(study, document, comparisons)
     _failures(study, document, failures)
+    _recorded(study, document)
     _how(study, document)
 
     summary = _summary(study, document, parts, comparisons, counts, failures)

@@ -134,7 +134,7 @@ def comparisons(study):
 def failures(study):
     """Every trial that did not come to what it was to, with the command that flies it again."""
     bad = study.trials[~succeeded(study.trials)]
-    return bad[["cell", "method", "seed", "outcome", "simulated_s", "detail", "command"]]
+    return bad[["trial", "cell", "method", "seed", "outcome", "simulated_s", "detail", "command"]]
 
 
 def trials(study):
