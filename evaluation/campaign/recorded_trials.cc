@@ -118,9 +118,13 @@ std::map<int, std::string> RecordFlown(const std::string& page, const std::vecto
     trials.push_back({&row->trial, (folder / std::to_string(row->trial.index)).string()});
   }
   RecordTrials(trials, jobs, registries);
-  for (const RecordedTrial& flight : trials) {
-    const fs::path shown = flight.path + ".html";
-    if (fs::exists(shown)) pages[flight.trial->index] = folder.filename() / shown.filename();
+  for (const SweepRow* row : ToRecord(rows, which)) {
+    const fs::path shown = folder / fmt::format("{}.html", row->trial.index);
+    if (!fs::exists(shown)) continue;
+    // Where a flight failed its page opens at that moment.
+    pages[row->trial.index] = fmt::format(
+        "{}/{}{}", folder.filename().string(), shown.filename().string(),
+        row->result.succeeded() ? "" : fmt::format("#t={:.2f}", row->result.simulated_s));
   }
   return pages;
 }

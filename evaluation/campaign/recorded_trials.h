@@ -30,7 +30,7 @@ Recorded RecordedNamed(const std::string& name);
 std::vector<const SweepRow*> ToRecord(const std::vector<SweepRow>& rows, Recorded which);
 
 /// Records those of `rows` into the folder of the report at `page`, `F_flights` beside F.html, and gives, by the trial's index,
-/// the page of each that is there, relative to the report. @throws BadInput if the folder cannot be made.
+/// the page of each that is there, relative to the report, at the moment when it failed. @throws BadInput if the folder cannot be made.
 std::map<int, std::string> RecordFlown(const std::string& page, const std::vector<SweepRow>& rows,
                                        Recorded which, int jobs, const Registries& registries);
 

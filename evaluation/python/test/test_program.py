@@ -282,6 +282,42 @@ def rows_of(path):
         }
 
 
+def test_a_sweep_s_page_opens_its_failures(run, tmp_path):
+    fly = ("sweep", "open", "--trials", "3", "--jobs", "2", "--vary", "timeout=1,30", "--html", str(tmp_path / "s.html"))
+    assert run(*fly).returncode == 0
+    page = (tmp_path / "s.html").read_text()
+    assert "look at it" not in page and page.count("touchdown land open") >= 3
+    assert not (tmp_path / "s_flights").exists()
+    assert run(*fly, "--record", "failures").returncode == 0
+    page = (tmp_path / "s.html").read_text()
+    assert page.count("look at it") == 2
+    assert sorted(p.name for p in (tmp_path / "s_flights").iterdir()) == ["0.db", "0.html", "2.db", "2.html"]
+    assert "href='s_flights/0.html#t=1.00'" in page
+    before = (tmp_path / "s_flights" / "0.db").stat().st_mtime_ns
+    assert run(*fly, "--record", "all").returncode == 0
+    page = (tmp_path / "s.html").read_text()
+    assert page.count("look at it") == 3 and "href='s_flights/1.html'" in page
+    assert (tmp_path / "s_flights" / "0.db").stat().st_mtime_ns == before
+    refused = run("sweep", "open", "--record", "all")
+    assert refused.returncode == 2 and "--html" in refused.stderr
+
+
+def test_replay_refuses_what_is_no_record(run, tmp_path):
+    page = tmp_path / "page.html"
+    foreign = tmp_path / "foreign.db"
+    foreign.write_text("no database")
+    for arguments, said in (
+        (("replay", str(foreign), "--html", str(page)), "foreign.db"),
+        (("replay", "none.db", "--html", str(page)), "there is no such record"),
+        (("replay", str(foreign), "--html", str(tmp_path / "page.pdf")), ".html"),
+        (("replay", str(foreign)), "--html"),
+        (("replay", str(foreign), "--html", str(tmp_path / "no" / "page.html")), "no directory"),
+    ):
+        done = run(*arguments)
+        assert done.returncode == 2 and one_sentence(done.stderr) and said in done.stderr, done.stderr
+        assert not page.exists()
+
+
 def test_a_sweep_is_repeated_from_its_file(run, tmp_path):
     first = ("sweep", "open", "--trials", "3", "--seed", "9", "--db", "a.db", "--planner", "landing")
     vary = ("--vary", "pad.speed=0.2..0.4", "--vary", "controller=geometric,paper")

@@ -49,7 +49,10 @@ def test_the_folder_holds_everything(flown):
     assert {p.name for p in out.iterdir()} == {
         *("study.db", "study.json", "summary.json", "report.html", "report.md", "csv", "figures", "records")
     }
-    assert {p.name for p in (out / "records").iterdir()} == {"figure_4-planned.db", "case_1_wind_4-planned.db"}
+    recorded = {"figure_4-planned", "case_1_wind_4-planned"}
+    assert {p.name for p in (out / "records").iterdir()} == {r + e for r in recorded for e in (".db", ".html")}
+    for name in recorded:
+        assert f'<a href="records/{name}.html">look at it</a>' in (out / "report.html").read_text()
     pictures = {p.stem for p in (out / "figures").iterdir()}
     assert {"success", "outcomes", "landing_times", "figure_04"} <= pictures
     for name in pictures:
@@ -241,6 +244,18 @@ def test_a_study_can_be_reported_while_it_flies(program, run, tmp_path):
         process.kill()
         process.wait()
     assert "succeeded" in done.stdout
+
+
+def test_failures_are_recorded_on_demand_and_linked(flown, run, tmp_path):
+    shutil.copytree(flown[0], tmp_path, dirs_exist_ok=True)
+    failed = pd.read_csv(tmp_path / "out" / "csv" / "failures.csv")["trial"]
+    done = run("study", "run", "tiny.yaml", "--out", "out", "--record", "failures", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert len(failed) > 0
+    for trial in failed:
+        assert (tmp_path / "out" / "records" / f"trial_{trial}.html").exists()
+        assert f'"records/trial_{trial}.html"' in report
 
 
 def test_records_of_another_flight_are_flown_again(flown, run, tmp_path):

@@ -82,6 +82,22 @@ class Replay {
     this.makeControls();
     this.resize();
     this.seek(this.begin);
+    this.open(new URLSearchParams(location.hash.slice(1)));
+  }
+
+  /** What an address may ask for: #t=3.2&step=17&view=top. */
+  open(asked) {
+    const number = (name) => (asked.has(name) && Number.isFinite(Number(asked.get(name))) ? Number(asked.get(name)) : null);
+    const step = number("step"), t = number("t");
+    if (step !== null && this.flight.steps[step]) {
+      this.seek(this.flight.stepTimes[step] + 1e-4);
+      this.choose(step);
+    }
+    if (t !== null) this.seek(t);
+    if (VIEWS.includes(asked.get("view"))) {
+      this.draw(); // the vehicle is then where the view begins
+      this.look(asked.get("view"));
+    }
   }
 
   get shown() {
@@ -134,7 +150,11 @@ class Replay {
     at("which").hidden = this.flights.length < 2;
     at("which").append(...this.flights.map((flight, i) => new Option(`${i + 1}  ${flight.document.name}`, i)));
     at("which").addEventListener("change", () => this.select(Number(at("which").value)));
-    this.timeline = new Timeline(at("marks"), at("slider"), at("tip"), this.flights, this.begin, this.end);
+    this.timeline = new Timeline(at("marks"), at("tip"), this.flights, this.begin, this.end, (t, step, flight) => {
+      if (flight !== this.selected) this.select(flight);
+      this.seek(t);
+      this.choose(step ?? null);
+    });
     this.plots = new Plots(at("plots"), this.flights, this.begin, this.end, (t) => this.seek(t));
     this.panel = new Panel({ now: at("now"), step: at("step"), layers: at("layers"), flight: at("about") }, { release: () => this.choose(null), layers: this.layers() });
     this.panel.about_(this.flight);

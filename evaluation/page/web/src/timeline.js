@@ -51,11 +51,18 @@ function draw(pen, mark, x, y) {
 }
 
 export class Timeline {
-  constructor(canvas, slider, tip, flights, begin, end) {
-    Object.assign(this, { canvas, slider, tip, flights, begin, end });
+  /** `go(t, step, flight)` is called where it is clicked on; without a mark there, without a step. */
+  constructor(canvas, tip, flights, begin, end, go) {
+    Object.assign(this, { canvas, tip, flights, begin, end });
     this.marks = flights.map(marksOf);
     canvas.addEventListener("mousemove", (event) => this.hover(event));
     canvas.addEventListener("mouseleave", () => (tip.hidden = true));
+    canvas.addEventListener("click", (event) => {
+      const { x, flight, marks } = this.near(event);
+      const [mark] = marks.sort((a, b) => Math.abs(this.x(a.t) - x) - Math.abs(this.x(b.t) - x));
+      if (mark) go(mark.t, mark.step, flight);
+      else go(this.begin + (x / this.width) * (this.end - this.begin), undefined, flight);
+    });
   }
 
   x(t) {
@@ -91,14 +98,19 @@ export class Timeline {
     for (const mark of marks) draw(pen, mark, this.x(mark.t), top + 7);
   }
 
-  hover(event) {
+  /** Where the mouse is: its place, the flight whose band that is, the marks there. */
+  near(event) {
     const box = this.canvas.getBoundingClientRect();
-    const x = event.clientX - box.left;
-    const flight = Math.min(Math.floor(((event.clientY - box.top) / box.height) * this.flights.length), this.flights.length - 1);
-    const near = this.marks[flight].filter((mark) => Math.abs(this.x(mark.t) - x) < 6).slice(0, 6);
-    this.tip.hidden = near.length === 0;
-    this.tip.textContent = near.map((mark) => `${mark.t.toFixed(2)} s  ${mark.text}`).join("\n");
-    this.tip.style.left = `${Math.min(Math.max(x - 20, 0), Math.max(box.width - 320, 0))}px`;
+    const x = event.clientX - box.left, y = (event.clientY - box.top) / box.height;
+    const flight = Math.min(Math.max(Math.floor(y * this.flights.length), 0), this.flights.length - 1);
+    return { x, flight, marks: this.marks[flight].filter((mark) => Math.abs(this.x(mark.t) - x) < 6) };
+  }
+
+  hover(event) {
+    const { x, marks } = this.near(event);
+    this.tip.hidden = marks.length === 0;
+    this.tip.textContent = marks.slice(0, 6).map((mark) => `${mark.t.toFixed(2)} s  ${mark.text}`).join("\n");
+    this.tip.style.left = `${Math.min(Math.max(x - 20, 0), Math.max(this.width - 320, 0))}px`;
   }
 
   /** The next mark of any flight beyond t, or the last before it. */

@@ -7,7 +7,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
-import puppeteer from "puppeteer-core";
+import { launch } from "./chromium.mjs";
 
 const program = process.env.TOUCHDOWN_PROGRAM;
 const folder = mkdtempSync(join(tmpdir(), "touchdown-page-"));
@@ -79,10 +79,7 @@ async function slide(page, t) {
 
 before(async () => {
   assert.ok(program, "TOUCHDOWN_PROGRAM names the program");
-  browser = await puppeteer.launch({
-    executablePath: process.env.TOUCHDOWN_CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
+  browser = await launch();
   fly("ours.db", "--html", file("land.html"), "--set", "timeout=5", "--set", "wind.mean=2");
   fly("ego.db", "--planner", "ego", "--set", "timeout=4");
   run("replay", file("ours.db"), "--html", file("one.html"));
@@ -179,6 +176,37 @@ describe("a page of one flight", () => {
       await page.evaluate(() => replay.draw());
     }
     assert.deepEqual(page.said, []);
+  });
+
+  test("goes to a mark that is clicked on, and explains its step", async () => {
+    const mark = await page.evaluate(() => {
+      const box = document.getElementById("marks").getBoundingClientRect();
+      const stop = replay.timeline.marks[0].find((m) => m.kind === "mode");
+      return { t: stop.t, x: box.left + replay.timeline.x(stop.t), y: box.top + 6 };
+    });
+    await page.mouse.move(mark.x, mark.y);
+    assert.match(await page.$eval("#tip", (tip) => tip.textContent), /mode: tracking/);
+    await page.mouse.click(mark.x, mark.y);
+    assert.ok(Math.abs((await page.evaluate(() => replay.t)) - mark.t) < 1e-6);
+  });
+
+  test("opens where its address says", async () => {
+    const other = await browser.newPage();
+    await other.goto(`file://${file("one.html")}#step=9&view=top`);
+    await other.waitForSelector("body.ready", { timeout: 60000 });
+    await other.evaluate(() => replay.draw());
+    assert.match(await other.$eval(".step-title", (element) => element.textContent), /^Step 9 of \d+ \(chosen\)$/);
+    assert.equal(await other.$eval("#view", (view) => view.value), "top");
+    // From above the world's x is to the right and its y upwards.
+    const [x, y] = await other.evaluate(() => {
+      const { camera } = replay.views, p = replay.all[0].vehicle.body.position;
+      const seen = (dx, dy) => p.clone().set(p.x + dx, p.y + dy, p.z).project(camera);
+      const [o, along, across] = [seen(0, 0), seen(1, 0), seen(0, 1)];
+      return [[along.x - o.x, along.y - o.y], [across.x - o.x, across.y - o.y]];
+    });
+    assert.ok(x[0] > 0.02 && Math.abs(x[1]) < 0.3 * x[0], `${x}`);
+    assert.ok(y[1] > 0.02 && Math.abs(y[0]) < 0.3 * y[1], `${y}`);
+    await other.close();
   });
 
   test("has plots with a cursor at the time", async () => {

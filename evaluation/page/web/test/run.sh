@@ -19,4 +19,4 @@ for part in replay.js replay.css replay.html LICENCES.txt; do
     exit 1
   }
 done
-node --test test/
+node --test test/parts.test.mjs test/page.test.mjs
