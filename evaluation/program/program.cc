@@ -11,13 +11,13 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
+#include "evaluation/base/stderr_log.h"
 #include "evaluation/base/words.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/planner_options.h"
@@ -128,10 +128,7 @@ std::string Unknown(const CLI::App& app) {
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const Registries& registries) {
-  auto log = std::make_shared<spdlog::logger>("touchdown",
-                                              std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  log->set_pattern("touchdown: %v");
-  spdlog::set_default_logger(log);
+  LogToStderr();
 
   CLI::App app{"Plans, flies and evaluates quadrotor landings on a moving vehicle."};
   app.name("touchdown");
