@@ -24,6 +24,7 @@ namespace {
 using Keys = std::vector<SchemaKey<Scenario>>;
 
 constexpr char kObstacles[] = "obstacles";
+constexpr char kNoText[] = "\"\"";
 
 class Reader {
  public:
@@ -317,12 +318,14 @@ std::string DumpScenario(const Scenario& scenario) {
   std::string text;
   std::string open_group;
   for (const auto& key : ScenarioKeys()) {
+    const std::string value = key.get(scenario);
+    if (value == kNoText) continue;  // as a key that is left out
     const std::size_t dot = key.name.find('.');
     const std::string group = dot == std::string::npos ? "" : key.name.substr(0, dot);
     if (group != open_group && !group.empty()) text += group + ":\n";
     open_group = group;
     const std::string name = group.empty() ? key.name : "  " + key.name.substr(dot + 1);
-    text += name + ": " + key.get(scenario) + "\n";
+    text += name + ": " + value + "\n";
   }
   text += DumpOpenKeys(scenario);
   std::string lists;

@@ -130,4 +130,10 @@ std::string WriteVector(const Eigen::VectorXd& values) {
   return text + "]";
 }
 
+std::string WriteText(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
+}
+
 }  // namespace touchdown::evaluation

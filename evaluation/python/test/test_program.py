@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program as a user meets it: exit statuses, stdout, stderr, files."""
 import json
+import re
 import sqlite3
 
 import pytest
@@ -304,7 +305,7 @@ def test_a_sweep_is_repeated_from_its_file(run, tmp_path):
 
 @pytest.mark.parametrize(
     "what, name",
-    [("backends", "ceres"), ("planners", "ego-velocity"), ("terms", ""), ("scenarios", "straight_turn")],
+    [("backends", "ceres"), ("planners", "ego-velocity"), ("terms", ""), ("scenarios", "straight_turn"), ("studies", "paper")],
 )
 def test_list(run, what, name):
     entries = json.loads(run("list", what, "--json").stdout)
@@ -312,3 +313,16 @@ def test_list(run, what, name):
     assert names and (not name or name in names)
     text = run("list", what).stdout
     assert all(n in text for n in names)
+
+
+@pytest.mark.parametrize("what", ["scenarios", "studies"])
+def test_files_are_listed_with_their_own_words(run, what):
+    *lines, files = run("list", what).stdout.splitlines()
+    entries = json.loads(run("list", what, "--json").stdout)
+    for line, entry in zip(lines, entries, strict=True):
+        name, description = line.split("  ", 1)
+        assert (name, description.strip()) == (entry["name"], entry["description"])
+        key = "description" if what == "scenarios" else "title"
+        file = open(entry["path"], encoding="utf-8").read()
+        assert re.search(rf'^{key}: "?{re.escape(entry["description"])}"?$', file, re.M)
+        assert files == "The files: " + entry["path"].replace(entry["name"] + ".yaml", "NAME.yaml")
