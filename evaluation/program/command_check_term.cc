@@ -125,8 +125,8 @@ int CheckTerm(const CheckTermArguments& arguments, const Registries& registries)
 }  // namespace
 
 void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command =
-      app.AddCommand("check-term", "Check a term's derivatives on every view of the problem");
+  const Command command = app.AddCommand(
+      "check-term", "Check a term's derivatives on every view of the problem", "adding_a_term.md");
   const auto arguments = std::make_shared<CheckTermArguments>();
   command.Add("NAME", arguments->name, "Name of a term (`touchdown list terms`)").Required();
   command.Add("--points", arguments->options.control_points, "Control points of the spline")

@@ -179,7 +179,7 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
 // The command of any task, or, with `lands`, of landings alone.
 void AddFlight(Command app, const char* name, const char* help, bool lands,
                const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand(name, help);
+  const Command command = app.AddCommand(name, help, "scenario.md");
   const auto arguments = std::make_shared<FlyArguments>();
   arguments->scenario.AddTo(command, false);
   command.Add("--seed", arguments->scenario.seed, "Short for --set seed=").TypeName("S");

@@ -78,8 +78,13 @@ Option Option::Needs(Option other) const {
   return *this;
 }
 
-Command Command::AddCommand(const std::string& name, const std::string& help) const {
-  return Command(app_->add_subcommand(name, help));
+void Command::EndHelp(const std::string& page) const { app_->footer("To read: docs/" + page); }
+
+Command Command::AddCommand(const std::string& name, const std::string& help,
+                            const std::string& page) const {
+  const Command command(app_->add_subcommand(name, help));
+  command.EndHelp(page);
+  return command;
 }
 
 void Command::RequireCommand() const { app_->require_subcommand(1); }

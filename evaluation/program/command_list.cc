@@ -220,7 +220,7 @@ void Print(const std::string& what, const Json& list) {
 
 void AddListCommand(Command app, const Registries& registries, CommandRun* run) {
   const Command command =
-      app.AddCommand("list", "List what can be named: in a scenario, or as one");
+      app.AddCommand("list", "List what can be named: in a scenario, or as one", "scenario.md");
   struct Arguments {
     std::string what;
     bool json = false;

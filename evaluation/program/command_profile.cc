@@ -142,8 +142,8 @@ int RunProfile(const ProfileArguments& arguments, const Registries& registries) 
 }  // namespace
 
 void AddProfileCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command =
-      app.AddCommand("profile", "Replanning latency by stage, in flight or from a record");
+  const Command command = app.AddCommand(
+      "profile", "Replanning latency by stage, in flight or from a record", "profile.md");
   const auto arguments = std::make_shared<ProfileArguments>();
   ProfileOptions& options = arguments->options;
   arguments->scenario.AddTo(command, false);

@@ -141,6 +141,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     spdlog::error("{}.", error.what());
     return kBadInput;
   }
+  Command(&app).EndHelp("README.md");
   AddFlyCommands(Command(&app), registries, &run);
   AddCompareCommand(Command(&app), registries, &run);
   AddStudyCommand(Command(&app), registries, &run);

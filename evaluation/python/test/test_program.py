@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program as a user meets it: exit statuses, stdout, stderr, files."""
 import json
+import pathlib
 import re
 import sqlite3
 
@@ -21,6 +22,24 @@ def test_help_lists_what_is_built(run):
         assert command in done.stdout
     for command in ("land", "plan", "profile", "compare", "sweep", "merge", "list"):
         assert run(command, "--help").returncode == 0
+
+
+def commands_in(text):
+    """The names in the list of commands that ends a help."""
+    rows = re.findall(r"^  ([a-z-]+) {2,}", text.partition("Subcommands:")[2], re.M)
+    return [(row,) for row in rows]
+
+
+def test_every_help_ends_with_a_page_that_is_there(run):
+    docs = pathlib.Path(__file__).parents[3] / "docs"
+    top = run("--help").stdout
+    commands = [(), *commands_in(top)]
+    commands += [("study", *name) for name in commands_in(run("study", "--help").stdout)]
+    assert len(commands) > 15
+    for command in commands:
+        help_text = run(*command, "--help").stdout
+        page = re.fullmatch(r"To read: docs/(\w+\.md)", help_text.strip().splitlines()[-1])
+        assert page and (docs / page[1]).is_file(), (command, help_text)
 
 
 @pytest.mark.parametrize(
