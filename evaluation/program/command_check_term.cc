@@ -10,6 +10,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/program/commands.h"
+#include "evaluation/scenario/scenario_check.h"
 #include "touchdown/planning/problem/term_check.h"
 
 namespace touchdown::evaluation {
@@ -105,7 +106,7 @@ Json ToJson(const CheckTermArguments& arguments, const std::vector<TermCheckRow>
 
 const planning::TermEntry& Find(const Registries& registries, const std::string& name) {
   try {
-    return planning::FindTerm(registries.terms, name);
+    return TermNamed(registries.terms, name);
   } catch (const std::invalid_argument& error) {
     throw BadInput(std::string(error.what()) + ".");
   }

@@ -18,7 +18,7 @@
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/stderr_log.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
@@ -105,7 +105,7 @@ void CheckCommand(const CLI::App& app, const char* const* word, const char* cons
   if (names.empty()) return;
   const std::string of = app.get_parent() == nullptr ? "" : " of " + app.get_name();
   throw BadInput(
-      fmt::format("unknown command {}{}; the commands are {}.", *word, of, Enumerate(names)));
+      fmt::format("unknown command {}{}{}.", *word, of, Instead(*word, names, "the commands are")));
 }
 
 // The words that the chosen command does not know, the options among them where there are any: what follows
@@ -117,9 +117,16 @@ std::string Unknown(const CLI::App& app) {
     command = command->get_subcommands().front();
     name += " " + command->get_name();
   }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command->get_options()) {
+    if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
+  }
   std::vector<std::string> options, words = app.remaining(true);
-  std::copy_if(words.begin(), words.end(), std::back_inserter(options),
-               [](const std::string& word) { return word.starts_with("-"); });
+  for (const std::string& word : words) {
+    if (!word.starts_with("-")) continue;
+    const std::string option = word.substr(0, word.find('='));
+    options.push_back(option + DidYouMean(option, known));
+  }
   return options.empty()
              ? fmt::format("{} takes no {} (try --help)", name, fmt::join(words, " "))
              : fmt::format("{} has no option {} (try --help)", name, fmt::join(options, ", "));

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
 
 namespace touchdown::evaluation {
@@ -102,7 +103,9 @@ int ReadChoice(const YAML::Node& node, const Where& where, const std::string& ke
     const auto found = std::find(allowed.begin(), allowed.end(), node.Scalar());
     if (found != allowed.end()) return static_cast<int>(found - allowed.begin());
   }
-  RefuseValue(where, key, Enumerate(allowed), node);
+  throw BadInput(fmt::format("{}: {} must be {}, not {}{}.", where.ToString(), key,
+                             Enumerate(allowed), Shown(node),
+                             node.IsScalar() ? DidYouMean(node.Scalar(), allowed) : ""));
 }
 
 Eigen::VectorXd ReadVector(const YAML::Node& node, const Where& where, const std::string& key,

@@ -53,11 +53,62 @@ Ran Call(std::vector<const char*> arguments) {
 }
 
 TEST(Program, UnknownCommandsAreNamedAtEveryLevel) {
-  EXPECT_THAT(Call({"lnad"}).err, HasSubstr("unknown command lnad; the commands are fly, land,"));
+  EXPECT_THAT(Call({"flutter"}).err,
+              HasSubstr("unknown command flutter; the commands are fly, land,"));
   const Ran ran = Call({"study", "hostel"});
   EXPECT_EQ(ran.status, 2);
-  EXPECT_THAT(ran.err, AllOf(HasSubstr("unknown command hostel of study; the commands are "),
-                             HasSubstr("hostile")));
+  EXPECT_THAT(
+      ran.err,
+      AllOf(HasSubstr("unknown command hostel of study (did you mean hostile?); the commands are "),
+            HasSubstr("hostile")));
+}
+
+// Wherever a name is asked for that is one of several, a typo is told what it was to be, in one sentence.
+TEST(Program, ATypoIsToldWhatWasMeant) {
+  const std::filesystem::path folder = ::testing::TempDir();
+  const auto file = [&folder](const char* name, const char* text) {
+    const std::filesystem::path path = folder / name;
+    std::ofstream(path) << text;
+    return path.string();
+  };
+  const std::string group = file("group.yaml", "planing: {rate: 5}\n");
+  const std::string element =
+      file("element.yaml", "obstacles: {boxes: [{center: [9, 9], size: [1, 1, 1]}]}\n");
+  const std::string study = file("study.yaml", "titel: A\n");
+  const std::vector<std::pair<std::vector<const char*>, const char*>> typos = {
+      {{"lnad"}, "land"},
+      {{"study", "papr"}, "paper"},
+      {{"land", "--recrod=x.db"}, "--record"},
+      {{"land", "cirle"}, "circle"},
+      {{"study", "run", "ablaton"}, "ablation"},
+      {{"land", "open", "--set", "planing.rate=5"}, "planning.rate"},
+      {{"land", "open", "--set", "pad.sped=1"}, "pad.speed"},
+      {{"land", group.c_str()}, "planning"},
+      {{"land", element.c_str()}, "centre"},
+      {{"study", "run", study.c_str()}, "title"},
+      {{"land", "open", "--planner", "landin"}, "landing"},
+      {{"land", "open", "--backend", "baned"}, "banded"},
+      {{"land", "open", "--set", "pad.motion=circel"}, "circle"},
+      {{"land", "open", "--set", "controller=papr"}, "paper"},
+      {{"land", "open", "--set", "pad.prediction=turnrate"}, "turn_rate"},
+      {{"land", "open", "--set", "task=folow"}, "follow"},
+      {{"land", "open", "--set", "terms.tilt_limt.weight=1"}, "tilt_limit"},
+      {{"land", "open", "--set", "terms.tilt_limit.wieght=1"}, "weight"},
+      {{"land", "open", "--set", "solver.options.gap_tolerence=1"}, "gap_tolerance"},
+      {{"check-term", "tilt_limt"}, "tilt_limit"},
+      {{"sweep", "open", "--vary", "pad.sped=1..2"}, "pad.speed"},
+      {{"list", "backend"}, "backends"},
+      {{"compare", "--backends", "ipot"}, "ipopt"},
+      {{"study", "paper", "--methods", "plannd"}, "planned"},
+      {{"study", "hostile", "--families", "pols"}, "poles"},
+  };
+  for (const auto& [arguments, meant] : typos) {
+    SCOPED_TRACE(arguments.back());
+    const Ran ran = Call(arguments);
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr(std::string("(did you mean ").append(meant).append("?)")));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
 }
 
 TEST(Program, APageReplacesNoOtherFile) {

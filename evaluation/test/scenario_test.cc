@@ -118,7 +118,7 @@ TEST_F(ScenarioTest, KeysOfTermsAndBackendsAreTheRegistries) {
   EXPECT_THAT(Refusal("terms:\n  tilt: {weight: 1}\n"),
               AllOf(HasSubstr(path_ + ":2"), HasSubstr("term tilt is unknown; known: smoothness")));
   EXPECT_THAT(Refusal("terms: {smoothness: {jork: 1}}\n"),
-              HasSubstr("no parameter jork; known: weight, hard, jerk"));
+              HasSubstr("no parameter jork (did you mean jerk?); known: weight, hard or jerk"));
   EXPECT_THAT(Refusal("terms: {smoothness: {jerk: -1}}\n"), HasSubstr("must be in [0, 1000]"));
   EXPECT_THAT(Refusal("terms: {consistency: {hard: true}}\n"), HasSubstr("a cost only"));
   EXPECT_THAT(
