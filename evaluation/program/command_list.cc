@@ -117,6 +117,17 @@ Json ListParts(const std::vector<Entry>& registry) {
   return list;
 }
 
+/// What stands below a list, in words.
+constexpr char kBackendsLegend[] =
+    "Below each backend: what it says to the problem with solver.endpoint, solver.arrival and "
+    "solver.limits of a scenario, and its options.\n";
+constexpr char kPartsLegend[] = "Below each name: its keys in a scenario, with their defaults.\n";
+constexpr char kTermsLegend[] =
+    "Each term: [unit of what it weighs], its weight unless terms.NAME.weight says another, "
+    "whether "
+    "it can be rows (terms.NAME.hard), where it is\n"
+    "from, its formula, and its parameters (terms.NAME.PARAMETER) with their defaults.\n";
+
 void PrintParts(const Json& list) {
   for (const Json& entry : list) {
     std::cout << fmt::format("{}  {}\n", entry["name"].get<std::string>(),
@@ -210,10 +221,17 @@ void PrintFiles(const Json& list) {
 }
 
 void Print(const std::string& what, const Json& list) {
-  if (what == "backends") return PrintBackends(list);
-  if (what == "terms") return PrintTerms(list);
   if (what == "scenarios" || what == "studies") return PrintFiles(list);
-  PrintParts(list);
+  if (what == "backends") {
+    PrintBackends(list);
+    std::cout << kBackendsLegend;
+  } else if (what == "terms") {
+    PrintTerms(list);
+    std::cout << kTermsLegend;
+  } else {
+    PrintParts(list);
+    std::cout << kPartsLegend;
+  }
 }
 
 }  // namespace

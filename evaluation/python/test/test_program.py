@@ -278,6 +278,9 @@ def test_a_sweep_flies_into_its_file_once(run, tmp_path):
     done = run(*arguments, *SHORT, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "0 of 3 landed" in done.stdout and "Clopper-Pearson" in done.stdout
+    assert done.stdout.endswith(
+        "  each command flies that trial alone; with --plot F.png it is drawn, with --record F.db every step is kept\n"
+    )
     with sqlite3.connect(tmp_path / "t.db") as db:
         trials = db.execute("SELECT trial, outcome FROM trial ORDER BY rowid").fetchall()
         assert trials == [(0, "timeout"), (1, "timeout"), (2, "timeout")]
@@ -332,6 +335,21 @@ def test_list(run, what, name):
     assert names and (not name or name in names)
     text = run("list", what).stdout
     assert all(n in text for n in names)
+
+
+@pytest.mark.parametrize(
+    "what, word",
+    [
+        ("backends", "Below each backend: "),
+        ("terms", "Each term: "),
+        ("planners", "Below each name: "),
+        ("motions", "Below each name: "),
+        ("controllers", "Below each name: "),
+        ("predictors", "Below each name: "),
+    ],
+)
+def test_a_list_ends_with_what_it_shows(run, what, word):
+    assert run("list", what).stdout.count("\n" + word) == 1
 
 
 @pytest.mark.parametrize("what", ["scenarios", "studies"])
