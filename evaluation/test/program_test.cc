@@ -18,6 +18,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class BrokenSolver : public solvers::SolverBackend {
  public:
@@ -99,7 +100,7 @@ TEST(Program, ATypoIsToldWhatWasMeant) {
       {{"sweep", "open", "--vary", "pad.sped=1..2"}, "pad.speed"},
       {{"list", "backend"}, "backends"},
       {{"compare", "--backends", "ipot"}, "ipopt"},
-      {{"study", "paper", "--methods", "plannd"}, "planned"},
+      {{"study", "paper", "--out", "x", "--methods", "plannd"}, "planned"},
       {{"study", "hostile", "--families", "pols"}, "poles"},
   };
   for (const auto& [arguments, meant] : typos) {
@@ -221,6 +222,28 @@ TEST(Program, CompareTellsEveryBackendsFigures) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("takes no inequality constraints"));
   EXPECT_FALSE(std::filesystem::exists(db));
+}
+
+TEST(Program, AFlightTellsItsWindAndWhereItsTermsAct) {
+  const Ran still = Call({"land", "open", "--set", "timeout=1"});
+  EXPECT_THAT(still.out, AllOf(Not(HasSubstr("wind")), Not(HasSubstr("zone"))));
+  const Ran steady = Call({"land", "open", "--set", "timeout=1", "--set", "wind.mean=3", "--set",
+                           "wind.direction_deg=-90"});
+  EXPECT_THAT(
+      steady.out,
+      HasSubstr("\n  wind                   3 m/s in the mean, towards -90 deg from x, left "
+                "positive\n"));
+  const Ran all = Call({"land", "open", "--set", "timeout=1", "--set", "wind.mean=3", "--set",
+                        "wind.max=4.5", "--set", "wind.gust.speed=2", "--set",
+                        "terms.keep_out.weight=10", "--set", "terms.keep_out.radius=1.5"});
+  EXPECT_THAT(all.out, HasSubstr("left positive; at most 4.5 m/s; gusts of 2 m/s along it\n"));
+  EXPECT_THAT(all.out, HasSubstr("\n  zone of keep_out       "));
+  EXPECT_THAT(all.out, HasSubstr("] m, 3 x 3 x 3 m\n"));
+  // A baseline has no terms.
+  const Ran ego = Call({"land", "open", "--planner", "ego", "--set", "timeout=1", "--set",
+                        "terms.keep_out.weight=10"});
+  EXPECT_EQ(ego.status, 1) << ego.err;
+  EXPECT_THAT(ego.out, Not(HasSubstr("zone")));
 }
 
 TEST(Program, ARecordReplacesNoOtherFile) {
