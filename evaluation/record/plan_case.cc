@@ -142,6 +142,7 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   for (const solvers::TermCost& term : result.solver.cost_by_term)
     solved.terms.push_back(term.name);
   solved.zones = ZonesOf(options);
+  solved.prior = flight.prior;
   solved.resolution = replay.map().resolution();
   if (const estimation::PadPrediction* prediction = replay.prediction()) {
     solved.t_pad = solved.recorded.request.input.t_now;

@@ -18,6 +18,7 @@ struct RecordedFlight {
   Eigen::Vector3d hover_W = Eigen::Vector3d::Zero();  ///< before the first of them [m]
   int idle_steps = 0;                                 ///< that are not among them
   std::vector<RecordPlan> plans;                      ///< in the order in which they were made
+  std::vector<planning::CellCube> prior;  ///< near the flight, what map.prior held occupied
 };
 
 /// What of a recorded flight can be changed, as a help text says it.
