@@ -108,6 +108,12 @@ void CheckCommand(const CLI::App& app, const char* const* word, const char* cons
       fmt::format("unknown command {}{}{}.", *word, of, Instead(*word, names, "the commands are")));
 }
 
+// A sentence that says what was meant needs no other help.
+std::string TryHelp(std::string sentence) {
+  if (!sentence.ends_with("?)")) sentence += " (try --help)";
+  return sentence;
+}
+
 // The words that the chosen command does not know, the options among them where there are any: what follows
 // an unknown option is its value.
 std::string Unknown(const CLI::App& app) {
@@ -127,9 +133,8 @@ std::string Unknown(const CLI::App& app) {
     const std::string option = word.substr(0, word.find('='));
     options.push_back(option + DidYouMean(option, known));
   }
-  return options.empty()
-             ? fmt::format("{} takes no {} (try --help)", name, fmt::join(words, " "))
-             : fmt::format("{} has no option {} (try --help)", name, fmt::join(options, ", "));
+  return options.empty() ? fmt::format("{} takes no {}", name, fmt::join(words, " "))
+                         : fmt::format("{} has no option {}", name, fmt::join(options, ", "));
 }
 
 }  // namespace
@@ -166,10 +171,10 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ExtrasError&) {
-    spdlog::error("{}", Unknown(app));
+    spdlog::error("{}", TryHelp(Unknown(app)));
     return kBadInput;
   } catch (const CLI::ParseError& error) {
-    spdlog::error("{} (try --help)", error.what());
+    spdlog::error("{}", TryHelp(error.what()));
     return kBadInput;
   } catch (const BadInput& error) {
     spdlog::error("{}", error.what());

@@ -109,7 +109,9 @@ TEST(Program, ATypoIsToldWhatWasMeant) {
     EXPECT_EQ(ran.status, 2);
     EXPECT_THAT(ran.err, HasSubstr(std::string("(did you mean ").append(meant).append("?)")));
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("try --help")));
   }
+  EXPECT_THAT(Call({"land", "--quickly"}).err, HasSubstr("has no option --quickly (try --help)"));
 }
 
 TEST(Program, APageReplacesNoOtherFile) {
