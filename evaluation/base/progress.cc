@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a long run is, on the log. The time left takes every piece of work for as long as those
-// before it were in the mean.
+// How far a long run is. The time left takes every piece of work for as long as those before it were in the mean.
 #include "evaluation/base/progress.h"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+
+#include "evaluation/base/stderr_log.h"
 
 namespace touchdown::evaluation {
 
@@ -15,12 +18,44 @@ std::string ProgressLine(const ProgressText& text, int done, int all, double ela
                      elapsed_s / done * (all - done));
 }
 
+bool ProgressPace::Due(double t_s) {
+  constexpr double kRewriteWait = 0.1, kLongestWait = 60.0;  // [s]
+  if (t_s < next_s_) return false;
+  wait_s_ = rewritten_ ? kRewriteWait : std::min(2.0 * wait_s_, kLongestWait);
+  next_s_ = t_s + wait_s_;
+  return true;
+}
+
+struct ProgressTeller::Run {
+  using Clock = std::chrono::steady_clock;
+  const bool rewritten = StderrIsTerminal();
+  ProgressPace pace{rewritten};
+  const Clock::time_point begin = Clock::now();
+  bool shown = false;
+
+  // Of a run that ends early, too, the line stays.
+  ~Run() { End(); }
+  void End() {
+    if (std::exchange(shown, false)) EndStatus();
+  }
+};
+
+ProgressTeller::ProgressTeller() : run_(std::make_shared<Run>()) {}
+
+double ProgressTeller::elapsed_s() const {
+  return std::chrono::duration<double>(Run::Clock::now() - run_->begin).count();
+}
+
+void ProgressTeller::operator()(const std::string& line, bool last) {
+  if (!run_->pace.Due(elapsed_s()) && !last) return;
+  if (!run_->rewritten) return spdlog::info("{}", line);
+  ShowStatus(line);
+  run_->shown = true;
+  if (last) run_->End();
+}
+
 void Progress::operator()(int done, int all) {
-  const auto now = Clock::now();
-  if (now - last_ < std::chrono::seconds(2) && (done < all || all == 0)) return;
-  last_ = now;
-  const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
-  spdlog::info("{}", ProgressLine(text_, done, all, elapsed_s));
+  tell_(ProgressLine(text_, done, all, tell_.elapsed_s()), done == all);
 }
 
 }  // namespace touchdown::evaluation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -18,18 +19,43 @@ struct ProgressText {
 /// `all` 0: nobody knows.
 std::string ProgressLine(const ProgressText& text, int done, int all, double elapsed_s);
 
-/// Tells the log about every two seconds, and at the end, how far a long run is. Time counts from
-/// construction. Not to be called from two threads at a time.
+/// When the next line is due. Times are since the beginning of the run [s].
+class ProgressPace {
+ public:
+  /// `rewritten`: each line replaces the one before, ten times a second at most. Else all of them stay: the first is due
+  /// after 2 s, and the waits double, up to a minute.
+  explicit ProgressPace(bool rewritten) : rewritten_(rewritten), next_s_(rewritten ? 0.0 : 2.0) {}
+  bool Due(double t_s);
+
+ private:
+  bool rewritten_;
+  double next_s_;
+  double wait_s_ = 2.0;
+};
+
+/// Tells how far a long run is: on a terminal in one line that is written over, else in the log. Copies share it. Not to be
+/// used from two threads at a time.
+class ProgressTeller {
+ public:
+  ProgressTeller();
+  /// The last line is told whenever it comes, and stays.
+  void operator()(const std::string& line, bool last);
+  double elapsed_s() const;  ///< since construction [s]
+
+ private:
+  struct Run;
+  std::shared_ptr<Run> run_;
+};
+
+/// Tells how far a run of counted things is. Time counts from construction.
 class Progress {
  public:
   explicit Progress(ProgressText text) : text_(std::move(text)) {}
   void operator()(int done, int all);
 
  private:
-  using Clock = std::chrono::steady_clock;
   ProgressText text_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_ = begin_;
+  ProgressTeller tell_;
 };
 
 }  // namespace touchdown::evaluation

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/suggestion.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {
@@ -73,8 +73,8 @@ std::string FindYaml(const std::string& name_or_path, const std::vector<std::str
   if (fs::is_directory(name_or_path, ignored)) {
     throw BadInput(fmt::format("{}: a {} is a file, and this is a directory.", name_or_path, what));
   }
-  throw BadInput(fmt::format("{}: there is no such {} file; shipped are {}.", name_or_path, what,
-                             Enumerate(NamesIn(directories))));
+  throw BadInput(fmt::format("{}: there is no such {} file{}.", name_or_path, what,
+                             Instead(name_or_path, NamesIn(directories), "shipped are")));
 }
 
 }  // namespace

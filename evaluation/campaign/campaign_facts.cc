@@ -23,12 +23,18 @@ std::string HashOfFile(const std::string& path) {
   return HashOf({std::istreambuf_iterator<char>(file), {}});
 }
 
+// What of a scenario results depend on, as YAML: a file may be gone on with under another description.
+std::string WhatCounts(Scenario scenario) {
+  scenario.description.clear();
+  return DumpScenario(scenario);
+}
+
 // Of what a scenario says, and of what the files say that it names. Most trials of a campaign share
 // both.
 class ScenarioHashes {
  public:
   const std::string& Of(const Scenario& scenario) {
-    const std::string text = DumpScenario(scenario);
+    const std::string text = WhatCounts(scenario);
     const auto [at, fresh] = scenarios_.try_emplace(text);
     if (!fresh) return at->second;
     const OutsideFiles outside = OutsideFilesOf(scenario);
@@ -106,7 +112,7 @@ ManifestFacts FactsOf(const Campaign& campaign, const Shard& shard) {
   if (!campaign.trials.empty()) {
     const Scenario& first = campaign.trials.front().scenario;
     facts.emplace_back("scenario", first.name);
-    facts.emplace_back("scenario_yaml", DumpScenario(first));
+    facts.emplace_back("scenario_yaml", WhatCounts(first));
   }
   facts.emplace_back("plan_hash", HashOfPlan(campaign));
   return facts;

@@ -18,10 +18,8 @@ std::string CampaignLine(const CampaignState& state, double elapsed_s) {
 }
 
 void CampaignProgress::operator()(const CampaignState& state) {
-  const auto now = Clock::now();
-  if (!begun_) {
-    begun_ = true;
-    begin_ = last_ = now;
+  if (!tell_) {
+    tell_.emplace();
     if (state.resumed == 0) return;
     if (state.resumed == state.all) {
       spdlog::info("all {} trials were flown before", state.all);
@@ -31,9 +29,7 @@ void CampaignProgress::operator()(const CampaignState& state) {
     }
     return;
   }
-  if (now - last_ < std::chrono::seconds(2) && state.flown < state.all) return;
-  last_ = now;
-  spdlog::info("{}", CampaignLine(state, std::chrono::duration<double>(now - begin_).count()));
+  (*tell_)(CampaignLine(state, tell_->elapsed_s()), state.flown == state.all);
 }
 
 int Interrupted(const CampaignResult& result, const std::string& db) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
+#include <optional>
 #include <string>
 
+#include "evaluation/base/progress.h"
 #include "evaluation/campaign/campaign.h"
 
 namespace touchdown::evaluation {
@@ -12,16 +13,13 @@ namespace touchdown::evaluation {
 /// beginning, `elapsed_s` ago [s]; trials flown before count for neither.
 std::string CampaignLine(const CampaignState& state, double elapsed_s);
 
-/// Tells the log what is resumed, then about every two seconds, and at the end, how far a campaign is.
+/// Tells the log what is resumed, then how far a campaign is.
 class CampaignProgress {
  public:
   void operator()(const CampaignState& state);
 
  private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point begin_;
-  Clock::time_point last_;
-  bool begun_ = false;
+  std::optional<ProgressTeller> tell_;  ///< from the first call on
 };
 
 /// Tells the log how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere.

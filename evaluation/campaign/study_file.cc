@@ -13,7 +13,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/scenario/scenario_value.h"
 
 namespace touchdown::evaluation {
@@ -75,8 +75,8 @@ class MapReader {
       const auto key = std::find_if(keys_.begin(), keys_.end(),
                                     [&name](const Known& known) { return known.name == name; });
       if (key == keys_.end()) {
-        throw BadInput(fmt::format("{}: unknown key {} of {}; allowed here: {}.", where.ToString(),
-                                   name, label_, Enumerate(Names())));
+        throw BadInput(fmt::format("{}: unknown key {} of {}{}.", where.ToString(), name, label_,
+                                   Instead(name, Names(), "allowed here:")));
       }
       if (!seen.insert(name).second) {
         throw BadInput(
@@ -172,14 +172,15 @@ void DescribeMethod(MapReader& reader, StudyMethod* method) {
       });
 }
 
-bool HasMethod(const StudyFile& study, const std::string& name) {
-  return std::any_of(study.methods.begin(), study.methods.end(),
-                     [&name](const StudyMethod& method) { return method.name == name; });
+template <typename Element>
+std::vector<std::string> ElementNames(const std::vector<Element>& elements) {
+  std::vector<std::string> names;
+  for (const Element& element : elements) names.push_back(element.name);
+  return names;
 }
 
-bool HasCell(const StudyFile& study, const std::string& name) {
-  return std::any_of(study.cells.begin(), study.cells.end(),
-                     [&name](const StudyCell& cell) { return cell.name == name; });
+bool Has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 // What only the whole file can tell.
@@ -187,9 +188,11 @@ void CheckNames(const StudyFile& study, const std::string& path) {
   if (study.cells.empty() || study.methods.empty()) {
     throw BadInput(fmt::format("{}: a study needs a cell and a method.", path));
   }
-  if (!HasMethod(study, study.reference)) {
-    throw BadInput(
-        fmt::format("{}: reference must be one of the methods, not {}.", path, study.reference));
+  const std::vector<std::string> methods = ElementNames(study.methods);
+  const std::vector<std::string> cells = ElementNames(study.cells);
+  if (!Has(methods, study.reference)) {
+    throw BadInput(fmt::format("{}: reference must be one of the methods, not {}{}.", path,
+                               study.reference, DidYouMean(study.reference, methods)));
   }
   for (const StudyMethod& method : study.methods) {
     const auto same = [&method](const StudyMethod& other) { return other.name == method.name; };
@@ -197,10 +200,10 @@ void CheckNames(const StudyFile& study, const std::string& path) {
       throw BadInput(fmt::format("{}: the method {} is also a backend's name.", path, method.name));
     }
     for (const std::string& name : method.record_in) {
-      if (HasCell(study, name)) continue;
+      if (Has(cells, name)) continue;
       throw BadInput(
-          fmt::format("{}: the method {} is to be recorded in the cell {}, which is not there.",
-                      path, method.name, name));
+          fmt::format("{}: the method {} is to be recorded in the cell {}, which is not there{}.",
+                      path, method.name, name, DidYouMean(name, cells)));
     }
   }
   const auto keys = [](const StudyCell& cell) {
@@ -215,9 +218,9 @@ void CheckNames(const StudyFile& study, const std::string& path) {
                       path, cell.name));
     }
     for (const std::string& name : cell.methods) {
-      if (HasMethod(study, name)) continue;
-      throw BadInput(fmt::format("{}: the cell {} asks for the method {}, which is not there.",
-                                 path, cell.name, name));
+      if (Has(methods, name)) continue;
+      throw BadInput(fmt::format("{}: the cell {} asks for the method {}, which is not there{}.",
+                                 path, cell.name, name, DidYouMean(name, methods)));
     }
   }
 }

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/campaign/sweep.h"
 #include "evaluation/scenario/scenario_schema.h"
 #include "evaluation/scenario/scenario_value.h"
@@ -57,7 +57,8 @@ void CheckNames(const char* option, const std::vector<std::string>& names,
   for (const Entry& entry : entries) known.push_back(entry.name);
   for (const std::string& name : names) {
     if (Holds(known, name)) continue;
-    throw BadInput(fmt::format("{} {}: study {} has {}.", option, name, study, Enumerate(known)));
+    throw BadInput(fmt::format("{} {}: there is none{}.", option, name,
+                               Instead(name, known, fmt::format("study {} has", study))));
   }
 }
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
 #include "evaluation/scenario/scenario_schema.h"
 #include "evaluation/scenario/scenario_value.h"
@@ -88,8 +89,12 @@ Variation Variation::Parse(const std::string& text, const Registries& registries
   variation.text = text;
   variation.key = text.substr(0, equals);
   const std::string rest = text.substr(equals + 1);
-  if (!FindScenarioKey(variation.key, ScenarioKeys(registries)) || variation.key == "seed") {
-    throw BadInput(fmt::format("--vary {}: {} is no key that can be varied.", text, variation.key));
+  const std::vector<SchemaKey<Scenario>> keys = ScenarioKeys(registries);
+  if (!FindScenarioKey(variation.key, keys) || variation.key == "seed") {
+    std::vector<std::string> names;
+    for (const SchemaKey<Scenario>& key : keys) names.push_back(key.name);
+    throw BadInput(fmt::format("--vary {}: {} is no key that can be varied{}.", text, variation.key,
+                               DidYouMean(variation.key, names)));
   }
   if (const std::size_t dots = rest.find(".."); dots != std::string::npos) {
     variation.lo = RangeEnd(rest.substr(0, dots), text);

@@ -241,6 +241,12 @@ std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& row
                         *Quantile(column.values, 0.0), *Quantile(column.values, 1.0),
                         column.values.size());
   }
+  text +=
+      fmt::format("  n: trials that have the figure; p95: of 95 % of them it is no larger{}\n",
+                  std::any_of(rows.begin(), rows.end(),
+                              [](const SweepRow& row) { return row.result.t_star_s.has_value(); })
+                      ? "; T*: no flight within the limits makes contact earlier (docs/t_star.md)"
+                      : "");
   const auto without = std::count_if(rows.begin(), rows.end(), [](const SweepRow& row) {
     return row.result.landed() && row.result.t_star_s && !row.result.time_ratio();
   });
@@ -261,7 +267,11 @@ std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& row
                           row->result.simulated_s, row->result.detail, row->trial.Replay());
     }
   }
-  if (failures.empty()) {
+  if (!failures.empty()) {
+    text +=
+        "  each command flies that trial alone; with --plot F.png it is drawn, with --record F.db "
+        "every step is kept\n";
+  } else {
     const SweepTrial& first = rows.front().trial;
     text += fmt::format("  trial {} again, alone:\n      {}\n", first.index, first.Replay());
   }

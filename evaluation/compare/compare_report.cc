@@ -60,6 +60,14 @@ std::string TableRow(const BackendSummary& s, int all, bool interval) {
                      fmt::format("{}/{}", s.agreeing, s.reported_success), SharesText(s.shares));
 }
 
+constexpr char kTableLegend[] =
+    "  reached: feasible and within the gap; iter, eval: medians of iterations and evaluations "
+    "until "
+    "then; tight solves: to 1e-10, with their\n"
+    "  gap to the best known cost; agree: within 1e-4 of it, of those that say they converged; "
+    "eval/whiten/native/adapter: evaluation of terms,\n"
+    "  whitening, the solver library, what is between; docs/compare.md\n";
+
 std::string Table(const std::vector<BackendSummary>& summaries, int all, bool interval) {
   std::string text = fmt::format("  {:<42}{:>36}{:>12}{:>30}  {}\n", "", "time to the gap [ms]", "",
                                  "tight solves", "wall time of the solves to the gap");
@@ -68,7 +76,7 @@ std::string Table(const std::vector<BackendSummary>& summaries, int all, bool in
                   interval ? "reached, 95 % interval" : "reached", "median", "p95", "p99", "max",
                   "iter", "eval", "gap p50", "p95", "agree", "eval/whiten/native/adapter %");
   for (const BackendSummary& summary : summaries) text += TableRow(summary, all, interval);
-  return text;
+  return text + kTableLegend;
 }
 
 std::string DeadlineTable(double deadline_ms, const std::vector<BackendSummary>& summaries) {
@@ -85,7 +93,9 @@ std::string DeadlineTable(double deadline_ms, const std::vector<BackendSummary>&
                     Cell(d.wall_ms.max, "{:.3f}"), Cell(d.gap.median, "{:.1e}"),
                     Cell(d.gap.p95, "{:.1e}"), fmt::format("{} of {}", d.best_returned, d.solves));
   }
-  return text;
+  return text +
+         "  back: when the backend returned; gap: of what it returned; best returned: no feasible "
+         "point that it evaluated was better\n";
 }
 
 /// What was solved, in figures.

@@ -215,6 +215,10 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
                         total.elsewhere, total.unclaimed, total.refused, Milliseconds(ms.median),
                         Milliseconds(ms.p95), Milliseconds(ms.max));
   }
+  text += fmt::format(
+      "  at the best: right, and at the best cost that is known; {}: converged, and not right; not "
+      "claimed: ended without saying converged\n",
+      elsewhere);
   for (const auto& [reason, problems] : Refusals(result)) {
     text += fmt::format("  refused, {} problems: {}\n", problems, reason);
   }

@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/scenario/scenario_value.h"
 #include "sim/base/random_stream.h"
 #include "touchdown/solvers/backend/evaluator.h"
@@ -91,8 +91,8 @@ void CheckNames(const std::vector<std::string>& names, const solvers::BackendReg
       throw BadInput(fmt::format("--backends {}: named twice.", *name));
     }
     if (!Contains(known, *name)) {
-      throw BadInput(
-          fmt::format("--backends {}: unknown; the backends are {}.", *name, Enumerate(known)));
+      throw BadInput(fmt::format("--backends {}: unknown{}.", *name,
+                                 Instead(*name, known, "the backends are")));
     }
   }
 }

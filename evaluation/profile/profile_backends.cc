@@ -125,6 +125,9 @@ std::string BackendsText(const BackendsProfile& profile) {
                         SolvedText(of.solves, all), Cells(of.solves.cpu_ms), Cells(of.step_ms),
                         of.plans, count(heap.median), count(heap.max));
   }
+  text +=
+      "  reached: feasible and within the gap; plans: steps that made a new plan; allocations: of "
+      "heap memory; docs/profile.md\n";
   for (const Refusal& refusal : profile.solves.refusals) text += refusal.reason + "\n";
   return text;
 }

@@ -94,6 +94,11 @@ std::string ProfileText(const Profile& profile) {
                       "max", "median", "max");
   for (const StageSummary& stage : summary.stages) text += Row(stage);
   text += Row(summary.total);
+  text +=
+      "  used in: steps, or images for sense and map, that spent time in the stage, the others "
+      "count "
+      "as 0; total: a whole step, without sense\n"
+      "  and map; allocations: of heap memory; docs/profile.md\n";
   const int steps = summary.total.samples;
   text += fmt::format("  {} of {} replanning steps took longer than {:g} ms of wall time\n",
                       summary.deadline_misses, steps, profile.deadline_ms);

@@ -10,6 +10,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/program/commands.h"
+#include "evaluation/scenario/scenario_check.h"
 #include "touchdown/planning/problem/term_check.h"
 
 namespace touchdown::evaluation {
@@ -105,7 +106,7 @@ Json ToJson(const CheckTermArguments& arguments, const std::vector<TermCheckRow>
 
 const planning::TermEntry& Find(const Registries& registries, const std::string& name) {
   try {
-    return planning::FindTerm(registries.terms, name);
+    return TermNamed(registries.terms, name);
   } catch (const std::invalid_argument& error) {
     throw BadInput(std::string(error.what()) + ".");
   }
@@ -125,8 +126,8 @@ int CheckTerm(const CheckTermArguments& arguments, const Registries& registries)
 }  // namespace
 
 void AddCheckTermCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command =
-      app.AddCommand("check-term", "Check a term's derivatives on every view of the problem");
+  const Command command = app.AddCommand(
+      "check-term", "Check a term's derivatives on every view of the problem", "adding_a_term.md");
   const auto arguments = std::make_shared<CheckTermArguments>();
   command.Add("NAME", arguments->name, "Name of a term (`touchdown list terms`)").Required();
   command.Add("--points", arguments->options.control_points, "Control points of the spline")

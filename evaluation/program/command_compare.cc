@@ -125,7 +125,8 @@ int Compare(CompareArguments arguments, const Registries& registries) {
 
 void AddCompareCommand(Command app, const Registries& registries, CommandRun* run) {
   const Command command = app.AddCommand(
-      "compare", "Compare solver backends on what flights ask for, or on sets of known problems");
+      "compare", "Compare solver backends on what flights ask for, or on sets of known problems",
+      "compare.md");
   const auto arguments = std::make_shared<CompareArguments>();
   CompareOptions& options = arguments->options;
   BenchOptions& bench = options.bench;

@@ -56,8 +56,30 @@ std::string PriorSentences(const PriorFigures& prior) {
   return text;
 }
 
-double ClearanceOf(const Scenario& scenario, const Registries& registries) {
-  return PlanClearance(scenario, sim::LoadVehicleModel(VehicleMjcf(scenario)), registries);
+// As it was drawn for the flight.
+std::string WindText(const Scenario& scenario, std::uint64_t seed) {
+  const sim::WindConfig wind = WindOf(scenario, DrawTrial(scenario, seed));
+  if (wind.max == 0.0 && wind.gust.speed == 0.0) return {};
+  std::string text = fmt::format(
+      "  wind                   {:g} m/s in the mean, towards {:.0f} deg from x, left positive",
+      wind.mean, wind.direction * estimation::kDegPerRad);
+  if (wind.max > wind.mean) text += fmt::format("; at most {:g} m/s", wind.max);
+  if (wind.gust.speed > 0.0) text += fmt::format("; gusts of {:g} m/s along it", wind.gust.speed);
+  return text + "\n";
+}
+
+std::string ZonesText(const Scenario& scenario, const estimation::VehicleModel& model,
+                      const Registries& registries) {
+  if (!PlannerOf(scenario, registries).solver.empty()) return {};  // it has no terms
+  std::string text;
+  for (const planning::NamedZone& named :
+       ZonesOf(PlannerOptions(scenario, model, registries.terms))) {
+    const Eigen::Vector3d &centre = named.zone.centre_W, &size = named.zone.size;
+    text += fmt::format("  {:<23}{} around [{:g}, {:g}, {:g}] m, {:g} x {:g} x {:g} m\n",
+                        "zone of " + named.term, planning::ToString(named.zone.shape), centre.x(),
+                        centre.y(), centre.z(), size.x(), size.y(), size.z());
+  }
+  return text;
 }
 
 std::string Summary(const Scenario& scenario, const TrialResult& r, const Registries& registries) {
@@ -96,6 +118,9 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   if (r.min_clearance_m) {
     text += fmt::format("  least true clearance   {:.3f} m\n", *r.min_clearance_m);
   }
+  text += WindText(scenario, r.seed);
+  const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(scenario));
+  text += ZonesText(scenario, model, registries);
   if (r.own_state) {
     const OwnStateQuality& own = *r.own_state;
     text += fmt::format("  own state, RMS error   {:.3f} m, {:.3f} m/s, {:.2f} deg\n",
@@ -110,7 +135,8 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
         safety.uncertified_steps, safety.stops_flown, safety.map_errors,
         safety.tracking_events + safety.drift_events);
   }
-  if (const double kept = ClearanceOf(scenario, registries); kept > scenario.planning.clearance) {
+  if (const double kept = PlanClearance(scenario, model, registries);
+      kept > scenario.planning.clearance) {
     text += fmt::format(
         "  planning.clearance     raised from {:g} to {:.3f} m, the hull at every tilt and its "
         "margins\n",
@@ -190,7 +216,7 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
 // The command of any task, or, with `lands`, of landings alone.
 void AddFlight(Command app, const char* name, const char* help, bool lands,
                const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand(name, help);
+  const Command command = app.AddCommand(name, help, "scenario.md");
   const auto arguments = std::make_shared<FlyArguments>();
   arguments->scenario.AddTo(command, false);
   command.Add("--seed", arguments->scenario.seed, "Short for --set seed=").TypeName("S");

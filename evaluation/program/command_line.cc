@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "evaluation/base/list_option.h"
+#include "evaluation/base/suggestion.h"
 
 namespace touchdown::evaluation {
 
@@ -38,7 +39,12 @@ Rule Range(std::uint64_t low, std::uint64_t high) {
 Rule Range(double low, double high) { return NumberIn("FLOAT", "not a number in", low, high); }
 
 Rule OneOf(const std::vector<std::string>& words) {
-  return Rule(std::make_shared<CLI::Validator>(CLI::IsMember(words)));
+  const CLI::IsMember member(words);
+  const auto check = [=](const std::string& text) {
+    const std::string fault = member(text);
+    return fault.empty() ? fault : fault + DidYouMean(text, words);
+  };
+  return Rule(std::make_shared<CLI::Validator>(check, member.get_description()));
 }
 
 Rule AnyWord() { return Rule(std::make_shared<CLI::Validator>()); }
@@ -78,8 +84,13 @@ Option Option::Needs(Option other) const {
   return *this;
 }
 
-Command Command::AddCommand(const std::string& name, const std::string& help) const {
-  return Command(app_->add_subcommand(name, help));
+void Command::EndHelp(const std::string& page) const { app_->footer("To read: docs/" + page); }
+
+Command Command::AddCommand(const std::string& name, const std::string& help,
+                            const std::string& page) const {
+  const Command command(app_->add_subcommand(name, help));
+  command.EndHelp(page);
+  return command;
 }
 
 void Command::RequireCommand() const { app_->require_subcommand(1); }

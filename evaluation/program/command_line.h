@@ -58,8 +58,11 @@ class Command {
  public:
   explicit Command(CLI::App* app) : app_(app) {}
 
-  Command AddCommand(const std::string& name, const std::string& help) const;
-  void RequireCommand() const;  ///< one of those that were added
+  /// `page` of docs/ ends its --help.
+  Command AddCommand(const std::string& name, const std::string& help,
+                     const std::string& page) const;
+  void EndHelp(const std::string& page) const;  ///< of docs/
+  void RequireCommand() const;                  ///< one of those that were added
 
   Option Add(const std::string& name, std::string& value, const std::string& help) const;
   Option Add(const std::string& name, std::vector<std::string>& value,

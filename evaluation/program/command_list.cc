@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown list: what can be named elsewhere on the command line.
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/campaign/study_file.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/scenario_schema.h"
 #include "touchdown/evaluation/base/shipped_files.h"
@@ -115,6 +117,17 @@ Json ListParts(const std::vector<Entry>& registry) {
   return list;
 }
 
+/// What stands below a list, in words.
+constexpr char kBackendsLegend[] =
+    "Below each backend: what it says to the problem with solver.endpoint, solver.arrival and "
+    "solver.limits of a scenario, and its options.\n";
+constexpr char kPartsLegend[] = "Below each name: its keys in a scenario, with their defaults.\n";
+constexpr char kTermsLegend[] =
+    "Each term: [unit of what it weighs], its weight unless terms.NAME.weight says another, "
+    "whether "
+    "it can be rows (terms.NAME.hard), where it is\n"
+    "from, its formula, and its parameters (terms.NAME.PARAMETER) with their defaults.\n";
+
 void PrintParts(const Json& list) {
   for (const Json& entry : list) {
     std::cout << fmt::format("{}  {}\n", entry["name"].get<std::string>(),
@@ -172,39 +185,60 @@ void PrintTerms(const Json& list) {
   }
 }
 
-Json ListShippedScenarios() {
+Json ListShippedScenarios(const Registries& registries) {
   Json list = Json::array();
   for (const std::string& name : ListScenarios()) {
-    list.push_back({{"name", name}, {"path", FindScenario(name)}});
+    const std::string path = FindScenario(name);
+    list.push_back({{"name", name},
+                    {"path", path},
+                    {"description", LoadScenario(path, {}, registries).description}});
   }
   return list;
 }
 
-void PrintNames(const Json& list) {
+Json ListShippedStudies(const Registries& registries) {
+  Json list = Json::array();
+  for (const std::string& name : ListStudyFiles()) {
+    const std::string path = FindStudyFile(name);
+    list.push_back(
+        {{"name", name}, {"path", path}, {"description", LoadStudyFile(path, registries).title}});
+  }
+  return list;
+}
+
+void PrintFiles(const Json& list) {
   std::size_t width = 0;
   for (const Json& entry : list) {
     width = std::max(width, entry["name"].get_ref<const std::string&>().size());
   }
   for (const Json& entry : list) {
-    std::string line = fmt::format("{:<{}}", entry["name"].get<std::string>(), width);
-    for (const auto& [key, value] : entry.items()) {
-      if (key != "name") line += "  " + value.get<std::string>();
-    }
-    std::cout << line << "\n";
+    std::cout << fmt::format("{:<{}}  {}\n", entry["name"].get<std::string>(), width,
+                             entry["description"].get<std::string>());
   }
+  if (list.empty()) return;
+  const std::filesystem::path first = list.front()["path"].get<std::string>();
+  std::cout << fmt::format("The files: {}/NAME.yaml\n", first.parent_path().string());
 }
 
 void Print(const std::string& what, const Json& list) {
-  if (what == "backends") return PrintBackends(list);
-  if (what == "terms") return PrintTerms(list);
-  if (what == "scenarios") return PrintNames(list);
-  PrintParts(list);
+  if (what == "scenarios" || what == "studies") return PrintFiles(list);
+  if (what == "backends") {
+    PrintBackends(list);
+    std::cout << kBackendsLegend;
+  } else if (what == "terms") {
+    PrintTerms(list);
+    std::cout << kTermsLegend;
+  } else {
+    PrintParts(list);
+    std::cout << kPartsLegend;
+  }
 }
 
 }  // namespace
 
 void AddListCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("list", "List what a scenario can name");
+  const Command command =
+      app.AddCommand("list", "List what can be named: in a scenario, or as one", "scenario.md");
   struct Arguments {
     std::string what;
     bool json = false;
@@ -212,8 +246,8 @@ void AddListCommand(Command app, const Registries& registries, CommandRun* run) 
   const auto arguments = std::make_shared<Arguments>();
   command.Add("WHAT", arguments->what, "What to list")
       .Required()
-      .Check(OneOf(
-          {"backends", "planners", "motions", "controllers", "predictors", "terms", "scenarios"}));
+      .Check(OneOf({"backends", "planners", "motions", "controllers", "predictors", "terms",
+                    "scenarios", "studies"}));
   command.AddFlag("--json", arguments->json, "Print one JSON document on stdout");
   command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] {
@@ -224,7 +258,8 @@ void AddListCommand(Command app, const Registries& registries, CommandRun* run) 
       if (arguments->what == "controllers") list = ListParts(registries.controllers);
       if (arguments->what == "predictors") list = ListParts(registries.predictors);
       if (arguments->what == "terms") list = ListTerms(registries);
-      if (arguments->what == "scenarios") list = ListShippedScenarios();
+      if (arguments->what == "scenarios") list = ListShippedScenarios(registries);
+      if (arguments->what == "studies") list = ListShippedStudies(registries);
       if (arguments->json) {
         std::cout << list.dump(2) << "\n";
       } else {

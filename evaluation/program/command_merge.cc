@@ -28,7 +28,8 @@ int Merge(const MergeArguments& arguments) {
 }  // namespace
 
 void AddMergeCommand(Command app, CommandRun* run) {
-  const Command command = app.AddCommand("merge", "Make one file of the shards of a sweep");
+  const Command command =
+      app.AddCommand("merge", "Make one file of the shards of a sweep", "sweep.md");
   const auto arguments = std::make_shared<MergeArguments>();
   command.Add("OUT", arguments->out, "The file to write, as if one process had flown all")
       .Required();

@@ -96,7 +96,8 @@ int RunPlan(const PlanArguments& arguments, const Registries& registries) {
 }  // namespace
 
 void AddPlanCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("plan", "Solve one planning problem and explain it");
+  const Command command =
+      app.AddCommand("plan", "Solve one planning problem and explain it", "profile.md");
   const auto arguments = std::make_shared<PlanArguments>();
   arguments->scenario.AddTo(command, false);
   const Option seed = command.Add("--seed", arguments->scenario.seed, "Short for --set seed=");

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
@@ -62,8 +61,8 @@ Profile Run(const ProfileArguments& arguments, const Registries& registries,
             MachineState* machine) {
   ProfileOptions options = arguments.options;
   options.spans = !arguments.trace.empty();
-  const auto progress = [](int done, int all) {
-    if (all > 1) spdlog::info("{} of {} runs", done, all);
+  const auto progress = [tell = Progress({.things = "runs"})](int done, int all) mutable {
+    if (all > 1) tell(done, all);
   };
   const auto begin = [&] {
     CheckProfileOutputs(arguments);
@@ -143,8 +142,8 @@ int RunProfile(const ProfileArguments& arguments, const Registries& registries) 
 }  // namespace
 
 void AddProfileCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command =
-      app.AddCommand("profile", "Replanning latency by stage, in flight or from a record");
+  const Command command = app.AddCommand(
+      "profile", "Replanning latency by stage, in flight or from a record", "profile.md");
   const auto arguments = std::make_shared<ProfileArguments>();
   ProfileOptions& options = arguments->options;
   arguments->scenario.AddTo(command, false);

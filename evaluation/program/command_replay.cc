@@ -36,7 +36,7 @@ int RunReplay(const ReplayArguments& arguments, const Registries& registries) {
 }  // namespace
 
 void AddReplayCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("replay", "Show a recorded flight in three dimensions");
+  const Command command = app.AddCommand("replay", "Show a recorded flight in three dimensions", "replay.md");
   const auto arguments = std::make_shared<ReplayArguments>();
   command.AddFile("RECORD", &arguments->record, "A flight's record (`land --record`)", "RECORD")
       .Required();

@@ -276,14 +276,15 @@ int Study(StudyArguments arguments, const Registries& registries) {
 }  // namespace
 
 void AddStudyCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command study = app.AddCommand("study", "The standing studies");
+  const Command study = app.AddCommand("study", "The standing studies", "evaluation_protocol.md");
   study.RequireCommand();
   AddHostileStudyCommand(study, registries, run);
   AddPadStudyCommand(study, registries, run);
   AddStudyRunCommands(study, registries, run);
   AddTagStudyCommand(study, run);
   const Command command = study.AddCommand(
-      "replan", "Latency, success and safety of replanning steps in random forests");
+      "replan", "Latency, success and safety of replanning steps in random forests",
+      "replan_study.md");
   const auto arguments = std::make_shared<StudyArguments>();
   ReplanStudyOptions& options = arguments->options;
   command.AddList(

@@ -147,8 +147,8 @@ int Run(HostileArguments arguments, const Registries& registries, const Command&
 }  // namespace
 
 void AddHostileStudyCommand(Command study, const Registries& registries, CommandRun* run) {
-  const Command command =
-      study.AddCommand("hostile", "Whether anything is touched in worlds that nobody tuned for");
+  const Command command = study.AddCommand(
+      "hostile", "Whether anything is touched in worlds that nobody tuned for", "hostile.md");
   const auto arguments = std::make_shared<HostileArguments>();
   HostileOptions& options = arguments->options;
   command.Add("--flights", options.flights, "Number of flights")

@@ -50,7 +50,8 @@ int Run(const PadStudyArguments& arguments, const Registries& registries) {
 
 void AddPadStudyCommand(Command study, const Registries& registries, CommandRun* run) {
   const Command command = study.AddCommand(
-      "pad", "How well the pad is known and foretold in flights, by both models of its filter");
+      "pad", "How well the pad is known and foretold in flights, by both models of its filter",
+      "pad_filter.md");
   const auto arguments = std::make_shared<PadStudyArguments>();
   PadStudyOptions& options = arguments->options;
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -25,6 +25,8 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr char kPage[] = "evaluation_protocol.md";
+
 struct StudyRunArguments {
   std::string file;
   std::string out;
@@ -151,9 +153,9 @@ void AddStudyRunCommands(Command study, const Registries& registries, CommandRun
   for (const auto& [name, help] : shipped) {
     const auto arguments = std::make_shared<StudyRunArguments>();
     arguments->file = name;
-    AddOptions(study.AddCommand(name, help), arguments, registries, run);
+    AddOptions(study.AddCommand(name, help, kPage), arguments, registries, run);
   }
-  const Command command = study.AddCommand("run", "A study of your own, from its file");
+  const Command command = study.AddCommand("run", "A study of your own, from its file", kPage);
   const auto arguments = std::make_shared<StudyRunArguments>();
   command.Add("FILE", arguments->file, "Study file, or the name of a shipped one").Required();
   AddOptions(command, arguments, registries, run);

@@ -110,7 +110,7 @@ int Run(const TagStudyArguments& arguments) {
 
 void AddTagStudyCommand(Command study, CommandRun* run) {
   const Command command = study.AddCommand(
-      "tags", "How well the pad is found in rendered images of its tags, by height");
+      "tags", "How well the pad is found in rendered images of its tags, by height", "tag_pose.md");
   const auto arguments = std::make_shared<TagStudyArguments>();
   TagStudyOptions& options = arguments->options;
   command.Add("--poses", options.poses, "Views for each camera")

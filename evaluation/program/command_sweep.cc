@@ -116,7 +116,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
 }  // namespace
 
 void AddSweepCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("sweep", "Fly many landings of one scenario");
+  const Command command = app.AddCommand("sweep", "Fly many landings of one scenario", "sweep.md");
   const auto arguments = std::make_shared<SweepArguments>();
   arguments->scenario.AddTo(command, true);
   command.Add("--trials", arguments->trials, "Number of trials")

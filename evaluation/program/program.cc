@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -20,7 +19,8 @@
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/progress.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/stderr_log.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
@@ -121,7 +121,13 @@ void CheckCommand(const CLI::App& app, const char* const* word, const char* cons
   if (names.empty()) return;
   const std::string of = app.get_parent() == nullptr ? "" : " of " + app.get_name();
   throw BadInput(
-      fmt::format("unknown command {}{}; the commands are {}.", *word, of, Enumerate(names)));
+      fmt::format("unknown command {}{}{}.", *word, of, Instead(*word, names, "the commands are")));
+}
+
+// A sentence that says what was meant needs no other help.
+std::string TryHelp(std::string sentence) {
+  if (!sentence.ends_with("?)")) sentence += " (try --help)";
+  return sentence;
 }
 
 // The words that the chosen command does not know, the options among them where there are any: what follows
@@ -133,21 +139,24 @@ std::string Unknown(const CLI::App& app) {
     command = command->get_subcommands().front();
     name += " " + command->get_name();
   }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command->get_options()) {
+    if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames().front());
+  }
   std::vector<std::string> options, words = app.remaining(true);
-  std::copy_if(words.begin(), words.end(), std::back_inserter(options),
-               [](const std::string& word) { return word.starts_with("-"); });
-  return options.empty()
-             ? fmt::format("{} takes no {} (try --help)", name, fmt::join(words, " "))
-             : fmt::format("{} has no option {} (try --help)", name, fmt::join(options, ", "));
+  for (const std::string& word : words) {
+    if (!word.starts_with("-")) continue;
+    const std::string option = word.substr(0, word.find('='));
+    options.push_back(option + DidYouMean(option, known));
+  }
+  return options.empty() ? fmt::format("{} takes no {}", name, fmt::join(words, " "))
+                         : fmt::format("{} has no option {}", name, fmt::join(options, ", "));
 }
 
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const Registries& registries) {
-  auto log = std::make_shared<spdlog::logger>("touchdown",
-                                              std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  log->set_pattern("touchdown: %v");
-  spdlog::set_default_logger(log);
+  LogToStderr();
 
   CLI::App app{"Plans, flies and evaluates quadrotor landings on a moving vehicle."};
   app.name("touchdown");
@@ -160,6 +169,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     spdlog::error("{}.", error.what());
     return kBadInput;
   }
+  Command(&app).EndHelp("README.md");
   AddFlyCommands(Command(&app), registries, &run);
   AddCompareCommand(Command(&app), registries, &run);
   AddStudyCommand(Command(&app), registries, &run);
@@ -178,10 +188,10 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ExtrasError&) {
-    spdlog::error("{}", Unknown(app));
+    spdlog::error("{}", TryHelp(Unknown(app)));
     return kBadInput;
   } catch (const CLI::ParseError& error) {
-    spdlog::error("{} (try --help)", error.what());
+    spdlog::error("{}", TryHelp(error.what()));
     return kBadInput;
   } catch (const BadInput& error) {
     spdlog::error("{}", error.what());

@@ -159,6 +159,7 @@ SolvedStep SolveStep(const RecordedFlight& flight, int step, const Registries& r
   replay.Solve();  // the first time finds cold caches
   SolvedStep solved = SolveSought(flight, &replay);
   solved.occupied = CellsNear(solved, replay.map());
+  solved.prior = flight.prior;
   return solved;
 }
 

@@ -35,6 +35,7 @@ struct SolvedStep {
   std::vector<planning::NamedZone> zones;     ///< where terms act
   std::vector<estimation::PadState> pad;      ///< predicted over the curve, every kPadStep
   std::vector<planning::CellIndex> occupied;  ///< cells of the map near what was planned
+  std::vector<planning::CellCube> prior;      ///< near the flight, what map.prior held occupied
   double resolution = 0.1;                    ///< of the map [m]
   double t_pad = 0.0;                         ///< of the first predicted pad [s]
   static constexpr double kPadStep = 0.1;     ///< [s]

@@ -176,6 +176,10 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   for (const planning::CellIndex& cell : solved.occupied) {
     cells.push_back({cell.x(), cell.y(), cell.z()});
   }
+  Json& prior = json["prior"] = Json::array();
+  for (const planning::CellCube& cube : solved.prior) {
+    prior.push_back({cube.low.x(), cube.low.y(), cube.low.z(), cube.side});
+  }
   json["resolution"] = solved.resolution;
   return json;
 }

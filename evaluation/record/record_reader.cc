@@ -2,6 +2,8 @@
 // A record is data from outside: every number that a planner is given is looked at first.
 #include "evaluation/record/record_reader.h"
 
+#include <array>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -381,6 +383,21 @@ void CheckOverrides(const std::vector<std::string>& overrides) {
   }
 }
 
+void ReadPrior(SqliteDb& db, std::vector<planning::CellCube>* prior) {
+  SqliteStatement row = db.Prepare("SELECT cubes FROM prior WHERE state = 'occupied'");
+  while (row.Step()) {
+    const std::string bytes = row.Text(0);
+    std::array<std::int32_t, 4> cube;
+    if (bytes.size() % sizeof cube != 0) {
+      throw std::invalid_argument("its table prior holds a part of a cube");
+    }
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof cube) {
+      std::memcpy(cube.data(), bytes.data() + at, sizeof cube);
+      prior->push_back({{cube[0], cube[1], cube[2]}, cube[3]});
+    }
+  }
+}
+
 RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries) {
   SqliteDb db(path, SqliteDb::Mode::kReadOnly);
@@ -409,6 +426,7 @@ RecordedFlight ReadAll(const std::string& path, const std::vector<std::string>& 
   ReadStates(db, &flight.plans);
   ReadMap(db, &flight.plans);
   ReadPlanTiming(db, &flight.plans);
+  ReadPrior(db, &flight.prior);
   return flight;
 }
 

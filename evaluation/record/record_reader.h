@@ -20,6 +20,7 @@ struct RecordedFlight {
   planning::CellIndex map_size = planning::CellIndex::Ones();  ///< of the map's window
   int idle_steps = 0;                                          ///< that are not among them
   std::vector<RecordPlan> plans;  ///< in the order in which they were made
+  std::vector<planning::CellCube> prior;  ///< near the flight, what map.prior held occupied
 };
 
 /// What of a recorded flight can be changed, as a help text says it.

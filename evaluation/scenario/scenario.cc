@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
 #include "evaluation/scenario/obstacle_keys.h"
 #include "evaluation/scenario/scenario_check.h"
@@ -24,6 +25,7 @@ namespace {
 using Keys = std::vector<SchemaKey<Scenario>>;
 
 constexpr char kObstacles[] = "obstacles";
+constexpr char kNoText[] = "\"\"";
 
 class Reader {
  public:
@@ -64,7 +66,7 @@ class Reader {
     } else if (IsGroup(name)) {
       ReadMap(value, name, where);
     } else {
-      throw BadInput(fmt::format("{}: unknown key {}; {}.", where.ToString(), name, Suggest(name)));
+      throw BadInput(fmt::format("{}: unknown key {}{}.", where.ToString(), name, Suggest(name)));
     }
   }
 
@@ -96,7 +98,7 @@ class Reader {
                        [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
   }
 
-  // The keys of the same group, or the groups: what may stand here instead.
+  // The keys of the same group, or the groups: what may stand here instead. What is near may be in another group.
   std::string Suggest(const std::string& name) const {
     const std::size_t dot = name.rfind('.');
     const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
@@ -111,8 +113,14 @@ class Reader {
       ForEachObstacleList(source_->scenario, [&](const std::string& list, const auto&,
                                                  const auto&) { words.push_back(list); });
     }
-    if (words.empty()) return "`docs/scenario.md` lists the keys";
-    return "allowed here: " + Enumerate(words);
+    if (DidYouMean(name, words).empty()) {
+      std::vector<std::string> all;
+      for (const auto& key : keys_) all.push_back(key.name);
+      const std::string meant = DidYouMean(name, all);
+      if (!meant.empty()) return meant;
+    }
+    if (words.empty()) return "; `docs/scenario.md` lists the keys";
+    return Instead(name, words, "allowed here:");
   }
 
   template <typename Element>
@@ -151,8 +159,8 @@ class Reader {
       if (key.name == name) return key.set(*element, value, where);
       words.push_back(key.name);
     }
-    throw BadInput(fmt::format("{}: unknown key {}.{}; allowed here: {}.", where.ToString(), label,
-                               name, Enumerate(words)));
+    throw BadInput(fmt::format("{}: unknown key {}.{}{}.", where.ToString(), label, name,
+                               Instead(name, words, "allowed here:")));
   }
 
   ScenarioSource* source_;
@@ -317,12 +325,14 @@ std::string DumpScenario(const Scenario& scenario) {
   std::string text;
   std::string open_group;
   for (const auto& key : ScenarioKeys()) {
+    const std::string value = key.get(scenario);
+    if (value == kNoText) continue;  // as a key that is left out
     const std::size_t dot = key.name.find('.');
     const std::string group = dot == std::string::npos ? "" : key.name.substr(0, dot);
     if (group != open_group && !group.empty()) text += group + ":\n";
     open_group = group;
     const std::string name = group.empty() ? key.name : "  " + key.name.substr(dot + 1);
-    text += name + ": " + key.get(scenario) + "\n";
+    text += name + ": " + value + "\n";
   }
   text += DumpOpenKeys(scenario);
   std::string lists;

@@ -14,6 +14,7 @@
 #include "estimation/tags/pad_sheet.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/map_file.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
@@ -131,17 +132,26 @@ void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
   }
 }
 
+void RequireTermKey(const planning::TermEntry& entry, const std::string& key) {
+  std::vector<std::string> keys = {"weight", "hard"};
+  for (const planning::TermParameter& parameter : entry.parameters) keys.push_back(parameter.name);
+  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+  throw std::invalid_argument(fmt::format("term {} has no parameter {}{}", entry.info.name, key,
+                                          Instead(key, keys, "known:")));
+}
+
 // Each key alone, so that the sentence names the place it came from.
 void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& terms) {
   for (const auto& [name, keys] : source.scenario.terms) {
     for (const auto& [key, value] : keys) {
       try {
-        const planning::TermEntry& entry = planning::FindTerm(terms, name);
+        const planning::TermEntry& entry = TermNamed(terms, name);
         if (entry.use == planning::TermUse::kMovingObstacles) {
           throw std::invalid_argument(
               "term " + name + " does nothing in a flight, where nobody tells of moving obstacles");
         }
         planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
+        RequireTermKey(entry, key);
         planning::ApplySettings(entry, TermSettingsOf(name, {{key, value}}), &setup);
       } catch (const std::invalid_argument& error) {
         throw BadInput(fmt::format(
@@ -162,18 +172,20 @@ void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& m
   if (std::none_of(registries.backends.begin(), registries.backends.end(), known)) {
     std::vector<std::string> names;
     for (const solvers::BackendEntry& entry : registries.backends) names.push_back(entry.name);
-    throw BadInput(fmt::format("{}: solver.backend must be {}, not '{}'.",
+    throw BadInput(fmt::format("{}: solver.backend must be {}, not '{}'{}.",
                                source.WhereOf("solver.backend").ToString(), Enumerate(names),
-                               s.solver.backend));
+                               s.solver.backend, DidYouMean(s.solver.backend, names)));
   }
   const auto backend = solvers::MakeBackend(registries.backends, s.solver.backend);
   for (const auto& [name, value] : s.solver.options) {
     try {
       backend->options().Set(name, value);
     } catch (const std::invalid_argument& error) {
-      throw BadInput(fmt::format("{}: {} (backend {}).",
+      std::vector<std::string> names;
+      for (const solvers::OptionSpec& spec : backend->options().specs()) names.push_back(spec.name);
+      throw BadInput(fmt::format("{}: {} (backend {}){}.",
                                  source.WhereOf("solver.options." + name).ToString(), error.what(),
-                                 s.solver.backend));
+                                 s.solver.backend, DidYouMean(name, names)));
     }
   }
   const planning::ReplannerOptions options = PlannerOptions(s, model, registries.terms);
@@ -405,6 +417,16 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
   Where whole;
   whole.file = file;
   return whole;
+}
+
+const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name) {
+  std::vector<std::string> names;
+  for (const planning::TermEntry& entry : terms) {
+    if (entry.info.name == name) return entry;
+    names.push_back(entry.info.name);
+  }
+  throw std::invalid_argument(
+      fmt::format("term {} is unknown{}", name, Instead(name, names, "known:")));
 }
 
 void CheckScenario(const ScenarioSource& source, const Registries& registries) {

@@ -28,4 +28,7 @@ struct ScenarioSource {
 /// A pad faster than the vehicle is none of it: the flight shows what becomes of it. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const Registries& registries);
 
+/// A term by its name. Throws std::invalid_argument saying what was probably meant.
+const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name);
+
 }  // namespace touchdown::evaluation

@@ -15,6 +15,7 @@ namespace touchdown::evaluation::schema {
 using KeyList = std::vector<SchemaKey<Scenario>>;
 
 // One section each, in the order of documentation and of a dump.
+void AddDescription(KeyList& keys);
 void AddPadKeys(KeyList& keys);
 void AddVehicleKeys(KeyList& keys);
 void AddAirKeys(KeyList& keys);
@@ -97,10 +98,13 @@ SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& wor
 
 template <typename Owner = Scenario, typename At>
 SchemaKey<Owner> Text(std::string name, std::string range, std::string doc, At at) {
-  return {name, "text", "", std::move(range), std::move(doc),
+  return {name,
+          "text",
+          "",
+          std::move(range),
+          std::move(doc),
           [=](Owner& o, const YAML::Node& n, const Where& w) { at(o) = ReadText(n, w, name); },
-          // Double-quoted YAML is JSON's notation for what paths hold.
-          [=](const Owner& o) { return std::string("\"").append(at(o)).append("\""); }};
+          [=](const Owner& o) { return WriteText(at(o)); }};
 }
 
 /// The name of an entry of a registry, which scenario_check asks.

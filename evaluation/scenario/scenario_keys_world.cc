@@ -1,8 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys of what is there and of the trial: pad, vehicle, time-out and seed.
+// Keys of what is there and of the trial: description, pad, vehicle, time-out and seed.
 #include "evaluation/scenario/scenario_keys.h"
 
 namespace touchdown::evaluation::schema {
+
+void AddDescription(KeyList& keys) {
+  SchemaKey<Scenario> key =
+      Text("description", "a line of text",
+           "what the scenario is, in words, for `touchdown list scenarios`; has no influence",
+           TOUCHDOWN_AT(description));
+  key.set = [take = key.set](Scenario& s, const YAML::Node& n, const Where& w) {
+    take(s, n, w);
+    if (s.description.find('\n') != std::string::npos) {
+      RefuseValue(w, "description", "a text of one line", n);
+    }
+  };
+  keys.push_back(std::move(key));
+}
 
 void AddPadKeys(KeyList& keys) {
   keys.push_back(Word("pad.motion", "motions",

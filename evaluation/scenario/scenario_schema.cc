@@ -14,6 +14,7 @@ namespace touchdown::evaluation {
 const std::vector<SchemaKey<Scenario>>& ScenarioKeys() {
   static const std::vector<SchemaKey<Scenario>> keys = [] {
     schema::KeyList list;
+    schema::AddDescription(list);
     schema::AddPadKeys(list);
     schema::AddVehicleKeys(list);
     schema::AddAirKeys(list);

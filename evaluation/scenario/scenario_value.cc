@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
 
 namespace touchdown::evaluation {
@@ -102,7 +103,9 @@ int ReadChoice(const YAML::Node& node, const Where& where, const std::string& ke
     const auto found = std::find(allowed.begin(), allowed.end(), node.Scalar());
     if (found != allowed.end()) return static_cast<int>(found - allowed.begin());
   }
-  RefuseValue(where, key, Enumerate(allowed), node);
+  throw BadInput(fmt::format("{}: {} must be {}, not {}{}.", where.ToString(), key,
+                             Enumerate(allowed), Shown(node),
+                             node.IsScalar() ? DidYouMean(node.Scalar(), allowed) : ""));
 }
 
 Eigen::VectorXd ReadVector(const YAML::Node& node, const Where& where, const std::string& key,
@@ -128,6 +131,12 @@ std::string WriteVector(const Eigen::VectorXd& values) {
     text += (i > 0 ? ", " : "") + WriteNumber(values[i]);
   }
   return text + "]";
+}
+
+std::string WriteText(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << YAML::DoubleQuoted << text;
+  return emitter.c_str();
 }
 
 }  // namespace touchdown::evaluation

@@ -42,5 +42,7 @@ Eigen::VectorXd ReadVector(const YAML::Node& node, const Where& where, const std
 /// Shortest decimal text that reads back to the same double.
 std::string WriteNumber(double value);
 std::string WriteVector(const Eigen::VectorXd& values);
+/// In double quotes, with what YAML wants escaped.
+std::string WriteText(const std::string& text);
 
 }  // namespace touchdown::evaluation

@@ -15,6 +15,8 @@
 
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/plan_report.h"
+#include "evaluation/record/record_reader.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 #include "touchdown/evaluation/program/program.h"
 
@@ -245,6 +247,18 @@ TEST_F(MapFile, WhatBecameOfThePriorIsSaidAndKept) {
             "none");
   EXPECT_THAT(said.out, HasSubstr(" of its 5,800 occupied cells were looked at; "));
   EXPECT_THAT(said.out, HasSubstr("\nwarning: "));
+  // The picture of a step has what the flight knew before it.
+  const Registries registries = StandardRegistries();
+  const RecordedFlight flight = ReadRecord(path, {}, registries);
+  EXPECT_EQ(
+      InRecord(path, "SELECT CAST(length(cubes) / 16 AS TEXT) FROM prior WHERE state = 'occupied'"),
+      std::to_string(flight.prior.size()));
+  const nlohmann::ordered_json step = PlanJson(SolveStep(flight, 0, registries), true);
+  ASSERT_EQ(step.at("prior").size(), flight.prior.size());
+  const planning::CellCube& last = flight.prior.back();
+  EXPECT_EQ(step.at("prior").back(),
+            nlohmann::ordered_json({last.low.x(), last.low.y(), last.low.z(), last.side}));
+  EXPECT_GT(last.side, 0);
   const Ran json = Call({"land", scenario.c_str(), "--set", prior.c_str(), "--json"});
   EXPECT_EQ(nlohmann::json::parse(json.out).at("map_prior"), kept);
   const Ran without = Call({"land", scenario.c_str(), "--set", "map.prior=none"});

@@ -64,6 +64,7 @@ TEST_F(BackendsOfARecord, AreMeasuredOnTheSameSolvesAndSteps) {
   }
   const std::string text = BackendsText(profile);
   EXPECT_THAT(text, HasSubstr("limits: soft"));
+  EXPECT_THAT(text, HasSubstr("plans: steps that made a new plan"));
   EXPECT_THAT(text, HasSubstr("within 0.01 of the best known cost"));
   const nlohmann::ordered_json json = BackendsJson(profile, {});
   EXPECT_EQ(json["backends"]["lbfgs"]["solve"]["problems"], timed);

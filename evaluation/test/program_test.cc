@@ -18,6 +18,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class BrokenSolver : public solvers::SolverBackend {
  public:
@@ -53,11 +54,64 @@ Ran Call(std::vector<const char*> arguments) {
 }
 
 TEST(Program, UnknownCommandsAreNamedAtEveryLevel) {
-  EXPECT_THAT(Call({"lnad"}).err, HasSubstr("unknown command lnad; the commands are fly, land,"));
+  EXPECT_THAT(Call({"flutter"}).err,
+              HasSubstr("unknown command flutter; the commands are fly, land,"));
   const Ran ran = Call({"study", "hostel"});
   EXPECT_EQ(ran.status, 2);
-  EXPECT_THAT(ran.err, AllOf(HasSubstr("unknown command hostel of study; the commands are "),
-                             HasSubstr("hostile")));
+  EXPECT_THAT(
+      ran.err,
+      AllOf(HasSubstr("unknown command hostel of study (did you mean hostile?); the commands are "),
+            HasSubstr("hostile")));
+}
+
+// Wherever a name is asked for that is one of several, a typo is told what it was to be, in one sentence.
+TEST(Program, ATypoIsToldWhatWasMeant) {
+  const std::filesystem::path folder = ::testing::TempDir();
+  const auto file = [&folder](const char* name, const char* text) {
+    const std::filesystem::path path = folder / name;
+    std::ofstream(path) << text;
+    return path.string();
+  };
+  const std::string group = file("group.yaml", "planing: {rate: 5}\n");
+  const std::string element =
+      file("element.yaml", "obstacles: {boxes: [{center: [9, 9], size: [1, 1, 1]}]}\n");
+  const std::string study = file("study.yaml", "titel: A\n");
+  const std::vector<std::pair<std::vector<const char*>, const char*>> typos = {
+      {{"lnad"}, "land"},
+      {{"study", "papr"}, "paper"},
+      {{"land", "--recrod=x.db"}, "--record"},
+      {{"land", "cirle"}, "circle"},
+      {{"study", "run", "ablaton"}, "ablation"},
+      {{"land", "open", "--set", "planing.rate=5"}, "planning.rate"},
+      {{"land", "open", "--set", "pad.sped=1"}, "pad.speed"},
+      {{"land", group.c_str()}, "planning"},
+      {{"land", element.c_str()}, "centre"},
+      {{"study", "run", study.c_str()}, "title"},
+      {{"land", "open", "--planner", "landin"}, "landing"},
+      {{"land", "open", "--backend", "baned"}, "banded"},
+      {{"land", "open", "--set", "pad.motion=circel"}, "circle"},
+      {{"land", "open", "--set", "controller=papr"}, "paper"},
+      {{"land", "open", "--set", "pad.prediction=turnrate"}, "turn_rate"},
+      {{"land", "open", "--set", "task=folow"}, "follow"},
+      {{"land", "open", "--set", "terms.tilt_limt.weight=1"}, "tilt_limit"},
+      {{"land", "open", "--set", "terms.tilt_limit.wieght=1"}, "weight"},
+      {{"land", "open", "--set", "solver.options.gap_tolerence=1"}, "gap_tolerance"},
+      {{"check-term", "tilt_limt"}, "tilt_limit"},
+      {{"sweep", "open", "--vary", "pad.sped=1..2"}, "pad.speed"},
+      {{"list", "backend"}, "backends"},
+      {{"compare", "--backends", "ipot"}, "ipopt"},
+      {{"study", "paper", "--out", "x", "--methods", "plannd"}, "planned"},
+      {{"study", "hostile", "--families", "pols"}, "poles"},
+  };
+  for (const auto& [arguments, meant] : typos) {
+    SCOPED_TRACE(arguments.back());
+    const Ran ran = Call(arguments);
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr(std::string("(did you mean ").append(meant).append("?)")));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("try --help")));
+  }
+  EXPECT_THAT(Call({"land", "--quickly"}).err, HasSubstr("has no option --quickly (try --help)"));
 }
 
 TEST(Program, APageReplacesNoOtherFile) {
@@ -170,6 +224,28 @@ TEST(Program, CompareTellsEveryBackendsFigures) {
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.err, HasSubstr("takes no inequality constraints"));
   EXPECT_FALSE(std::filesystem::exists(db));
+}
+
+TEST(Program, AFlightTellsItsWindAndWhereItsTermsAct) {
+  const Ran still = Call({"land", "open", "--set", "timeout=1"});
+  EXPECT_THAT(still.out, AllOf(Not(HasSubstr("wind")), Not(HasSubstr("zone"))));
+  const Ran steady = Call({"land", "open", "--set", "timeout=1", "--set", "wind.mean=3", "--set",
+                           "wind.direction_deg=-90"});
+  EXPECT_THAT(
+      steady.out,
+      HasSubstr("\n  wind                   3 m/s in the mean, towards -90 deg from x, left "
+                "positive\n"));
+  const Ran all = Call({"land", "open", "--set", "timeout=1", "--set", "wind.mean=3", "--set",
+                        "wind.max=4.5", "--set", "wind.gust.speed=2", "--set",
+                        "terms.keep_out.weight=10", "--set", "terms.keep_out.radius=1.5"});
+  EXPECT_THAT(all.out, HasSubstr("left positive; at most 4.5 m/s; gusts of 2 m/s along it\n"));
+  EXPECT_THAT(all.out, HasSubstr("\n  zone of keep_out       "));
+  EXPECT_THAT(all.out, HasSubstr("] m, 3 x 3 x 3 m\n"));
+  // A baseline has no terms.
+  const Ran ego = Call({"land", "open", "--planner", "ego", "--set", "timeout=1", "--set",
+                        "terms.keep_out.weight=10"});
+  EXPECT_EQ(ego.status, 1) << ego.err;
+  EXPECT_THAT(ego.out, Not(HasSubstr("zone")));
 }
 
 TEST(Program, ARecordReplacesNoOtherFile) {

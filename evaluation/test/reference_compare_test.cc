@@ -32,6 +32,8 @@ TEST(ReferenceCompare, BandedIsRightOnEveryShootingProblem) {
   EXPECT_NE(text.find("mass_chain_100"), std::string::npos) << text;
   EXPECT_NE(text.find("refused, 10 problems: backend lbfgs takes no bounds"), std::string::npos)
       << text;
+  EXPECT_NE(text.find("at the best: right, and "), std::string::npos) << text;
+  EXPECT_NE(text.find("; elsewhere: converged, and "), std::string::npos) << text;
 }
 
 TEST(ReferenceCompare, StartsRepeatAndEveryOneIsCounted) {

@@ -98,6 +98,14 @@ TEST_F(ScenarioTest, EveryKeyRoundTrips) {
   ASSERT_EQ(Load(text).cylinders.size(), 1U);
 }
 
+TEST_F(ScenarioTest, ADescriptionIsOneLineThatReadsBack) {
+  const Scenario s = Load("description: 'A \"yard\": C:\\x, 5 °'\n");
+  EXPECT_EQ(s.description, "A \"yard\": C:\\x, 5 °");
+  EXPECT_EQ(Load(DumpScenario(s)).description, s.description);
+  EXPECT_THAT(DumpScenario(Scenario{}), Not(HasSubstr("description")));
+  EXPECT_THAT(Refusal("description: \"a\\nb\"\n"), HasSubstr("must be a text of one line"));
+}
+
 TEST_F(ScenarioTest, KeysOfTermsAndBackendsAreTheRegistries) {
   const Scenario s = Load(
       "solver: {backend: banded, limits: hard, options: {gap_tolerance: 1e-5}}\n"
@@ -110,7 +118,7 @@ TEST_F(ScenarioTest, KeysOfTermsAndBackendsAreTheRegistries) {
   EXPECT_THAT(Refusal("terms:\n  tilt: {weight: 1}\n"),
               AllOf(HasSubstr(path_ + ":2"), HasSubstr("term tilt is unknown; known: smoothness")));
   EXPECT_THAT(Refusal("terms: {smoothness: {jork: 1}}\n"),
-              HasSubstr("no parameter jork; known: weight, hard, jerk"));
+              HasSubstr("no parameter jork (did you mean jerk?); known: weight, hard or jerk"));
   EXPECT_THAT(Refusal("terms: {smoothness: {jerk: -1}}\n"), HasSubstr("must be in [0, 1000]"));
   EXPECT_THAT(Refusal("terms: {consistency: {hard: true}}\n"), HasSubstr("a cost only"));
   EXPECT_THAT(
@@ -136,6 +144,7 @@ TEST_F(ScenarioTest, ShippedScenariosLoadAndRoundTrip) {
   for (const std::string& name : ListScenarios()) {
     const Scenario scenario = LoadScenario(FindScenario(name), {}, kRegistries);
     EXPECT_EQ(scenario.name, name);
+    EXPECT_FALSE(scenario.description.empty()) << name;
     EXPECT_EQ(DumpScenario(Load(DumpScenario(scenario))), DumpScenario(scenario));
   }
 }
@@ -193,7 +202,8 @@ TEST_F(ScenarioTest, AWrongWordListsTheAllowedOnes) {
 }
 
 TEST_F(ScenarioTest, ASecondDocumentIsRefused) {
-  EXPECT_THAT(Refusal("seed: 1\n---\nseed: 2\n"), HasSubstr("holds 2 YAML documents; allowed is one"));
+  EXPECT_THAT(Refusal("seed: 1\n---\nseed: 2\n"),
+              HasSubstr("holds 2 YAML documents; allowed is one"));
 }
 
 TEST_F(ScenarioTest, AKeyThatIsNoTextIsRefused) {

@@ -186,6 +186,10 @@ TEST_F(Bench, ASlowBackendSitsOutAndARefereeStillHelps) {
   told.flights = {"by hand"};
   EXPECT_FALSE(CompareJson({}, told, {})["backends"]["ceres"]["ran_all"].get<bool>());
   EXPECT_THAT(CompareText({}, told), HasSubstr("1 of 1 run, of 3"));
+  for (const char* heading :
+       {"reached: ", "iter, eval: ", "tight solves: ", "agree: ", "eval/whiten/native/adapter: "}) {
+    EXPECT_THAT(CompareText({}, told), HasSubstr(heading));
+  }
 }
 
 TEST_F(Bench, TurnsAreRandomAndRepeat) {

@@ -104,6 +104,7 @@ def test_a_record_is_replayed_bit_for_bit(run, record_path, tmp_path):
     assert f"touchdown plan --from {record_path}:{slowest}" in table
     for word in (*STAGES, "total", "median", "p99", "allocations"):
         assert word in table
+    assert "  used in: steps, or images for sense and map" in table
 
 
 def test_another_backend_plans_on_the_same_inputs(run, record_path):

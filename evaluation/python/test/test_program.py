@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program as a user meets it: exit statuses, stdout, stderr, files."""
 import json
+import pathlib
+import re
 import sqlite3
 
 import pytest
@@ -20,6 +22,24 @@ def test_help_lists_what_is_built(run):
         assert command in done.stdout
     for command in ("land", "plan", "profile", "compare", "sweep", "merge", "list"):
         assert run(command, "--help").returncode == 0
+
+
+def commands_in(text):
+    """The names in the list of commands that ends a help."""
+    rows = re.findall(r"^  ([a-z-]+) {2,}", text.partition("Subcommands:")[2], re.M)
+    return [(row,) for row in rows]
+
+
+def test_every_help_ends_with_a_page_that_is_there(run):
+    docs = pathlib.Path(__file__).parents[3] / "docs"
+    top = run("--help").stdout
+    commands = [(), *commands_in(top)]
+    commands += [("study", *name) for name in commands_in(run("study", "--help").stdout)]
+    assert len(commands) > 15
+    for command in commands:
+        help_text = run(*command, "--help").stdout
+        page = re.fullmatch(r"To read: docs/(\w+\.md)", help_text.strip().splitlines()[-1])
+        assert page and (docs / page[1]).is_file(), (command, help_text)
 
 
 @pytest.mark.parametrize(
@@ -258,6 +278,9 @@ def test_a_sweep_flies_into_its_file_once(run, tmp_path):
     done = run(*arguments, *SHORT, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "0 of 3 landed" in done.stdout and "Clopper-Pearson" in done.stdout
+    assert done.stdout.endswith(
+        "  each command flies that trial alone; with --plot F.png it is drawn, with --record F.db every step is kept\n"
+    )
     with sqlite3.connect(tmp_path / "t.db") as db:
         trials = db.execute("SELECT trial, outcome FROM trial ORDER BY rowid").fetchall()
         assert trials == [(0, "timeout"), (1, "timeout"), (2, "timeout")]
@@ -340,7 +363,7 @@ def test_a_sweep_is_repeated_from_its_file(run, tmp_path):
 
 @pytest.mark.parametrize(
     "what, name",
-    [("backends", "ceres"), ("planners", "ego-velocity"), ("terms", ""), ("scenarios", "straight_turn")],
+    [("backends", "ceres"), ("planners", "ego-velocity"), ("terms", ""), ("scenarios", "straight_turn"), ("studies", "paper")],
 )
 def test_list(run, what, name):
     entries = json.loads(run("list", what, "--json").stdout)
@@ -348,3 +371,31 @@ def test_list(run, what, name):
     assert names and (not name or name in names)
     text = run("list", what).stdout
     assert all(n in text for n in names)
+
+
+@pytest.mark.parametrize(
+    "what, word",
+    [
+        ("backends", "Below each backend: "),
+        ("terms", "Each term: "),
+        ("planners", "Below each name: "),
+        ("motions", "Below each name: "),
+        ("controllers", "Below each name: "),
+        ("predictors", "Below each name: "),
+    ],
+)
+def test_a_list_ends_with_what_it_shows(run, what, word):
+    assert run("list", what).stdout.count("\n" + word) == 1
+
+
+@pytest.mark.parametrize("what", ["scenarios", "studies"])
+def test_files_are_listed_with_their_own_words(run, what):
+    *lines, files = run("list", what).stdout.splitlines()
+    entries = json.loads(run("list", what, "--json").stdout)
+    for line, entry in zip(lines, entries, strict=True):
+        name, description = line.split("  ", 1)
+        assert (name, description.strip()) == (entry["name"], entry["description"])
+        key = "description" if what == "scenarios" else "title"
+        file = open(entry["path"], encoding="utf-8").read()
+        assert re.search(rf'^{key}: "?{re.escape(entry["description"])}"?$', file, re.M)
+        assert files == "The files: " + entry["path"].replace(entry["name"] + ".yaml", "NAME.yaml")

@@ -72,12 +72,105 @@ def test_a_prior_is_drawn_without_its_file(record_path, tmp_path):
             [(state, np.array(cube, "<i4").tobytes()) for state, cube in cubes.items()],
         )
     record = Record(str(path))
-    assert [entry.get_label() for entry in prior.legend_entries(record)] == [
+    assert [entry.get_label() for entry in prior.legend_entries(record.prior)] == [
         "prior: occupied",
         "prior: free, seen occupied",
     ]
     assert landing.main([str(path), str(tmp_path / "prior.png")]) == 0
-    assert prior.legend_entries(Record(record_path)) == []
+    assert prior.legend_entries(Record(record_path).prior) == []
+
+
+def test_stretches_of_a_mode_meet():
+    assert landing.runs_of(["hold"]) == [("hold", 0, 0)]
+    modes = ["hovering", "tracking", "tracking", "hold", "tracking"]
+    assert landing.runs_of(modes) == [
+        ("hovering", 0, 0),
+        ("tracking", 1, 2),
+        ("hold", 3, 3),
+        ("tracking", 4, 4),
+    ]
+    figure, axes = landing.plt.subplots()
+    landing.mode_path(axes, np.arange(5.0), np.zeros(5), modes)
+    assert [list(line.get_xdata()) for line in axes.lines] == [[0, 1], [1, 2, 3], [3, 4], [4]]
+    landing.plt.close(figure)
+
+
+def test_no_two_modes_look_alike_without_their_colours():
+    dashes = [str(dashes) for _, dashes in landing.MODE_LOOKS.values()]
+    assert len(set(dashes)) == len(dashes)
+    hatches = [look[2] for look in prior.LOOKS.values()]
+    assert len(set(hatches)) == len(hatches) and None not in hatches
+    assert len(plan.MARKERS) == len(set(plan.MARKERS)) == len(plan.TERMS)
+    assert plan.SAME_WAY["ls"] != plan.OTHER_WAY["ls"]
+
+
+def test_an_arrowhead_points_the_way_of_the_flight():
+    figure, axes = landing.plt.subplots()
+    landing.arrowhead(axes, np.linspace(4.0, 0.0, 41), np.zeros(41), "k")
+    (arrow,) = axes.texts
+    assert arrow.xy[0] < arrow.xyann[0] and 1.8 < arrow.xy[0] < 2.2
+    landing.arrowhead(axes, np.linspace(0.0, 0.1, 41), np.zeros(41), "k")  # it only hovered
+    assert len(axes.texts) == 1
+    landing.plt.close(figure)
+
+
+def with_air(record_path, path, *velocity):
+    path.write_bytes(open(record_path, "rb").read())
+    with sqlite3.connect(path) as db:
+        db.execute("UPDATE air SET vx = ?, vy = ?, vz = ?", velocity)
+    return Record(str(path))
+
+
+def test_the_mean_wind_is_an_arrow_with_its_speed(record_path, tmp_path):
+    windy = with_air(record_path, tmp_path / "windy.db", -3.0, 4.0, 0.5)
+    assert windy.mean_wind().tolist() == [-3.0, 4.0]
+    figure, axes = landing.plt.subplots()
+    axes.set_xlim(-10.0, 30.0)
+    axes.set_ylim(-10.0, 30.0)
+    landing.draw_wind(axes, windy)
+    arrow, words = axes.texts
+    (dx, dy) = axes.transAxes.transform(arrow.xy) - axes.transAxes.transform(arrow.xyann)
+    assert np.isclose(dx / dy, -0.75) and dx < 0.0
+    assert words.get_text() == "mean wind 5.0 m/s"
+    landing.draw_wind(axes, Record(record_path))
+    assert len(axes.texts) == 2  # still air: nothing is drawn
+    landing.plt.close(figure)
+
+
+def test_rounds_that_gave_no_plan_are_told_apart():
+    def solve(guide, pairs, *first):
+        curve = {"control_points": [list(first) or [0.0, 0.0, 0.0]] * 4}
+        return {"guide": guide, "pairs": pairs, "curve": curve}
+
+    first, second, third = solve(0, []), solve(1, ["pair"]), solve(0, ["pair"])
+    broken = solve(0, ["pair"], None, None, None)
+    attempts = [
+        {"best": None, "rounds": [first, broken]},
+        {"best": 1, "rounds": [third, second]},
+    ]
+    document = {"attempts": attempts, "result": {"status": "planned"}}
+    assert plan.lost_rounds(document) == [(first, False), (third, True)]
+    attempts[1]["best"] = 0
+    lost = plan.lost_rounds(document)
+    assert [other for _, other in lost] == [False, True] and lost[1][0] is second
+    document["result"]["status"] = "kept"  # nothing won
+    assert len(plan.lost_rounds(document)) == 3
+    assert plan.lost_rounds({"attempts": [], "result": {"status": "braking"}}) == []
+
+
+@pytest.mark.parametrize(
+    "outcome, marker", [("landed", "*"), ("followed", "*"), ("arrived", "*"), ("timeout", "X")]
+)
+def test_both_views_of_the_end_say_whether_it_was_done(record_path, outcome, marker):
+    record = Record(record_path)
+    record.result["outcome"] = outcome
+    figure, (world, close) = landing.plt.subplots(1, 2)
+    contact = record.contact_index()
+    landing.draw_world(world, record, contact, 0.75, side=False)
+    landing.draw_pad_frame(close, record, contact, 0.75)
+    for axes in (world, close):
+        assert [m for m in (line.get_marker() for line in axes.lines) if m in ("*", "X")] == [marker]
+    landing.plt.close(figure)
 
 
 def test_the_headline_says_how_it_ended(record_path):

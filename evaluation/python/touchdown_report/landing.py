@@ -10,7 +10,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection, PolyCollection  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
 from matplotlib.colors import to_rgb  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.patches import Circle, Polygon, Rectangle  # noqa: E402
@@ -20,21 +20,27 @@ from touchdown_report.outcomes import DONE  # noqa: E402
 from touchdown_report.record import Record, RecordError  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
-# Okabe and Ito's palette: distinct for colour-blind readers as well.
-MODE_COLOURS = {
-    "hovering": "#999999",
-    "tracking": "#0072B2",
-    "landing": "#D55E00",
-    "disarmed": "#009E73",
-    "hold": "#E69F00",
-    "go_around": "#CC79A7",
-    "emergency_stop": "#000000",
+# Okabe and Ito's palette, and dashes: colour and line style of each mode.
+MODE_LOOKS = {
+    "hovering": ("#999999", (0, (1, 1))),
+    "tracking": ("#0072B2", "-"),
+    "landing": ("#D55E00", (0, (2.5, 0.7))),
+    "disarmed": ("#009E73", (0, (1, 0.5))),
+    "hold": ("#E69F00", (0, (1.5, 1.5))),
+    "go_around": ("#CC79A7", (0, (5, 1, 1, 1))),
+    "emergency_stop": ("#000000", (0, (3, 2))),
 }
+DONE_COLOUR, FAILED_COLOUR = "#009E73", "#D55E00"
+LEAST_WIND = 0.05  # that is shown [m/s]
+WIND_ARROW = 36.0  # its length [points]
+LEAST_WAY = 0.5  # of a path that gets an arrowhead [m]
+LEAST_BAND = 0.08  # of the time axis, that has room for a mode's name
 PAD_COLOUR = "#2B2B2B"
 PLAN_COLOUR = "#56B4E9"
 BUILDING_FACE = "#DDD8CF"
 BUILDING_EDGE = "#8C857A"
 HIGHEST_SHADE = 8.0  # of a mesh from above [m]
+PRIOR_REACH = 15.0  # beyond the flight, that is drawn [m]
 MOST_IN_A_ROW = 8  # of the legend
 MOST_NUMBERED = 40  # obstacles whose height stands in the picture
 PICTURE_STYLE = {
@@ -67,12 +73,67 @@ def title_lines(record):
     return headline, "  ·  ".join(figures)
 
 
-def coloured_path(axes, x, y, modes, **kwargs):
-    """The curve (x, y), each piece in the colour of its mode."""
-    points = np.stack([x, y], axis=1)
-    pieces = np.stack([points[:-1], points[1:]], axis=1)
-    colours = [MODE_COLOURS.get(mode, "#000000") for mode in modes[:-1]]
-    axes.add_collection(LineCollection(pieces, colors=colours, capstyle="round", **kwargs))
+def runs_of(modes):
+    """(mode, first index, last index) of each stretch of one mode."""
+    starts = [i for i, mode in enumerate(modes) if i == 0 or mode != modes[i - 1]]
+    return [(modes[i], i, j - 1) for i, j in zip(starts, starts[1:] + [len(modes)])]
+
+
+def mode_path(axes, x, y, modes, **kwargs):
+    """The curve (x, y), each stretch as its mode looks, up to where the next one begins."""
+    for mode, first, last in runs_of(modes):
+        colour, dashes = MODE_LOOKS[mode]
+        piece = slice(first, last + 2)
+        axes.plot(x[piece], y[piece], color=colour, ls=dashes, **kwargs)
+
+
+def arrowhead(axes, x, y, colour):
+    """Which way the curve (x, y) goes, at half its length."""
+    lengths = np.append(0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y))))
+    if lengths[-1] < LEAST_WAY:
+        return
+    middle = int(np.searchsorted(lengths, 0.5 * lengths[-1]))
+    before = int(np.searchsorted(lengths, 0.5 * lengths[-1] - 0.1))
+    axes.annotate(
+        "",
+        xy=(x[middle], y[middle]),
+        xytext=(x[before - 1], y[before - 1]),
+        arrowprops={"arrowstyle": "-|>,head_length=0.8,head_width=0.4", "color": colour, "lw": 0.0},
+        zorder=5,
+    )
+
+
+def draw_wind(axes, record):
+    """The mean wind as an arrow, in the corner that is farthest from the vehicle's way."""
+    wind = record.mean_wind()
+    speed = float(np.hypot(*wind))
+    if speed < LEAST_WIND:
+        return
+    to_axes = axes.transData + axes.transAxes.inverted()
+    way = to_axes.transform(record.vehicle[:, 1:3])
+    corners = np.array([(x, y) for x in (0.1, 0.9) for y in (0.12, 0.9)])
+    place = max(corners, key=lambda corner: np.hypot(*(way - corner).T).min())
+    half = 0.5 * WIND_ARROW / 72.0 * axes.figure.dpi * wind / speed
+    middle = axes.transAxes.transform(place)
+    tail, head = axes.transAxes.inverted().transform([middle - half, middle + half])
+    axes.annotate(
+        "",
+        xy=head,
+        xytext=tail,
+        xycoords="axes fraction",
+        textcoords="axes fraction",
+        arrowprops={"arrowstyle": "-|>,head_length=0.7,head_width=0.35", "color": "#333333", "lw": 2.0},
+        zorder=7,
+    )
+    axes.annotate(
+        f"mean wind {speed:.1f} m/s",
+        place,
+        xycoords="axes fraction",
+        xytext=(0.0, -0.5 * WIND_ARROW - 4.0),
+        textcoords="offset points",
+        **{"ha": "center", "va": "top", "fontsize": 8, "zorder": 7},
+        bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0},
+    )
 
 
 def deck_outline(pad_row, half):
@@ -136,15 +197,16 @@ def draw_world(axes, record, contact, half, side):
     down = 3 if side else 2
     vehicle, pad = record.vehicle[: contact + 1], record.pad[: contact + 1]
     draw_obstacles(axes, record.obstacles, side)
-    prior.draw(axes, record, down - 1)
+    edge = float(record.meta["map_resolution"])
+    prior.draw(axes, record.prior, edge, record.vehicle[:, 1:4], PRIOR_REACH, down - 1)
     zones.draw(axes, record.zones, down - 1)
     for points in record.plans.values():
         curve = bspline.sample(points)
         axes.plot(curve[:, 0], curve[:, down - 1], color=PLAN_COLOUR, lw=0.6, alpha=0.45, zorder=2)
     axes.plot(pad[:, 1], pad[:, down], color=PAD_COLOUR, lw=1.2, ls=(0, (4, 2)), zorder=5)
-    coloured_path(
-        axes, vehicle[:, 1], vehicle[:, down], record.modes[: contact + 1], lw=2.4, zorder=4
-    )
+    mode_path(axes, vehicle[:, 1], vehicle[:, down], record.modes[: contact + 1], lw=2.4, zorder=4)
+    arrowhead(axes, vehicle[:, 1], vehicle[:, down], "#333333")
+    arrowhead(axes, pad[:, 1], pad[:, down], PAD_COLOUR)
     axes.plot(*vehicle[0, [1, down]], "o", ms=7, mfc="white", mec="#333333", mew=1.5, zorder=5)
     axes.plot(*pad[0, [1, down]], "s", ms=6, mfc="white", mec=PAD_COLOUR, mew=1.5, zorder=5)
     for index, fill in ((0, "none"), (contact, "#FFFFFF")):
@@ -156,9 +218,9 @@ def draw_world(axes, record, contact, half, side):
                 Polygon(deck_outline(row, half), fc=fill, ec=PAD_COLOUR, lw=1.2, zorder=3)
             )
     if record.result["outcome"] in DONE:
-        axes.plot(*vehicle[-1, [1, down]], "*", ms=15, mfc="#009E73", mec="white", zorder=6)
+        axes.plot(*vehicle[-1, [1, down]], "*", ms=15, mfc=DONE_COLOUR, mec="white", zorder=6)
     else:
-        axes.plot(*vehicle[-1, [1, down]], "X", ms=11, mfc="#CC0000", mec="white", zorder=6)
+        axes.plot(*vehicle[-1, [1, down]], "X", ms=11, mfc=FAILED_COLOUR, mec="white", zorder=6)
 
 
 def frame_plan_view(plan, side, record, contact):
@@ -202,8 +264,9 @@ def draw_pad_frame(axes, record, contact, half):
             axes.add_patch(
                 Rectangle((cx - 0.2, cy - 0.2), 0.4, 0.4, fc="none", ec="#BBBBBB", lw=0.8)
             )
-    coloured_path(axes, relative[:, 0], relative[:, 1], record.modes[: contact + 1], lw=2.0)
-    mark = ("*", 14, "#009E73") if record.result["landed"] else ("X", 10, "#CC0000")
+    mode_path(axes, relative[:, 0], relative[:, 1], record.modes[: contact + 1], lw=2.0)
+    done = record.result["outcome"] in DONE
+    mark = ("*", 14, DONE_COLOUR) if done else ("X", 10, FAILED_COLOUR)
     axes.plot(*relative[-1, :2], mark[0], ms=mark[1], mfc=mark[2], mec="white", zorder=5)
     axes.set_xlim(-2 * half, 2 * half)
     axes.set_ylim(-2 * half, 2 * half)
@@ -218,13 +281,14 @@ def draw_history(axes, record, contact):
     t = record.vehicle[: contact + 1, 0]
     relative = pad_frame(record, contact)
     modes = record.modes[: contact + 1]
-    begin = 0
-    for i in range(1, len(modes) + 1):
-        if i == len(modes) or modes[i] != modes[begin]:
-            axes.axvspan(
-                t[begin], t[min(i, len(t) - 1)], color=MODE_COLOURS.get(modes[begin]), alpha=0.13, lw=0
-            )
-            begin = i
+    for mode, first, last in runs_of(modes):
+        begin, end = t[first], t[min(last + 1, len(t) - 1)]
+        axes.axvspan(begin, end, color=MODE_LOOKS[mode][0], alpha=0.13, lw=0)
+        if end - begin > LEAST_BAND * (t[-1] - t[0]):
+            axes.text(
+                0.5 * (begin + end), 0.98, mode.replace("_", " "), color="#555555", fontsize=7,
+                ha="center", va="top", transform=axes.get_xaxis_transform(),
+            )  # fmt: skip
     axes.plot(t, np.hypot(relative[:, 0], relative[:, 1]), color="#333333", lw=1.6)
     axes.plot(t, relative[:, 2], color="#333333", lw=1.3, ls=(0, (5, 2)))
     axes.set_xlim(t[0], max(t[-1], t[0] + 0.1))
@@ -236,7 +300,7 @@ def draw_history(axes, record, contact):
         [Line2D([], [], color="#333333"), Line2D([], [], color="#333333", ls=(0, (5, 2)))],
         ["horizontal", "height"],
         frameon=False,
-        loc="upper right",
+        loc="center right",
     )
 
 
@@ -244,7 +308,7 @@ def legend_entries(record, contact):
     """Handles for the states that occurred and for everything else drawn."""
     seen = list(dict.fromkeys(record.modes[: contact + 1]))
     handles = [
-        Line2D([], [], color=MODE_COLOURS.get(m, "k"), lw=2.4, label=m.replace("_", " "))
+        Line2D([], [], color=MODE_LOOKS[m][0], ls=MODE_LOOKS[m][1], lw=2.4, label=m.replace("_", " "))
         for m in seen
     ]
     handles += [
@@ -255,13 +319,13 @@ def legend_entries(record, contact):
     if record.result["outcome"] in DONE:
         label = "touchdown" if record.result["landed"] else "done"
         handles.append(
-            Line2D([], [], marker="*", ls="", ms=12, mfc="#009E73", mec="white", label=label)
+            Line2D([], [], marker="*", ls="", ms=12, mfc=DONE_COLOUR, mec="white", label=label)
         )
     else:
         handles.append(
-            Line2D([], [], marker="X", ls="", ms=9, mfc="#CC0000", mec="white", label="end, not done")
+            Line2D([], [], marker="X", ls="", ms=9, mfc=FAILED_COLOUR, mec="white", label="end, not done")
         )
-    return handles + prior.legend_entries(record)
+    return handles + prior.legend_entries(record.prior)
 
 
 def draw(record, out_path):
@@ -279,6 +343,7 @@ def draw(record, out_path):
         draw_world(plan, record, contact, half, side=False)
         draw_world(side, record, contact, half, side=True)
         frame_plan_view(plan, side, record, contact)
+        draw_wind(plan, record)
         draw_pad_frame(close, record, contact, half)
         draw_history(history, record, contact)
         headline, figures = title_lines(record)

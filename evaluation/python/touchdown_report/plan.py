@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The picture of one planning problem and its solution (`touchdown plan --picture`): both views with
-the map, guide paths, pairs, old and new curve; speed and acceleration against the limits; cost by
-iteration.
+the map, what was known before the flight, guide paths, pairs, the old curve, the new one and those that lost; speed
+and acceleration against the limits; cost by iteration.
 
     /usr/bin/python3 -m touchdown_report.plan PLAN.json OUT.png
 """
@@ -17,12 +17,17 @@ import numpy as np  # noqa: E402
 from matplotlib.collections import PatchCollection  # noqa: E402
 from matplotlib.patches import Rectangle  # noqa: E402
 
-from touchdown_report import bspline, command_line, zones  # noqa: E402
+from touchdown_report import bspline, command_line, prior, zones  # noqa: E402
 from touchdown_report.style import STYLE  # noqa: E402
 
 # Okabe and Ito's palette.
 NEW, OLD, GUIDE, PAIR, PAD = "#0072B2", "#999999", "#009E73", "#D55E00", "#2B2B2B"
+# Of rounds that gave no plan: those that lead around the first obstacle as the plan does, and the others.
+SAME_WAY = {"color": "#56B4E9", "lw": 1.3, "ls": (0, (5, 1.5, 1, 1.5)), "label": "lost: another round"}
+OTHER_WAY = {"color": "#E69F00", "lw": 1.6, "ls": (0, (1, 1.2)), "label": "lost: another way around"}
+PRIOR_REACH = 1.0  # beyond what was flown and the map's cells around it, that is drawn [m]
 TERMS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000"]
+MARKERS = ["o", "s", "^", "v", "D", "x", "+", "*"]
 
 
 class PlanError(Exception):
@@ -38,7 +43,7 @@ def load(path):
             plan = json.load(file)
         except ValueError as error:
             raise PlanError(f"{path}: not a document of a plan ({error}).") from error
-    if not isinstance(plan, dict) or not {"input", "attempts", "result", "occupied"} <= set(plan):
+    if not isinstance(plan, dict) or not {"input", "attempts", "result", "occupied", "prior"} <= set(plan):
         raise PlanError(f"{path}: not a document of a plan.")
     return plan
 
@@ -49,6 +54,19 @@ def best_round(plan):
     if attempt is None or attempt["best"] is None:
         return None
     return attempt["rounds"][attempt["best"]]
+
+
+def lost_rounds(plan):
+    """(round, it took another way around the first obstacle) of each that gave no plan, in order. A round without pairs
+    takes none."""
+    won = best_round(plan) if plan["result"]["status"] == "planned" else None
+    guide = won["guide"] if won else 0
+    return [
+        (solve, bool(solve["pairs"]) and solve["guide"] != guide)
+        for attempt in plan["attempts"]
+        for solve in attempt["rounds"]
+        if solve is not won and np.isfinite(np.array(solve["curve"]["control_points"], float)).all()
+    ]
 
 
 def costs_by_iteration(plan):
@@ -98,13 +116,24 @@ def draw_view(axes, plan, down):
         [(z["term"], z["shape"], z["centre_W"], z["size_m"]) for z in plan["zones"]],
         down,
     )
+    if plan["prior"]:
+        edge = plan["resolution"]
+        cells = edge * np.array(plan["occupied"], dtype=int).reshape(-1, 3)
+        near = np.vstack([cells, *(points for _, points, _, _ in flown(plan))])
+        cubes = {"occupied": np.array(plan["prior"], dtype=int)}
+        prior.draw(axes, cubes, edge, near, PRIOR_REACH, down)
+    for solve, other_way in lost_rounds(plan):
+        curve = bspline.sample(solve["curve"]["control_points"])
+        axes.plot(curve[:, 0], curve[:, down], **(OTHER_WAY if other_way else SAME_WAY))
     for path in plan["guide_paths"]:
         points = np.array(path)
         axes.plot(points[:, 0], points[:, down], color=GUIDE, lw=1.2, ls=":", label="guide path")
     old = bspline.sample(plan["input"]["committed"]["control_points"])
     axes.plot(old[:, 0], old[:, down], color=OLD, lw=2.0, ls="--", label="committed before")
     new = np.vstack([points for _, points, _, _ in flown(plan)])
-    axes.plot(new[:, 0], new[:, down], color=NEW, lw=2.2, label=plan["result"]["status"])
+    status = plan["result"]["status"]
+    won = "won" if status == "planned" else "flown"
+    axes.plot(new[:, 0], new[:, down], color=NEW, lw=2.2, label=f"{won}: {status}")
     solve = best_round(plan)
     if solve and solve["pairs"]:
         p = np.array([pair["p"] for pair in solve["pairs"]])
@@ -129,13 +158,14 @@ def draw_view(axes, plan, down):
 def draw_profiles(axes, plan):
     limits = plan["input"]["limits"]
     t, _, speed, acceleration = (np.concatenate(column) for column in zip(*flown(plan)))
+    dashes = (0, (4, 1.5))
     axes.plot(t, speed, color=NEW, label="speed [m/s]")
-    axes.plot(t, acceleration, color=PAIR, label="acceleration [m/s²]")
-    axes.axhline(limits["speed_mps"], color=NEW, lw=0.8, ls="--")
-    axes.axhline(limits["acceleration_mps2"], color=PAIR, lw=0.8, ls="--")
+    axes.plot(t, acceleration, color=PAIR, ls=dashes, label="acceleration [m/s²]")
+    axes.axhline(limits["speed_mps"], color=NEW, lw=0.8)
+    axes.axhline(limits["acceleration_mps2"], color=PAIR, lw=0.8, ls=dashes)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("t [s]")
-    axes.set_title("speed and acceleration, limits dashed")
+    axes.set_title("speed and acceleration, limits thin")
     axes.legend(frameon=False)
 
 
@@ -150,7 +180,8 @@ def draw_costs(axes, plan):
     shown = [i for i in range(costs.shape[1]) if costs[:, i].max() > 0.0]
     for i in shown:
         values = np.where(costs[:, i] > 0.0, costs[:, i], np.nan)
-        axes.plot(x, values, marker=".", color=TERMS[i % len(TERMS)], label=names[i])
+        look = i % len(TERMS)
+        axes.plot(x, values, marker=MARKERS[look], ms=4, color=TERMS[look], label=names[i])
     axes.plot(x, costs.sum(axis=1), color="#333333", lw=1.0, ls="--", label="all")
     for start in starts[1:]:
         axes.axvline(start + 0.5, color="#BBBBBB", lw=0.8)
@@ -167,6 +198,8 @@ def draw(plan, path):
         draw_view(axes[0, 1], plan, 2)
         axes[0, 1].set_title("side view from the south")
         handles = dict(zip(*reversed(axes[0, 0].get_legend_handles_labels())))
+        for entry in prior.legend_entries(["occupied"] if plan["prior"] else []):
+            handles[entry.get_label()] = entry
         axes[0, 0].legend(handles.values(), handles.keys(), frameon=False, fontsize=8)
         draw_profiles(axes[1, 0], plan)
         draw_costs(axes[1, 1], plan)

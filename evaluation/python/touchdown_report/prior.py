@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a flight's map.prior holds occupied, and where the flight found it wrong (the record's table `prior`)."""
+"""What a flight's map.prior holds occupied, and where the flight found it wrong: cubes by their state, as in the
+record's table `prior`. Each state has a hatch of its own."""
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Patch, Rectangle
 
-REACH = 15.0  # beyond the path, that is drawn [m]
 # Facecolour, edgecolour, hatch and legend entry.
 LOOKS = {
     "occupied": ("none", "#8C7BB5", "////", "prior: occupied"),
-    "gone": ("#F0E442", "#A89C00", None, "prior: occupied, seen free"),
-    "new": ("#CC79A7", "#9C3D74", None, "prior: free, seen occupied"),
+    "gone": ("#F0E442", "#A89C00", "....", "prior: occupied, seen free"),
+    "new": ("#CC79A7", "#9C3D74", "xxxx", "prior: free, seen occupied"),
 }
 
 
@@ -43,20 +43,19 @@ def outline(filled, low, edge):
     return (np.concatenate(pieces) + low) * edge
 
 
-def draw(axes, record, down):
-    """From above (down = 1) or from the south (down = 2)."""
-    edge = float(record.meta["map_resolution"])
-    path = record.vehicle[:, [1, 1 + down]]
-    low = np.floor((path.min(axis=0) - REACH) / edge).astype(int)
-    high = np.ceil((path.max(axis=0) + REACH) / edge).astype(int)
-    for order, (state, cubes) in enumerate(record.prior.items()):
+def draw(axes, cubes_by_state, edge, way, reach, down):
+    """From above (down = 1) or from the south (down = 2), within `reach` of the points of `way`, shape (n, 3)."""
+    seen = way[:, [0, down]]
+    low = np.floor((seen.min(axis=0) - reach) / edge).astype(int)
+    high = np.ceil((seen.max(axis=0) + reach) / edge).astype(int)
+    for order, (state, cubes) in enumerate(cubes_by_state.items()):
         face, line, hatch, _ = LOOKS[state]
         filled = columns(cubes, down, low, high)
         axes.add_collection(
             PatchCollection(
                 rectangles(filled, low, edge),
                 facecolor=face,
-                edgecolor=line if hatch else "none",
+                edgecolor=line,
                 hatch=hatch,
                 lw=0.0,
                 alpha=0.8,
@@ -68,8 +67,8 @@ def draw(axes, record, down):
         )
 
 
-def legend_entries(record):
+def legend_entries(cubes_by_state):
     return [
         Patch(fc=face, ec=line, hatch=hatch, lw=0.8, label=label)
-        for face, line, hatch, label in map(LOOKS.get, record.prior)
+        for face, line, hatch, label in map(LOOKS.get, cubes_by_state)
     ]

@@ -29,6 +29,7 @@ class Record:
         self.pad = self._array(
             db, "SELECT t, px, py, pz, yaw FROM pad WHERE source = 'true' ORDER BY t"
         )
+        self.air = self._array(db, "SELECT t, vx, vy, vz FROM air ORDER BY t")
         self.modes = [row[0] for row in db.execute("SELECT mode FROM mode ORDER BY t")]
         self.events = db.execute("SELECT t, kind, text FROM event ORDER BY t").fetchall()
         self.obstacles = self._obstacles(db)
@@ -99,6 +100,10 @@ class Record:
             if kind == "contact":
                 return int(np.searchsorted(self.vehicle[:, 0], t, side="right") - 1)
         return len(self.vehicle) - 1
+
+    def mean_wind(self):
+        """Mean velocity of the air at the vehicle up to first contact, horizontal."""
+        return self.air[: self.contact_index() + 1, 1:3].mean(axis=0)
 
     def scenario_value(self, group, key):
         """One scalar of the effective scenario, as text; '' if it is not there."""

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/base/words.h"
+#include "evaluation/base/suggestion.h"
 #include "evaluation/scenario/scenario_value.h"
 
 namespace touchdown::evaluation {
@@ -67,7 +67,8 @@ const HostileFamily& HostileFamilyNamed(const std::string& name) {
   for (const HostileFamily& family : HostileFamilies()) {
     if (name == family.name) return family;
   }
-  throw BadInput(fmt::format("{}: the families are {}.", name, Enumerate(HostileFamilyNames())));
+  throw BadInput(
+      fmt::format("{}: unknown{}.", name, Instead(name, HostileFamilyNames(), "the families are")));
 }
 
 }  // namespace touchdown::evaluation

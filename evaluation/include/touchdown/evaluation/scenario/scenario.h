@@ -94,7 +94,8 @@ struct PlanningLatency {
 struct Scenario {
   Scenario();
 
-  std::string name;  ///< stem of the file it came from; not a key
+  std::string name;         ///< stem of the file it came from; not a key
+  std::string description;  ///< in words, of one line; has no influence
 
   struct Pad {
     std::string motion = "straight_turn";               ///< of Registries::pad_motions

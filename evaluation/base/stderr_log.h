@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace touchdown::evaluation {
+
+/// Makes stderr the program's log: lines "touchdown: ...".
+void LogToStderr();
+
+/// Stderr is a terminal on which a line can be written over.
+bool StderrIsTerminal();
+
+/// Shows `text` in the terminal's last line, in place of what was shown there, cut to its width. Lines of the log
+/// appear above it.
+void ShowStatus(const std::string& text);
+
+/// Leaves what is shown where it stands: what is written next begins a new line.
+void EndStatus();
+
+}  // namespace touchdown::evaluation

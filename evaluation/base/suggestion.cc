@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/base/suggestion.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <Eigen/Core>
+
+#include "evaluation/base/words.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr std::size_t kLongList = 12;  // names
+constexpr int kLettersAnError = 3;     // one in so many is near
+constexpr int kMostErrors = 2;
+
+}  // namespace
+
+int EditDistance(std::string_view a, std::string_view b) {
+  const int rows = static_cast<int>(a.size()), columns = static_cast<int>(b.size());
+  Eigen::ArrayXXi steps(rows + 1, columns + 1);  // from the first i letters to the first j
+  steps.col(0) = Eigen::ArrayXi::LinSpaced(rows + 1, 0, rows);
+  steps.row(0) = Eigen::ArrayXi::LinSpaced(columns + 1, 0, columns).transpose();
+  const auto at = [](std::string_view word, int i) { return word[static_cast<std::size_t>(i)]; };
+  for (int i = 1; i <= rows; ++i) {
+    for (int j = 1; j <= columns; ++j) {
+      const int replaced = steps(i - 1, j - 1) + (at(a, i - 1) != at(b, j - 1) ? 1 : 0);
+      steps(i, j) = std::min({steps(i - 1, j) + 1, steps(i, j - 1) + 1, replaced});
+      const bool changed =
+          i > 1 && j > 1 && at(a, i - 1) == at(b, j - 2) && at(a, i - 2) == at(b, j - 1);
+      if (changed) steps(i, j) = std::min(steps(i, j), steps(i - 2, j - 2) + 1);
+    }
+  }
+  return steps(rows, columns);
+}
+
+std::string DidYouMean(std::string_view word, const std::vector<std::string>& names) {
+  const std::string* nearest = nullptr;
+  int least = std::clamp(static_cast<int>(word.size()) / kLettersAnError, 1, kMostErrors) + 1;
+  for (const std::string& name : names) {
+    const int distance = EditDistance(word, name);
+    if (distance == 0) return {};
+    // Not every word of one letter is near every other.
+    if (distance >= least || distance >= static_cast<int>(name.size())) continue;
+    least = distance;
+    nearest = &name;
+  }
+  return nearest == nullptr ? std::string() : fmt::format(" (did you mean {}?)", *nearest);
+}
+
+std::string Instead(std::string_view word, const std::vector<std::string>& names,
+                    const std::string& lead) {
+  const std::string meant = DidYouMean(word, names);
+  if (names.size() > kLongList && !meant.empty()) return meant;
+  return fmt::format("{}; {} {}", meant, lead, Enumerate(names));
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/base/suggestion.h"
+
+#include <gtest/gtest.h>
+
+namespace touchdown::evaluation {
+namespace {
+
+TEST(Suggestion, DistanceCountsEveryKindOfTypoOnce) {
+  EXPECT_EQ(EditDistance("land", "land"), 0);
+  EXPECT_EQ(EditDistance("lnad", "land"), 1);   // changed with its neighbour
+  EXPECT_EQ(EditDistance("lad", "land"), 1);    // left out
+  EXPECT_EQ(EditDistance("laand", "land"), 1);  // added
+  EXPECT_EQ(EditDistance("lamd", "land"), 1);   // replaced
+  EXPECT_EQ(EditDistance("ca", "abc"), 3);      // nothing is changed twice
+  EXPECT_EQ(EditDistance("", "land"), 4);
+  EXPECT_EQ(EditDistance("land", ""), 4);
+}
+
+TEST(Suggestion, OnlyWhatIsNearIsMeant) {
+  const std::vector<std::string> names = {"fly", "land", "lend", "study"};
+  EXPECT_EQ(DidYouMean("lnad", names), " (did you mean land?)");
+  EXPECT_EQ(DidYouMean("lxnd", names), " (did you mean land?)");  // the first of two
+  EXPECT_EQ(DidYouMean("stduyy", names), " (did you mean study?)");
+  EXPECT_EQ(DidYouMean("flutter", names), "");
+  EXPECT_EQ(DidYouMean("landings", names), "");  // four letters too many
+  EXPECT_EQ(DidYouMean("land", names), "");      // it is there
+  EXPECT_EQ(DidYouMean("x", {"A", "B"}), "");
+  EXPECT_EQ(DidYouMean("", names), "");
+  EXPECT_EQ(DidYouMean("land", {}), "");
+}
+
+TEST(Suggestion, ALongListIsLeftOutWhereANameIsNear) {
+  EXPECT_EQ(Instead("lnad", {"fly", "land"}, "known:"),
+            " (did you mean land?); known: fly or land");
+  EXPECT_EQ(Instead("x", {"fly", "land"}, "known:"), "; known: fly or land");
+  std::vector<std::string> many(20, "fly");
+  many.emplace_back("land");
+  EXPECT_EQ(Instead("lnad", many, "known:"), " (did you mean land?)");
+  EXPECT_EQ(Instead("x", many, "known:").substr(0, 16), "; known: fly, fl");
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
