@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/flight/depth_eye.h"
 
-#include "sim/sensors/depth_camera.h"
 #include "sim/sensors/rendered_depth_camera.h"
 #include "touchdown/planning/replan/stage_timer.h"
 
 namespace touchdown::evaluation {
 namespace {
-
-sim::DepthCameraConfig ConfigOf(const Scenario& scenario) {
-  sim::DepthCameraConfig config;
-  config.width = scenario.depth.width;
-  config.height = scenario.depth.height;
-  config.max_range = scenario.depth.range;
-  config.range_noise = scenario.depth.noise;
-  return config;
-}
 
 /// Of sim::DepthCamera or sim::RenderedDepthCamera.
 template <typename Camera>
@@ -43,6 +33,15 @@ class CameraDepthEye final : public DepthEye {
 
 }  // namespace
 
+sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario) {
+  sim::DepthCameraConfig config;
+  config.width = scenario.depth.width;
+  config.height = scenario.depth.height;
+  config.max_range = scenario.depth.range;
+  config.range_noise = scenario.depth.noise;
+  return config;
+}
+
 DepthEye::DepthEye(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.depth_rate),
       delivery_({scenario.depth.latency_ms, scenario.depth.drop}, seed, "depth camera delivery") {}
@@ -62,7 +61,7 @@ void DepthEye::Look(const estimation::VehicleState& vehicle, const estimation::P
 
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,
                                        std::uint64_t seed) {
-  const sim::DepthCameraConfig config = ConfigOf(scenario);
+  const sim::DepthCameraConfig config = DepthCameraOf(scenario);
   if (scenario.sensing == SensingKind::kFast) {
     return std::make_unique<CameraDepthEye<sim::DepthCamera>>(
         scenario, seed, sim::DepthCamera(config, world.obstacles, world.pad, seed));

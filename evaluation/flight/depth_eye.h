@@ -9,6 +9,7 @@
 
 #include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
+#include "sim/sensors/depth_camera.h"
 #include "sim/sensors/frame_delivery.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/measurements.h"
@@ -54,6 +55,9 @@ class DepthEye {
   sim::FrameDelivery<DepthGlimpse> delivery_;
   DepthGlimpse spare_;
 };
+
+/// The depth camera of the scenario.
+sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario);
 
 /// The eye of the scenario's `sensing`; as MakePadEye.
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,

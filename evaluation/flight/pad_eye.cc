@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "sim/sensors/pad_camera.h"
 #include "sim/sensors/tag_sensor.h"
 #include "touchdown/solvers/backend/thread_clock.h"
 
@@ -42,28 +41,10 @@ class FastPadEye final : public PadEye {
 class RenderedPadEye final : public PadEye {
  public:
   RenderedPadEye(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
-      : PadEye(scenario, seed), camera_(ConfigOf(scenario), SceneOf(scenario, world), seed) {}
+      : PadEye(scenario, seed),
+        camera_(PadCameraOf(scenario), VisualSceneOf(scenario, world), seed) {}
 
  private:
-  static sim::PadCameraConfig ConfigOf(const Scenario& scenario) {
-    sim::PadCameraConfig config;
-    config.width = scenario.camera.width;
-    config.height = scenario.camera.height;
-    config.fov_y_deg = scenario.camera.fov_deg;
-    config.noise_sigma = scenario.camera.noise;
-    config.exposure_ms = scenario.camera.exposure_ms;
-    return config;
-  }
-
-  static sim::VisualScene SceneOf(const Scenario& scenario, const sim::WorldConfig& world) {
-    sim::VisualScene scene;
-    scene.obstacles = world.obstacles;
-    scene.pad = world.pad;
-    scene.deck_height = scenario.pad.deck_height;
-    scene.occlusion = scenario.camera.occlusion;
-    return scene;
-  }
-
   std::optional<PadSeen> See(const estimation::VehicleState& vehicle,
                              const estimation::VehicleState& /*believed*/,
                              const estimation::PadState& pad, SensingTimes* times) override {
@@ -80,6 +61,25 @@ class RenderedPadEye final : public PadEye {
 };
 
 }  // namespace
+
+sim::PadCameraConfig PadCameraOf(const Scenario& scenario) {
+  sim::PadCameraConfig config;
+  config.width = scenario.camera.width;
+  config.height = scenario.camera.height;
+  config.fov_y_deg = scenario.camera.fov_deg;
+  config.noise_sigma = scenario.camera.noise;
+  config.exposure_ms = scenario.camera.exposure_ms;
+  return config;
+}
+
+sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world) {
+  sim::VisualScene scene;
+  scene.obstacles = world.obstacles;
+  scene.pad = world.pad;
+  scene.deck_height = scenario.pad.deck_height;
+  scene.occlusion = scenario.camera.occlusion;
+  return scene;
+}
 
 PadEye::PadEye(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.tag_rate),

@@ -9,6 +9,7 @@
 #include "estimation/base/sample_clock.h"
 #include "evaluation/base/sensing_times.h"
 #include "sim/sensors/frame_delivery.h"
+#include "sim/sensors/pad_camera.h"
 #include "sim/world/world.h"
 #include "touchdown/estimation/base/measurements.h"
 #include "touchdown/estimation/base/vehicle_state.h"
@@ -53,6 +54,10 @@ class PadEye {
   estimation::SampleClock clock_;
   sim::FrameDelivery<PadSeen> delivery_;
 };
+
+/// The downward camera of the scenario, and what it would see.
+sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
+sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world);
 
 /// The eye of the scenario's `sensing`. `world` only gives the configuration; `seed` feeds its own
 /// streams. @throws std::invalid_argument naming key, value and range, std::runtime_error if there

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown fly and land: one closed-loop flight, its summary, and on request its record and picture.
+// touchdown fly and land: one closed-loop flight, its summary, and on request its record, picture and video.
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -22,6 +22,7 @@
 #include "evaluation/record/trial_json.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_world.h"
+#include "evaluation/video/flight_video.h"
 #include "sim/vehicle/vehicle_file.h"
 
 namespace touchdown::evaluation {
@@ -31,6 +32,7 @@ struct FlyArguments {
   ScenarioArguments scenario;
   std::string record;
   std::string plot;
+  std::string video;
   std::string save_map;
   bool json = false;
 };
@@ -150,8 +152,12 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
   if (!arguments.record.empty() && arguments.record == arguments.plot) {
     throw BadInput(fmt::format("--record and --plot are the same file, {}.", arguments.record));
   }
+  if (!arguments.record.empty() && arguments.record == arguments.video) {
+    throw BadInput(fmt::format("--record and --video are the same file, {}.", arguments.record));
+  }
   if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
+  if (!arguments.video.empty()) CheckVideo("--video", arguments.video);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
@@ -159,7 +165,8 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
 int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
   CheckFlightOutputs(arguments);
   TrialRecord record;
-  const bool recorded = !arguments.record.empty() || !arguments.plot.empty();
+  const bool recorded =
+      !arguments.record.empty() || !arguments.plot.empty() || !arguments.video.empty();
   std::optional<planning::PersistentMap> map;
   const TrialResult result =
       RunTrial(scenario, scenario.seed, registries, recorded ? &record : nullptr,
@@ -173,6 +180,12 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
   if (!arguments.record.empty()) write(arguments.record);
   if (map) WriteMapFile(arguments.save_map, &*map);
   if (!arguments.plot.empty()) DrawFrom(arguments.record, arguments.plot, write, DrawLanding);
+  if (!arguments.video.empty()) {
+    DrawFrom(arguments.record, arguments.video, write,
+             [&](const std::string& table, const std::string& video) {
+               WriteVideo(table, video, registries);
+             });
+  }
   return result.succeeded() ? kDone : kFellShort;
 }
 
@@ -187,6 +200,9 @@ void AddFlight(Command app, const char* name, const char* help, bool lands,
                   "Write the record, an SQLite file; an older one is overwritten", "F.db");
   command.AddFile("--plot", &arguments->plot,
                   "Draw plan and side view; an older file is overwritten", "F.png");
+  command.AddFile("--video", &arguments->video,
+                  "Make a video of the flight, by the program ffmpeg; an older file is overwritten",
+                  "F.mp4");
   command.AddFile(
       "--save-map", &arguments->save_map,
       "Write what was seen of the world, an OctoMap file; an older file is overwritten; see "

@@ -151,6 +151,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddMergeCommand(Command(&app), &run);
   AddPlanCommand(Command(&app), registries, &run);
   AddProfileCommand(Command(&app), registries, &run);
+  AddReplayCommand(Command(&app), registries, &run);
   AddCheckTermCommand(Command(&app), registries, &run);
   AddCheckVehicleCommand(Command(&app), registries, &run);
   AddListCommand(Command(&app), registries, &run);

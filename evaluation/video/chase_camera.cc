@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The whole flight is known, so the camera's way is planned: at key times, views from all around are given a cost
+// (hidden, too near to an obstacle, far away, not from behind), and the cheapest way from view to view is found by
+// dynamic programming. Between the keys it is smoothed from both sides, so that nothing lags.
+
+#include "evaluation/video/chase_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "touchdown/estimation/base/vehicle_state.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr double kKeyTime = 0.25;                           // between key times [s]
+constexpr int kAzimuths = 24;                               // around the focus
+constexpr double kElevations[] = {0.35, 0.55, 0.80, 1.10};  // of the camera above the focus [rad]
+constexpr int kElevationCount = 4;
+constexpr int kViews = kAzimuths * kElevationCount;
+constexpr double kNearest = 3.0;      // of the camera to the focus [m]
+constexpr double kFarthest = 16.0;    // [m]
+constexpr double kGrowth = 1.08;      // from one tried distance to the next
+constexpr double kFarTarget = 9.0;    // one that is farther is looked for in its direction only [m]
+constexpr double kFocusShare = 0.45;  // of the way from vehicle to target
+constexpr double kFloor = 0.6;        // least height of the camera [m]
+constexpr double kClearance = 0.7;    // of the camera to obstacles, wanted [m]
+constexpr double kSmoothTime = 0.45;  // standard deviation of the smoothing [s]
+constexpr double kSettle = 1.5;  // distance to the target below which no direction is behind [m]
+
+constexpr double kPi = std::numbers::pi;
+
+struct View {
+  double azimuth = 0.0;    // of the line of sight in W [rad]
+  double elevation = 0.0;  // of the camera above the focus [rad]
+  double distance = 0.0;   // to the focus [m]
+};
+
+Eigen::Vector3d FocusOf(const ChaseSubject& subject) {
+  const Eigen::Vector3d way = subject.target_W - subject.vehicle_W;
+  const double far = way.norm();
+  return subject.vehicle_W + kFocusShare * std::min(1.0, kFarTarget / std::max(far, 1e-9)) * way;
+}
+
+Eigen::Vector3d SightOf(const View& view) {
+  const double level = std::cos(view.elevation);
+  return {level * std::cos(view.azimuth), level * std::sin(view.azimuth),
+          -std::sin(view.elevation)};
+}
+
+class Chase {
+ public:
+  Chase(const sim::ObstacleField& obstacles, const estimation::CameraIntrinsics& camera,
+        const ChaseFrame& frame)
+      : obstacles_(obstacles), camera_(camera), frame_(frame) {}
+
+  // With the focus in the middle of the frame.
+  sim::CameraPose PoseOf(const Eigen::Vector3d& focus, const View& view) const {
+    const Eigen::Vector3d sight = SightOf(view);
+    const Eigen::Vector3d right = sight.cross(Eigen::Vector3d::UnitZ()).normalized();
+    Eigen::Matrix3d toward;
+    toward << right, sight.cross(right), sight;
+    const double u = 0.5 * (frame_.left + frame_.right) - 0.5;
+    const double v = 0.5 * (frame_.top + frame_.bottom) - 0.5;
+    const Eigen::Matrix3d turn =
+        (Eigen::AngleAxisd(-std::atan(u * camera_.width / camera_.focal),
+                           Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(std::atan(v * camera_.height / camera_.focal), Eigen::Vector3d::UnitX()))
+            .toRotationMatrix();
+    sim::CameraPose pose;
+    pose.R_WC = toward * turn;
+    pose.p_WC = focus - view.distance * sight;
+    return pose;
+  }
+
+  // The nearest view from this direction that has both in the frame.
+  View Fit(const ChaseSubject& subject, View view) const {
+    const Eigen::Vector3d focus = FocusOf(subject);
+    const bool far = (subject.target_W - subject.vehicle_W).norm() > kFarTarget;
+    for (view.distance = kNearest; view.distance < kFarthest; view.distance *= kGrowth) {
+      const sim::CameraPose pose = PoseOf(focus, view);
+      if (Holds(pose, subject.vehicle_W) && (far || Holds(pose, subject.target_W))) break;
+    }
+    return view;
+  }
+
+  double CostOf(const ChaseSubject& subject, const View& view, double ahead, double behind) const {
+    const Eigen::Vector3d p = PoseOf(FocusOf(subject), view).p_WC;
+    double cost = 0.35 * view.distance + 1.2 * std::abs(view.elevation - kElevations[1]);
+    cost += 2.0 * behind * (1.0 - std::cos(view.azimuth - ahead));
+    cost += 40.0 * std::max(0.0, kClearance - obstacles_.SignedDistance(p));
+    cost += 40.0 * std::max(0.0, kFloor - p.z());
+    if (Hidden(p, subject.vehicle_W)) cost += 12.0;
+    if (Hidden(p, subject.target_W)) cost += 3.0;
+    return cost;
+  }
+
+ private:
+  bool Holds(const sim::CameraPose& pose, const Eigen::Vector3d& p_W) const {
+    const Eigen::Vector3d p = pose.R_WC.transpose() * (p_W - pose.p_WC);
+    if (p.z() < 0.5) return false;
+    const double u = (camera_.cx + camera_.focal * p.x() / p.z()) / camera_.width;
+    const double v = (camera_.cy + camera_.focal * p.y() / p.z()) / camera_.height;
+    return u > frame_.left && u < frame_.right && v > frame_.top && v < frame_.bottom;
+  }
+
+  bool Hidden(const Eigen::Vector3d& from, const Eigen::Vector3d& p_W) const {
+    return obstacles_.RayDistance(from, p_W - from) < 1.0;
+  }
+
+  const sim::ObstacleField& obstacles_;
+  estimation::CameraIntrinsics camera_;
+  ChaseFrame frame_;
+};
+
+// What it costs to go from one view to another within kKeyTime.
+double MoveCost(const View& a, const View& b) {
+  const double turn = estimation::WrapAngle(b.azimuth - a.azimuth);
+  const double climb = b.elevation - a.elevation;
+  const double away = std::log(b.distance / a.distance);
+  return 12.0 * turn * turn + 12.0 * climb * climb + 20.0 * away * away;
+}
+
+// The views at the key times, the cheapest in all; azimuths without jumps.
+std::vector<View> PlanViews(const std::vector<ChaseSubject>& keys, const Chase& chase) {
+  std::vector<std::vector<View>> views(keys.size());
+  std::vector<std::vector<int>> from(keys.size());
+  std::vector<double> best(kViews, 0.0);
+  double ahead = 0.0;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const Eigen::Vector2d way = (keys[k].target_W - keys[k].vehicle_W).head<2>();
+    const double behind = std::min(1.0, way.norm() / kSettle);
+    if (way.norm() > 0.0) ahead = std::atan2(way.y(), way.x());
+    const std::vector<double> before = best;
+    for (int i = 0; i < kViews; ++i) {
+      View view;
+      view.azimuth = 2.0 * kPi * (i % kAzimuths) / kAzimuths;
+      view.elevation = kElevations[i / kAzimuths];
+      view = chase.Fit(keys[k], view);
+      double least = k == 0 ? 0.0 : std::numeric_limits<double>::infinity();
+      int came = 0;
+      for (int j = 0; k > 0 && j < kViews; ++j) {
+        const double cost = before[static_cast<std::size_t>(j)] +
+                            MoveCost(views[k - 1][static_cast<std::size_t>(j)], view);
+        if (cost < least) least = cost, came = j;
+      }
+      views[k].push_back(view);
+      from[k].push_back(came);
+      best[static_cast<std::size_t>(i)] = least + chase.CostOf(keys[k], view, ahead, behind);
+    }
+  }
+  std::vector<View> chosen(keys.size());
+  auto at = static_cast<std::size_t>(std::min_element(best.begin(), best.end()) - best.begin());
+  for (std::size_t k = keys.size(); k-- > 0;) {
+    chosen[k] = views[k][at];
+    at = static_cast<std::size_t>(from[k][at]);
+  }
+  for (std::size_t k = 1; k < chosen.size(); ++k) {
+    const double before = chosen[k - 1].azimuth;
+    chosen[k].azimuth = before + estimation::WrapAngle(chosen[k].azimuth - before);
+  }
+  return chosen;
+}
+
+// A row a picture: azimuth, elevation, distance, focus.
+using Row = Eigen::Matrix<double, 6, 1>;
+
+std::vector<Row> Smoothed(const std::vector<Row>& rows, double dt) {
+  const int reach = static_cast<int>(3.0 * kSmoothTime / dt);
+  std::vector<Row> smooth;
+  const int last = static_cast<int>(rows.size()) - 1;
+  for (int i = 0; i <= last; ++i) {
+    Row sum = Row::Zero();
+    double weights = 0.0;
+    for (int k = -reach; k <= reach; ++k) {
+      const double x = k * dt / kSmoothTime;
+      const double weight = std::exp(-0.5 * x * x);
+      sum += weight * rows[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
+      weights += weight;
+    }
+    smooth.push_back(sum / weights);
+  }
+  return smooth;
+}
+
+}  // namespace
+
+std::vector<sim::CameraPose> ChaseFlight(const std::vector<ChaseSubject>& subjects, double dt,
+                                         const sim::ObstacleField& obstacles,
+                                         const estimation::CameraIntrinsics& camera,
+                                         const ChaseFrame& frame) {
+  if (subjects.empty()) return {};
+  const Chase chase(obstacles, camera, frame);
+  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(kKeyTime / dt)));
+  std::vector<ChaseSubject> keys;
+  for (std::size_t i = 0; i < subjects.size(); i += step) keys.push_back(subjects[i]);
+  const std::vector<View> views = PlanViews(keys, chase);
+
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    const std::size_t k = i / step;
+    const View& a = views[k];
+    const View& b = views[std::min(k + 1, views.size() - 1)];
+    const double s = static_cast<double>(i % step) / static_cast<double>(step);
+    Row row;
+    row << a.azimuth + s * (b.azimuth - a.azimuth), a.elevation + s * (b.elevation - a.elevation),
+        a.distance + s * (b.distance - a.distance), FocusOf(subjects[i]);
+    rows.push_back(row);
+  }
+  std::vector<sim::CameraPose> poses;
+  for (const Row& row : Smoothed(rows, dt)) {
+    poses.push_back(chase.PoseOf(row.tail<3>(), {row[0], row[1], row[2]}));
+  }
+  return poses;
+}
+
+}  // namespace touchdown::evaluation
