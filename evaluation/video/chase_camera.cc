@@ -6,6 +6,7 @@
 #include "evaluation/video/chase_camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -15,16 +16,15 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kKeyTime = 0.25;                           // between key times [s]
-constexpr int kAzimuths = 24;                               // around the focus
-constexpr double kElevations[] = {0.35, 0.55, 0.80, 1.10};  // of the camera above the focus [rad]
-constexpr int kElevationCount = 4;
-constexpr int kViews = kAzimuths * kElevationCount;
-constexpr double kNearest = 3.0;      // of the camera to the focus [m]
-constexpr double kFarthest = 16.0;    // [m]
-constexpr double kGrowth = 1.08;      // from one tried distance to the next
-constexpr double kFarTarget = 9.0;    // one that is farther is looked for in its direction only [m]
-constexpr double kFocusShare = 0.45;  // of the way from vehicle to target
+constexpr double kKeyTime = 0.25;  // between key times [s]
+constexpr int kAzimuths = 24;      // of the line of sight, all around
+constexpr std::array<double, 4> kElevations = {0.30, 0.50, 0.80, 1.15};  // above the focus [rad]
+constexpr std::array<double, 4> kDistances = {2.8, 4.0, 6.0, 9.0};       // to the focus [m]
+constexpr std::size_t kViews = kAzimuths * kElevations.size() * kDistances.size();
+constexpr double kFocusShare = 0.45;  // of the way from vehicle to target ...
+constexpr double kFocusMost = 1.8;    // ... at most [m]
+constexpr double kVehicleSize = 0.3;  // of a part that may be hidden alone [m]
+constexpr double kTargetSize = 0.6;   // [m]
 constexpr double kFloor = 0.6;        // least height of the camera [m]
 constexpr double kClearance = 0.7;    // of the camera to obstacles, wanted [m]
 constexpr double kSmoothTime = 0.45;  // standard deviation of the smoothing [s]
@@ -38,10 +38,17 @@ struct View {
   double distance = 0.0;   // to the focus [m]
 };
 
+View ViewOf(std::size_t index) {
+  View view;
+  view.azimuth = 2.0 * kPi * static_cast<double>(index % kAzimuths) / kAzimuths;
+  view.elevation = kElevations[index / kAzimuths % kElevations.size()];
+  view.distance = kDistances[index / kAzimuths / kElevations.size()];
+  return view;
+}
+
 Eigen::Vector3d FocusOf(const ChaseSubject& subject) {
   const Eigen::Vector3d way = subject.target_W - subject.vehicle_W;
-  const double far = way.norm();
-  return subject.vehicle_W + kFocusShare * std::min(1.0, kFarTarget / std::max(far, 1e-9)) * way;
+  return subject.vehicle_W + std::min(kFocusShare, kFocusMost / std::max(way.norm(), 1e-9)) * way;
 }
 
 Eigen::Vector3d SightOf(const View& view) {
@@ -75,25 +82,16 @@ class Chase {
     return pose;
   }
 
-  // The nearest view from this direction that has both in the frame.
-  View Fit(const ChaseSubject& subject, View view) const {
-    const Eigen::Vector3d focus = FocusOf(subject);
-    const bool far = (subject.target_W - subject.vehicle_W).norm() > kFarTarget;
-    for (view.distance = kNearest; view.distance < kFarthest; view.distance *= kGrowth) {
-      const sim::CameraPose pose = PoseOf(focus, view);
-      if (Holds(pose, subject.vehicle_W) && (far || Holds(pose, subject.target_W))) break;
-    }
-    return view;
-  }
-
+  // @param ahead direction to the target. @param behind how much it matters, in [0, 1].
   double CostOf(const ChaseSubject& subject, const View& view, double ahead, double behind) const {
-    const Eigen::Vector3d p = PoseOf(FocusOf(subject), view).p_WC;
-    double cost = 0.35 * view.distance + 1.2 * std::abs(view.elevation - kElevations[1]);
+    const sim::CameraPose pose = PoseOf(FocusOf(subject), view);
+    const Eigen::Vector3d& p = pose.p_WC;
+    double cost = 0.4 * view.distance + 1.5 * std::abs(view.elevation - kElevations[1]);
     cost += 2.0 * behind * (1.0 - std::cos(view.azimuth - ahead));
     cost += 40.0 * std::max(0.0, kClearance - obstacles_.SignedDistance(p));
     cost += 40.0 * std::max(0.0, kFloor - p.z());
-    if (Hidden(p, subject.vehicle_W)) cost += 12.0;
-    if (Hidden(p, subject.target_W)) cost += 3.0;
+    cost += 30.0 * Missing(pose, subject.vehicle_W, kVehicleSize);
+    cost += 5.0 * Missing(pose, subject.target_W, kTargetSize);
     return cost;
   }
 
@@ -106,8 +104,15 @@ class Chase {
     return u > frame_.left && u < frame_.right && v > frame_.top && v < frame_.bottom;
   }
 
-  bool Hidden(const Eigen::Vector3d& from, const Eigen::Vector3d& p_W) const {
-    return obstacles_.RayDistance(from, p_W - from) < 1.0;
+  // The share of a thing that is out of the frame or hidden: of its middle and its ends to both sides.
+  double Missing(const sim::CameraPose& pose, const Eigen::Vector3d& p_W, double size) const {
+    int missing = 0;
+    for (const double side : {-1.0, 0.0, 1.0}) {
+      const Eigen::Vector3d part = p_W + side * size * pose.R_WC.col(0);
+      const bool hidden = obstacles_.RayDistance(pose.p_WC, part - pose.p_WC) < 1.0;
+      if (hidden || !Holds(pose, part)) ++missing;
+    }
+    return missing / 3.0;
   }
 
   const sim::ObstacleField& obstacles_;
@@ -125,8 +130,11 @@ double MoveCost(const View& a, const View& b) {
 
 // The views at the key times, the cheapest in all; azimuths without jumps.
 std::vector<View> PlanViews(const std::vector<ChaseSubject>& keys, const Chase& chase) {
-  std::vector<std::vector<View>> views(keys.size());
-  std::vector<std::vector<int>> from(keys.size());
+  std::vector<double> move;  // from a view to a view
+  for (std::size_t i = 0; i < kViews; ++i) {
+    for (std::size_t j = 0; j < kViews; ++j) move.push_back(MoveCost(ViewOf(j), ViewOf(i)));
+  }
+  std::vector<std::vector<std::size_t>> from(keys.size(), std::vector<std::size_t>(kViews));
   std::vector<double> best(kViews, 0.0);
   double ahead = 0.0;
   for (std::size_t k = 0; k < keys.size(); ++k) {
@@ -134,28 +142,23 @@ std::vector<View> PlanViews(const std::vector<ChaseSubject>& keys, const Chase& 
     const double behind = std::min(1.0, way.norm() / kSettle);
     if (way.norm() > 0.0) ahead = std::atan2(way.y(), way.x());
     const std::vector<double> before = best;
-    for (int i = 0; i < kViews; ++i) {
-      View view;
-      view.azimuth = 2.0 * kPi * (i % kAzimuths) / kAzimuths;
-      view.elevation = kElevations[i / kAzimuths];
-      view = chase.Fit(keys[k], view);
+    for (std::size_t i = 0; i < kViews; ++i) {
       double least = k == 0 ? 0.0 : std::numeric_limits<double>::infinity();
-      int came = 0;
-      for (int j = 0; k > 0 && j < kViews; ++j) {
-        const double cost = before[static_cast<std::size_t>(j)] +
-                            MoveCost(views[k - 1][static_cast<std::size_t>(j)], view);
-        if (cost < least) least = cost, came = j;
+      for (std::size_t j = 0; k > 0 && j < kViews; ++j) {
+        const double cost = before[j] + move[i * kViews + j];
+        if (cost < least) {
+          least = cost;
+          from[k][i] = j;
+        }
       }
-      views[k].push_back(view);
-      from[k].push_back(came);
-      best[static_cast<std::size_t>(i)] = least + chase.CostOf(keys[k], view, ahead, behind);
+      best[i] = least + chase.CostOf(keys[k], ViewOf(i), ahead, behind);
     }
   }
   std::vector<View> chosen(keys.size());
   auto at = static_cast<std::size_t>(std::min_element(best.begin(), best.end()) - best.begin());
   for (std::size_t k = keys.size(); k-- > 0;) {
-    chosen[k] = views[k][at];
-    at = static_cast<std::size_t>(from[k][at]);
+    chosen[k] = ViewOf(at);
+    at = from[k][at];
   }
   for (std::size_t k = 1; k < chosen.size(); ++k) {
     const double before = chosen[k - 1].azimuth;

@@ -50,6 +50,11 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
 
 std::vector<TrackEvent> ReadEvents(SqliteDb& db) {
   std::vector<TrackEvent> events;
+  TableRows mode(db, "mode", "t, mode", "t LIMIT 1");  // the first one is no event
+  while (mode.Next()) {
+    const double t = mode.Number();
+    events.push_back({t, "mode", mode.Text()});
+  }
   TableRows rows(db, "event", "t, kind, text", "rowid");
   while (rows.Next()) {
     TrackEvent& event = events.emplace_back();

@@ -6,11 +6,13 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
 #include "sim/rendering/flight_scene_mjcf.h"
+#include "sim/rendering/ground_texture.h"
 #include "sim/rendering/scene_stage.h"
 
 namespace touchdown::sim {
@@ -20,7 +22,23 @@ constexpr float kGlow = 0.55F;       // of lines and marks: what they emit, of t
 constexpr double kSunHeight = 30.0;  // of the shadow map's origin above what is looked at [m]
 constexpr double kSunStep = 2.0;     // by which it moves on, so that shadows' edges stand still [m]
 constexpr double kSunAhead = 9.0;    // of what it is centred on, before the camera [m]
+constexpr double kWidest = 0.008;    // a line, over its distance from the camera
 constexpr double kShortest = 1e-6;   // piece of a line [m]
+
+// The cameras' ground is rich in contrast, for them. This one is pale, with lines every metre to see how fast things move.
+estimation::GrayImage LightGround() {
+  constexpr int kLines = 4, kLineTexels = 2;
+  estimation::GrayImage ground = GroundTexture(kGroundTexels);
+  for (int i = 0; i < kGroundTexels; ++i) {
+    for (int j = 0; j < kGroundTexels; ++j) {
+      std::uint8_t& level = ground.pixels[static_cast<std::size_t>(i * kGroundTexels + j)];
+      const int period = kGroundTexels / kLines;
+      const bool line = i % period < kLineTexels || j % period < kLineTexels;
+      level = static_cast<std::uint8_t>((line ? 168 : 138) + level / 5);
+    }
+  }
+  return ground;
+}
 
 void AddGeom(int type, const Eigen::Vector3d& size, const Eigen::Vector3d& p_W,
              const Eigen::Matrix3d& R, const std::array<float, 4>& rgba, mjvScene* scene) {
@@ -34,13 +52,14 @@ void AddGeom(int type, const Eigen::Vector3d& size, const Eigen::Vector3d& p_W,
 }
 
 void AddPiece(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const FlightLine& line,
-              mjvScene* scene) {
+              const Eigen::Vector3d& p_WC, mjvScene* scene) {
   const double length = (b - a).norm();
   if (!(length > kShortest)) return;
   const Eigen::Matrix3d R =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), b - a).toRotationMatrix();
-  const double half = 0.5 * line.width;
-  AddGeom(mjGEOM_BOX, {0.5 * length + 0.5 * half, half, half}, 0.5 * (a + b), R, line.rgba, scene);
+  const Eigen::Vector3d middle = 0.5 * (a + b);
+  const double half = 0.5 * std::min(line.width, kWidest * (middle - p_WC).norm());
+  AddGeom(mjGEOM_BOX, {0.5 * length + 0.5 * half, half, half}, middle, R, line.rgba, scene);
 }
 
 // The shadow map's middle follows the view; the sun's rays stay as they are.
@@ -50,7 +69,7 @@ void MoveSun(const CameraPose& camera, mjvScene* scene) {
     mjvLight& light = scene->lights[i];
     if (light.castshadow == 0) continue;
     for (int axis = 0; axis < 2; ++axis) {
-      const double shift = -light.dir[axis] / light.dir[2] * -kSunHeight;
+      const double shift = -light.dir[axis] / light.dir[2] * kSunHeight;
       light.pos[axis] = static_cast<float>(kSunStep * std::round(ahead[axis] / kSunStep) - shift);
     }
     light.pos[2] = static_cast<float>(kSunHeight);
@@ -62,7 +81,8 @@ void MoveSun(const CameraPose& camera, mjvScene* scene) {
 class FlightRenderer::Impl {
  public:
   Impl(const VisualScene& scene, const std::string& vehicle_mjcf, const ViewConfig& view)
-      : stage_(scene, view, FlightSceneMjcf(scene, vehicle_mjcf, view), kMostPieces) {}
+      : stage_(scene, view, FlightSceneMjcf(scene, vehicle_mjcf, view), LightGround(),
+               kMostPieces) {}
 
   void Render(const FlightMoment& moment, std::vector<std::uint8_t>* rgb) {
     stage_.Place(moment.camera);
@@ -73,7 +93,7 @@ class FlightRenderer::Impl {
     MoveSun(moment.camera, scene);
     for (const FlightLine& line : moment.lines) {
       for (std::size_t i = 1; i < line.points_W.size(); ++i) {
-        AddPiece(line.points_W[i - 1], line.points_W[i], line, scene);
+        AddPiece(line.points_W[i - 1], line.points_W[i], line, moment.camera.p_WC, scene);
       }
     }
     for (const FlightMark& mark : moment.marks) {

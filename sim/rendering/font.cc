@@ -48,8 +48,8 @@ Font::Font(int size) {
     Glyph& glyph = glyphs_[static_cast<std::size_t>(letter - kFirst)];
     glyph.width = (render->charWidth[letter] + 1) / 2;
     for (int row = 0; row < height_; ++row) {
-      // Bottom-up; a quarter of a line is below the base.
-      const int y = kBase + 2 * (height_ - 1 - row) - render->charHeight / 4;
+      // Bottom-up; a fifth of a line is below the base.
+      const int y = kBase + 2 * (height_ - 1 - row) - render->charHeight / 5;
       for (int column = 0; column < glyph.width; ++column) {
         const int x = kLeft + 2 * column;
         const auto at = [&](int dx, int dy) {

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "sim/rendering/ground_texture.h"
 #include "sim/rendering/scene_stage.h"
 
 namespace touchdown::sim {
@@ -13,7 +14,7 @@ namespace touchdown::sim {
 class SceneRenderer::Impl {
  public:
   Impl(const VisualScene& scene, const ViewConfig& view)
-      : stage_(scene, view, SceneMjcf(scene, view), 16) {}
+      : stage_(scene, view, SceneMjcf(scene, view), GroundTexture(kGroundTexels), 16) {}
 
   void Render(const CameraPose& camera, const estimation::PadState& pad,
               std::vector<std::uint8_t>* rgb, std::vector<float>* depth) {

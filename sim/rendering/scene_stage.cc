@@ -13,7 +13,6 @@
 #include "estimation/base/degrees.h"
 #include "estimation/tags/pad_sheet.h"
 #include "sim/mujoco/mujoco_call.h"
-#include "sim/rendering/ground_texture.h"
 
 namespace touchdown::sim {
 namespace {
@@ -36,10 +35,11 @@ void Fill(const char* name, const estimation::GrayImage& image, mjModel* model) 
   for (const std::uint8_t gray : image.pixels) rgb = std::fill_n(rgb, 3, gray);
 }
 
-MujocoModel Compile(const VisualScene& scene, const ViewConfig& view, const std::string& mjcf) {
+MujocoModel Compile(const VisualScene& scene, const ViewConfig& view, const std::string& mjcf,
+                    const estimation::GrayImage& ground) {
   Check(scene, view);
   MujocoModel model = CompileMjcf(mjcf);
-  Fill("ground", GroundTexture(kGroundTexels), model.get());
+  Fill("ground", ground, model.get());
   Fill("pad", estimation::PadSheet(), model.get());
   return model;
 }
@@ -55,9 +55,9 @@ void FlipRows(int height, std::size_t row, std::vector<T>* image) {
 }  // namespace
 
 SceneStage::SceneStage(const VisualScene& scene, const ViewConfig& view, const std::string& mjcf,
-                       int more_geoms)
+                       const estimation::GrayImage& ground, int more_geoms)
     : view_(view),
-      model_(Compile(scene, view, mjcf)),
+      model_(Compile(scene, view, mjcf, ground)),
       data_(MakeMujocoData(*model_)),
       gl_(*model_, more_geoms, mjFONTSCALE_50) {
   mjv_defaultOption(&option_);

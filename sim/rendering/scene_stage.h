@@ -10,6 +10,7 @@
 #include "sim/mujoco/mujoco_model.h"
 #include "sim/rendering/gl_scene.h"
 #include "sim/rendering/scene_mjcf.h"
+#include "touchdown/estimation/base/gray_image.h"
 #include "touchdown/estimation/base/measurements.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
 
@@ -19,11 +20,12 @@ namespace touchdown::sim {
 /// drawn. Belongs to the thread that made it.
 class SceneStage {
  public:
-  /// @param mjcf of `scene`, with bodies "pad" and "camera" as in SceneMjcf. @param more_geoms as of GlScene.
+  /// @param mjcf of `scene`, with bodies "pad" and "camera" as in SceneMjcf. @param ground its texture, kGroundTexels a side.
+  /// @param more_geoms as of GlScene.
   /// Throws std::invalid_argument naming thing, value and allowed range, std::runtime_error if
   /// there is no off-screen rendering.
   SceneStage(const VisualScene& scene, const ViewConfig& view, const std::string& mjcf,
-             int more_geoms);
+             const estimation::GrayImage& ground, int more_geoms);
 
   /// Places a body with mocap. Throws std::invalid_argument if the model has none of this name.
   void Place(const char* body, const Eigen::Vector3d& p_W, const Eigen::Quaterniond& q_W);

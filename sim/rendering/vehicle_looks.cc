@@ -19,7 +19,7 @@ namespace touchdown::sim {
 namespace {
 
 constexpr char kRotor[] = "rotor";
-constexpr char kDiscColor[] = "0.30 0.62 0.95 0.45";
+constexpr char kDiscColor[] = "0.75 0.86 0.97 0.38";
 constexpr char kFrameColor[] = "0.16 0.17 0.20 1";
 constexpr double kDiscHeight = 0.004;  // half of it [m]
 constexpr double kDiscShare = 0.48;    // of the distance to the next rotor
