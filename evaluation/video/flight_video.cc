@@ -97,6 +97,7 @@ class FlightPictures::Impl {
     moment_.marks.clear();
     if (goal_) moment_.marks.push_back({TargetOf(now), 0.12, kGoalColor});
     renderer_.Render(moment_, &picture_.rgb);
+    picture_.SmoothEdges();
     insets_.Look(now);
     const int margin = Scaled(16), width = Scaled(288);
     insets_.Draw({size_.width - margin - width, margin, width, 0}, margin, inset_font_, &picture_);

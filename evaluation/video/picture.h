@@ -27,6 +27,8 @@ struct Picture {
   Picture() = default;
   Picture(int width, int height);
 
+  /// Softens stairs along edges of brightness (FXAA), as a camera would; the rest stays as it is.
+  void SmoothEdges();
   /// Mixes a colour in. @param opacity in [0, 1].
   void Blend(int x, int y, const Rgb& color, double opacity);
   void Fill(const PictureArea& area, const Rgb& color, double opacity);

@@ -18,7 +18,8 @@
 namespace touchdown::sim {
 namespace {
 
-constexpr float kGlow = 0.55F;       // of lines and marks: what they emit, of their colour
+// A line's colour is its own light for the most part: what it reflects is added.
+constexpr float kReflect = 0.55F;
 constexpr double kSunHeight = 30.0;  // of the shadow map's origin above what is looked at [m]
 constexpr double kSunStep = 2.0;     // by which it moves on, so that shadows' edges stand still [m]
 constexpr double kSunAhead = 9.0;    // of what it is centred on, before the camera [m]
@@ -45,9 +46,10 @@ void AddGeom(int type, const Eigen::Vector3d& size, const Eigen::Vector3d& p_W,
   if (scene->ngeom >= scene->maxgeom) return;
   mjvGeom* const geom = scene->geoms + scene->ngeom++;
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = R;
-  mjv_initGeom(geom, type, size.data(), p_W.data(), rows.data(), rgba.data());
+  const float color[] = {kReflect * rgba[0], kReflect * rgba[1], kReflect * rgba[2], rgba[3]};
+  mjv_initGeom(geom, type, size.data(), p_W.data(), rows.data(), color);
   geom->category = mjCAT_DECOR;
-  geom->emission = kGlow;
+  geom->emission = 1.0F;
   geom->specular = 0.0F;
 }
 

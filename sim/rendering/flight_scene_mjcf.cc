@@ -10,6 +10,13 @@
 #include "sim/rendering/vehicle_looks.h"
 
 namespace touchdown::sim {
+namespace {
+
+// A shadow map holds what lies farthest from the sun of each thing; of a sheet as thin as paper that would be its upper
+// face, which then is in its own shadow here and there.
+constexpr double kSheetDepth = 0.015;  // [m]
+
+}  // namespace
 
 std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle_mjcf,
                             const ViewConfig& view) {
@@ -20,11 +27,11 @@ std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle
       << "<statistic extent='1' center='0 0 0'/>\n"
       << "<visual>\n"
       << "<global offwidth='" << view.width << "' offheight='" << view.height << "'/>\n"
-      << "<quality offsamples='0' shadowsize='2048' numslices='32' numstacks='12'/>\n"
+      << "<quality offsamples='0' shadowsize='4096' numslices='32' numstacks='12'/>\n"
       << "<map znear='" << estimation::NumberText(view.near) << "' zfar='"
-      << estimation::NumberText(view.far) << "' shadowclip='18' fogstart='18' fogend='75'/>\n"
+      << estimation::NumberText(view.far) << "' shadowclip='16' fogstart='18' fogend='75'/>\n"
       << "<rgba fog='0.80 0.86 0.92 1'/>\n"
-      << "<headlight ambient='0.40 0.41 0.44' diffuse='0.10 0.10 0.10' specular='0 0 0'/>\n"
+      << "<headlight ambient='0.46 0.47 0.50' diffuse='0.10 0.10 0.10' specular='0 0 0'/>\n"
       << "</visual>\n"
       << "<asset>\n"
       << "<texture type='skybox' builtin='gradient' rgb1='0.80 0.86 0.92' rgb2='0.30 0.50 0.76' "
@@ -32,8 +39,8 @@ std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle
       << SceneAssets(scene) << "</asset>\n"
       << "<worldbody>\n"
       << "<light directional='true' castshadow='true' pos='0 0 30' dir='0.42 0.30 -1' "
-      << "ambient='0 0 0' diffuse='0.62 0.60 0.55' specular='0.25 0.25 0.25'/>\n"
-      << SceneBodies(scene, view) << "<body name='vehicle' mocap='true'>\n"
+      << "ambient='0 0 0' diffuse='0.58 0.56 0.51' specular='0.25 0.25 0.25'/>\n"
+      << SceneBodies(scene, view, kSheetDepth) << "<body name='vehicle' mocap='true'>\n"
       << VehicleLooks(vehicle_mjcf) << "</body>\n"
       << "</worldbody>\n"
       << "</mujoco>\n";

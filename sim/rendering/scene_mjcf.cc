@@ -33,7 +33,7 @@ void WriteGeom(const Box& box, const char* name, std::ostream& xml) {
       << "/>\n";
 }
 
-void WritePad(const VisualScene& scene, std::ostream& xml) {
+void WritePad(const VisualScene& scene, double sheet_depth, std::ostream& xml) {
   estimation::PadState pad;
   pad.p_WP.z() = scene.deck_height;
   const Eigen::Vector3d origin = pad.p_WP;
@@ -44,8 +44,8 @@ void WritePad(const VisualScene& scene, std::ostream& xml) {
   deck.center -= origin;
   body.center -= origin;
   const Box sheet{
-      {0.0, 0.0, -0.5 * kSheetThickness},
-      {0.5 * estimation::kPadSheetSide, 0.5 * estimation::kPadSheetSide, 0.5 * kSheetThickness},
+      {0.0, 0.0, -0.5 * sheet_depth},
+      {0.5 * estimation::kPadSheetSide, 0.5 * estimation::kPadSheetSide, 0.5 * sheet_depth},
       0.0};
   xml << "<body name='pad' mocap='true'>\n";
   WriteGeom(deck, "deck", xml);
@@ -88,7 +88,7 @@ std::string SceneAssets(const VisualScene& scene) {
   return xml.str();
 }
 
-std::string SceneBodies(const VisualScene& scene, const ViewConfig& view) {
+std::string SceneBodies(const VisualScene& scene, const ViewConfig& view, double sheet) {
   std::ostringstream xml;
   xml << "<geom name='ground' type='plane' size='0 0 1' material='ground'/>\n";
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
@@ -96,7 +96,7 @@ std::string SceneBodies(const VisualScene& scene, const ViewConfig& view) {
     xml << "<geom material='" << MaterialOf(obstacle) << "' "
         << GeomText(obstacle, NameOf(i), "a rendered scene") << "/>\n";
   }
-  WritePad(scene, xml);
+  WritePad(scene, sheet, xml);
   xml << "<body name='camera' mocap='true'>\n"
       << "<camera name='camera' fovy='" << estimation::NumberText(view.fov_y_deg) << "'/>\n"
       << "</body>\n";
@@ -121,7 +121,7 @@ std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view) {
       << "<worldbody>\n"
       << "<light directional='true' castshadow='false' pos='0 0 10' dir='0.2 0.3 -1' "
       << "ambient='0 0 0' diffuse='0.45 0.45 0.45' specular='0 0 0'/>\n"
-      << SceneBodies(scene, view) << "</worldbody>\n"
+      << SceneBodies(scene, view, kSheetThickness) << "</worldbody>\n"
       << "</mujoco>\n";
   return xml.str();
 }

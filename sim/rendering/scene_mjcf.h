@@ -36,7 +36,8 @@ struct CameraPose {
 /// Parts of the MJCF text of a scene: textures, materials and meshes, as they stand in <asset>; ground and obstacles, and the
 /// mocap bodies "pad" and "camera", as they stand in <worldbody>. See SceneMjcf, which throws likewise.
 std::string SceneAssets(const VisualScene& scene);
-std::string SceneBodies(const VisualScene& scene, const ViewConfig& view);
+/// @param sheet how deep the printed sheet reaches into the deck [m].
+std::string SceneBodies(const VisualScene& scene, const ViewConfig& view, double sheet);
 
 /// MJCF text of the scene for rendering: the mocap bodies "pad" (its origin at the centre of the
 /// deck's upper face) and "camera" (x right, y up, looks along -z) are moved by hand, nothing
