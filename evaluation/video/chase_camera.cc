@@ -19,7 +19,7 @@ namespace {
 constexpr double kKeyTime = 0.25;  // between key times [s]
 constexpr int kAzimuths = 24;      // of the line of sight, all around
 constexpr std::array<double, 4> kElevations = {0.30, 0.50, 0.80, 1.15};  // above the focus [rad]
-constexpr std::array<double, 4> kDistances = {2.8, 4.0, 6.0, 9.0};       // to the focus [m]
+constexpr std::array<double, 4> kDistances = {3.3, 4.4, 6.2, 9.0};       // to the focus [m]
 constexpr std::size_t kViews = kAzimuths * kElevations.size() * kDistances.size();
 constexpr double kFocusShare = 0.45;  // of the way from vehicle to target ...
 constexpr double kFocusMost = 1.8;    // ... at most [m]

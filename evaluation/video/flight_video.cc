@@ -212,9 +212,8 @@ void CheckVideo(const std::string& option, const std::string& path) {
 }
 
 void WriteVideo(const std::string& record_path, const std::string& video_path,
-                const Registries& registries) {
+                const Registries& registries, VideoSize size) {
   try {
-    const VideoSize size;
     FlightPictures pictures(record_path, registries, size);
     AtomicFile file(video_path);
     VideoEncoder encoder(file.working_path(), size.width, size.height, kVideoRate);

@@ -48,6 +48,6 @@ void CheckVideo(const std::string& option, const std::string& path);
 /// Makes a video of a record. It appears whole or not at all. @throws BadInput as FlightPictures,
 /// std::runtime_error with one sentence.
 void WriteVideo(const std::string& record_path, const std::string& video_path,
-                const Registries& registries);
+                const Registries& registries, VideoSize size = {});
 
 }  // namespace touchdown::evaluation
