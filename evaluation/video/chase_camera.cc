@@ -27,7 +27,9 @@ constexpr double kVehicleSize = 0.3;  // of a part that may be hidden alone [m]
 constexpr double kTargetSize = 0.6;   // [m]
 constexpr double kFloor = 0.6;        // least height of the camera [m]
 constexpr double kClearance = 0.7;    // of the camera to obstacles, wanted [m]
-constexpr double kSmoothTime = 0.45;  // standard deviation of the smoothing [s]
+constexpr double kSmoothTime =
+    0.45;  // standard deviation of the smoothing, of directions and distances [s] ...
+constexpr double kFocusTime = 0.15;  // ... and of the focus, which must not fall behind [s]
 constexpr double kSettle = 1.5;  // distance to the target below which no direction is behind [m]
 
 constexpr double kPi = std::numbers::pi;
@@ -167,18 +169,17 @@ std::vector<View> PlanViews(const std::vector<ChaseSubject>& keys, const Chase& 
   return chosen;
 }
 
-// A row a picture: azimuth, elevation, distance, focus.
-using Row = Eigen::Matrix<double, 6, 1>;
-
-std::vector<Row> Smoothed(const std::vector<Row>& rows, double dt) {
-  const int reach = static_cast<int>(3.0 * kSmoothTime / dt);
-  std::vector<Row> smooth;
+// Each the mean of what is around it.
+template <typename Vector>
+std::vector<Vector> Smoothed(const std::vector<Vector>& rows, double time, double dt) {
+  const int reach = static_cast<int>(3.0 * time / dt);
+  std::vector<Vector> smooth;
   const int last = static_cast<int>(rows.size()) - 1;
   for (int i = 0; i <= last; ++i) {
-    Row sum = Row::Zero();
+    Vector sum = Vector::Zero();
     double weights = 0.0;
     for (int k = -reach; k <= reach; ++k) {
-      const double x = k * dt / kSmoothTime;
+      const double x = k * dt / time;
       const double weight = std::exp(-0.5 * x * x);
       sum += weight * rows[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
       weights += weight;
@@ -201,20 +202,22 @@ std::vector<sim::CameraPose> ChaseFlight(const std::vector<ChaseSubject>& subjec
   for (std::size_t i = 0; i < subjects.size(); i += step) keys.push_back(subjects[i]);
   const std::vector<View> views = PlanViews(keys, chase);
 
-  std::vector<Row> rows;
+  std::vector<Eigen::Vector3d> between, focuses;  // azimuth, elevation, distance; focus
   for (std::size_t i = 0; i < subjects.size(); ++i) {
     const std::size_t k = i / step;
     const View& a = views[k];
     const View& b = views[std::min(k + 1, views.size() - 1)];
     const double s = static_cast<double>(i % step) / static_cast<double>(step);
-    Row row;
-    row << a.azimuth + s * (b.azimuth - a.azimuth), a.elevation + s * (b.elevation - a.elevation),
-        a.distance + s * (b.distance - a.distance), FocusOf(subjects[i]);
-    rows.push_back(row);
+    between.emplace_back(a.azimuth + s * (b.azimuth - a.azimuth),
+                         a.elevation + s * (b.elevation - a.elevation),
+                         a.distance + s * (b.distance - a.distance));
+    focuses.push_back(FocusOf(subjects[i]));
   }
+  between = Smoothed(between, kSmoothTime, dt);
+  focuses = Smoothed(focuses, kFocusTime, dt);
   std::vector<sim::CameraPose> poses;
-  for (const Row& row : Smoothed(rows, dt)) {
-    poses.push_back(chase.PoseOf(row.tail<3>(), {row[0], row[1], row[2]}));
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    poses.push_back(chase.PoseOf(focuses[i], {between[i].x(), between[i].y(), between[i].z()}));
   }
   return poses;
 }
