@@ -48,7 +48,7 @@ TEST(ChaseCamera, IsBehindAndAboveAndUpright) {
   const auto poses = ChaseFlight(subjects, kStep, {}, Wide());
   ASSERT_EQ(poses.size(), subjects.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    EXPECT_LT(poses[i].p_WC.x(), subjects[i].vehicle_W.x() - 1.0);
+    EXPECT_LT(poses[i].p_WC.x(), subjects[i].vehicle_W.x() - 0.6);
     EXPECT_GT(poses[i].p_WC.z(), subjects[i].vehicle_W.z());
     EXPECT_TRUE(InFrame(ShareOf(poses[i], subjects[i].vehicle_W))) << i;
     EXPECT_TRUE(InFrame(ShareOf(poses[i], subjects[i].target_W))) << i;

@@ -169,19 +169,27 @@ std::vector<View> PlanViews(const std::vector<ChaseSubject>& keys, const Chase& 
   return chosen;
 }
 
-// Each the mean of what is around it.
+// Each the mean of what is around it; beyond the ends it goes on as it began, so that the ends do not lag.
 template <typename Vector>
 std::vector<Vector> Smoothed(const std::vector<Vector>& rows, double time, double dt) {
   const int reach = static_cast<int>(3.0 * time / dt);
   std::vector<Vector> smooth;
   const int last = static_cast<int>(rows.size()) - 1;
+  const auto at = [&](int i) -> Vector {
+    const auto row = [&](int k) -> const Vector& {
+      return rows[static_cast<std::size_t>(std::clamp(k, 0, last))];
+    };
+    if (i < 0) return 2.0 * row(0) - row(-i);
+    if (i > last) return 2.0 * row(last) - row(2 * last - i);
+    return row(i);
+  };
   for (int i = 0; i <= last; ++i) {
     Vector sum = Vector::Zero();
     double weights = 0.0;
     for (int k = -reach; k <= reach; ++k) {
       const double x = k * dt / time;
       const double weight = std::exp(-0.5 * x * x);
-      sum += weight * rows[static_cast<std::size_t>(std::clamp(i + k, 0, last))];
+      sum += weight * at(i + k);
       weights += weight;
     }
     smooth.push_back(sum / weights);

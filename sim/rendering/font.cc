@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kSide = 160;  // of the picture of a letter, drawn at twice its size [pixel]
 constexpr int kLeft = 8;    // of the letter in it [pixel]
-constexpr int kBase = 32;   // its base line above the picture's lower edge [pixel]
+constexpr int kBottom = 8;  // of its line, above the picture's lower edge [pixel]
 
 MujocoModel EmptyModel() {
   const std::string side = std::to_string(kSide);
@@ -42,14 +42,13 @@ Font::Font(int size) {
     CallMujoco([&] {
       mjr_rectangle(all, 0.0F, 0.0F, 0.0F, 1.0F);
       mjr_text(mjFONT_NORMAL, text, render, static_cast<float>(kLeft) / kSide,
-               static_cast<float>(kBase) / kSide, 1.0F, 1.0F, 1.0F);
+               static_cast<float>(kBottom) / kSide, 1.0F, 1.0F, 1.0F);
       mjr_readPixels(rgb.data(), nullptr, all, render);
     });
     Glyph& glyph = glyphs_[static_cast<std::size_t>(letter - kFirst)];
     glyph.width = (render->charWidth[letter] + 1) / 2;
     for (int row = 0; row < height_; ++row) {
-      // Bottom-up; a fifth of a line is below the base.
-      const int y = kBase + 2 * (height_ - 1 - row) - render->charHeight / 5;
+      const int y = kBottom + 2 * (height_ - 1 - row);  // bottom-up
       for (int column = 0; column < glyph.width; ++column) {
         const int x = kLeft + 2 * column;
         const auto at = [&](int dx, int dy) {
