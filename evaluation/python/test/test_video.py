@@ -18,7 +18,7 @@ def probe(path):
 
 def test_a_flight_and_its_record_give_the_same_video(run, tmp_path):
     record, flown, again = (tmp_path / name for name in ("f.db", "flown.mp4", "again.mp4"))
-    done = run("land", "open", "--set", "timeout=0.6", "--record", str(record), "--video", str(flown))
+    done = run("land", "open", "--set", "timeout=1", "--record", str(record), "--video", str(flown))
     assert done.returncode == 1 and done.stdout.startswith("timeout"), done.stderr
     done = run("replay", str(record), "--video", str(again))
     assert done.returncode == 0 and done.stdout == "", done.stderr
@@ -28,7 +28,7 @@ def test_a_flight_and_its_record_give_the_same_video(run, tmp_path):
     stream = probe(flown)
     assert (stream["codec_name"], stream["width"], stream["height"]) == ("h264", 1280, 720)
     assert (stream["r_frame_rate"], stream["pix_fmt"]) == ("25/1", "yuv420p")
-    assert float(stream["duration"]) == pytest.approx(0.6, abs=0.08)
+    assert float(stream["duration"]) == pytest.approx(1.0, abs=0.08)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,7 @@ def test_an_encoder_that_fails_leaves_the_result(program, tmp_path):
     encoder.parent.mkdir()
     encoder.write_text("#!/bin/sh\necho disk full >&2\nexit 1\n")
     encoder.chmod(0o755)
-    done = subprocess.run([program, "land", "open", "--set", "timeout=0.4", "--video", "f.mp4"], cwd=tmp_path,
+    done = subprocess.run([program, "land", "open", "--set", "timeout=1", "--video", "f.mp4"], cwd=tmp_path,
                           capture_output=True, text=True, check=False, env={**os.environ, "PATH": str(encoder.parent)})  # fmt: skip
     assert done.returncode == 1 and done.stdout.startswith("timeout")
     assert "--video f.mp4: the video was not made: ffmpeg failed (disk full)" in done.stderr
