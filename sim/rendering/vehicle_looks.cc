@@ -70,6 +70,14 @@ bool WriteGeoms(const mjModel& m, int body, std::ostream& xml) {
   return more;
 }
 
+// From B's origin.
+void WriteArm(const mjtNum* end, std::ostream& xml) {
+  const double length = Eigen::Map<const Eigen::Vector3d>(end).norm();
+  if (!(length > 0.0)) return;
+  xml << "<geom type='capsule' size='" << estimation::NumberText(kArmShare * length)
+      << "' fromto='0 0 0 " << Numbers(end, 3) << "' rgba='" << kFrameColor << "'/>\n";
+}
+
 std::vector<int> RotorSites(const mjModel& m, int body) {
   std::vector<int> sites;
   for (int i = 0; i < m.nsite; ++i) {
@@ -107,10 +115,11 @@ std::string VehicleLooks(const std::string& vehicle_mjcf) {
       const mjtNum size[3] = {has_disc ? m.site_size[3 * i] : kDiscShare * next, kDiscHeight, 0.0};
       WriteShape(mjGEOM_CYLINDER, size, pos, m.site_quat + 4 * i, kDiscColor, xml);
     }
-    const double arm = Eigen::Map<const Eigen::Vector3d>(pos).norm();
-    if (!has_frame && arm > 0.0) {
-      xml << "<geom type='capsule' size='" << estimation::NumberText(kArmShare * arm)
-          << "' fromto='0 0 0 " << Numbers(pos, 3) << "' rgba='" << kFrameColor << "'/>\n";
+    if (!has_frame) WriteArm(pos, xml);
+  }
+  for (int i = 0; !has_frame && i < m.ngeom; ++i) {
+    if (m.geom_bodyid[i] == body && m.geom_type[i] == mjGEOM_SPHERE) {
+      WriteArm(m.geom_pos + 3 * i, xml);  // a foot
     }
   }
   return xml.str();

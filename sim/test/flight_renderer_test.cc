@@ -116,9 +116,11 @@ TEST(VehicleLooks, OfAVehicleWithoutGeomsForTheEyeThereAreArms) {
   const std::string looks = VehicleLooks(
       "<mujoco><worldbody><body name='vehicle'><freejoint/><inertial pos='0 0 0' mass='1' "
       "diaginertia='1 1 1'/><geom name='hull' type='cylinder' size='0.3 0.1' group='3'/>"
+      "<geom name='foot0' type='sphere' size='0.01' pos='0 0.1 -0.1'/>"
       "<site name='rotor0' pos='0.2 0 0'/><site name='rotor1' pos='-0.2 0 0'/>"
       "</body></worldbody></mujoco>");
   EXPECT_THAT(looks, HasSubstr("fromto='0 0 0 0.2 0 0 '"));
+  EXPECT_THAT(looks, HasSubstr("fromto='0 0 0 0 0.1 -0.1 '"));
   EXPECT_THAT(looks, HasSubstr("type='cylinder' size='0.192 "));
   EXPECT_THAT(
       test::MessageOf<std::invalid_argument>([] { VehicleLooks("<mujoco><worldbody/></mujoco>"); }),
