@@ -26,7 +26,7 @@ case ${1:-} in
     ;;
 esac
 
-install_tiers build report study notebooks test page
+install_tiers build report study notebooks video page test
 build_release ON
 
 say "Testing"

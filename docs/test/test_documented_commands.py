@@ -26,7 +26,7 @@ trap 'echo "$LINENO: status $? from $BASH_COMMAND" >>"$DOCUMENT_LOG.errors"' ERR
 
 
 def make_folder(folder):
-    """The repository as the commands see it: sources to read, stand-ins to call, and cp."""
+    """The repository as the commands see it: sources to read, stand-ins to call, cp, and ffmpeg for videos."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in ("sim", "evaluation"):
         (folder / name).symlink_to(ROOT / name)
@@ -34,7 +34,8 @@ def make_folder(folder):
     for name in CALLED:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).symlink_to(STAND_IN)
-    (folder / "bin" / "cp").symlink_to("/bin/cp")
+    for name in ("cp", "ffmpeg"):
+        (folder / "bin" / name).symlink_to(shutil.which(name) or f"/usr/bin/{name}")
     return folder
 
 

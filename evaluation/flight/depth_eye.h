@@ -20,9 +20,6 @@
 
 namespace touchdown::evaluation {
 
-/// The camera that a scenario describes.
-sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario);
-
 /// A depth image, and what it took to make it.
 struct DepthGlimpse {
   estimation::DepthImage image;
@@ -58,6 +55,9 @@ class DepthEye {
   sim::FrameDelivery<DepthGlimpse> delivery_;
   DepthGlimpse spare_;
 };
+
+/// The depth camera of the scenario.
+sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario);
 
 /// The eye of the scenario's `sensing`; as MakePadEye.
 std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,

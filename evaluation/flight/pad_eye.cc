@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "sim/sensors/pad_camera.h"
 #include "sim/sensors/tag_sensor.h"
 #include "touchdown/solvers/backend/thread_clock.h"
 
@@ -42,18 +41,10 @@ class FastPadEye final : public PadEye {
 class RenderedPadEye final : public PadEye {
  public:
   RenderedPadEye(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
-      : PadEye(scenario, seed), camera_(PadCameraOf(scenario), SceneOf(scenario, world), seed) {}
+      : PadEye(scenario, seed),
+        camera_(PadCameraOf(scenario), VisualSceneOf(scenario, world), seed) {}
 
  private:
-  static sim::VisualScene SceneOf(const Scenario& scenario, const sim::WorldConfig& world) {
-    sim::VisualScene scene;
-    scene.obstacles = world.obstacles;
-    scene.pad = world.pad;
-    scene.deck_height = scenario.pad.deck_height;
-    scene.occlusion = scenario.camera.occlusion;
-    return scene;
-  }
-
   std::optional<PadSeen> See(const estimation::VehicleState& vehicle,
                              const estimation::VehicleState& /*believed*/,
                              const estimation::PadState& pad, SensingTimes* times) override {
@@ -79,6 +70,15 @@ sim::PadCameraConfig PadCameraOf(const Scenario& scenario) {
   config.noise_sigma = scenario.camera.noise;
   config.exposure_ms = scenario.camera.exposure_ms;
   return config;
+}
+
+sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world) {
+  sim::VisualScene scene;
+  scene.obstacles = world.obstacles;
+  scene.pad = world.pad;
+  scene.deck_height = scenario.pad.deck_height;
+  scene.occlusion = scenario.camera.occlusion;
+  return scene;
 }
 
 PadEye::PadEye(const Scenario& scenario, std::uint64_t seed)

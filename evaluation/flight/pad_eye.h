@@ -18,9 +18,6 @@
 
 namespace touchdown::evaluation {
 
-/// The downward camera that a scenario describes.
-sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
-
 /// What the vehicle gets: an image, or else what would have been found in it.
 struct PadSeen {
   std::unique_ptr<estimation::PadImage> image;
@@ -57,6 +54,10 @@ class PadEye {
   estimation::SampleClock clock_;
   sim::FrameDelivery<PadSeen> delivery_;
 };
+
+/// The downward camera of the scenario, and what it would see.
+sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
+sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world);
 
 /// The eye of the scenario's `sensing`. `world` only gives the configuration; `seed` feeds its own
 /// streams. @throws std::invalid_argument naming key, value and range, std::runtime_error if there

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown fly and land: one closed-loop flight, its summary, and on request its record and picture.
+// touchdown fly and land: one closed-loop flight, its summary, and on request its record, picture and video.
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -23,6 +23,7 @@
 #include "evaluation/record/trial_json.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_world.h"
+#include "evaluation/video/flight_video.h"
 #include "sim/vehicle/vehicle_file.h"
 
 namespace touchdown::evaluation {
@@ -33,6 +34,7 @@ struct FlyArguments {
   std::string record;
   std::string plot;
   std::string html;
+  std::string video;
   std::string save_map;
   bool json = false;
 };
@@ -178,9 +180,13 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
   if (!arguments.record.empty() && arguments.record == arguments.plot) {
     throw BadInput(fmt::format("--record and --plot are the same file, {}.", arguments.record));
   }
+  if (!arguments.record.empty() && arguments.record == arguments.video) {
+    throw BadInput(fmt::format("--record and --video are the same file, {}.", arguments.record));
+  }
   if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
   if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
+  if (!arguments.video.empty()) CheckVideo("--video", arguments.video);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
@@ -188,8 +194,8 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
 int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
   CheckFlightOutputs(arguments);
   TrialRecord record;
-  const bool recorded =
-      !arguments.record.empty() || !arguments.plot.empty() || !arguments.html.empty();
+  const bool recorded = !arguments.record.empty() || !arguments.plot.empty() ||
+                        !arguments.html.empty() || !arguments.video.empty();
   std::optional<planning::PersistentMap> map;
   const TrialResult result =
       RunTrial(scenario, scenario.seed, registries, recorded ? &record : nullptr,
@@ -210,6 +216,12 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
                WriteReplayPage(page, {{kept, name}}, registries, TellReplay());
              });
   }
+  if (!arguments.video.empty()) {
+    DrawFrom(arguments.record, arguments.video, write,
+             [&](const std::string& table, const std::string& video) {
+               WriteVideo(table, video, registries);
+             });
+  }
   return result.succeeded() ? kDone : kFellShort;
 }
 
@@ -228,6 +240,9 @@ void AddFlight(Command app, const char* name, const char* help, bool lands,
                   "Write a page that shows the flight in three dimensions (`touchdown replay`); an "
                   "older file is overwritten",
                   "F.html");
+  command.AddFile("--video", &arguments->video,
+                  "Make a video of the flight, by the program ffmpeg; an older file is overwritten",
+                  "F.mp4");
   command.AddFile(
       "--save-map", &arguments->save_map,
       "Write what was seen of the world, an OctoMap file; an older file is overwritten; see "

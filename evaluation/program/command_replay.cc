@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown replay: a recorded flight to be looked at.
+// touchdown replay: a recorded flight to be looked at, as a page or as a video.
 #include <iostream>
 #include <memory>
 #include <string>
@@ -11,6 +11,7 @@
 #include "evaluation/base/output_path.h"
 #include "evaluation/page/replay_page.h"
 #include "evaluation/program/commands.h"
+#include "evaluation/video/flight_video.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -19,34 +20,53 @@ struct ReplayArguments {
   std::string record;
   std::string beside;
   std::string html;
+  std::string video;
 };
 
-int RunReplay(const ReplayArguments& arguments, const Registries& registries) {
-  CheckPagePath("--html", arguments.html);
-  if (arguments.html == arguments.record || arguments.html == arguments.beside) {
-    throw BadInput(fmt::format("--html {}: that is the record.", arguments.html));
+void CheckReplay(const ReplayArguments& arguments) {
+  if (arguments.html.empty() && arguments.video.empty()) {
+    throw BadInput("replay needs --html or --video: what is to be made.");
   }
-  std::vector<ShownRecord> records = {{arguments.record, arguments.record}};
-  if (!arguments.beside.empty()) records.push_back({arguments.beside, arguments.beside});
-  WriteReplayPage(arguments.html, records, registries, TellReplay());
-  std::cout << fmt::format("{}: open it in a browser\n", arguments.html) << std::flush;
+  if (arguments.html.empty() && !arguments.beside.empty()) {
+    throw BadInput("--beside: two flights are shown by a page, so it needs --html.");
+  }
+  if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
+  if (!arguments.video.empty()) CheckVideo("--video", arguments.video);
+  for (const std::string& made : {arguments.html, arguments.video}) {
+    if (!made.empty() && (made == arguments.record || made == arguments.beside)) {
+      throw BadInput(fmt::format("{}: that is the record.", made));
+    }
+  }
+}
+
+int RunReplay(const ReplayArguments& arguments, const Registries& registries) {
+  CheckReplay(arguments);
+  if (!arguments.html.empty()) {
+    std::vector<ShownRecord> records = {{arguments.record, arguments.record}};
+    if (!arguments.beside.empty()) records.push_back({arguments.beside, arguments.beside});
+    WriteReplayPage(arguments.html, records, registries, TellReplay());
+    std::cout << fmt::format("{}: open it in a browser\n", arguments.html) << std::flush;
+  }
+  if (!arguments.video.empty()) WriteVideo(arguments.record, arguments.video, registries);
   return kDone;
 }
 
 }  // namespace
 
 void AddReplayCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command = app.AddCommand("replay", "Show a recorded flight in three dimensions", "replay.md");
+  const Command command =
+      app.AddCommand("replay", "Show a recorded flight, as a page or as a video", "replay.md");
   const auto arguments = std::make_shared<ReplayArguments>();
   command.AddFile("RECORD", &arguments->record, "A flight's record (`land --record`)", "RECORD")
       .Required();
-  command
-      .AddFile("--html", &arguments->html,
-               "Write one page with all of it in, that any browser opens without a network",
-               "F.html")
-      .Required();
+  command.AddFile("--html", &arguments->html,
+                  "Write one page with all of it in, that any browser opens without a network",
+                  "F.html");
   command.AddFile("--beside", &arguments->beside, "A second record, shown on the same clock",
                   "RECORD");
+  command.AddFile("--video", &arguments->video,
+                  "Make a video of it, by the program ffmpeg; an older file is overwritten",
+                  "F.mp4");
   command.OnChosen([arguments, &registries, run] {
     *run = [arguments, &registries] { return RunReplay(*arguments, registries); };
   });

@@ -176,8 +176,8 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddSweepCommand(Command(&app), registries, &run);
   AddMergeCommand(Command(&app), &run);
   AddPlanCommand(Command(&app), registries, &run);
-  AddReplayCommand(Command(&app), registries, &run);
   AddProfileCommand(Command(&app), registries, &run);
+  AddReplayCommand(Command(&app), registries, &run);
   AddCheckTermCommand(Command(&app), registries, &run);
   AddCheckVehicleCommand(Command(&app), registries, &run);
   AddListCommand(Command(&app), registries, &run);

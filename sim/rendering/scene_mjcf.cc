@@ -28,36 +28,12 @@ const char* MaterialOf(const Obstacle& obstacle) {
   return round ? "cylinder" : "box";
 }
 
-void WriteAssets(const VisualScene& scene, std::ostream& xml) {
-  const std::string repeat = estimation::NumberText(1.0 / kGroundPeriod);
-  xml << "<asset>\n"
-      << "<texture name='ground' type='2d' builtin='flat' rgb1='1 1 1' width='" << kGroundTexels
-      << "' height='" << kGroundTexels << "'/>\n"
-      << "<texture name='pad' type='2d' builtin='flat' rgb1='1 1 1' width='"
-      << estimation::kPadSheetTexels << "' height='" << estimation::kPadSheetTexels << "'/>\n"
-      << "<material name='ground' texture='ground' texuniform='true' texrepeat='" << repeat << ' '
-      << repeat << "' specular='0'/>\n"
-      << "<material name='pad' texture='pad' texuniform='false' texrepeat='1 1' specular='0'/>\n"
-      << "<material name='box' rgba='0.72 0.50 0.34 1' specular='0'/>\n"
-      << "<material name='cylinder' rgba='0.36 0.55 0.38 1' specular='0'/>\n"
-      << "<material name='deck' rgba='0.62 0.62 0.66 1' specular='0'/>\n"
-      << "<material name='plate' rgba='0.45 0.45 0.45 1' specular='0'/>\n"
-      << "<material name='pad_body' rgba='0.25 0.30 0.42 1' specular='0'/>\n";
-  const std::vector<Obstacle>& obstacles = scene.obstacles.obstacles();
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    if (const auto* mesh = std::get_if<Mesh>(&obstacles[i])) {
-      xml << MeshAssetText(*mesh->surface, NameOf(i));
-    }
-  }
-  xml << "</asset>\n";
-}
-
 void WriteGeom(const Box& box, const char* name, std::ostream& xml) {
   xml << "<geom name='" << name << "' material='" << name << "' " << GeomText(box, name, "a scene")
       << "/>\n";
 }
 
-void WritePad(const VisualScene& scene, std::ostream& xml) {
+void WritePad(const VisualScene& scene, double sheet_depth, std::ostream& xml) {
   estimation::PadState pad;
   pad.p_WP.z() = scene.deck_height;
   const Eigen::Vector3d origin = pad.p_WP;
@@ -68,8 +44,8 @@ void WritePad(const VisualScene& scene, std::ostream& xml) {
   deck.center -= origin;
   body.center -= origin;
   const Box sheet{
-      {0.0, 0.0, -0.5 * kSheetThickness},
-      {0.5 * estimation::kPadSheetSide, 0.5 * estimation::kPadSheetSide, 0.5 * kSheetThickness},
+      {0.0, 0.0, -0.5 * sheet_depth},
+      {0.5 * estimation::kPadSheetSide, 0.5 * estimation::kPadSheetSide, 0.5 * sheet_depth},
       0.0};
   xml << "<body name='pad' mocap='true'>\n";
   WriteGeom(deck, "deck", xml);
@@ -88,6 +64,45 @@ void WritePad(const VisualScene& scene, std::ostream& xml) {
 
 }  // namespace
 
+std::string SceneAssets(const VisualScene& scene) {
+  std::ostringstream xml;
+  const std::string repeat = estimation::NumberText(1.0 / kGroundPeriod);
+  xml << "<texture name='ground' type='2d' builtin='flat' rgb1='1 1 1' width='" << kGroundTexels
+      << "' height='" << kGroundTexels << "'/>\n"
+      << "<texture name='pad' type='2d' builtin='flat' rgb1='1 1 1' width='"
+      << estimation::kPadSheetTexels << "' height='" << estimation::kPadSheetTexels << "'/>\n"
+      << "<material name='ground' texture='ground' texuniform='true' texrepeat='" << repeat << ' '
+      << repeat << "' specular='0'/>\n"
+      << "<material name='pad' texture='pad' texuniform='false' texrepeat='1 1' specular='0'/>\n"
+      << "<material name='box' rgba='0.72 0.50 0.34 1' specular='0'/>\n"
+      << "<material name='cylinder' rgba='0.36 0.55 0.38 1' specular='0'/>\n"
+      << "<material name='deck' rgba='0.62 0.62 0.66 1' specular='0'/>\n"
+      << "<material name='plate' rgba='0.45 0.45 0.45 1' specular='0'/>\n"
+      << "<material name='pad_body' rgba='0.25 0.30 0.42 1' specular='0'/>\n";
+  const std::vector<Obstacle>& obstacles = scene.obstacles.obstacles();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    if (const auto* mesh = std::get_if<Mesh>(&obstacles[i])) {
+      xml << MeshAssetText(*mesh->surface, NameOf(i));
+    }
+  }
+  return xml.str();
+}
+
+std::string SceneBodies(const VisualScene& scene, const ViewConfig& view, double sheet) {
+  std::ostringstream xml;
+  xml << "<geom name='ground' type='plane' size='0 0 1' material='ground'/>\n";
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const Obstacle& obstacle = scene.obstacles.obstacles()[i];
+    xml << "<geom material='" << MaterialOf(obstacle) << "' "
+        << GeomText(obstacle, NameOf(i), "a rendered scene") << "/>\n";
+  }
+  WritePad(scene, sheet, xml);
+  xml << "<body name='camera' mocap='true'>\n"
+      << "<camera name='camera' fovy='" << estimation::NumberText(view.fov_y_deg) << "'/>\n"
+      << "</body>\n";
+  return xml.str();
+}
+
 std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view) {
   std::ostringstream xml;
   xml << "<mujoco model='touchdown scene'>\n"
@@ -100,22 +115,13 @@ std::string SceneMjcf(const VisualScene& scene, const ViewConfig& view) {
       << "<map znear='" << estimation::NumberText(view.near) << "' zfar='"
       << estimation::NumberText(view.far) << "'/>\n"
       << "<headlight ambient='0.5 0.5 0.5' diffuse='0 0 0' specular='0 0 0'/>\n"
-      << "</visual>\n";
-  WriteAssets(scene, xml);
-  xml << "<worldbody>\n"
+      << "</visual>\n"
+      << "<asset>\n"
+      << SceneAssets(scene) << "</asset>\n"
+      << "<worldbody>\n"
       << "<light directional='true' castshadow='false' pos='0 0 10' dir='0.2 0.3 -1' "
       << "ambient='0 0 0' diffuse='0.45 0.45 0.45' specular='0 0 0'/>\n"
-      << "<geom name='ground' type='plane' size='0 0 1' material='ground'/>\n";
-  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-    const Obstacle& obstacle = scene.obstacles.obstacles()[i];
-    xml << "<geom material='" << MaterialOf(obstacle) << "' "
-        << GeomText(obstacle, NameOf(i), "a rendered scene") << "/>\n";
-  }
-  WritePad(scene, xml);
-  xml << "<body name='camera' mocap='true'>\n"
-      << "<camera name='camera' fovy='" << estimation::NumberText(view.fov_y_deg) << "'/>\n"
-      << "</body>\n"
-      << "</worldbody>\n"
+      << SceneBodies(scene, view, kSheetThickness) << "</worldbody>\n"
       << "</mujoco>\n";
   return xml.str();
 }

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <Eigen/Core>
+
 #include "sim/obstacles/obstacle_field.h"
 #include "sim/pad/pad_geometry.h"
 
@@ -24,6 +26,18 @@ struct ViewConfig {
   double near = 0.02;       ///< nothing nearer along the optical axis is drawn [m], in [0.005, 1]
   double far = 60.0;        ///< nor farther [m], in (near, 1000]
 };
+
+/// Where a camera is. C: x right, y down, z along the optical axis.
+struct CameraPose {
+  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();      ///< [m]
+  Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();  ///< C to W
+};
+
+/// Parts of the MJCF text of a scene: textures, materials and meshes, as they stand in <asset>; ground and obstacles, and the
+/// mocap bodies "pad" and "camera", as they stand in <worldbody>. See SceneMjcf, which throws likewise.
+std::string SceneAssets(const VisualScene& scene);
+/// @param sheet how deep the printed sheet reaches into the deck [m].
+std::string SceneBodies(const VisualScene& scene, const ViewConfig& view, double sheet);
 
 /// MJCF text of the scene for rendering: the mocap bodies "pad" (its origin at the centre of the
 /// deck's upper face) and "camera" (x right, y up, looks along -z) are moved by hand, nothing

@@ -13,12 +13,6 @@
 
 namespace touchdown::sim {
 
-/// Where a camera is. C: x right, y down, z along the optical axis.
-struct CameraPose {
-  Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();      ///< [m]
-  Eigen::Matrix3d R_WC = Eigen::Matrix3d::Identity();  ///< C to W
-};
-
 /// Images of a scene, rendered by MuJoCo in memory, without display or GPU: ground, obstacles, and
 /// the pad with its markers. The vehicle is not drawn: its own cameras do not see it. The same input
 /// gives the same bits. One SceneRenderer belongs to the thread that made it; any number of them can

@@ -35,12 +35,18 @@ TEST(VehicleShapes, TheDefaultVehicleHasItsBodyArmsLegsAndFeetButNotItsHull) {
   EXPECT_EQ(count(VehicleShape::Kind::kCylinder), 0);
 }
 
-TEST(VehicleShapes, TheHullStandsInWhereThereIsNothingElse) {
-  const std::vector<VehicleShape> shapes = VehicleShapes(With(""));
-  ASSERT_EQ(shapes.size(), 2U);
-  EXPECT_TRUE(shapes[0].p_BG.isApprox(Eigen::Vector3d(0.1, 0.2, -0.3)));
-  EXPECT_EQ(shapes[1].kind, VehicleShape::Kind::kCylinder);
-  EXPECT_EQ(shapes[1].size.head<2>(), Eigen::Vector2d(0.3, 0.05));
+TEST(VehicleShapes, WhatHasNothingForTheEyeHasArmsToItsFeetAndRotors) {
+  const std::vector<VehicleShape> shapes = VehicleShapes(
+      With(R"(<site name="rotor0" pos="0.3 0 0.4"/><site name="else" pos="1 1 1"/>)"));
+  ASSERT_EQ(shapes.size(), 3U);
+  const Eigen::Vector3d foot(0.1, 0.2, -0.3), rotor(0.3, 0.0, 0.4);
+  EXPECT_TRUE(shapes[0].p_BG.isApprox(foot));
+  for (const auto& [arm, end] : {std::pair{shapes[1], foot}, std::pair{shapes[2], rotor}}) {
+    EXPECT_EQ(arm.kind, VehicleShape::Kind::kCapsule);
+    const Eigen::Vector3d half = arm.q_BG * Eigen::Vector3d(0.0, 0.0, arm.size.y());
+    EXPECT_TRUE((arm.p_BG + half).isApprox(end));
+    EXPECT_LT((arm.p_BG - half).norm(), 1e-12);
+  }
 }
 
 TEST(VehicleShapes, AMeshHasItsOwnTrianglesWhereItsGeomStands) {

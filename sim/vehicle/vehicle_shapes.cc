@@ -3,7 +3,6 @@
 
 #include <mujoco/mujoco.h>
 
-#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -43,6 +42,36 @@ void CopyMesh(const mjModel& m, int mesh, VehicleShape* shape) {
   }
 }
 
+// Nothing for what is not to be seen: wholly transparent, or in a group that MuJoCo's viewer does not show.
+std::optional<VehicleShape> ShapeOfGeom(const mjModel& m, int geom) {
+  constexpr int kLastShown = 2;
+  const float* rgba = m.geom_rgba + 4 * geom;
+  const std::optional<VehicleShape::Kind> kind = ShapeKind(m.geom_type[geom]);
+  if (!kind || rgba[3] == 0.0F || m.geom_group[geom] > kLastShown) return std::nullopt;
+  VehicleShape shape;
+  shape.kind = *kind;
+  shape.size = Eigen::Map<const Eigen::Vector3d>(m.geom_size + 3 * geom);
+  shape.p_BG = Eigen::Map<const Eigen::Vector3d>(m.geom_pos + 3 * geom);
+  const mjtNum* q = m.geom_quat + 4 * geom;
+  shape.q_BG = {q[0], q[1], q[2], q[3]};
+  shape.rgba = Eigen::Vector4d(rgba[0], rgba[1], rgba[2], rgba[3]);
+  if (*kind == VehicleShape::Kind::kMesh) CopyMesh(m, m.geom_dataid[geom], &shape);
+  return shape;
+}
+
+// From B's origin.
+VehicleShape ArmTo(const Eigen::Vector3d& end_B) {
+  constexpr double kThickness = 0.06;  // its radius over its length
+  const double length = end_B.norm();
+  VehicleShape arm;
+  arm.kind = VehicleShape::Kind::kCapsule;
+  arm.size = {kThickness * length, 0.5 * length, 0.0};
+  arm.p_BG = 0.5 * end_B;
+  arm.q_BG = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), end_B);
+  arm.rgba = {0.16, 0.17, 0.20, 1.0};
+  return arm;
+}
+
 }  // namespace
 
 const char* ToString(VehicleShape::Kind kind) {
@@ -69,29 +98,23 @@ std::vector<VehicleShape> VehicleShapes(const std::string& mjcf) {
   const int body = mj_name2id(&m, mjOBJ_BODY, "vehicle");
   if (body < 0) throw std::invalid_argument("the vehicle's file lacks the body \"vehicle\"");
   std::vector<VehicleShape> shapes;
-  std::optional<VehicleShape> hull;
-  bool more = false;  // than hull and feet
+  bool has_frame = false;
   for (int geom = 0; geom < m.ngeom; ++geom) {
-    const float* rgba = m.geom_rgba + 4 * geom;
-    const std::optional<VehicleShape::Kind> kind = ShapeKind(m.geom_type[geom]);
-    if (m.geom_bodyid[geom] != body || !kind || rgba[3] == 0.0F) continue;
-    VehicleShape shape;
-    shape.kind = *kind;
-    shape.size = Eigen::Map<const Eigen::Vector3d>(m.geom_size + 3 * geom);
-    shape.p_BG = Eigen::Map<const Eigen::Vector3d>(m.geom_pos + 3 * geom);
-    const mjtNum* q = m.geom_quat + 4 * geom;
-    shape.q_BG = {q[0], q[1], q[2], q[3]};
-    shape.rgba = Eigen::Vector4d(rgba[0], rgba[1], rgba[2], rgba[3]);
-    if (*kind == VehicleShape::Kind::kMesh) CopyMesh(m, m.geom_dataid[geom], &shape);
     const std::string_view name = m.names + m.name_geomadr[geom];
-    if (name == "hull") {
-      hull = std::move(shape);
-      continue;
-    }
-    more = more || !name.starts_with("foot");
-    shapes.push_back(std::move(shape));
+    const std::optional<VehicleShape> shape = ShapeOfGeom(m, geom);
+    if (m.geom_bodyid[geom] != body || name == "hull" || !shape) continue;
+    has_frame = has_frame || !name.starts_with("foot");
+    shapes.push_back(*shape);
   }
-  if (hull && !more) shapes.push_back(std::move(*hull));
+  if (has_frame) return shapes;
+  for (std::size_t foot = 0, feet = shapes.size(); foot < feet; ++foot) {
+    shapes.push_back(ArmTo(shapes[foot].p_BG));
+  }
+  for (int site = 0; site < m.nsite; ++site) {
+    const std::string_view name = m.names + m.name_siteadr[site];
+    if (m.site_bodyid[site] != body || !name.starts_with("rotor")) continue;
+    shapes.push_back(ArmTo(Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site)));
+  }
   return shapes;
 }
 

@@ -23,8 +23,9 @@ struct VehicleShape {
 };
 const char* ToString(VehicleShape::Kind kind);
 
-/// What is to be seen of the vehicle whose MJCF text is `mjcf` (vehicle_file.h): its geoms but for those that are wholly
-/// transparent; without `hull` where there are others besides the feet. Throws std::invalid_argument as LoadVehicleModel.
+/// What is to be seen of the vehicle whose MJCF text is `mjcf` (vehicle_file.h): its geoms but for `hull` and those that
+/// are wholly transparent or in a group from 3 on. Of a vehicle that then has nothing but feet, arms to these and to the rotors.
+/// Throws std::invalid_argument as LoadVehicleModel.
 std::vector<VehicleShape> VehicleShapes(const std::string& mjcf);
 
 }  // namespace touchdown::sim

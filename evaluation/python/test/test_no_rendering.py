@@ -13,6 +13,7 @@ import pytest
         ("sweep", "open", "--trials", "2", "--set", "sensing=rendered", "--db", "out"),
         ("study", "pad", "--trials", "1", "--set", "sensing=rendered", "--db", "out"),
         ("study", "tags", "--poses", "2", "--db", "out"),
+        ("land", "open", "--video", "out.mp4"),
     ],
 )
 def test_without_rendering_it_ends_with_one_sentence(program, tmp_path, arguments):

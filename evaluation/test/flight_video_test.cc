@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/video/flight_video.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/record/record.h"
+#include "evaluation/video/caption.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr VideoSize kSmall = {320, 180};
+
+// The first seconds of a landing, flown once.
+const std::string& ShortRecord() {
+  static const std::string path = [] {
+    const Registries registries = StandardRegistries();
+    const Scenario scenario = LoadScenario(FindScenario("forest"), {"timeout=1.2"}, registries);
+    TrialRecord record;
+    const TrialResult result = RunTrial(scenario, scenario.seed, registries, &record);
+    const std::string file = ::testing::TempDir() + "touchdown_flight_video.db";
+    WriteRecord(file, scenario, result, record);
+    return file;
+  }();
+  return path;
+}
+
+// PATH is another one while it lives.
+class PathScope {
+ public:
+  explicit PathScope(const std::string& path) : before_(std::getenv("PATH")) {
+    setenv("PATH", path.c_str(), 1);
+  }
+  ~PathScope() { setenv("PATH", before_.c_str(), 1); }
+
+ private:
+  std::string before_;
+};
+
+template <typename E, typename Call>
+std::string SaidBy(const Call& call) {
+  try {
+    call();
+  } catch (const E& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Pixels around there that are as blue as the vehicle's body.
+int BlueAround(const std::vector<std::uint8_t>& rgb, const Eigen::Vector2d& pixel) {
+  int blue = 0;
+  for (int y = static_cast<int>(pixel.y()) - 5; y <= static_cast<int>(pixel.y()) + 5; ++y) {
+    for (int x = static_cast<int>(pixel.x()) - 5; x <= static_cast<int>(pixel.x()) + 5; ++x) {
+      if (x < 0 || y < 0 || x >= kSmall.width || y >= kSmall.height) continue;
+      const auto p = rgb.begin() + 3 * (y * kSmall.width + x);
+      if (p[2] > p[0] + 20 && p[0] < 100) ++blue;
+    }
+  }
+  return blue;
+}
+
+TEST(FlightPictures, ShowTheVehicleWhereItIs) {
+  FlightPictures pictures(ShortRecord(), StandardRegistries(), kSmall);
+  const FlightTrack track(ShortRecord());
+  EXPECT_EQ(pictures.count(), 31);  // 0 to 1.2 s
+  std::vector<std::uint8_t> first, last;
+  for (int i = 0; i < pictures.count(); ++i) {
+    last = pictures.Next();
+    if (i == 0) first = last;
+    const Eigen::Vector3d p_WB = track.At(static_cast<double>(i) / kVideoRate).vehicle.p_WB;
+    EXPECT_GT(BlueAround(last, pictures.PixelOf(p_WB)), 4) << i;
+    EXPECT_EQ(BlueAround(last, pictures.PixelOf(p_WB - Eigen::Vector3d(0.0, 0.0, 0.8))), 0) << i;
+  }
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (std::abs(first[i] - last[i]) > 10) ++changed;
+  }
+  EXPECT_GT(changed, first.size() / 10);
+}
+
+TEST(FlightPictures, OfTheSameRecordAreTheSame) {
+  FlightPictures one(ShortRecord(), StandardRegistries(), kSmall);
+  FlightPictures two(ShortRecord(), StandardRegistries(), kSmall);
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(one.Next(), two.Next()) << i;
+}
+
+TEST(FlightTrack, IsInterpolatedBetweenSamples) {
+  const FlightTrack track(ShortRecord());
+  const TrackSample a = track.At(0.60), b = track.At(0.62), middle = track.At(0.61);
+  EXPECT_GT((b.vehicle.p_WB - a.vehicle.p_WB).norm(), 0.0);
+  EXPECT_NEAR((middle.vehicle.p_WB - 0.5 * (a.vehicle.p_WB + b.vehicle.p_WB)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((middle.pad.p_WP - 0.5 * (a.pad.p_WP + b.pad.p_WP)).norm(), 0.0, 1e-9);
+  EXPECT_EQ(middle.vehicle.t, 0.61);
+  EXPECT_EQ(track.At(100.0).vehicle.t, track.t_end());
+  ASSERT_FALSE(track.events().empty());
+  EXPECT_EQ(track.events().front().text, "hovering");
+  EXPECT_FALSE(track.touchdown().has_value());
+}
+
+TEST(FlightTrack, RefusesWhatIsIncomplete) {
+  const std::string path = ::testing::TempDir() + "touchdown_flight_video_cut.db";
+  std::filesystem::copy_file(ShortRecord(), path,
+                             std::filesystem::copy_options::overwrite_existing);
+  SqliteDb(path, SqliteDb::Mode::kReadWrite).Execute("DELETE FROM pad WHERE t > 0.5");
+  EXPECT_THAT(SaidBy<BadInput>([&] { FlightTrack track(path); }),
+              HasSubstr("its table pad does not agree with the table vehicle"));
+}
+
+TEST(Caption, SaysWhatHappensAndHowFarItIs) {
+  const Registries registries = StandardRegistries();
+  const RecordedFlight flight = ReadRecord(ShortRecord(), {}, registries);
+  const FlightTrack track(ShortRecord());
+  const auto at = [&](double t) {
+    const TrackSample now = track.At(t);
+    return CaptionOf(flight, track, now, t + 0.04, now.pad.p_WP);
+  };
+  EXPECT_EQ(at(0.0).flight, "forest, planner landing, seed 1");
+  EXPECT_EQ(at(0.0).state, "hovering");
+  EXPECT_THAT(at(0.5).state, HasSubstr("tracking (pad converged)"));
+  EXPECT_THAT(at(track.t_end()).state, Not(HasSubstr("tracking")));
+  EXPECT_EQ(at(0.5).time, "0.50 s");
+  EXPECT_THAT(at(0.5).distance, HasSubstr(" m to the pad, 1."));
+  EXPECT_EQ(PlanAt(flight.plans, 0.0), nullptr);
+  EXPECT_LE(PlanAt(flight.plans, 0.5)->request.input.t_start, 0.5);
+}
+
+TEST(FlightVideo, WhatCannotBeMadeIsSaidBefore) {
+  const auto said = [](const std::string& path) {
+    return SaidBy<BadInput>([&] { CheckVideo("--video", path); });
+  };
+  const std::string good = ::testing::TempDir() + "touchdown_flight_video.mp4";
+  EXPECT_EQ(said(good), "");
+  EXPECT_EQ(said("flight.avi"), "--video flight.avi: the name must end in .mp4.");
+  EXPECT_THAT(said("/no/such/folder/f.mp4"), HasSubstr("there is no directory"));
+  const PathScope empty("/no/such/folder");
+  EXPECT_EQ(said(good), "--video " + good +
+                            " needs the program ffmpeg, which is not on PATH: install the package "
+                            "ffmpeg.");
+}
+
+TEST(FlightVideo, AFailureLeavesNothing) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / "touchdown_broken_encoder";
+  fs::remove_all(folder);
+  fs::create_directories(folder / "bin");
+  std::ofstream(folder / "bin" / "ffmpeg") << "#!/bin/sh\necho no space left >&2\nexit 1\n";
+  fs::permissions(folder / "bin" / "ffmpeg", fs::perms::owner_all);
+  const PathScope broken((folder / "bin").string());
+  const std::string video = (folder / "flight.mp4").string();
+  EXPECT_EQ(SaidBy<std::runtime_error>(
+                [&] { WriteVideo(ShortRecord(), video, StandardRegistries(), kSmall); }),
+            "--video " + video + ": the video was not made: ffmpeg failed (no space left).");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation

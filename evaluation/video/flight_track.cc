@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "evaluation/video/flight_track.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/table_rows.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr char kTrue[] = "true";  // source of a state, beside the estimates
+
+std::vector<TrackSample> ReadSamples(SqliteDb& db) {
+  std::vector<TrackSample> samples;
+  TableRows vehicle(db, "vehicle", "source, t, px, py, pz, vx, vy, vz, qw, qx, qy, qz, wx, wy, wz",
+                    "t");
+  while (vehicle.Next()) {
+    if (vehicle.Text() != kTrue) continue;
+    estimation::VehicleState& s = samples.emplace_back().vehicle;
+    s.t = vehicle.Number();
+    s.p_WB = vehicle.Vector3();
+    s.v_WB = vehicle.Vector3();
+    const double qw = vehicle.Number();
+    const Eigen::Vector3d q = vehicle.Vector3();
+    s.q_WB = Eigen::Quaterniond(qw, q.x(), q.y(), q.z()).normalized();
+    s.w_WB_B = vehicle.Vector3();
+  }
+  if (samples.empty()) vehicle.Refuse("holds no true state");
+  TableRows pad(db, "pad", "source, t, px, py, pz, vx, vy, vz, yaw, yaw_rate", "t");
+  auto sample = samples.begin();
+  while (pad.Next()) {
+    if (pad.Text() != kTrue) continue;
+    if (sample == samples.end() || pad.Number() != sample->vehicle.t) {
+      pad.Refuse("does not agree with the table vehicle");
+    }
+    estimation::PadState& s = (sample++)->pad;
+    s.p_WP = pad.Vector3();
+    s.v_WP = pad.Vector3();
+    s.yaw = pad.Number();
+    s.yaw_rate = pad.Number();
+  }
+  if (sample != samples.end()) pad.Refuse("does not agree with the table vehicle");
+  return samples;
+}
+
+std::vector<TrackEvent> ReadEvents(SqliteDb& db) {
+  std::vector<TrackEvent> events;
+  TableRows mode(db, "mode", "t, mode", "t LIMIT 1");  // the first one is no event
+  while (mode.Next()) {
+    const double t = mode.Number();
+    events.push_back({t, "mode", mode.Text()});
+  }
+  TableRows rows(db, "event", "t, kind, text", "rowid");
+  while (rows.Next()) {
+    TrackEvent& event = events.emplace_back();
+    event.t = rows.Number();
+    event.kind = rows.Text();
+    event.text = rows.Text();
+  }
+  return events;
+}
+
+std::optional<TrackTouchdown> ReadTouchdown(SqliteDb& db) {
+  SqliteStatement row = db.Prepare("SELECT value FROM meta WHERE key = 'result_json'");
+  if (!row.Step()) throw std::invalid_argument("its table meta lacks result_json");
+  const nlohmann::json result = nlohmann::json::parse(row.Text(0), nullptr, false);
+  if (!result.is_object()) throw std::invalid_argument("its result_json is no JSON object");
+  if (!result.value("landed", false)) return std::nullopt;
+  return TrackTouchdown{result.at("time_to_land_s").get<double>(),
+                        result.at("touchdown").at("error_m").get<double>()};
+}
+
+}  // namespace
+
+FlightTrack::FlightTrack(const std::string& record_path) {
+  try {
+    SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
+    samples_ = ReadSamples(db);
+    events_ = ReadEvents(db);
+    touchdown_ = ReadTouchdown(db);
+  } catch (const SqliteError& error) {
+    throw BadInput(
+        fmt::format("{}: not a record that this build reads ({}).", record_path, error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw BadInput(fmt::format("{}: its result_json lacks a figure.", record_path));
+  } catch (const std::invalid_argument& error) {
+    throw BadInput(fmt::format("{}: {}.", record_path, error.what()));
+  }
+}
+
+TrackSample FlightTrack::At(double t) const {
+  const auto after = std::upper_bound(
+      samples_.begin(), samples_.end(), t,
+      [](double time, const TrackSample& sample) { return time < sample.vehicle.t; });
+  if (after == samples_.begin()) return samples_.front();
+  if (after == samples_.end()) return samples_.back();
+  const TrackSample& a = *(after - 1);
+  const TrackSample& b = *after;
+  const double s = (t - a.vehicle.t) / (b.vehicle.t - a.vehicle.t);
+  const auto mix = [s](const Eigen::Vector3d& from, const Eigen::Vector3d& to) -> Eigen::Vector3d {
+    return from + s * (to - from);
+  };
+  TrackSample sample;
+  sample.vehicle.t = t;
+  sample.vehicle.p_WB = mix(a.vehicle.p_WB, b.vehicle.p_WB);
+  sample.vehicle.v_WB = mix(a.vehicle.v_WB, b.vehicle.v_WB);
+  sample.vehicle.q_WB = a.vehicle.q_WB.slerp(s, b.vehicle.q_WB);
+  sample.vehicle.w_WB_B = mix(a.vehicle.w_WB_B, b.vehicle.w_WB_B);
+  sample.pad.p_WP = mix(a.pad.p_WP, b.pad.p_WP);
+  sample.pad.v_WP = mix(a.pad.v_WP, b.pad.v_WP);
+  sample.pad.yaw = a.pad.yaw + s * estimation::WrapAngle(b.pad.yaw - a.pad.yaw);
+  sample.pad.yaw_rate = a.pad.yaw_rate + s * (b.pad.yaw_rate - a.pad.yaw_rate);
+  return sample;
+}
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program gets a socket as its standard input: unlike a pipe, writing to one whose other end is gone can be told not to
+// raise a signal. What it says goes to a file without a name, so that it never waits for a reader. It is spawned, not
+// forked: the rasteriser has threads.
+#include "evaluation/video/video_encoder.h"
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "evaluation/base/bad_input.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+constexpr char kEncoder[] = "ffmpeg";
+
+bool OnPath(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::filesystem::path file = std::filesystem::path(folder) / program;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Names that begin with a dash or look like a protocol are no options or addresses.
+std::string FileWord(const std::string& path) { return "file:" + path; }
+
+}  // namespace
+
+void RequireEncoder(const std::string& who) {
+  if (OnPath(kEncoder)) return;
+  throw BadInput(fmt::format(
+      "{} needs the program {}, which is not on PATH: install the package ffmpeg.", who, kEncoder));
+}
+
+VideoEncoder::VideoEncoder(const std::string& path, int width, int height, int rate_hz)
+    : words_(std::tmpfile()) {
+  if (words_ == nullptr) throw std::runtime_error("no temporary file could be made");
+  std::array<int, 2> ends;
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    throw std::runtime_error("no socket could be made");
+  }
+  to_child_ = ends[0];
+  const std::string size = fmt::format("{}x{}", width, height);
+  const std::string rate = std::to_string(rate_hz);
+  const std::string file = FileWord(path);
+  const std::vector<const char*> words = {
+      kEncoder, "-nostdin", "-y", "-loglevel", "error",
+      // What comes in.
+      "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size.c_str(), "-framerate",
+      rate.c_str(), "-i", "pipe:0",
+      // What comes out: plays everywhere, begins before it is wholly loaded, names no encoder's version.
+      "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-fflags",
+      "+bitexact", "-movflags", "+faststart", "-f", "mp4", file.c_str(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(words_.get()), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(words_.get()), STDERR_FILENO);
+  const int failed = posix_spawnp(&child_, kEncoder, &actions, nullptr,
+                                  const_cast<char* const*>(words.data()), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (failed != 0) {
+    close(to_child_);
+    throw std::runtime_error(
+        fmt::format("{} could not be started ({})", kEncoder, std::strerror(failed)));
+  }
+}
+
+VideoEncoder::~VideoEncoder() { Wait(); }
+
+int VideoEncoder::Wait() noexcept {
+  if (to_child_ >= 0) close(std::exchange(to_child_, -1));
+  int status = 0;
+  if (child_ > 0) {
+    while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+    }
+    child_ = -1;
+  }
+  return status;
+}
+
+void VideoEncoder::Add(const std::vector<std::uint8_t>& rgb) {
+  for (std::size_t sent = 0; sent < rgb.size();) {
+    const ssize_t count = send(to_child_, rgb.data() + sent, rgb.size() - sent, MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) Fail();
+    sent += static_cast<std::size_t>(count);
+  }
+}
+
+void VideoEncoder::Finish() {
+  const int status = Wait();
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) Fail();
+}
+
+void VideoEncoder::Fail() {
+  Wait();
+  std::rewind(words_.get());
+  std::array<char, 512> line;
+  std::string last;
+  while (std::fgets(line.data(), static_cast<int>(line.size()), words_.get()) != nullptr) {
+    last = line.data();
+    while (!last.empty() && (last.back() == '\n' || last.back() == '.')) last.pop_back();
+  }
+  throw std::runtime_error(
+      fmt::format("{} failed ({})", kEncoder, last.empty() ? "it gave no reason" : last));
+}
+
+}  // namespace touchdown::evaluation

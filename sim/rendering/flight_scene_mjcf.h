@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "sim/rendering/scene_mjcf.h"
+
+namespace touchdown::sim {
+
+/// The scene of SceneMjcf as people like to see it: with sky, sun and shadows, and with a mocap body "vehicle" that looks
+/// as VehicleLooks says. Throws as both do.
+std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle_mjcf,
+                            const ViewConfig& view);
+
+}  // namespace touchdown::sim
