@@ -119,12 +119,12 @@ TEST(VehicleLooks, OfAVehicleWithoutGeomsForTheEyeThereAreArms) {
       "<geom name='foot0' type='sphere' size='0.01' pos='0 0.1 -0.1'/>"
       "<site name='rotor0' pos='0.2 0 0'/><site name='rotor1' pos='-0.2 0 0'/>"
       "</body></worldbody></mujoco>");
-  EXPECT_THAT(looks, HasSubstr("fromto='0 0 0 0.2 0 0 '"));
-  EXPECT_THAT(looks, HasSubstr("fromto='0 0 0 0 0.1 -0.1 '"));
+  EXPECT_THAT(looks, HasSubstr("type='capsule' size='0.012 0.1 0 ' pos='0.1 0 0 '"));
+  EXPECT_THAT(looks, HasSubstr("pos='0 0.05 -0.05 '"));
   EXPECT_THAT(looks, HasSubstr("type='cylinder' size='0.192 "));
   EXPECT_THAT(
       test::MessageOf<std::invalid_argument>([] { VehicleLooks("<mujoco><worldbody/></mujoco>"); }),
-      HasSubstr("no body named vehicle"));
+      HasSubstr("lacks the body"));
 }
 
 }  // namespace
