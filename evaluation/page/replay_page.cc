@@ -35,10 +35,11 @@ void Put(const std::string& place, const std::string& text, std::string* page) {
 
 std::string PackedFlight(const ShownRecord& record, const Registries& registries,
                          const ReplayProgress& progress) {
-  const nlohmann::ordered_json document =
+  nlohmann::ordered_json document =
       FlightDocument(record.path, record.name, registries, [&](int done, int all) {
         if (progress) progress(record.name, done, all);
       });
+  document["kept"] = record.kept;
   // Names come from files: what is no UTF-8 is shown as such.
   return PackText(document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }

@@ -13,6 +13,7 @@ namespace touchdown::evaluation {
 struct ShownRecord {
   std::string path;
   std::string name;
+  bool kept = true;  ///< it can be asked again under its name
 };
 
 using ReplayProgress = std::function<void(const std::string& name, int done, int all)>;

@@ -212,8 +212,9 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
   if (!arguments.html.empty()) {
     DrawFrom(arguments.record, arguments.html, write,
              [&](const std::string& kept, const std::string& page) {
-               const std::string& name = arguments.record.empty() ? scenario.name : kept;
-               WriteReplayPage(page, {{kept, name}}, registries, TellReplay());
+               const bool stays = !arguments.record.empty();
+               WriteReplayPage(page, {{kept, stays ? kept : scenario.name, stays}}, registries,
+                               TellReplay());
              });
   }
   if (!arguments.video.empty()) {

@@ -111,7 +111,7 @@ export class Panel {
   fillStep(flight, number, chosen) {
     const step = flight.steps[number];
     this.release.hidden = !chosen;
-    this.asked.hidden = !step || !flight.document.kept || !step.stages;
+    this.asked.hidden = !step?.stages;
     if (!step) {
       this.title.textContent = "No step yet";
       this.summary.textContent = this.words.textContent = "";
@@ -125,7 +125,9 @@ export class Panel {
     if (step.work > 0) pieces.push(`${step.work} of ${flight.document.max_work} units of work${step.work >= flight.document.max_work ? " (spent)" : ""}`);
     pieces.push(`${step.wall_ms.toFixed(2)} ms in flight${step.wall_ms > step.latency_ms ? `, later than its latency of ${step.latency_ms} ms` : ""}`);
     this.summary.textContent = pieces.join("; ") + ".";
-    this.command.textContent = `touchdown plan --from ${quoted(flight.document.name)}:${number}`;
+    const { kept, name } = flight.document;
+    this.command.textContent = kept ? `touchdown plan --from ${quoted(name)}:${number}` : "fly it with --record F.db to ask it again";
+    this.copy.hidden = !kept;
     this.words.textContent = step.words ?? "";
   }
 }

@@ -80,6 +80,7 @@ async function slide(page, t) {
 before(async () => {
   assert.ok(program, "TOUCHDOWN_PROGRAM names the program");
   browser = await launch();
+  run("land", "open", "--html", file("unkept.html"), "--set", "timeout=30");
   fly("ours.db", "--html", file("land.html"), "--set", "timeout=5", "--set", "wind.mean=2");
   fly("ego.db", "--planner", "ego", "--set", "timeout=4");
   run("replay", file("ours.db"), "--html", file("one.html"));
@@ -135,6 +136,7 @@ describe("a page of one flight", () => {
     const untimed = (text) => text.split("\n").filter((line) => line && !line.includes("thread CPU time") && !line.startsWith("replanning step"));
     const command = await page.$eval(".command code", (element) => element.textContent);
     assert.equal(command, `touchdown plan --from ${file("ours.db")}:${number}`);
+    assert.ok(await page.$eval(".command", (element) => element.checkVisibility()));
     const asked = run("plan", "--from", `${file("ours.db")}:${number}`);
     assert.deepEqual(untimed(words), untimed(asked));
     assert.ok(untimed(words).length > 8);
@@ -230,6 +232,13 @@ test("`land --html` writes the same page as `replay --html`", async () => {
   await other.close();
 });
 
+test("a flight without a record says how to have one", async () => {
+  const page = await ready("unkept.html");
+  await slide(page, 1);
+  assert.match(await page.$eval(".command", (element) => element.innerText), /^fly it with --record/);
+  await page.close();
+});
+
 test("two flights fly on one clock, each with its own words", async () => {
   const page = await ready("two.html");
   assert.deepEqual(page.said, []);
@@ -242,7 +251,7 @@ test("two flights fly on one clock, each with its own words", async () => {
   await page.select("#which", "1");
   await page.evaluate(() => replay.draw());
   assert.notEqual(await page.$eval("#words", (element) => element.textContent), words);
-  assert.equal(await page.$eval(".command", (element) => element.hidden), true);
+  assert.equal(await page.$eval(".command", (element) => element.checkVisibility()), false);
   await page.close();
 });
 
