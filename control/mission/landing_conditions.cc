@@ -44,8 +44,13 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   const bool seen = in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
   // A bridge is what is foretold in W, and dead reckoning leaves W.
   const bool bridged = in.own_fresh && CanBridge(s, in, p);
-  now.gate_open = now.numbers_valid && own_good && in.pad_available && (seen || bridged);
-  now.may_land = now.gate_open && in.lean <= p.lean_max;
+  now.gate = !now.numbers_valid || !own_good ? Gate::kOwnState
+             : !in.pad_available             ? Gate::kNoPad
+             : seen || bridged               ? (in.lean <= p.lean_max ? Gate::kOpen : Gate::kGust)
+             : in.tag_age > p.gate_tag_age   ? Gate::kTagsUnseen
+                                             : Gate::kPadUncertain;
+  now.may_land = now.gate == Gate::kOpen;
+  now.gate_open = now.may_land || now.gate == Gate::kGust;
   now.in_corridor =
       now.numbers_valid &&
       in.horizontal_distance <= p.corridor_radius + p.corridor_slope * std::max(0.0, in.height);

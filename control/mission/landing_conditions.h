@@ -13,9 +13,10 @@ inline constexpr double kNever = std::numeric_limits<double>::infinity();
 /// The inputs read once: what is usable, and which conditions hold now.
 struct Conditions {
   bool numbers_valid;
-  bool pad_good;   ///< the pad can be planned to
-  bool gate_open;  ///< the pad is known well enough to descend below the gate height
-  bool may_land;   ///< the gate is open, and in the wind felt now the feet would touch first
+  bool pad_good;  ///< the pad can be planned to
+  Gate gate;
+  bool gate_open;  ///< the pad is known well enough to descend below the gate height, gust or not
+  bool may_land;   ///< ... and in the wind felt now the feet would touch first
   bool in_corridor;
   bool in_cone;   ///< of a planned landing: wider, and it opens upwards
   bool touching;  ///< the deck, with some force

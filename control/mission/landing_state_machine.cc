@@ -149,11 +149,12 @@ Guidance GuidanceOf(const MissionState& s, const MissionInputs& in, const Condit
 }
 
 MissionOutputs OutputsOf(const MissionState& s, TransitionReason reason, DescentHold hold,
-                         Guidance guidance) {
+                         Gate gate, Guidance guidance) {
   MissionOutputs out;
   out.mode = s.mode;
   out.reason = reason;
   out.descent_hold = hold;
+  out.gate = gate;
   out.guidance = guidance;
   out.motors_armed = s.mode != MissionMode::kDisarmed;
   out.plan_requested = s.mode == MissionMode::kTracking || s.mode == MissionMode::kLanding ||
@@ -171,7 +172,7 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
   MissionState s = state;
   if (!std::isfinite(inputs.t)) {  // without a time nothing can be decided
     const bool armed = s.mode != MissionMode::kDisarmed;
-    return {s, OutputsOf(s, TransitionReason::kNone, DescentHold::kNone,
+    return {s, OutputsOf(s, TransitionReason::kNone, DescentHold::kNone, Gate::kOwnState,
                          armed ? Guidance::kHoldPosition : Guidance::kIdle)};
   }
   if (!s.started) {
@@ -194,10 +195,13 @@ MissionStep Step(const MissionState& state, const MissionInputs& inputs,
     // An old success must not end a hold that has only begun.
     s.recovered_since = kNever;
   }
-  const DescentHold hold = MoveHeight(inputs, parameters, now, dt, s);
+  DescentHold hold = MoveHeight(inputs, parameters, now, dt, s);
   Commit(inputs, parameters, now, s);
   DecideToWait(inputs, parameters, now, s);
-  return {s, OutputsOf(s, transition.reason, hold, GuidanceOf(s, inputs, now))};
+  if (s.mode == MissionMode::kTracking && Planned(inputs) && s.waits_above) {
+    hold = DescentHold::kAbove;
+  }
+  return {s, OutputsOf(s, transition.reason, hold, now.gate, GuidanceOf(s, inputs, now))};
 }
 
 }  // namespace touchdown::control

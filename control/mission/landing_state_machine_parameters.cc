@@ -25,8 +25,15 @@ std::string_view ToString(TransitionReason reason) {
   return kNames.at(static_cast<std::size_t>(reason));
 }
 
+std::string_view ToString(Gate gate) {
+  static constexpr std::array<std::string_view, 6> kNames = {
+      "open", "own_state", "no_pad", "tags_unseen", "pad_uncertain", "gust"};
+  return kNames.at(static_cast<std::size_t>(gate));
+}
+
 std::string_view ToString(DescentHold hold) {
-  static constexpr std::array<std::string_view, 4> kNames = {"none", "gate", "corridor", "lag"};
+  static constexpr std::array<std::string_view, 5> kNames = {"none", "gate", "corridor", "lag",
+                                                             "above"};
   return kNames.at(static_cast<std::size_t>(hold));
 }
 

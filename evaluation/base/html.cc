@@ -2,6 +2,7 @@
 #include "evaluation/base/html.h"
 
 #include <fstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -43,6 +44,20 @@ std::string Escaped(const std::string& text) {
     }
   }
   return safe;
+}
+
+std::string Address(const std::string& path) {
+  constexpr std::string_view kPlain = "-._~/";
+  std::string address;
+  for (const char c : path) {
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (letter || kPlain.find(c) != kPlain.npos) {
+      address += c;
+    } else {
+      address += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+  }
+  return address;
 }
 
 std::string HtmlPage(const std::string& title, const std::string& body) {

@@ -9,6 +9,9 @@ namespace touchdown::evaluation {
 /// A text with what HTML would take for its own written out.
 std::string Escaped(const std::string& text);
 
+/// A path as an address: what is none of letters, digits and -._~/ written out in percent.
+std::string Address(const std::string& path);
+
 /// A whole page of that title, with the style that our reports have.
 std::string HtmlPage(const std::string& title, const std::string& body);
 

@@ -76,4 +76,19 @@ void CheckPagePath(const std::string& option, const std::string& path) {
   if (fs::path(path).extension() != ".html") Refuse(option, path, "the name must end in .html");
 }
 
+void CheckApart(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::error_code ignored;
+  for (auto one = files.begin(); one != files.end(); ++one) {
+    for (auto other = files.begin(); other != one; ++other) {
+      if (one->second.empty() || other->second.empty()) continue;
+      if (fs::weakly_canonical(one->second, ignored) !=
+          fs::weakly_canonical(other->second, ignored)) {
+        continue;
+      }
+      throw BadInput(
+          fmt::format("{} and {} are the same file, {}.", other->first, one->first, one->second));
+    }
+  }
+}
+
 }  // namespace touchdown::evaluation

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace touchdown::evaluation {
 
@@ -18,5 +20,9 @@ void CheckPicturePath(const std::string& option, const std::string& path);
 
 /// The same for a page, whose name ends in .html. @throws BadInput
 void CheckPagePath(const std::string& option, const std::string& path);
+
+/// What a command writes or reads, by the option that names it; empty paths are none. @throws BadInput naming two that are the
+/// same file.
+void CheckApart(const std::vector<std::pair<std::string, std::string>>& files);
 
 }  // namespace touchdown::evaluation

@@ -10,42 +10,71 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/build_info.h"
+#include "evaluation/base/html.h"
 #include "evaluation/base/progress.h"
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/base/work_sharing.h"
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/page/replay_page.h"
 #include "evaluation/record/record.h"
+#include "evaluation/scenario/scenario_world.h"
 
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kRecordLimit = 600.0;  // wall time of a flight [s]
+namespace fs = std::filesystem;
 
-// Whether the file is a record of this trial, flown by the build of this hash.
+constexpr double kPageTime = 600.0;  // wall time in which a page is made of a record [s]
+
+// Whether the file is a record of this trial, flown by the build of this hash, with the files outside that there are now.
 bool IsRecordOf(const std::string& path, const SweepTrial& trial, const std::string& build_hash) {
-  if (!std::filesystem::exists(path)) return false;
+  if (!fs::exists(path)) return false;
   try {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
     SqliteStatement rows = db.Prepare("SELECT key, value FROM meta");
     Manifest meta;
     while (rows.Step()) meta[rows.Text(0)] = rows.Text(1);
+    const OutsideFiles outside = OutsideFilesOf(trial.scenario);
     return meta["build_hash"] == build_hash && meta["seed"] == std::to_string(trial.seed) &&
-           meta["scenario_yaml"] == DumpScenario(trial.scenario);
+           meta["scenario_yaml"] == DumpScenario(trial.scenario) &&
+           meta["pad_waypoints"] == outside.pad_waypoints &&
+           meta["vehicle_hash"] == outside.vehicle_hash && meta["world_hash"] == outside.world_hash;
   } catch (const SqliteError&) {
     return false;
   }
 }
 
-// Why there is no record, or no page; empty: they are there.
+std::string RecordPath(const RecordedTrial& flight) { return flight.path + ".db"; }
+std::string PagePath(const RecordedTrial& flight) { return flight.path + ".html"; }
+
+// The page is written after the record: one that is there is of it.
+bool IsThere(const RecordedTrial& flight, const std::string& build_hash) {
+  return fs::exists(PagePath(flight)) && IsRecordOf(RecordPath(flight), *flight.trial, build_hash);
+}
+
+// What there is of it, also what a worker left that was stopped.
+void Remove(const RecordedTrial& flight) {
+  const fs::path path(flight.path);
+  const std::string name = path.filename().string();
+  for (const auto& entry :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".")) {
+    const std::string other = entry.path().filename().string();
+    if (other.starts_with(name + ".db") || other.starts_with(name + ".html"))
+      fs::remove(entry.path());
+  }
+}
+
+// What is wrong; empty: nothing.
 std::string Record(const RecordedTrial& flight, const Registries& registries) {
   try {
     TrialRecord record;
-    const std::string db = flight.path + ".db";
     const Scenario& scenario = flight.trial->scenario;
     const TrialResult result = RunTrial(scenario, flight.trial->seed, registries, &record);
-    WriteRecord(db, scenario, result, record);
-    WriteReplayPage(flight.path + ".html", {{db, db}}, registries, {});
+    WriteRecord(RecordPath(flight), scenario, result, record);
+    WriteReplayPage(PagePath(flight), {{RecordPath(flight), RecordPath(flight)}}, registries, {});
+    if (flight.flown != nullptr && flight.flown->outcome != result.outcome) {
+      return fmt::format("it ended otherwise this time, by {}", ToString(result.outcome));
+    }
     return "";
   } catch (const std::exception& error) {
     return error.what();
@@ -54,37 +83,43 @@ std::string Record(const RecordedTrial& flight, const Registries& registries) {
 
 }  // namespace
 
-void RecordTrials(const std::vector<RecordedTrial>& trials, int jobs,
-                  const Registries& registries) {
+std::vector<RecordedTrial> RecordTrials(const std::vector<RecordedTrial>& trials,
+                                        const CampaignOptions& options,
+                                        const Registries& registries) {
   std::vector<RecordedTrial> together, alone;
   const std::string build_hash = BuildHash();
   for (const RecordedTrial& flight : trials) {
-    if (IsRecordOf(flight.path + ".db", *flight.trial, build_hash) &&
-        std::filesystem::exists(flight.path + ".html")) {
-      continue;
-    }
+    if (IsThere(flight, build_hash)) continue;
+    Remove(flight);
     (flight.trial->FliesAlone() ? alone : together).push_back(flight);
   }
   Progress progress({.things = "recorded flights"});
   const int all = static_cast<int>(together.size() + alone.size());
+  const double limit_s = options.trial_limit_s + kPageTime;
   int done = 0;
   const auto record = [&](const std::vector<RecordedTrial>& flights, int at_a_time) {
     const auto fly = [&](int i) {
       return Record(flights[static_cast<std::size_t>(i)], registries);
     };
     const auto take = [&](const WorkerReply& reply) {
-      const std::string& path = flights[static_cast<std::size_t>(reply.item)].path;
+      const RecordedTrial& flight = flights[static_cast<std::size_t>(reply.item)];
       if (reply.end == WorkerReply::End::kTimedOut) {
-        spdlog::warn("{}: not recorded within {} s", path, kRecordLimit);
+        spdlog::warn("{}: not recorded within {} s", flight.path, limit_s);
+        Remove(flight);
       } else if (!reply.text.empty()) {
-        spdlog::warn("{}: not recorded: {}", path, reply.text);
+        spdlog::warn("{}: {}", flight.path, reply.text);
       }
       progress(++done, all);
     };
-    ShareAll(static_cast<int>(flights.size()), at_a_time, fly, kRecordLimit, take);
+    ShareAll(static_cast<int>(flights.size()), at_a_time, fly, limit_s, take);
   };
-  record(together, jobs);
+  record(together, options.jobs);
   record(alone, 1);
+  std::vector<RecordedTrial> there;
+  for (const RecordedTrial& flight : trials) {
+    if (IsThere(flight, build_hash)) there.push_back(flight);
+  }
+  return there;
 }
 
 Recorded RecordedNamed(const std::string& name) {
@@ -105,8 +140,8 @@ std::vector<const SweepRow*> ToRecord(const std::vector<SweepRow>& rows, Recorde
 }
 
 std::map<int, std::string> RecordFlown(const std::string& page, const std::vector<SweepRow>& rows,
-                                       Recorded which, int jobs, const Registries& registries) {
-  namespace fs = std::filesystem;
+                                       Recorded which, const CampaignOptions& options,
+                                       const Registries& registries) {
   std::map<int, std::string> pages;
   if (which == Recorded::kNone) return pages;
   const fs::path folder = fs::path(page).replace_extension().concat("_flights");
@@ -115,16 +150,17 @@ std::map<int, std::string> RecordFlown(const std::string& page, const std::vecto
   if (error) throw BadInput(fmt::format("{}: {}.", folder.string(), error.message()));
   std::vector<RecordedTrial> trials;
   for (const SweepRow* row : ToRecord(rows, which)) {
-    trials.push_back({&row->trial, (folder / std::to_string(row->trial.index)).string()});
+    trials.push_back(
+        {&row->trial, &row->result, (folder / std::to_string(row->trial.index)).string()});
   }
-  RecordTrials(trials, jobs, registries);
-  for (const SweepRow* row : ToRecord(rows, which)) {
-    const fs::path shown = folder / fmt::format("{}.html", row->trial.index);
-    if (!fs::exists(shown)) continue;
+  for (const RecordedTrial& flight : RecordTrials(trials, options, registries)) {
+    const std::string shown =
+        fmt::format("{}/{}.html", folder.filename().string(), flight.trial->index);
     // Where a flight failed its page opens at that moment.
-    pages[row->trial.index] = fmt::format(
-        "{}/{}{}", folder.filename().string(), shown.filename().string(),
-        row->result.succeeded() ? "" : fmt::format("#t={:.2f}", row->result.simulated_s));
+    pages[flight.trial->index] =
+        Address(shown) + (flight.flown->succeeded()
+                              ? std::string()
+                              : fmt::format("#t={:.2f}", flight.flown->simulated_s));
   }
   return pages;
 }

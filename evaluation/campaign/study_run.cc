@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -55,18 +56,22 @@ void WritePlan(const StudyPlan& plan, const std::string& folder, const Json& fli
 
 // Of each part that is to be recorded the first trial, and others that are asked for.
 void Record(const StudyPlan& plan, const std::string& folder, const std::vector<SweepRow>& rows,
-            Recorded which, int jobs, const Registries& registries) {
+            Recorded which, const CampaignOptions& options, const Registries& registries) {
   std::vector<RecordedTrial> trials;
+  std::set<int> firsts;
   for (const StudyPart& part : plan.parts) {
     if (!plan.Records(part) || part.trials == 0) continue;
-    trials.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)),
+    firsts.insert(part.first);
+    trials.push_back({&plan.campaign.trials.at(static_cast<std::size_t>(part.first)), nullptr,
                       fmt::format("{}/records/{}-{}", folder, plan.CellOf(part).name,
                                   plan.MethodOf(part).name)});
   }
   for (const SweepRow* row : ToRecord(rows, which)) {
-    trials.push_back({&row->trial, fmt::format("{}/records/trial_{}", folder, row->trial.index)});
+    if (firsts.contains(row->trial.index)) continue;
+    trials.push_back(
+        {&row->trial, &row->result, fmt::format("{}/records/trial_{}", folder, row->trial.index)});
   }
-  RecordTrials(trials, jobs, registries);
+  RecordTrials(trials, options, registries);
 }
 
 }  // namespace
@@ -101,7 +106,7 @@ CampaignResult FlyStudy(const StudyPlan& plan, const std::string& folder, Campai
     WritePlan(plan, folder, flights);
   }
   if (result.state.flown == result.state.all) {
-    Record(plan, folder, result.rows, which, options.jobs, registries);
+    Record(plan, folder, result.rows, which, options, registries);
   }
   return result;
 }

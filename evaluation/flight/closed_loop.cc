@@ -176,6 +176,10 @@ class Trial {
            fmt::format("{} ({})", control::ToString(mission.mode),
                        control::ToString(mission.reason)));
     }
+    if (status.mission_step && mission.gate != gate_) {
+      gate_ = mission.gate;
+      Note(t, "gate", std::string(control::ToString(gate_)));
+    }
     if (status.mission_step && mission.descent_hold != descent_hold_) {
       descent_hold_ = mission.descent_hold;
       Note(t, "descent", std::string(control::ToString(descent_hold_)));
@@ -422,6 +426,7 @@ class Trial {
   Metrics metrics_;
   estimation::OwnStatus own_status_ = estimation::OwnStatus::kGood;
   control::DescentHold descent_hold_ = control::DescentHold::kNone;
+  control::Gate gate_ = control::Gate::kNoPad;
   SlidingMean through_air_;
   estimation::SampleClock sample_clock_;
   TrialRecord* record_;

@@ -34,7 +34,7 @@ struct RecordSample {
 
 struct RecordEvent {
   double t = 0.0;
-  std::string kind;  ///< "mode", "descent", "own_state", "contact", "outcome"
+  std::string kind;  ///< "mode", "gate", "descent", "own_state", "contact", "outcome"
   std::string text;
 };
 

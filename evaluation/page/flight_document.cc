@@ -62,9 +62,9 @@ Json FlightDocument(const std::string& record, const std::string& name,
                  {"planner", flight.scenario.planner},
                  {"backend", flight.scenario.solver_name()},
                  {"seed", flight.scenario.seed},
-                 {"task", ToString(flight.scenario.task)},
                  {"max_work", flight.scenario.planning.max_work}};
     json.update(FlightTables(db));
+    json["goal"] = GoalDocument(flight.scenario);
     json["vehicle"] = VehicleDocument(flight.scenario);
     json["pad"] = PadDocument(flight.scenario);
     json["map"] = MapDocument(flight);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -44,20 +45,15 @@ Json RecordedStep(const RecordPlan& plan) {
                {"t_start", Rounded(input.t_start, kMilli)},
                {"status", planning::ToString(result.status)},
                {"reason", planning::ToString(result.reason)},
-               {"wants", plan.request.rest_climb    ? "rest"
-                         : input.endpoint.touches() ? "contact"
-                                                    : "above"},
                {"curve", CurveOf(result.curve)},
                {"guides", PathsOf(result.guide_paths)},
-               {"passed", c.passed()},
                {"earlier", c.earlier},
                {"clearance", Rounded(c.clearance, kMilli)},
                {"solves", result.solves},
                {"iterations", result.iterations},
                {"work", result.work},
                {"latency_ms", Rounded(1e3 * plan.latency_s, 2)},
-               {"wall_ms", Rounded(1e3 * plan.wall_s, kMilli)},
-               {"cpu_ms", Rounded(1e3 * plan.cpu_s, kMilli)}};
+               {"wall_ms", Rounded(1e3 * plan.wall_s, kMilli)}};
   return json;
 }
 
@@ -184,6 +180,10 @@ Json MapDocument(const RecordedFlight& flight) {
     const MapChange& change = plan.map_change;
     Json runs = Json::array();
     for (const MapRun& run : change.runs) {
+      const planning::CellIndex from = run.cell - change.origin, left = flight.map_size - from;
+      if (from.minCoeff() < 0 || left.minCoeff() <= 0 || left.x() < run.count) {
+        throw std::invalid_argument("its table map_change has cells outside of the map's window");
+      }
       for (const int x : {run.cell.x(), run.cell.y(), run.cell.z(), run.count}) runs.push_back(x);
       runs.push_back(static_cast<int>(run.state));
     }

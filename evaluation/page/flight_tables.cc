@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/page/flight_tables.h"
 
+#include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,6 +23,7 @@ using Json = nlohmann::ordered_json;
 struct Column {
   const char* name;
   int decimals;
+  bool may_lack = false;
 };
 using Columns = std::vector<Column>;
 
@@ -31,9 +36,10 @@ const Columns kDeck = {{"yaw", kTurn},
                        {"cov_xx", kSquareMetres},
                        {"cov_xy", kSquareMetres},
                        {"cov_yy", kSquareMetres}};
-const Columns kThrusts = {{"thrust0", kNewtons}, {"thrust1", kNewtons}, {"thrust2", kNewtons},
-                          {"thrust3", kNewtons}, {"thrust4", kNewtons}, {"thrust5", kNewtons},
-                          {"thrust6", kNewtons}, {"thrust7", kNewtons}};
+const Columns kThrusts = {{"thrust0", kNewtons, true}, {"thrust1", kNewtons, true},
+                          {"thrust2", kNewtons, true}, {"thrust3", kNewtons, true},
+                          {"thrust4", kNewtons, true}, {"thrust5", kNewtons, true},
+                          {"thrust6", kNewtons, true}, {"thrust7", kNewtons, true}};
 
 // Rows in the order in which they were written, as one array a column.
 Json Table(SqliteDb& db, const std::string& from, const std::vector<Columns>& groups) {
@@ -50,6 +56,9 @@ Json Table(SqliteDb& db, const std::string& from, const std::vector<Columns>& gr
   while (rows.Step()) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const int at = static_cast<int>(i);
+      if (rows.IsNull(at) && !columns[i].may_lack) {
+        throw std::invalid_argument(fmt::format("a row of {} lacks {}", from, columns[i].name));
+      }
       arrays[i].push_back(rows.IsNull(at) ? Json() : Rounded(rows.Real(at), columns[i].decimals));
     }
   }
@@ -71,6 +80,24 @@ Json Modes(SqliteDb& db) {
   return {{"names", names}, {"of", of}};
 }
 
+// All of them are taken at the same times.
+void CheckSamples(const Json& samples) {
+  const std::size_t count = samples["vehicle"]["t"].size();
+  if (count == 0) throw std::invalid_argument("it holds no states");
+  const std::pair<const char*, const char*> columns[] = {{"believed", "t"},  {"pad", "t"},
+                                                         {"reference", "t"}, {"rotor", "thrust0"},
+                                                         {"air", "vx"},      {"mode", "of"}};
+  for (const auto& [table, column] : columns) {
+    const std::size_t rows = samples[table][column].size();
+    if (rows == count) continue;
+    throw std::invalid_argument(
+        fmt::format("it holds {} states of the vehicle and {} of {}", count, rows, table));
+  }
+  if (samples["pad_believed"]["t"].size() > count) {
+    throw std::invalid_argument("it holds more estimates of the pad than states");
+  }
+}
+
 Json Events(SqliteDb& db) {
   SqliteStatement rows = db.Prepare("SELECT t, kind, text FROM event ORDER BY rowid");
   Json events = Json::array();
@@ -79,6 +106,13 @@ Json Events(SqliteDb& db) {
         {{"t", Rounded(rows.Real(0), 3)}, {"kind", rows.Text(1)}, {"text", rows.Text(2)}});
   }
   return events;
+}
+
+std::string OneOfWords(const std::string& word, std::initializer_list<std::string_view> words,
+                       const char* table) {
+  if (std::find(words.begin(), words.end(), word) != words.end()) return word;
+  throw std::invalid_argument(
+      fmt::format("its table {} holds the unknown word \"{}\"", table, word));
 }
 
 // Little-endian, as this machine is.
@@ -119,13 +153,18 @@ Json Obstacles(SqliteDb& db) {
   Json obstacles = Json::array();
   while (rows.Step()) {
     const auto number = [&rows](int column) { return Rounded(rows.Real(column), kMilli); };
-    Json obstacle = {{"key", rows.Text(1)},
-                     {"kind", rows.Text(2)},
-                     {"centre", {number(3), number(4), number(5)}},
-                     {"size", {number(6), number(7), number(8)}},
-                     {"yaw", Rounded(rows.Real(9), kTurn)}};
+    Json obstacle = {
+        {"key", rows.Text(1)},
+        {"kind", OneOfWords(rows.Text(2), {"box", "cylinder", "sphere", "mesh"}, "obstacle")},
+        {"centre", {number(3), number(4), number(5)}},
+        {"size", {number(6), number(7), number(8)}},
+        {"yaw", Rounded(rows.Real(9), kTurn)}};
     const auto surface = surfaces.find(std::to_string(rows.Integer(0)));
-    if (surface != surfaces.end()) obstacle["surface"] = *surface;
+    if (surface != surfaces.end()) {
+      obstacle["surface"] = *surface;
+    } else if (obstacle["kind"] == "mesh") {
+      throw std::invalid_argument("its table surface lacks a mesh");
+    }
     obstacles.push_back(std::move(obstacle));
   }
   return obstacles;
@@ -138,7 +177,7 @@ Json Zones(SqliteDb& db) {
   while (rows.Step()) {
     const auto number = [&rows](int column) { return Rounded(rows.Real(column), kMilli); };
     zones.push_back({{"term", rows.Text(0)},
-                     {"shape", rows.Text(1)},
+                     {"shape", OneOfWords(rows.Text(1), {"sphere", "box", "cylinder"}, "zone")},
                      {"centre", {number(2), number(3), number(4)}},
                      {"size", {number(5), number(6), number(7)}}});
   }
@@ -148,7 +187,10 @@ Json Zones(SqliteDb& db) {
 Json Prior(SqliteDb& db) {
   SqliteStatement rows = db.Prepare("SELECT state, cubes FROM prior");
   Json prior = Json::object();
-  while (rows.Step()) prior[rows.Text(0)] = Values<std::int32_t>(rows.Text(1), "prior", 4);
+  while (rows.Step()) {
+    const std::string state = OneOfWords(rows.Text(0), {"occupied", "gone", "new"}, "prior");
+    prior[state] = Values<std::int32_t>(rows.Text(1), "prior", 4);
+  }
   return prior;
 }
 
@@ -165,20 +207,26 @@ Json FlightTables(SqliteDb& db) {
   Json json;
   json["scenario_yaml"] = MetaText(db, "scenario_yaml");
   json["result"] = Json::parse(MetaText(db, "result_json"), nullptr, false);
-  if (!json["result"].is_object()) throw std::invalid_argument("its result_json is no document");
+  const Json& result = json["result"];
+  if (!result.is_object() || !result.contains("outcome") || !result["outcome"].is_string() ||
+      !result.contains("detail") || !result["detail"].is_string() ||
+      !result.contains("simulated_s") || !result["simulated_s"].is_number()) {
+    throw std::invalid_argument("its result_json is no document of a flight");
+  }
   Json& build = json["build"];
-  for (const char* key : {"touchdown_version", "revision", "build_type", "cpu"}) {
+  for (const char* key : {"touchdown_version", "revision", "build_type"}) {
     build[key] = MetaText(db, key);
   }
   Json& samples = json["samples"];
   samples["vehicle"] = Table(db, "vehicle WHERE source = 'true'", {kPlace, kVelocity, kAttitude});
   samples["believed"] = Table(db, "vehicle WHERE source = 'estimate'", {kPlace});
   samples["pad"] = Table(db, "pad WHERE source = 'true'", {kPlace, kVelocity, kDeck});
-  samples["pad_believed"] = Table(db, "pad WHERE source = 'estimate'", {kPlace, kVelocity, kDeck});
-  samples["reference"] = Table(db, "reference", {kPlace, kVelocity});
+  samples["pad_believed"] = Table(db, "pad WHERE source = 'estimate'", {kPlace, kDeck});
+  samples["reference"] = Table(db, "reference", {kPlace});
   samples["rotor"] = Table(db, "rotor", {kThrusts});
   samples["air"] = Table(db, "air", {kVelocity});
   samples["mode"] = Modes(db);
+  CheckSamples(samples);
   json["events"] = Events(db);
   json["obstacles"] = Obstacles(db);
   json["zones"] = Zones(db);

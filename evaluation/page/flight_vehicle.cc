@@ -118,6 +118,12 @@ Json VehicleDocument(const Scenario& scenario) {
   return json;
 }
 
+Json GoalDocument(const Scenario& scenario) {
+  if (scenario.task != TaskKind::kGoTo) return nullptr;
+  const estimation::PadState goal = GoalOf(scenario).At(0.0);
+  return {{"p", Numbers(goal.p_WP)}, {"v", Numbers(goal.v_WP)}};
+}
+
 Json PadDocument(const Scenario& scenario) {
   const sim::PadGeometry pad = PadGeometryOf(scenario);
   return {
@@ -128,6 +134,7 @@ Json PadDocument(const Scenario& scenario) {
       // Returns from the deck, grown by so many sigmas of its place, are no obstacles; past `sure` they are in doubt.
       {"sigmas", planning::PadOutline::kSigmas},
       {"sure", planning::PadOutline::kSure},
+      {"plate_from", Rounded(sim::PlateEdge(scenario.camera.occlusion), kMilli)},
       {"sheet", SheetJson()}};
 }
 

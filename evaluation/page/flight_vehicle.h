@@ -8,10 +8,13 @@
 namespace touchdown::evaluation {
 
 /// The vehicle of a scenario for a replay's document: `shapes` as they are to be seen, `rotors`, `cameras` with their
-/// frusta, `hull`. @throws std::invalid_argument naming its file.
+/// frusta. @throws std::invalid_argument naming its file.
 nlohmann::ordered_json VehicleDocument(const Scenario& scenario);
 
-/// The pad: the deck, the body below it, and the printed sheet as runs of white and black texels, row by row from the top.
+/// Where a flight of the task go_to leads: `p` at t = 0 and `v`, in W; null of other tasks.
+nlohmann::ordered_json GoalDocument(const Scenario& scenario);
+
+/// The pad: the deck, the body below it, from where on a plate covers the printed sheet, and the sheet as runs of white and black texels, row by row from the top.
 nlohmann::ordered_json PadDocument(const Scenario& scenario);
 
 }  // namespace touchdown::evaluation

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
+#include "evaluation/base/output_path.h"
 #include "evaluation/page/flight_document.h"
 #include "evaluation/page/packed_text.h"
 #include "touchdown/evaluation/base/shipped_files.h"
@@ -45,6 +46,12 @@ std::string PackedFlight(const ShownRecord& record, const Registries& registries
 }
 
 }  // namespace
+
+void CheckReplayPage(const std::string& option, const std::string& path) {
+  CheckPagePath(option, path);
+  for (const char* part : {"replay.html", "replay.css", "replay.js", "LICENCES.txt"})
+    PagePart(part);
+}
 
 void WriteReplayPage(const std::string& path, const std::vector<ShownRecord>& records,
                      const Registries& registries, const ReplayProgress& progress) {

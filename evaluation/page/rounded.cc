@@ -11,8 +11,7 @@ Json Rounded(double x, int decimals) {
   if (!std::isfinite(x)) return nullptr;
   const double scale = std::pow(10.0, decimals);
   const double scaled = std::round(x * scale);
-  // Whole numbers are written without a point.
-  if (decimals == 0 || scaled == 0.0) return static_cast<std::int64_t>(scaled);
+  if (scaled == 0.0) return 0;  // also for a negative one, and short
   return scaled / scale;
 }
 

@@ -177,15 +177,14 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
 }
 
 void CheckFlightOutputs(const FlyArguments& arguments) {
-  if (!arguments.record.empty() && arguments.record == arguments.plot) {
-    throw BadInput(fmt::format("--record and --plot are the same file, {}.", arguments.record));
-  }
-  if (!arguments.record.empty() && arguments.record == arguments.video) {
-    throw BadInput(fmt::format("--record and --video are the same file, {}.", arguments.record));
-  }
+  CheckApart({{"--record", arguments.record},
+              {"--plot", arguments.plot},
+              {"--html", arguments.html},
+              {"--video", arguments.video},
+              {"--save-map", arguments.save_map}});
   if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
-  if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
+  if (!arguments.html.empty()) CheckReplayPage("--html", arguments.html);
   if (!arguments.video.empty()) CheckVideo("--video", arguments.video);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }

@@ -30,13 +30,12 @@ void CheckReplay(const ReplayArguments& arguments) {
   if (arguments.html.empty() && !arguments.beside.empty()) {
     throw BadInput("--beside: two flights are shown by a page, so it needs --html.");
   }
-  if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
+  CheckApart(
+      {{"RECORD", arguments.record}, {"--html", arguments.html}, {"--video", arguments.video}});
+  CheckApart(
+      {{"--beside", arguments.beside}, {"--html", arguments.html}, {"--video", arguments.video}});
+  if (!arguments.html.empty()) CheckReplayPage("--html", arguments.html);
   if (!arguments.video.empty()) CheckVideo("--video", arguments.video);
-  for (const std::string& made : {arguments.html, arguments.video}) {
-    if (!made.empty() && (made == arguments.record || made == arguments.beside)) {
-      throw BadInput(fmt::format("{}: that is the record.", made));
-    }
-  }
 }
 
 int RunReplay(const ReplayArguments& arguments, const Registries& registries) {

@@ -112,7 +112,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
   if (arguments.only) result.rows.front().trial.index = *arguments.only;
   if (!arguments.html.empty()) {
     const auto flights = RecordFlown(arguments.html, result.rows, RecordedNamed(arguments.record),
-                                     arguments.jobs, registries);
+                                     flight, registries);
     WriteHtml("--html", arguments.html,
               HostilePage(arguments.options, result.rows, flights, registries));
   }

@@ -84,11 +84,15 @@ int Run(const StudyRunArguments& arguments, const Registries& registries) {
   const std::string folder = arguments.out.empty() ? "study_" + file.name : arguments.out;
   if (arguments.report_only) {
     if (arguments.retry) throw BadInput("--retry has no effect with --report-only.");
+    if (arguments.record != "none") throw BadInput("--record has no effect with --report-only.");
     if (std::filesystem::exists(StudyTablePath(folder))) return Tell(arguments, folder, true);
     throw BadInput(fmt::format("--report-only: {} is missing; the study must be flown first.",
                                StudyTablePath(folder)));
   }
   const Shard shard = Shard::Parse(arguments.shard);
+  if (arguments.record != "none" && shard.of > 1) {
+    throw BadInput("--record has no effect with --shard: flights are recorded when all are flown.");
+  }
   const std::uint64_t seed = arguments.seed.empty() ? file.seed : std::stoull(arguments.seed);
   const StudyPlan plan = PlanStudy(file, arguments.selection, seed, registries);
   const bool alone = !LaunchedAsOneOfSeveral();

@@ -105,7 +105,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
   if (!arguments.picture.empty()) DrawFrom(arguments.db, arguments.picture, write, DrawSweep);
   if (!arguments.html.empty()) {
     const auto flights = RecordFlown(arguments.html, result.rows, RecordedNamed(arguments.record),
-                                     arguments.jobs, registries);
+                                     flight, registries);
     WriteHtml("--html", arguments.html, SweepPage(campaign, result.rows, flights));
   }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),

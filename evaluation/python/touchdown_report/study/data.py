@@ -2,6 +2,7 @@
 """Reading a study's folder: study.json (the plan) and study.db (every trial)."""
 import json
 import os
+import urllib.parse
 
 import pandas as pd
 
@@ -101,7 +102,9 @@ class Study:
     def page_link(self, name):
         """What links to the page that shows a recorded flight; '' where there is none."""
         page = f"records/{name}.html"
-        return f"[look at it]({page})" if os.path.exists(os.path.join(self.folder, page)) else ""
+        if not os.path.exists(os.path.join(self.folder, page)):
+            return ""
+        return f"[look at it]({urllib.parse.quote(page)})"
 
     def record_path(self, cell, method):
         """The recorded flight of the first trial, or None."""

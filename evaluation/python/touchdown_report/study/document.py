@@ -3,6 +3,7 @@
 pictures inside."""
 import base64
 import html
+import itertools
 import os
 import re
 
@@ -22,10 +23,15 @@ NUMBER = re.compile(r"^[-+<]?\s?[\d.]+(e-?\d+)?( ?%)?$")
 
 def _inline(text):
     """HTML of a line with `code`, **bold** and [links](to/a/file)."""
-    text = html.escape(text, quote=False)
-    text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
-    text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
-    return re.sub(r"\[([^]]+)\]\(([^)]+)\)", r'<a href="\2">\1</a>', text)
+    return "".join(
+        f"<code>{html.escape(piece, quote=False)}</code>" if code else _prose(piece)
+        for piece, code in zip(text.split("`"), itertools.cycle([False, True]))
+    )
+
+
+def _prose(text):
+    text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", html.escape(text, quote=False))
+    return re.sub(r'\[([^]]+)\]\(([^)"]+)\)', r'<a href="\2">\1</a>', text)
 
 
 def _anchor(title):

@@ -168,10 +168,17 @@ def _recorded(study, document):
         for method in study.methods()
     ]
     rows = [row for row in rows if row[2]]
-    if rows:
-        document.heading(2, "Flights to look at")
-        document.text("The first trial of these, each in a page of its own, beside its record in `records/`.")
-        document.table(["cell", "method", "flight"], rows)
+    if not rows:
+        return
+    document.heading(2, "Flights to look at")
+    document.text("The first trial of these, each in a page of its own, beside its record in `records/`.")
+    document.table(["cell", "method", "flight"], rows)
+    others = [
+        [str(trial.trial), study.cell_title(trial.cell), study.method_title(trial.method), trial.outcome, link]
+        for trial in study.trials.itertuples()
+        if (link := study.page_link(f"trial_{trial.trial}"))
+    ]
+    document.table(["trial", "cell", "method", "outcome", "flight"], others)
 
 
 def _how(study, document):

@@ -106,8 +106,19 @@ enum class TransitionReason {
 };
 std::string_view ToString(TransitionReason reason);
 
-/// Why the descent pauses; kNone while it goes on.
-enum class DescentHold { kNone, kGate, kCorridor, kLag };
+/// Whether the gate is open, and if not, why.
+enum class Gate {
+  kOpen,
+  kOwnState,      ///< the own state is not usable, or something is not a number
+  kNoPad,         ///< the pad was not found yet
+  kTagsUnseen,    ///< its tags are not seen, and the rest of the way is too long for that
+  kPadUncertain,  ///< it is not known well enough
+  kGust,          ///< all is known, but the vehicle leans too far in the wind
+};
+std::string_view ToString(Gate gate);
+
+/// Why the descent pauses; kNone while it goes on. kAbove: a planned one waits above the pad for the gate.
+enum class DescentHold { kNone, kGate, kCorridor, kLag, kAbove };
 std::string_view ToString(DescentHold hold);
 
 /// What the vehicle shall do.
@@ -253,6 +264,7 @@ struct MissionOutputs {
   MissionMode mode = MissionMode::kHovering;
   TransitionReason reason = TransitionReason::kNone;  ///< of the transition in this step
   DescentHold descent_hold = DescentHold::kNone;
+  Gate gate = Gate::kNoPad;
   Guidance guidance = Guidance::kHoldPosition;
   bool motors_armed = true;
   bool plan_requested = false;  ///< planning to the pad makes sense now
