@@ -19,6 +19,7 @@ TEST(LandingGate, GateHoldsAboveOneMetre) {
     mission.Run(2.5);
     EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding);
     EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate);
+    EXPECT_EQ(mission.outputs.gate, cause == 0 ? Gate::kPadUncertain : Gate::kTagsUnseen);
     EXPECT_NEAR(mission.outputs.foot_height, mission.parameters.gate_height, 1e-3);
     EXPECT_GE(mission.outputs.foot_height, mission.parameters.gate_height - 1e-9);
     mission.in.pad_sigma = 0.05;
@@ -37,10 +38,12 @@ TEST(LandingGate, AGustIsWaitedOutAtTheHeightOfTheGateOrBelow) {
     mission.Run(mission.parameters.gate_timeout + 2.0);
     EXPECT_EQ(mission.outputs.mode, MissionMode::kLanding) << begins;
     EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kGate) << begins;
+    EXPECT_EQ(mission.outputs.gate, Gate::kGust) << begins;
     EXPECT_GT(mission.outputs.foot_height, std::min(begins, mission.parameters.gate_height) - 0.1);
     mission.in.lean = mission.parameters.lean_max - 0.1;
     mission.Run(1.0);
     EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kNone) << begins;
+    EXPECT_EQ(mission.outputs.gate, Gate::kOpen) << begins;
   }
 }
 

@@ -453,6 +453,8 @@ TEST(LandingStateMachine, NamesAndParametersAreChecked) {
   EXPECT_EQ(ToString(TransitionReason::kEmergencyCleared), "emergency_cleared");
   EXPECT_EQ(ToString(TransitionReason::kNoContact), "no_contact");
   EXPECT_EQ(ToString(DescentHold::kCorridor), "corridor");
+  EXPECT_EQ(ToString(DescentHold::kAbove), "above");
+  EXPECT_EQ(ToString(Gate::kGust), "gust");
   EXPECT_EQ(ToString(Guidance::kIdle), "idle");
   MissionParameters parameters;
   EXPECT_NO_THROW(Validate(parameters));

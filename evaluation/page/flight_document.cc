@@ -62,6 +62,7 @@ Json FlightDocument(const std::string& record, const std::string& name,
                  {"planner", flight.scenario.planner},
                  {"backend", flight.scenario.solver_name()},
                  {"seed", flight.scenario.seed},
+                 {"own_estimated", flight.scenario.own_state == OwnStateKind::kEstimated},
                  {"max_work", flight.scenario.planning.max_work}};
     json.update(FlightTables(db));
     json["goal"] = GoalDocument(flight.scenario);

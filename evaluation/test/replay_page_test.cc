@@ -231,11 +231,32 @@ TEST_F(PageFlights, AForeignOrDamagedRecordIsOneSentenceAndLeavesNothing) {
   EXPECT_THAT(refusal(), ::testing::HasSubstr("lacks result_json"));
   Execute("INSERT INTO meta VALUES('result_json', 'x')");
   EXPECT_THAT(refusal(), ::testing::HasSubstr("result_json"));
-  Execute("INSERT INTO surface VALUES(0, x'00', x'00')");
-  Execute("UPDATE meta SET value = '{}' WHERE key = 'result_json'");
-  EXPECT_THAT(refusal(), ::testing::HasSubstr("table surface"));
-  Execute("DELETE FROM surface; DROP TABLE air");
-  EXPECT_THAT(refusal(), ::testing::HasSubstr("air"));
+  Execute(
+      "UPDATE meta SET value = '{\"outcome\":\"landed\",\"detail\":\"\",\"simulated_s\":\"x\"}' "
+      "WHERE key = 'result_json'");
+  EXPECT_THAT(refusal(), ::testing::HasSubstr("result_json"));
+  Execute(
+      "UPDATE meta SET value = '{\"outcome\":\"landed\",\"detail\":\"\",\"simulated_s\":1}' WHERE "
+      "key = 'result_json'");
+  EXPECT_EQ(refusal(), "");
+  std::filesystem::remove(page_);
+  const std::pair<const char*, const char*> damages[] = {
+      {"INSERT INTO surface VALUES(0, x'00', x'00')", "table surface"},
+      {"UPDATE obstacle SET kind = 'mesh' WHERE id = 0", "table surface lacks a mesh"},
+      {"UPDATE obstacle SET kind = 'cloud' WHERE id = 0", "\"cloud\""},
+      {"INSERT INTO prior VALUES('odd', x'')", "\"odd\""},
+      {"INSERT INTO zone VALUES(9, 'a', 'cone', 0, 0, 0, 1, 1, 1)", "\"cone\""},
+      {"UPDATE vehicle SET px = NULL WHERE t > 0.5", "lacks px"},
+      {"DELETE FROM air WHERE t > 0.5", "of air"},
+      {"DELETE FROM vehicle", "no states"},
+      {"UPDATE map_change SET ix = 900000", "outside of the map's window"},
+      {"DROP TABLE air", "air"}};
+  const std::string whole = ReadText(record_);
+  for (const auto& [damage, said] : damages) {
+    Execute(damage);
+    EXPECT_THAT(refusal(), ::testing::HasSubstr(said)) << damage;
+    std::ofstream(record_, std::ios::binary) << whole;
+  }
   EXPECT_FALSE(std::filesystem::exists(page_));
 }
 

@@ -21,7 +21,9 @@ export class Flight {
     this.number = number;
     this.steps = document.steps;
     this.times = document.samples.vehicle.t;
-    this.stepTimes = this.steps.map((step) => step.t);
+    this.askedTimes = this.steps.map((step) => step.t);
+    this.stepTimes = this.steps.map((step) => step.t_start);
+    this.goal = document.goal;
     this.modes = document.samples.mode;
     this.rotors = document.vehicle.rotors.map((_, i) => document.samples.rotor["thrust" + i]);
   }
@@ -33,9 +35,26 @@ export class Flight {
     return this.times.length ? this.times[this.times.length - 1] : 0;
   }
 
-  /** The replanning step whose answer is the newest at t; -1 before the first. */
+  /** The replanning step whose answer is flown at t, which was asked for a little earlier; -1 before the first. */
   stepAt(t) {
-    return this.stepTimes.length && t >= this.stepTimes[0] ? indexAt(this.stepTimes, t) : -1;
+    return this.stepTimes.length && t >= this.stepTimes[0] - 1e-6 ? indexAt(this.stepTimes, t + 1e-6) : -1;
+  }
+
+  /** The step that was the last to be asked for at t: the map is known as it was then. */
+  askedAt(t) {
+    return this.askedTimes.length && t >= this.askedTimes[0] - 1e-6 ? indexAt(this.askedTimes, t + 1e-6) : -1;
+  }
+
+  /** Where the flight leads: the pad, or the goal of the task go_to. */
+  aimAt(t, out = new Vector3()) {
+    if (!this.goal) return this.padAt(t, out);
+    const { p, v } = this.goal;
+    return out.set(p[0] + t * v[0], p[1] + t * v[1], p[2] + t * v[2]);
+  }
+
+  /** The own state is estimated: what is believed is not what is true. */
+  get estimates() {
+    return this.document.own_estimated;
   }
 
   /** A place of a table of samples (px, py, pz) between its rows; false where there is none yet. */
@@ -83,6 +102,11 @@ export class Flight {
   padAt(t, out = new Vector3()) {
     this.placeAt(this.document.samples.pad, t, out);
     return out;
+  }
+  /** How far around the deck, as it is believed in a row, returns are taken for its own [m]. */
+  deckDoubt(row) {
+    const { cov_xx, cov_yy } = this.document.samples.pad_believed;
+    return this.document.pad.sigmas * Math.sqrt(Math.max(cov_xx[row] + cov_yy[row], 0));
   }
   /** Of a table of the pad: the row at t; -1 before the first. */
   padRow(table, t) {

@@ -24,13 +24,15 @@ function materialOf(colour, width, options) {
   return material;
 }
 
+/** How kinds of lines are told apart beside their colour: dash and gap [m]. */
+export const DASH = { dashed: true, dashSize: 0.2, gapSize: 0.12 }, DOT = { dashed: true, dashSize: 0.05, gapSize: 0.07 };
+
 /** A line along points (x y z x y z ...) that can be given others. */
 export class Way {
   constructor(colour, width, options = {}) {
     this.object = new Line2(new LineGeometry(), materialOf(colour, width, options));
     this.object.frustumCulled = false;
     this.object.visible = false;
-    this.dashed = options.dashed === true;
   }
   set(points) {
     this.object.visible = points !== null && points.length >= 6;
@@ -38,7 +40,12 @@ export class Way {
     this.object.geometry.dispose();
     this.object.geometry = new LineGeometry();
     this.object.geometry.setPositions(points);
-    if (this.dashed) this.object.computeLineDistances();
+    if (this.object.material.dashed) this.object.computeLineDistances();
+  }
+  /** Of the points that it has, only the first so many. */
+  first(count) {
+    this.object.visible = count >= 2;
+    this.object.geometry.instanceCount = Math.max(count - 1, 0);
   }
 }
 
@@ -55,6 +62,7 @@ export class Strokes {
     this.object.geometry.dispose();
     this.object.geometry = new LineSegmentsGeometry();
     this.object.geometry.setPositions(ends);
+    if (this.object.material.dashed) this.object.computeLineDistances();
   }
 }
 

@@ -4,7 +4,7 @@ import { Color, DirectionalLight, Fog, HemisphereLight, Scene, Vector3, WebGLRen
 import "uplot/dist/uPlot.min.css";
 import { BLACK, BLUE, FLIGHTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 import { Flight } from "./flight.js";
-import { resizeLines } from "./lines.js";
+import { DASH, resizeLines } from "./lines.js";
 import { KnownMap } from "./map.js";
 import { Pad } from "./pad.js";
 import { Panel, outcomeWords } from "./panel.js";
@@ -14,7 +14,7 @@ import { Timeline } from "./timeline.js";
 import { unpack } from "./unpack.js";
 import { Vehicle } from "./vehicle.js";
 import { VIEWS, Views } from "./views.js";
-import { makePrior, makeWorld, makeZones } from "./world.js";
+import { Prior, makeGoal, makeWorld, makeZones } from "./world.js";
 
 const SKY_COLOUR = "#EDF2F6";
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -38,33 +38,35 @@ class Shown {
     this.plans = new Plans(flight);
     const { samples } = flight.document;
     this.flown = new Flown(samples.vehicle, colour, 3);
-    this.reference = new Flown(samples.reference, GREEN, 1.5, { dashed: true, dashSize: 0.12, gapSize: 0.08 });
-    this.track = new Flown(samples.pad, BLACK, 1.5, { dashed: true, dashSize: 0.25, gapSize: 0.15 });
+    this.reference = new Flown(samples.reference, GREEN, 1.5, DASH);
+    this.track = new Flown(samples.pad, BLACK, 1.5, DASH);
     this.zones = makeZones(flight.document.zones);
-    this.prior = makePrior(flight.document.prior, flight.document.map.resolution);
+    this.prior = new Prior(flight.document.prior, flight.document.map);
+    this.goal = makeGoal();
     for (const part of [this.vehicle, this.pad, this.map, this.plans, this.flown, this.reference, this.track]) scene.add(part.object);
-    scene.add(this.zones, this.prior);
+    scene.add(this.zones, this.prior.object, this.goal);
     this.label = at("labels").appendChild(Object.assign(document.createElement("div"), { className: "label" }));
     this.label.style.setProperty("--colour", colour);
-    this.on = { reference: true, zones: true, prior: true, flown: true };
+    this.on = { reference: true, zones: true, prior: true, flown: true, track: true };
   }
 
-  /** `chosen`: its map, plans and beliefs are shown. */
-  update(t, step, selected, chosen) {
-    const row = this.flight.row(t);
-    this.vehicle.update(t);
-    this.pad.update(t, chosen ?? step);
-    this.flown.update(row);
-    this.track.update(row);
-    this.reference.update(row);
-    this.flown.object.visible &&= this.on.flown;
-    this.reference.object.visible = selected && this.on.reference && row > 0;
-    this.zones.visible = selected && this.on.zones;
-    this.prior.visible = selected && this.on.prior;
+  /** `selected`: with its map, its plans, what it believes. `drawsPad`: no other flight has drawn the same. */
+  update(t, selected, drawsPad, onBoard) {
+    const { flight, on } = this;
+    const row = flight.row(t), step = flight.stepAt(t);
+    this.vehicle.update(t, selected && onBoard);
+    this.pad.update(t, step, selected, drawsPad);
+    this.flown.update(row, on.flown);
+    this.track.update(row, on.track && drawsPad && !flight.goal);
+    this.reference.update(row, selected && on.reference);
+    this.zones.visible = selected && on.zones;
+    this.prior.object.visible = selected && on.prior;
+    this.prior.update(flight.askedAt(t));
+    this.goal.visible = Boolean(flight.goal);
+    flight.aimAt(t, this.goal.position);
     this.plans.object.visible = selected;
-    this.pad.foretold.visible &&= selected;
-    if (selected) this.plans.update(step, chosen);
-    this.map.update(step, this.vehicle.body.position.z, selected);
+    if (selected) this.plans.update(step);
+    this.map.update(flight.askedAt(t), this.vehicle.body.position.z, selected);
   }
 }
 
@@ -77,7 +79,6 @@ class Replay {
     this.playing = false;
     this.speed = 1;
     this.selected = 0;
-    this.chosen = null;
     this.makePicture();
     this.makeControls();
     this.resize();
@@ -89,10 +90,7 @@ class Replay {
   open(asked) {
     const number = (name) => (asked.has(name) && Number.isFinite(Number(asked.get(name))) ? Number(asked.get(name)) : null);
     const step = number("step"), t = number("t");
-    if (step !== null && this.flight.steps[step]) {
-      this.seek(this.flight.stepTimes[step] + 1e-4);
-      this.choose(step);
-    }
+    if (step !== null) this.choose(step);
     if (t !== null) this.seek(t);
     if (VIEWS.includes(asked.get("view"))) {
       this.draw(); // the vehicle is then where the view begins
@@ -145,6 +143,8 @@ class Replay {
     at("play").addEventListener("click", () => this.play(!this.playing));
     at("speed").append(...SPEEDS.map((speed) => new Option(`${speed} ×`, speed, speed === 1, speed === 1)));
     at("speed").addEventListener("change", () => (this.speed = Number(at("speed").value)));
+    // A list that keeps the focus takes the keys.
+    for (const list of ["speed", "view", "which"]) at(list).addEventListener("change", () => at(list).blur());
     at("view").append(...VIEWS.map((view, i) => new Option(`${i + 1}  ${view}`, view)));
     at("view").addEventListener("change", () => this.look(at("view").value));
     at("which").hidden = this.flights.length < 2;
@@ -152,11 +152,11 @@ class Replay {
     at("which").addEventListener("change", () => this.select(Number(at("which").value)));
     this.timeline = new Timeline(at("marks"), at("tip"), this.flights, this.begin, this.end, (t, step, flight) => {
       if (flight !== this.selected) this.select(flight);
-      this.seek(t);
-      this.choose(step ?? null);
+      if (step === undefined) this.seek(t);
+      else this.choose(step);
     });
     this.plots = new Plots(at("plots"), this.flights, this.begin, this.end, (t) => this.seek(t));
-    this.panel = new Panel({ now: at("now"), step: at("step"), layers: at("layers"), flight: at("about") }, { release: () => this.choose(null), layers: this.layers() });
+    this.panel = new Panel({ now: at("now"), step: at("step"), layers: at("layers"), flight: at("about") }, { layers: this.layers(), leadsToGoal: Boolean(this.flight.goal) });
     this.panel.about_(this.flight);
     document.addEventListener("keydown", (event) => this.key(event));
     window.addEventListener("resize", () => this.resize());
@@ -174,24 +174,26 @@ class Replay {
       shown.plans.touch();
     });
     return [
-      { name: "occupied cells", key: "o", colour: "#A6652B", mark: "box", on: true, set: each((shown, on) => (shown.map.showOccupied = on)) },
+      { name: "occupied cells", key: "o", colour: "#A6652B", mark: "box", on: true, set: each((shown, on) => { shown.map.showOccupied = on; shown.map.touch(); }) },
       { name: "free, unknown at the vehicle's height", key: "u", colour: SKY, mark: "box", on: false, set: each((shown, on) => { shown.map.layer.visible = on; shown.map.touch(); }) },
       { name: "prior map", key: "m", colour: "#8C7BB5", mark: "box", on: true, there: any((f) => Object.keys(f.document.prior).length > 0), set: each((shown, on) => (shown.on.prior = on)) },
       { name: "zones of terms", key: "z", colour: GREEN, mark: "box", on: true, there: any((f) => f.document.zones.length > 0), set: each((shown, on) => (shown.on.zones = on)) },
       { name: "all plans until now", key: "a", colour: SKY, on: true, set: plan("all") },
-      { name: "plan of the step", key: "l", colour: BLUE, on: true, set: plan("plan") },
-      { name: "its stop", key: "s", colour: VERMILLION, on: true, set: plan("stop") },
-      { name: "ways that lost", key: "w", colour: GREY, on: true, set: plan("lost") },
-      { name: "guide paths", key: "g", colour: GREEN, on: true, set: plan("guides") },
+      { name: "plan of the step", key: "l", colour: BLACK, on: true, set: plan("plan") },
+      { name: "its stop", key: "s", colour: VERMILLION, mark: "dash", on: true, set: plan("stop") },
+      { name: "ways that lost", key: "w", colour: GREY, mark: "dash", on: true, set: plan("lost") },
+      { name: "guide paths", key: "g", colour: GREEN, mark: "dot", on: true, set: plan("guides") },
       { name: "obstacle pairs", key: "i", colour: ORANGE, on: true, set: plan("pairs") },
-      { name: "flown way", key: "f", colour: BLUE, on: true, set: each((shown, on) => { shown.on.flown = on; shown.flown.count = -1; }) },
+      { name: "flown way", key: "f", colour: BLUE, on: true, set: each((shown, on) => (shown.on.flown = on)) },
       { name: "reference", key: "r", colour: GREEN, mark: "dash", on: true, set: each((shown, on) => (shown.on.reference = on)) },
-      { name: "pad as believed, 3 σ", key: "b", colour: BLUE, on: true, set: each((shown, on) => (shown.pad.believed.scale.setScalar(on ? 1 : 1e-6), shown.pad.spread.scale.setScalar(on ? 1 : 1e-6))) },
-      { name: "deck: no obstacle there", key: "d", colour: ORANGE, mark: "dash", on: true, set: each((shown, on) => shown.pad.deck.scale.setScalar(on ? 1 : 1e-6)) },
-      { name: "pad as foretold", key: "e", colour: PURPLE, mark: "dash", on: true, set: each((shown, on) => (shown.pad.foretold.visible = on)) },
-      { name: "cameras", key: "c", colour: SKY, on: true, set: each((shown, on) => (shown.vehicle.frusta.visible = on)) },
+      { name: "pad as believed, 3 σ", key: "b", colour: BLUE, on: true, set: each((shown, on) => (shown.pad.show.believed = on)) },
+      { name: "deck: no obstacle there", key: "d", colour: ORANGE, mark: "dash", on: true, set: each((shown, on) => (shown.pad.show.deck = on)) },
+      { name: "pad as foretold", key: "e", colour: PURPLE, mark: "dash", on: true, set: each((shown, on) => (shown.pad.show.foretold = on)) },
+      { name: "way of the pad", key: "k", colour: BLACK, mark: "dash", on: true, set: each((shown, on) => (shown.on.track = on)) },
+      { name: "where it takes itself to be", key: "y", colour: BLACK, mark: "cross", on: true, there: any((f) => f.estimates), set: each((shown, on) => (shown.vehicle.show.belief = on)) },
+      { name: "cameras", key: "c", colour: SKY, on: true, set: each((shown, on) => (shown.vehicle.show.cameras = on)) },
       { name: "thrusts of the rotors", key: "t", colour: ORANGE, on: true, set: each((shown, on) => (shown.vehicle.show.thrusts = on)) },
-      { name: "wind at the vehicle", key: "v", colour: GREEN, on: true, there: any((f) => f.document.samples.air.vx.some((x) => x !== 0)), set: each((shown, on) => (shown.vehicle.show.wind = on)) },
+      { name: "wind at the vehicle", key: "v", colour: GREEN, on: true, there: any(({ document: { samples: { air } } }) => [air.vx, air.vy, air.vz].some((axis) => axis.some((x) => x !== 0))), set: each((shown, on) => (shown.vehicle.show.wind = on)) },
     ];
   }
 
@@ -217,16 +219,14 @@ class Replay {
 
   select(number) {
     this.selected = number;
-    this.chosen = null;
     at("which").value = number;
     this.panel.about_(this.flight);
     this.look(this.views.name);
   }
 
-  /** A step is explained and drawn, whatever the time; null: the newest one. */
+  /** To the time from which on the answer of a step is flown. */
   choose(step) {
-    this.chosen = step;
-    this.stale = true;
+    if (this.flight.steps[step]) this.seek(this.flight.stepTimes[step]);
   }
 
   click(event) {
@@ -235,19 +235,20 @@ class Replay {
     const current = this.flight.stepAt(this.t);
     if (current < 0) return;
     const step = this.shown.plans.near(event.clientX - box.left, event.clientY - box.top, CLICK, current, this.views.camera, box.width, box.height);
-    this.choose(step >= 0 ? step : null);
+    if (step >= 0) {
+      this.play(false);
+      this.choose(step);
+    }
   }
 
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName) && event.target.type !== "checkbox" && event.target.type !== "range") return;
     const { key } = event;
-    const step = this.chosen ?? this.flight.stepAt(this.t);
+    if (key === " " && ["BUTTON", "SUMMARY"].includes(event.target.tagName)) return;
+    const step = this.flight.stepAt(this.t);
     const to = (next) => {
-      const n = Math.min(Math.max(next, 0), this.flight.steps.length - 1);
-      if (n < 0) return;
       this.play(false);
-      this.chosen = null;
-      this.seek(this.flight.stepTimes[n] + 1e-4);
+      this.choose(Math.min(Math.max(next, 0), this.flight.steps.length - 1));
     };
     const acts = {
       " ": () => this.play(!this.playing),
@@ -259,8 +260,7 @@ class Replay {
       End: () => this.seek(this.end),
       n: () => this.seek(this.timeline.markFrom(this.t, true)),
       p: () => this.seek(this.timeline.markFrom(this.t, false)),
-      Tab: () => this.flights.length > 1 && this.select(1 - this.selected),
-      Escape: () => this.choose(null),
+      x: () => this.select((this.selected + 1) % this.flights.length),
       "0": () => { this.look("orbit"); this.views.reset(); },
       "?": () => (at("help").hidden = !at("help").hidden),
     };
@@ -272,7 +272,6 @@ class Replay {
       if (!layer) return;
       layer.querySelector("input").click();
     }
-    if (key === "Tab" && this.flights.length < 2) return;
     event.preventDefault();
   }
 
@@ -307,14 +306,11 @@ class Replay {
 
   draw() {
     const { t } = this;
+    const [first] = this.flights;
     this.all.forEach((shown, i) => {
-      const selected = i === this.selected;
-      shown.update(t, shown.flight.stepAt(t), selected, selected ? this.chosen : null);
       // Where both have the same pad it is drawn once.
-      shown.pad.true.visible = i === 0 || shown.pad.true.position.distanceTo(this.all[0].pad.true.position) > 1e-3;
-      shown.pad.believed.visible &&= selected;
-      shown.pad.deck.visible &&= selected;
-      shown.pad.spread.visible &&= selected;
+      const drawsPad = i === 0 || shown.flight.padAt(t).distanceTo(first.padAt(t)) > 1e-3;
+      shown.update(t, i === this.selected, drawsPad, this.views.onBoard);
     });
     const body = this.shown.vehicle.body.position;
     this.sun.target.position.copy(body);
@@ -324,7 +320,7 @@ class Replay {
     this.drawLabels();
     this.plots.update(t);
     at("time").textContent = `${t.toFixed(2)} s`;
-    this.panel.update(this.flight, t, this.flight.stepAt(t), this.chosen);
+    this.panel.update(this.flight, t, this.flight.stepAt(t));
   }
 
   drawLabels() {
@@ -349,7 +345,12 @@ async function begin() {
   // For scripts and the browser's console: replay.seek(3.2), replay.choose(17), replay.look("top").
   const replay = (window.replay = new Replay(documents));
   const frame = (now) => {
-    replay.frame(now);
+    try {
+      replay.frame(now);
+    } catch (error) {
+      say(`This page cannot show its flight: ${error.message}.`);
+      throw error;
+    }
     requestAnimationFrame(frame);
   };
   frame(performance.now());

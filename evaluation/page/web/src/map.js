@@ -106,7 +106,7 @@ export class KnownMap {
     const moved = step !== this.drawn;
     this.cells.seek(step);
     this.drawn = step;
-    if (moved) this.drawOccupied();
+    if (moved && this.showOccupied) this.drawOccupied();
     if (this.occupied) this.occupied.visible = this.showOccupied;
     if ((moved || height !== this.height) && this.layer.visible) this.drawLayer(height);
   }
@@ -118,15 +118,12 @@ export class KnownMap {
   }
 
   drawOccupied() {
-    const { cells } = this, [nx, ny, nz] = cells.size, [ox, oy, oz] = cells.origin;
+    const { states, size: [nx, ny], origin: [ox, oy, oz], size } = this.cells;
     const found = [];
-    for (let z = oz; z < oz + nz; ++z) {
-      for (let y = oy; y < oy + ny; ++y) {
-        const row = cells.slot(0, y, z);
-        for (let x = ox; x < ox + nx; ++x) {
-          if (cells.states[row + wrap(x, nx)] === OCCUPIED && this.isSeen(x, y, z)) found.push(x, y, z);
-        }
-      }
+    // Millions of cells, thousands of them occupied: places are worked out for these alone.
+    for (let i = states.indexOf(OCCUPIED); i >= 0; i = states.indexOf(OCCUPIED, i + 1)) {
+      const x = ox + wrap((i % nx) - ox, nx), y = oy + wrap((Math.floor(i / nx) % ny) - oy, ny), z = oz + wrap(Math.floor(i / (nx * ny)) - oz, size[2]);
+      if (this.isSeen(x, y, z)) found.push(x, y, z);
     }
     const count = found.length / 3;
     if (!this.occupied || this.occupied.instanceMatrix.count < count) this.grow(count);
@@ -158,6 +155,7 @@ export class KnownMap {
     this.object.add(this.occupied);
     if (old) {
       this.object.remove(old);
+      old.geometry.dispose();
       old.dispose();
     }
   }

@@ -2,7 +2,7 @@
 // The pad with its printed sheet where it truly is; where it is believed to be, how well, and where it is foretold.
 import { BoxGeometry, CanvasTexture, Group, Mesh, MeshLambertMaterial, PlaneGeometry, SRGBColorSpace } from "three";
 import { BLUE, ORANGE, PURPLE } from "./colours.js";
-import { Strokes, Way } from "./lines.js";
+import { DASH, Strokes, Way } from "./lines.js";
 
 const SIGMAS = 3; // of the drawn ellipse, as the map and the mission count
 const LIFT = 0.012; // above the deck, so that lines are seen [m]
@@ -43,11 +43,31 @@ function makePad(pad, deckHeight) {
   deck.castShadow = body.castShadow = true;
   deck.receiveShadow = sheet.receiveShadow = true;
   group.add(deck, body, sheet);
+  const plate = pad.sheet.side / 2 - pad.plate_from; // from there to the sheet's front edge
+  if (plate > 1e-3) {
+    const cover = new Mesh(new BoxGeometry(plate, pad.sheet.side, 0.004), new MeshLambertMaterial({ color: "#6B6F76" }));
+    cover.position.set(pad.plate_from + plate / 2, 0, 0.004);
+    group.add(cover);
+  }
   return group;
 }
 
 function square(half, z) {
   return [half, half, z, -half, half, z, -half, -half, z, half, -half, z, half, half, z];
+}
+
+/** A square grown by a distance: round at its corners. */
+function grownSquare(half, by, z) {
+  const points = [];
+  for (let corner = 0; corner < 4; ++corner) {
+    const x = corner === 0 || corner === 3 ? half : -half, y = corner < 2 ? half : -half;
+    for (let i = 0; i <= 6; ++i) {
+      const angle = ((corner + i / 6) * Math.PI) / 2;
+      points.push(x + by * Math.cos(angle), y + by * Math.sin(angle), z);
+    }
+  }
+  points.push(points[0], points[1], z);
+  return points;
 }
 
 /** The ellipse of a covariance in the plane, about the origin. */
@@ -71,43 +91,61 @@ export class Pad {
     this.true = makePad(flight.document.pad, samples.pad.pz[0] ?? 0);
     this.outline = new Way(BLUE, 2.5);
     this.cross = new Strokes(BLUE, 2.5);
-    this.exempt = new Way(ORANGE, 2, { dashed: true, dashSize: 0.08, gapSize: 0.06 });
+    this.exempt = new Way(ORANGE, 2, DASH);
+    this.exemptBelow = new Way(ORANGE, 2, DASH);
+    this.edges = new Strokes(ORANGE, 1.2, DASH);
     this.ellipse = new Way(BLUE, 2);
-    this.prediction = new Way(PURPLE, 2.5, { dashed: true, dashSize: 0.12, gapSize: 0.08 });
+    this.prediction = new Way(PURPLE, 2.5, DASH);
     this.knots = new Strokes(PURPLE, 1.5);
     this.believed = new Group();
     this.believed.add(this.outline.object, this.cross.object);
     this.deck = new Group();
-    this.deck.add(this.exempt.object);
+    this.deck.add(this.exempt.object, this.exemptBelow.object, this.edges.object);
     this.spread = new Group();
     this.spread.add(this.ellipse.object);
     this.foretold = new Group();
     this.foretold.add(this.prediction.object, this.knots.object);
     this.object = new Group();
     this.object.add(this.true, this.believed, this.deck, this.spread, this.foretold);
+    this.outline.set(square(flight.document.pad.half_size, LIFT));
+    this.cross.set([-0.1, 0, LIFT, 0.1, 0, LIFT, 0, -0.1, LIFT, 0, 0.1, LIFT]);
+    this.show = { believed: true, deck: true, foretold: true };
     this.step = -1;
   }
 
-  update(t, step) {
-    const { samples, pad } = this.flight.document;
+  /** `selected`: with what is believed of it. `draws`: the pad itself. */
+  update(t, step, selected, draws) {
+    const { samples } = this.flight.document;
     this.flight.padAt(t, this.true.position);
+    this.true.visible = draws && !this.flight.goal;
     const row = this.flight.padRow(samples.pad, t);
     if (row >= 0) this.true.rotation.z = samples.pad.yaw[row];
-    const known = this.flight.placeAt(samples.pad_believed, t, this.believed.position);
-    this.believed.visible = this.deck.visible = this.spread.visible = known;
-    if (known) {
-      const i = this.flight.padRow(samples.pad_believed, t);
-      const { yaw, cov_xx, cov_xy, cov_yy } = samples.pad_believed;
-      this.believed.rotation.z = this.deck.rotation.z = yaw[i];
-      this.deck.position.copy(this.believed.position);
-      this.spread.position.copy(this.believed.position);
-      this.outline.set(square(pad.half_size, LIFT));
-      this.cross.set([-0.1, 0, LIFT, 0.1, 0, LIFT, 0, -0.1, LIFT, 0, 0.1, LIFT]);
-      const grown = pad.sigmas * Math.sqrt(Math.max(cov_xx[i] + cov_yy[i], 0));
-      this.exempt.set(square(pad.half_size + grown, LIFT));
-      this.ellipse.set(ellipse(cov_xx[i], cov_xy[i], cov_yy[i], 2 * LIFT));
-    }
-    if (step !== this.step) this.predict(step);
+    const known = selected && !this.flight.goal && this.flight.placeAt(samples.pad_believed, t, this.believed.position);
+    this.believed.visible = this.spread.visible = known && this.show.believed;
+    this.deck.visible = known && this.show.deck;
+    this.foretold.visible = selected && !this.flight.goal && this.show.foretold;
+    if (known) this.drawBelief(this.flight.padRow(samples.pad_believed, t));
+    if (selected && step !== this.step) this.predict(step);
+  }
+
+  drawBelief(i) {
+    const { samples, pad } = this.flight.document;
+    const { yaw, cov_xx, cov_xy, cov_yy } = samples.pad_believed;
+    this.believed.rotation.z = this.deck.rotation.z = yaw[i];
+    this.deck.position.copy(this.believed.position);
+    this.spread.position.copy(this.believed.position);
+    this.ellipse.set(ellipse(cov_xx[i], cov_xy[i], cov_yy[i], 2 * LIFT));
+    // All below the deck belongs to it, down to the ground.
+    const grown = this.flight.deckDoubt(i), ground = 0.01 - this.believed.position.z, { half_size: half } = pad;
+    this.exempt.set(grownSquare(half, grown, LIFT));
+    this.exemptBelow.set(grownSquare(half, grown, ground));
+    const out = half + grown * Math.SQRT1_2;
+    const ends = [];
+    for (const [x, y] of [[out, out], [-out, out], [-out, -out], [out, -out]]) ends.push(x, y, LIFT, x, y, ground);
+    this.edges.set(ends);
+    // In doubt it is drawn thin.
+    const width = grown > pad.sure ? 1 : 2.2;
+    for (const line of [this.exempt, this.exemptBelow, this.edges]) line.object.material.linewidth = width;
   }
 
   predict(step) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The words beside the picture: how it stands now, the step at hand, the layers, the flight.
-import { descentWords } from "./timeline.js";
+import { descentWords, gateWords } from "./timeline.js";
 
 const metres = (x) => (x == null || Number.isNaN(x) ? "–" : `${x.toFixed(2)} m`);
 
@@ -9,6 +9,8 @@ function element(tag, properties = {}, ...children) {
   made.append(...children);
   return made;
 }
+
+const NOW = ["mode", "gate", "descent"], NOW_THEN = ["speed", "clearance", "off its reference"];
 
 /** Rows of names and values, kept and filled again. */
 class Table {
@@ -36,7 +38,7 @@ export function outcomeWords(flight) {
 
 export class Panel {
   constructor({ now, step, layers, flight: about }, choices) {
-    this.now = new Table(["mode", "gate", "own state", "beside the pad", "feet above the deck", "speed", "clearance", "off its reference", "pad believed", "wind here"]);
+    this.now = new Table(choices.leadsToGoal ? [...NOW.slice(0, 1), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"]);
     now.append(this.now.object);
     this.title = element("div", { className: "step-title" });
     this.summary = element("p", { className: "step-summary" });
@@ -45,9 +47,7 @@ export class Panel {
     this.copy.addEventListener("click", () => navigator.clipboard?.writeText(this.command.textContent));
     this.asked = element("div", { className: "command" }, this.command, this.copy);
     this.words = element("pre", { id: "words" });
-    this.release = element("button", { textContent: "go on with time", id: "release" });
-    this.release.addEventListener("click", () => choices.release());
-    step.append(this.title, this.release, this.summary, this.asked, this.words);
+    step.append(this.title, this.summary, this.asked, this.words);
     this.layers = layers;
     this.about = about;
     for (const layer of choices.layers) this.addLayer(layer);
@@ -78,52 +78,62 @@ export class Panel {
     );
   }
 
-  update(flight, t, current, chosen) {
+  update(flight, t, step) {
     this.fillNow(flight, t);
-    const step = chosen ?? current;
-    const key = `${flight.number}:${step}:${chosen != null}`;
+    const key = `${flight.number}:${step}`;
     if (key === this.shown) return;
     this.shown = key;
-    this.fillStep(flight, step, chosen != null);
+    this.fillStep(flight, step);
   }
 
   fillNow(flight, t) {
-    const { samples, vehicle: model } = flight.document;
-    const { vehicle, pad, pad_believed, reference, air } = samples;
+    const { samples, vehicle: model, pad } = flight.document;
+    const { vehicle, pad_believed, reference, air } = samples;
     const i = flight.row(t), b = flight.padRow(pad_believed, t);
-    const descent = flight.eventAt("descent", t)?.text ?? "none";
-    const sigma = b >= 0 ? Math.sqrt(Math.max(pad_believed.cov_xx[b] + pad_believed.cov_yy[b], 0)) : null;
+    const aim = flight.aimAt(t), above = vehicle.pz[i] - aim.z - (flight.goal ? 0 : model.foot_depth);
+    const gate = flight.eventAt("gate", t), descent = flight.eventAt("descent", t)?.text ?? "none";
     const wind = Math.hypot(air.vx[i], air.vy[i], air.vz[i]);
-    this.now.set([
-      flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t)),
-      descent === "none" ? "nothing keeps a descent" : descentWords(descent),
-      flight.eventAt("own_state", t)?.text ?? "given",
-      metres(Math.hypot(vehicle.px[i] - pad.px[i], vehicle.py[i] - pad.py[i])),
-      metres(vehicle.pz[i] - pad.pz[i] - model.foot_depth),
+    const mode = flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t));
+    const place = [
+      flight.estimates ? `estimated, ${flight.eventAt("own_state", t)?.text ?? "good"}` : "given",
+      metres(Math.hypot(vehicle.px[i] - aim.x, vehicle.py[i] - aim.y)),
+      metres(above),
       `${Math.hypot(vehicle.vx[i], vehicle.vy[i], vehicle.vz[i]).toFixed(2)} m/s`,
       samples.clearance.length ? metres(samples.clearance[i]) : "no obstacles",
       metres(Math.hypot(reference.px[i] - vehicle.px[i], reference.py[i] - vehicle.py[i], reference.pz[i] - vehicle.pz[i])),
-      b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - pad.px[i], pad_believed.py[b] - pad.py[i]).toFixed(2)} m off, 1 σ ${sigma.toFixed(2)} m`,
-      wind < 0.005 ? "none" : `${wind.toFixed(1)} m/s`,
+    ];
+    const blows = wind < 0.005 ? "none" : `${wind.toFixed(1)} m/s`;
+    if (flight.goal) {
+      this.now.set([mode, ...place, blows]);
+      return;
+    }
+    const doubt = b < 0 ? 0 : flight.deckDoubt(b);
+    this.now.set([
+      mode,
+      gateWords(gate?.text ?? "no_pad") + (gate ? `, since ${gate.t.toFixed(2)} s` : ""),
+      descentWords(descent),
+      ...place,
+      b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - aim.x, pad_believed.py[b] - aim.y).toFixed(2)} m off, 1 σ ${(doubt / pad.sigmas).toFixed(2)} m${doubt > pad.sure ? "; its returns are in doubt" : ""}`,
+      blows,
     ]);
   }
 
-  fillStep(flight, number, chosen) {
+  fillStep(flight, number) {
     const step = flight.steps[number];
-    this.release.hidden = !chosen;
     this.asked.hidden = !step?.stages;
     if (!step) {
       this.title.textContent = "No step yet";
       this.summary.textContent = this.words.textContent = "";
       return;
     }
-    this.title.textContent = `Step ${number} of ${flight.steps.length}${chosen ? " (chosen)" : ""}`;
+    this.title.textContent = `Step ${number} of ${flight.steps.length}`;
     const pieces = [`At ${step.t.toFixed(2)} s: ${step.status.replaceAll("_", " ")}`];
     if (step.reason && step.reason !== "none") pieces.push(`no new plan: ${step.reason.replaceAll("_", " ")}`);
     if (step.stops) pieces.push("a stored stop is flown");
     pieces.push(`${step.solves} solves, ${step.iterations} iterations`);
     if (step.work > 0) pieces.push(`${step.work} of ${flight.document.max_work} units of work${step.work >= flight.document.max_work ? " (spent)" : ""}`);
     pieces.push(`${step.wall_ms.toFixed(2)} ms in flight${step.wall_ms > step.latency_ms ? `, later than its latency of ${step.latency_ms} ms` : ""}`);
+    if (step.same === false) pieces.push("asked again by this build it answers otherwise: stop, ways that lost, pairs, stages and words are of that answer");
     this.summary.textContent = pieces.join("; ") + ".";
     const { kept, name } = flight.document;
     this.command.textContent = kept ? `touchdown plan --from ${quoted(name)}:${number}` : "fly it with --record F.db to ask it again";

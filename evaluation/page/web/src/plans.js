@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plans as they were made: all up to now, thin; the one at hand with its stop, the ways that lost, guide paths and pairs.
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Vector3 } from "three";
-import { BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
-import { Strokes, Way, pieces } from "./lines.js";
+import { BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
+import { DASH, DOT, Strokes, Way, pieces } from "./lines.js";
 import { sample } from "./spline.js";
 
 const ARROW = 0.3; // of a pair [m]
@@ -31,10 +31,10 @@ export class Plans {
   constructor(flight) {
     this.flight = flight;
     this.all = new AllPlans(flight.steps);
-    this.curve = new Way(BLUE, 3.5);
-    this.stop = new Way(VERMILLION, 3);
-    this.lost = new Strokes(GREY, 2);
-    this.guides = new Strokes(GREEN, 2);
+    this.curve = new Way(BLACK, 3);
+    this.stop = new Way(VERMILLION, 3.5, DASH);
+    this.lost = new Strokes(GREY, 2, DASH);
+    this.guides = new Strokes(GREEN, 2.5, DOT);
     this.pairs = new Strokes(ORANGE, 2);
     this.unseen = new Strokes(PURPLE, 2.5);
     this.object = new Group();
@@ -43,10 +43,9 @@ export class Plans {
     this.show = { all: true, plan: true, stop: true, lost: true, guides: true, pairs: true };
   }
 
-  update(current, chosen) {
-    this.all.update(current);
+  update(step) {
+    this.all.update(step);
     this.all.object.visible = this.show.all;
-    const step = chosen ?? current;
     if (step === this.step) return;
     this.step = step;
     this.draw(step >= 0 ? this.flight.steps[step] : null);
@@ -82,43 +81,39 @@ export class Plans {
     this.unseen.set(unseen);
   }
 
-  /** The newest plan up to `current` that is drawn within `reach` pixels of a place in the picture; -1: none. */
+  /** The newest of the drawn plans, up to `current`, that is within `reach` pixels of a place in the picture; -1: none. */
   near(x, y, reach, current, camera, width, height) {
     const p = new Vector3();
-    let best = -1, least = reach;
-    const first = this.show.all ? 0 : current;
-    for (let step = current; step >= first; --step) {
-      const curve = step === current ? sample(this.flight.steps[step].curve) : this.all.curves[step];
+    for (let step = current; step >= 0; --step) {
+      const curve = step === current && this.show.plan ? sample(this.flight.steps[step].curve) : this.show.all ? this.all.curves[step] : null;
+      let last = null;
       for (let i = 0; curve && i < curve.length; i += 3) {
         p.set(curve[i], curve[i + 1], curve[i + 2]).project(camera);
-        if (p.z > 1) continue;
-        const away = Math.hypot(((p.x + 1) / 2) * width - x, ((1 - p.y) / 2) * height - y);
-        if (away < least) [best, least] = [step, away];
+        const place = p.z > 1 ? null : [((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height];
+        if (place && last && distanceToPiece(x, y, last, place) < reach) return step;
+        last = place;
       }
     }
-    return best;
+    return -1;
   }
 }
 
-/** Reference and flown way until now, of samples. */
+export function distanceToPiece(x, y, [ax, ay], [bx, by]) {
+  const dx = bx - ax, dy = by - ay, length2 = dx * dx + dy * dy;
+  const s = length2 > 0 ? Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / length2, 0), 1) : 0;
+  return Math.hypot(x - ax - s * dx, y - ay - s * dy);
+}
+
+/** Reference, flown way, way of the pad until now, of samples: all of it is on the card, some is drawn. */
 export class Flown {
   constructor(table, colour, width, options) {
-    this.table = table;
     this.way = new Way(colour, width, options);
     this.object = this.way.object;
-    this.count = -1;
-    this.points = [];
-    for (let i = 0; i < table.t.length; ++i) this.points.push(table.px[i], table.py[i], table.pz[i]);
+    const points = [];
+    for (let i = 0; i < table.t.length; ++i) points.push(table.px[i], table.py[i], table.pz[i]);
+    this.way.set(points);
   }
-  update(row) {
-    const count = Math.min(row + 1, this.table.t.length);
-    if (count === this.count) return;
-    this.count = count;
-    // Ten a second are enough for the eye, and the last.
-    const shown = [];
-    for (let i = 0; i < count; i += 5) shown.push(this.points[3 * i], this.points[3 * i + 1], this.points[3 * i + 2]);
-    const last = count - 1;
-    if (last >= 0) shown.push(this.points[3 * last], this.points[3 * last + 1], this.points[3 * last + 2]);
-    this.way.set(shown);
+  update(row, shown) {
+    this.way.first(shown ? row + 1 : 0);
   }
 }

@@ -10,23 +10,26 @@ function figuresOf(flight) {
   const { samples, pad, vehicle: model } = flight.document;
   const { vehicle, believed, reference, pad: truth, pad_believed } = samples;
   const each = (of) => vehicle.t.map((_, i) => of(i));
-  const first = truth.t.length - pad_believed.t.length; // the pad is believed from here on
+  const aims = vehicle.t.map((t) => flight.aimAt(t));
   const steps = flight.steps;
   const of_steps = (value) => steps.map(value);
   const stages = Object.keys(steps.find((step) => step.stages)?.stages ?? {}).filter((stage) => stage !== "total");
   const stageColours = [PURPLE, GREEN, ORANGE, SKY, BLUE, BLACK];
   return [
-    ["To the pad", "m", [
+    [flight.goal ? "To the goal" : "To the pad", "m", [
       [vehicle.t, [
-        ["beside", BLUE, each((i) => Math.hypot(vehicle.px[i] - truth.px[i], vehicle.py[i] - truth.py[i]))],
-        ["feet above", VERMILLION, each((i) => vehicle.pz[i] - truth.pz[i] - model.foot_depth)],
+        ["beside", BLUE, each((i) => Math.hypot(vehicle.px[i] - aims[i].x, vehicle.py[i] - aims[i].y))],
+        flight.goal ? ["above", VERMILLION, each((i) => vehicle.pz[i] - aims[i].z)] : ["feet above", VERMILLION, each((i) => vehicle.pz[i] - aims[i].z - model.foot_depth)],
       ]],
     ]],
     ["Errors", "m", [
       [vehicle.t, [
         ["of tracking", BLUE, each((i) => distance(reference, vehicle, i))],
         ["of own place", GREEN, each((i) => distance(believed, vehicle, i))],
-        ["of the pad", VERMILLION, each((i) => (i < first ? null : Math.hypot(pad_believed.px[i - first] - truth.px[i], pad_believed.py[i - first] - truth.py[i])))],
+        ["of the pad", VERMILLION, each((i) => {
+          const b = flight.padRow(pad_believed, vehicle.t[i]);
+          return b < 0 ? null : Math.hypot(pad_believed.px[b] - truth.px[i], pad_believed.py[b] - truth.py[i]);
+        })],
       ]],
     ]],
     ["Clearance", "m", [
@@ -64,7 +67,7 @@ function tableOf(figures, begin, end) {
       if (times.length === 0 || list.length === 0) continue;
       tables.push([times, ...list.map(([, , values]) => values)]);
       for (const [name, colour] of list) {
-        series.push({ label: figures.length > 1 ? `${name} (${number + 1})` : name, stroke: colour, width: 1.4, spanGaps: true, points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
+        series.push({ label: figures.length > 1 ? `${name} (${number + 1})` : name, stroke: colour, width: 1.4, spanGaps: false, points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
       }
     }
   });
@@ -87,7 +90,6 @@ export class Plots {
         scales: { x: { time: false, range: [begin, end] }, y: { range: (u, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1e-3) * 1.05] } },
         axes: [{ size: 24, font: "10px sans-serif", grid: { stroke: "#eee" } }, { size: 38, font: "10px sans-serif", grid: { stroke: "#eee" } }],
         cursor: { sync: { key: "replay" }, drag: { x: false, y: false }, points: { size: 5 } },
-        legend: { live: true },
       }, data, box);
       const now = document.createElement("div");
       now.className = "now";

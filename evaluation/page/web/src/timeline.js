@@ -14,9 +14,11 @@ const KINDS = {
 
 /** All that happened in a flight, in time's order: {t, kind, text, step}. */
 export function marksOf(flight) {
-  const marks = flight.document.events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? descentWords(text) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
+  // The gate opens and closes with every tag that is seen: the panel tells of it.
+  const events = flight.document.events.filter(({ kind }) => kind !== "gate");
+  const marks = events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? descentWords(text) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
   flight.steps.forEach((step, i) => {
-    if (step.stops && !flight.steps[i - 1]?.stops) marks.push({ t: step.t, kind: "stop", text: `step ${i}: ${KINDS.stop.words}`, step: i });
+    if (step.stops && !flight.steps[i - 1]?.stops) marks.push({ t: Math.max(step.t_stop ?? step.t, step.t), kind: "stop", text: `step ${i}: ${KINDS.stop.words}`, step: i });
     if (step.wall_ms > step.latency_ms) marks.push({ t: step.t, kind: "late", text: `step ${i}: took ${step.wall_ms.toFixed(1)} ms, its latency is ${step.latency_ms} ms`, step: i });
   });
   return marks.sort((a, b) => a.t - b.t);
@@ -24,11 +26,23 @@ export function marksOf(flight) {
 
 export function descentWords(text) {
   return {
-    none: "descent goes on",
-    gate: "descent waits: the gate is closed (the tags are not seen, or the pad is not known well enough)",
+    none: "nothing keeps it",
+    gate: "descent waits: the gate is closed",
+    above: "waits above the pad until the gate opens",
     corridor: "descent waits: too far beside the pad for this height",
     lag: "descent waits: the vehicle is higher than commanded",
   }[text] ?? `descent: ${text}`;
+}
+
+export function gateWords(text) {
+  return {
+    open: "open",
+    own_state: "closed: the own state is not sure",
+    no_pad: "closed: the pad was not found yet",
+    tags_unseen: "closed: no tag is seen, and the way is too long without",
+    pad_uncertain: "closed: the pad is not known well enough",
+    gust: "closed: it leans too far in the wind",
+  }[text] ?? text;
 }
 
 function draw(pen, mark, x, y) {

@@ -4,8 +4,8 @@ import {
   BoxGeometry, CapsuleGeometry, CircleGeometry, Color, CylinderGeometry, Group, Mesh, MeshBasicMaterial, MeshStandardMaterial,
   Quaternion, SphereGeometry, Vector3, DoubleSide,
 } from "three";
-import { GREEN, ORANGE, PURPLE, SKY } from "./colours.js";
-import { Arrow, Strokes } from "./lines.js";
+import { BLACK, GREEN, ORANGE, PURPLE, SKY } from "./colours.js";
+import { Arrow, Strokes, Way } from "./lines.js";
 import { surfaceOf } from "./world.js";
 
 const THRUST = 0.06; // length of a thrust's arrow [m/N], so that hover is about 0.2 m ...
@@ -43,7 +43,9 @@ function meshOf(shape) {
 
 /** A camera's pyramid, from its place out to its range. */
 function frustumOf(camera) {
-  const [x, y] = camera.slope, far = camera.range;
+  const [x, y] = camera.slope;
+  // The range is along the ray: the corners are no farther than what is ahead.
+  const far = camera.range / Math.hypot(1, x, y);
   const strokes = new Strokes(camera.name === "depth" ? SKY : PURPLE, 1.2, { opacity: 0.8 });
   const corners = [[-x, -y], [x, -y], [x, y], [-x, y]].map(([u, v]) => [u * far, v * far, far]);
   const ends = [];
@@ -78,13 +80,19 @@ export class Vehicle {
     for (const camera of cameras) this.frusta.add(frustumOf(camera));
     this.body.add(this.frusta);
     this.wind = new Arrow(GREEN);
+    // Where it takes itself to be, tied to where it is.
+    this.belief = new Strokes(BLACK, 2);
+    this.tie = new Way(BLACK, 1);
     this.object = new Group();
-    this.object.add(this.body, this.wind.object);
-    this.show = { thrusts: true, wind: true };
+    this.object.add(this.body, this.wind.object, this.belief.object, this.tie.object);
+    this.show = { thrusts: true, wind: true, cameras: true, belief: true };
   }
 
-  update(t) {
+  /** `onBoard`: it is looked at from within, where its cameras do not see it. */
+  update(t, onBoard) {
     const { flight } = this;
+    this.body.visible = !onBoard;
+    this.frusta.visible = this.show.cameras;
     flight.vehicleAt(t, this.body.position);
     flight.attitudeAt(t, this.body.quaternion);
     const row = flight.row(t);
@@ -95,8 +103,22 @@ export class Vehicle {
     });
     const { vx, vy, vz } = flight.document.samples.air;
     const air = this.show.wind ? new Vector3(vx[row], vy[row], vz[row]) : new Vector3();
+    this.drawBelief(t, onBoard);
     // It ends at the vehicle: that is where it blows.
     this.wind.set(this.body.position.clone().addScaledVector(air, -WIND).add(new Vector3(0, 0, 0.3)), air, WIND);
+  }
+
+  drawBelief(t, onBoard) {
+    const { flight } = this, place = new Vector3();
+    const shown = this.show.belief && !onBoard && flight.estimates && flight.placeAt(flight.document.samples.believed, t, place);
+    if (!shown) {
+      this.belief.set([]);
+      this.tie.set(null);
+      return;
+    }
+    const { x, y, z } = place, d = 0.3, p = this.body.position;
+    this.belief.set([x - d, y, z, x + d, y, z, x, y - d, z, x, y + d, z, x, y, z - d, x, y, z + d]);
+    this.tie.set([x, y, z, p.x, p.y, p.z]);
   }
 
   /** Where a camera is and looks: three's looks along -z with y up, ours along z with y down. */

@@ -91,25 +91,76 @@ export function makeZones(zones) {
 }
 
 const PRIOR = { occupied: ["#8C7BB5", 0.25], gone: [YELLOW, 0.7], new: [PURPLE, 0.7] };
+const FREE = 1, OCCUPIED = 2; // states of map_change
 
-/** Cubes of the prior map: occupied, seen free after all, and free in it but seen occupied. */
-export function makePrior(prior, resolution) {
-  const group = new Group();
-  const matrix = new Matrix4();
-  for (const [state, cubes] of Object.entries(prior)) {
+const keyOf = (x, y, z) => (x + 8192) + 16384 * ((y + 8192) + 16384 * (z + 8192));
+
+/** The step in which each of these cells first had the state; those that never had one are not in it. */
+function firstSteps(cubes, state, steps) {
+  const wanted = new Map();
+  for (let i = 0; i < cubes.length; i += 4) wanted.set(keyOf(cubes[i], cubes[i + 1], cubes[i + 2]), Infinity);
+  steps.forEach(({ runs }, step) => {
+    for (let i = 0; i < runs.length; i += 5) {
+      if (runs[i + 4] !== state) continue;
+      for (let k = 0; k < runs[i + 3]; ++k) {
+        const key = keyOf(runs[i] + k, runs[i + 1], runs[i + 2]);
+        if (wanted.get(key) === Infinity) wanted.set(key, step);
+      }
+    }
+  });
+  return wanted;
+}
+
+/** Cubes of the prior map: what it holds occupied; from when it was seen on, what of it is free, and what is occupied that it
+ * holds free. */
+export class Prior {
+  constructor(prior, map) {
+    this.object = new Group();
+    this.turned = [];
+    for (const [state, cubes] of Object.entries(prior)) {
+      const places = [];
+      for (let i = 0; i < cubes.length; i += 4) places.push(cubes.slice(i, i + 4));
+      let steps = null;
+      if (state !== "occupied") {
+        const first = firstSteps(cubes, state === "gone" ? FREE : OCCUPIED, map.steps);
+        const when = ([x, y, z]) => first.get(keyOf(x, y, z));
+        places.sort((a, b) => when(a) - when(b) || 0);
+        steps = places.map(when);
+      }
+      const mesh = this.cubes(places, state, map.resolution);
+      if (steps) this.turned.push({ mesh, steps });
+      this.object.add(mesh);
+    }
+  }
+
+  cubes(places, state, resolution) {
     const [colour, opacity] = PRIOR[state];
     const material = new MeshLambertMaterial({ color: new Color(colour), transparent: true, opacity, depthWrite: opacity > 0.5 });
-    const count = cubes.length / 4;
-    const mesh = new InstancedMesh(new BoxGeometry(1, 1, 1), material, count);
-    for (let i = 0; i < count; ++i) {
-      const [x, y, z, side] = cubes.slice(4 * i, 4 * i + 4);
-      const edge = side * resolution;
+    const mesh = new InstancedMesh(new BoxGeometry(1, 1, 1), material, places.length);
+    const matrix = new Matrix4();
+    const grown = state === "occupied" ? 1 : 1.06; // what turned out is around what was held
+    places.forEach(([x, y, z, side], i) => {
+      const edge = side * resolution * grown;
       matrix.makeScale(edge, edge, edge);
       matrix.setPosition((x + side / 2) * resolution, (y + side / 2) * resolution, (z + side / 2) * resolution);
       mesh.setMatrixAt(i, matrix);
-    }
+    });
     mesh.frustumCulled = false;
-    group.add(mesh);
+    return mesh;
   }
-  return group;
+
+  update(step) {
+    for (const { mesh, steps } of this.turned) {
+      let count = 0;
+      while (count < steps.length && steps[count] <= step) ++count;
+      mesh.count = count;
+    }
+  }
+}
+
+/** Where a flight of the task go_to leads. */
+export function makeGoal() {
+  const goal = new Mesh(new SphereGeometry(0.2, 24, 16), new MeshLambertMaterial({ color: GREEN }));
+  goal.castShadow = true;
+  return goal;
 }

@@ -118,32 +118,36 @@ describe("a page of one flight", () => {
     assert.equal(await page.$eval("#time", (time) => time.textContent), `${sample[0].toFixed(2)} s`);
   });
 
-  test("explains the plan that is clicked on, as `plan --from` does", async () => {
-    await slide(page, 2.5);
-    const place = await page.evaluate(() => {
-      const step = replay.flight.stepAt(replay.t) - 6, { q } = replay.flight.steps[step].curve;
-      const m = Math.floor(q.length / 6) * 3;
-      const camera = replay.views.camera, p = camera.position.clone().set(q[m], q[m + 1], q[m + 2]).project(camera);
-      const box = document.getElementById("picture").getBoundingClientRect();
-      return [box.left + ((p.x + 1) / 2) * box.width, box.top + ((1 - p.y) / 2) * box.height];
+  for (const view of ["orbit", "follow"]) {
+    test(`explains the plan that is clicked on, as \`plan --from\` does: ${view}`, async () => {
+      await slide(page, 2.5);
+      await page.evaluate((name) => replay.look(name), view);
+      // A place on a plan, between two of the points that it is drawn by.
+      const place = await page.evaluate(() => {
+        replay.draw();
+        const { all } = replay.shown.plans, curve = all.curves[replay.flight.stepAt(replay.t)];
+        const { camera } = replay.views, p = camera.position.clone(), box = document.getElementById("picture").getBoundingClientRect();
+        for (let i = 6; i < curve.length - 3; i += 3) {
+          p.set((curve[i] + curve[i + 3]) / 2, (curve[i + 1] + curve[i + 4]) / 2, (curve[i + 2] + curve[i + 5]) / 2).project(camera);
+          const at = [box.left + ((p.x + 1) / 2) * box.width, box.top + ((1 - p.y) / 2) * box.height];
+          if (Math.abs(p.x) < 0.8 && Math.abs(p.y) < 0.8 && p.z < 1) return at;
+        }
+      });
+      await page.mouse.click(...place);
+      await page.evaluate(() => replay.draw());
+      const number = (await page.$eval(".step-title", (element) => element.textContent)).match(/^Step (\d+) of \d+$/)[1];
+      assert.ok(Math.abs((await page.evaluate((n) => replay.flight.steps[n].t_start - replay.t, number))) < 1e-6);
+      const words = await page.$eval("#words", (element) => element.textContent);
+      const untimed = (text) => text.split("\n").filter((line) => line && !line.includes("thread CPU time") && !line.startsWith("replanning step"));
+      const command = await page.$eval(".command code", (element) => element.textContent);
+      assert.equal(command, `touchdown plan --from ${file("ours.db")}:${number}`);
+      assert.ok(await page.$eval(".command", (element) => element.checkVisibility()));
+      const asked = run("plan", "--from", `${file("ours.db")}:${number}`);
+      assert.deepEqual(untimed(words), untimed(asked));
+      assert.ok(untimed(words).length > 8);
+      await page.evaluate(() => replay.look("orbit"));
     });
-    await page.mouse.click(...place);
-    await page.evaluate(() => replay.draw());
-    const title = await page.$eval(".step-title", (element) => element.textContent);
-    assert.match(title, /^Step \d+ of \d+ \(chosen\)$/);
-    const number = title.split(" ")[1];
-    const words = await page.$eval("#words", (element) => element.textContent);
-    const untimed = (text) => text.split("\n").filter((line) => line && !line.includes("thread CPU time") && !line.startsWith("replanning step"));
-    const command = await page.$eval(".command code", (element) => element.textContent);
-    assert.equal(command, `touchdown plan --from ${file("ours.db")}:${number}`);
-    assert.ok(await page.$eval(".command", (element) => element.checkVisibility()));
-    const asked = run("plan", "--from", `${file("ours.db")}:${number}`);
-    assert.deepEqual(untimed(words), untimed(asked));
-    assert.ok(untimed(words).length > 8);
-    await page.keyboard.press("Escape");
-    await page.evaluate(() => replay.draw());
-    assert.doesNotMatch(await page.$eval(".step-title", (element) => element.textContent), /chosen/);
-  });
+  }
 
   test("is moved by keys", async () => {
     await slide(page, 1);
@@ -173,10 +177,17 @@ describe("a page of one flight", () => {
     assert.ok(shown.near > 10 * (hidden.near + 1), `${shown.near} and ${hidden.near} pixels`);
     await page.click("#layer-occupied-cells");
     assert.equal((await look(page, brown)).sum, shown.sum);
-    for (const key of "ualswgifrbdectv") {
+    // Each that is in the picture goes and comes back; the others at least leave it as it was.
+    const keys = await page.$$eval("#layers kbd", (found) => found.map((kbd) => kbd.textContent));
+    assert.ok(new Set(keys).size === keys.length && keys.length >= 17, keys.join());
+    const changed = [];
+    for (const key of keys) {
       await page.keyboard.press(key);
-      await page.evaluate(() => replay.draw());
+      if ((await look(page)).sum !== shown.sum) changed.push(key);
+      await page.keyboard.press(key);
+      assert.equal((await look(page)).sum, shown.sum, `after ${key}`);
     }
+    for (const key of "oualifbdectvk") assert.ok(changed.includes(key), `${key} is not among ${changed}`);
     assert.deepEqual(page.said, []);
   });
 
@@ -190,6 +201,15 @@ describe("a page of one flight", () => {
     assert.match(await page.$eval("#tip", (tip) => tip.textContent), /mode: tracking/);
     await page.mouse.click(mark.x, mark.y);
     assert.ok(Math.abs((await page.evaluate(() => replay.t)) - mark.t) < 1e-6);
+    const stop = await page.evaluate(() => {
+      const box = document.getElementById("marks").getBoundingClientRect();
+      const found = replay.timeline.marks[0].find((m) => m.kind === "stop");
+      return { step: found.step, x: box.left + replay.timeline.x(found.t), y: box.top + 6 };
+    });
+    await page.mouse.click(stop.x, stop.y);
+    await page.evaluate(() => replay.draw());
+    assert.match(await page.$eval(".step-title", (element) => element.textContent), new RegExp(`^Step ${stop.step} of`));
+    assert.match(await page.$eval(".step-summary", (element) => element.textContent), /a stored stop is flown/);
   });
 
   test("opens where its address says", async () => {
@@ -197,7 +217,7 @@ describe("a page of one flight", () => {
     await other.goto(`file://${file("one.html")}#step=9&view=top`);
     await other.waitForSelector("body.ready", { timeout: 60000 });
     await other.evaluate(() => replay.draw());
-    assert.match(await other.$eval(".step-title", (element) => element.textContent), /^Step 9 of \d+ \(chosen\)$/);
+    assert.match(await other.$eval(".step-title", (element) => element.textContent), /^Step 9 of \d+$/);
     assert.equal(await other.$eval("#view", (view) => view.value), "top");
     // From above the world's x is to the right and its y upwards.
     const [x, y] = await other.evaluate(() => {
@@ -252,6 +272,27 @@ test("two flights fly on one clock, each with its own words", async () => {
   await page.evaluate(() => replay.draw());
   assert.notEqual(await page.$eval("#words", (element) => element.textContent), words);
   assert.equal(await page.$eval(".command", (element) => element.checkVisibility()), false);
+  // And back: all of the first is there again.
+  const before = await page.evaluate(() => { replay.select(0); replay.draw(); return 0; }).then(() => look(page));
+  await page.focus("#picture");
+  await page.keyboard.press("x");
+  assert.notEqual((await look(page)).sum, before.sum);
+  await page.keyboard.press("x");
+  assert.equal((await look(page)).sum, before.sum);
+  assert.ok(await page.evaluate(() => replay.shown.pad.foretold.visible && replay.shown.pad.believed.visible));
+  await page.close();
+});
+
+test("a flight to a goal is told without a pad, an estimated own state with its error", async () => {
+  run("fly", "goal", "--record", file("goal.db"), "--html", file("goal.html"), "--set", "own_state=estimated");
+  const page = await ready("goal.html");
+  await slide(page, 2);
+  assert.deepEqual(page.said, []);
+  assert.match(await page.$eval("#now", (element) => element.textContent), /beside the goal/);
+  assert.doesNotMatch(await page.$eval("#now", (element) => element.textContent), /the pad|NaN|undefined/);
+  assert.deepEqual(await page.evaluate(() => [replay.shown.goal.visible, replay.shown.pad.true.visible, replay.shown.vehicle.belief.object.visible]), [true, false, true]);
+  const reached = await page.evaluate(() => { replay.seek(replay.end); replay.draw(); return replay.shown.goal.position.distanceTo(replay.shown.vehicle.body.position); });
+  assert.ok(reached < 0.5, `${reached} m`);
   await page.close();
 });
 

@@ -5,6 +5,8 @@ import { test } from "node:test";
 import { deflateSync } from "node:zlib";
 import { KnownCells } from "../src/map.js";
 import { Flight, indexAt } from "../src/flight.js";
+import { distanceToPiece } from "../src/plans.js";
+import { Prior } from "../src/world.js";
 import { endOf, positionAt, sample } from "../src/spline.js";
 import { unpack } from "../src/unpack.js";
 import { Quaternion, Vector3 } from "three";
@@ -71,7 +73,7 @@ test("the window's cells are those of a map without a window, in whatever order 
 test("states between samples are interpolated, before and after them kept", () => {
   const half = Math.SQRT1_2;
   const vehicle = { t: [0, 1, 2], px: [0, 2, 2], py: [0, 0, 4], pz: [1, 1, 1], qw: [1, half, half], qx: [0, 0, 0], qy: [0, 0, 0], qz: [0, half, half] };
-  const flight = new Flight({ steps: [{ t: 0.5 }, { t: 1.5 }], vehicle: { rotors: [] }, events: [{ t: 1, kind: "mode", text: "landing" }], samples: { vehicle, rotor: {}, mode: { names: ["a", "b"], of: [0, 1, 1] } } }, 0);
+  const flight = new Flight({ steps: [{ t: 0.5, t_start: 0.6 }, { t: 1.5, t_start: 1.6 }], vehicle: { rotors: [] }, events: [{ t: 1, kind: "mode", text: "landing" }], samples: { vehicle, rotor: {}, mode: { names: ["a", "b"], of: [0, 1, 1] } } }, 0);
   const p = new Vector3(), q = new Quaternion();
   assert.ok(flight.placeAt(vehicle, 0.25, p));
   near(p.x, 0.5);
@@ -80,13 +82,37 @@ test("states between samples are interpolated, before and after them kept", () =
   assert.equal(flight.placeAt({ t: [5], px: [0], py: [0], pz: [0] }, 4, p), false);
   flight.attitudeAt(0.5, q);
   near(2 * Math.acos(q.w), Math.PI / 4, 1e-6);
-  assert.equal(flight.stepAt(0.4), -1);
-  assert.equal(flight.stepAt(0.5), 0);
+  // An answer is flown from its start on; what is known of the map is as old as the question.
+  assert.equal(flight.stepAt(0.55), -1);
+  assert.equal(flight.stepAt(0.6), 0);
+  assert.equal(flight.askedAt(0.4), -1);
+  assert.equal(flight.askedAt(0.55), 0);
+  assert.equal(flight.askedAt(1.5), 1);
   assert.equal(flight.stepAt(7), 1);
   assert.equal(flight.modeAt(0.9), "a");
   assert.equal(flight.eventAt("mode", 0.9), undefined);
   assert.equal(flight.eventAt("mode", 1).text, "landing");
   assert.equal(indexAt([1, 2, 3], 0), 0);
+});
+
+test("a place is near a line also between its points", () => {
+  near(distanceToPiece(5, 3, [0, 0], [10, 0]), 3);
+  near(distanceToPiece(13, 4, [0, 0], [10, 0]), 5);
+  near(distanceToPiece(3, 4, [0, 0], [0, 0]), 5);
+});
+
+test("what turned out of a prior is shown from the step on in which it did", () => {
+  const steps = [{ runs: [0, 0, 0, 4, 2] }, { runs: [1, 0, 0, 2, 1] }, { runs: [3, 0, 0, 1, 1, 9, 0, 0, 1, 2] }];
+  const prior = new Prior({ occupied: [0, 0, 0, 4], gone: [1, 0, 0, 1, 2, 0, 0, 1, 3, 0, 0, 1], new: [9, 0, 0, 1] }, { steps, resolution: 0.1 });
+  const counts = () => prior.turned.map(({ mesh }) => mesh.count);
+  prior.update(0);
+  assert.deepEqual(counts(), [0, 0]);
+  prior.update(1);
+  assert.deepEqual(counts(), [2, 0]);
+  prior.update(2);
+  assert.deepEqual(counts(), [3, 1]);
+  prior.update(0);
+  assert.deepEqual(counts(), [0, 0]);
 });
 
 test("what is no flight is told in a sentence", async () => {
