@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Figures over time, under one cursor. Of two flights the second is dashed.
 import uPlot from "uplot";
+import { indexAt } from "./flight.js";
 import { BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 
 const distance = (a, b, i) => Math.hypot(a.px[i] - b.px[i], a.py[i] - b.py[i], a.pz[i] - b.pz[i]);
@@ -26,10 +27,10 @@ function figuresOf(flight) {
       [vehicle.t, [
         ["of tracking", BLUE, each((i) => distance(reference, vehicle, i))],
         ["of own place", GREEN, each((i) => distance(believed, vehicle, i))],
-        ["of the pad", VERMILLION, each((i) => {
+        ...(flight.goal ? [] : [["of the pad", VERMILLION, each((i) => {
           const b = flight.padRow(pad_believed, vehicle.t[i]);
           return b < 0 ? null : Math.hypot(pad_believed.px[b] - truth.px[i], pad_believed.py[b] - truth.py[i]);
-        })],
+        })]]),
       ]],
     ]],
     ["Clearance", "m", [
@@ -52,11 +53,19 @@ function figuresOf(flight) {
     ["Speed", "m/s", [
       [vehicle.t, [
         ["of the vehicle", BLUE, each((i) => Math.hypot(vehicle.vx[i], vehicle.vy[i], vehicle.vz[i]))],
-        ["of the pad", PURPLE, each((i) => Math.hypot(truth.vx[i], truth.vy[i]))],
+        ...(flight.goal ? [] : [["of the pad", PURPLE, each((i) => Math.hypot(truth.vx[i], truth.vy[i]))]]),
         ["of the air", GREEN, each((i) => Math.hypot(samples.air.vx[i], samples.air.vy[i], samples.air.vz[i]))],
       ]],
     ]],
   ];
+}
+
+/** The newest value up to an index: between the times of a series there is nothing in the joined list. */
+function newest(plot, series, index) {
+  const values = plot.data[series];
+  let i = index ?? -1;
+  while (i >= 0 && values[i] === undefined) --i;
+  return i < 0 || values[i] === null ? "–" : Number(values[i].toPrecision(3)).toString();
 }
 
 /** uPlot wants one list of times for all series: they are joined. */
@@ -67,7 +76,7 @@ function tableOf(figures, begin, end) {
       if (times.length === 0 || list.length === 0) continue;
       tables.push([times, ...list.map(([, , values]) => values)]);
       for (const [name, colour] of list) {
-        series.push({ label: figures.length > 1 ? `${name} (${number + 1})` : name, stroke: colour, width: 1.4, spanGaps: false, points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
+        series.push({ label: figures.length > 1 ? `${name} (${number + 1})` : name, stroke: colour, width: 1.4, spanGaps: false, value: (plot, value, series, index) => newest(plot, series, index), points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
       }
     }
   });
@@ -100,10 +109,13 @@ export class Plots {
   }
 
   resize() {
-    for (const { plot, box } of this.plots) plot.setSize({ width: Math.max(box.clientWidth, 120), height: Math.max(box.clientHeight - 42, 60) });
+    for (const { plot, box } of this.plots) plot.setSize({ width: Math.max(box.clientWidth, 120), height: Math.max(box.clientHeight - 56, 60) });
   }
 
   update(t) {
-    for (const { plot, now } of this.plots) now.style.transform = `translateX(${plot.valToPos(t, "x")}px)`;
+    for (const { plot, now } of this.plots) {
+      now.style.transform = `translateX(${plot.valToPos(t, "x")}px)`;
+      if (plot.cursor.left < 0) plot.setLegend({ idx: indexAt(plot.data[0], t) }); // else the mouse tells where
+    }
   }
 }

@@ -90,7 +90,7 @@ export function makeZones(zones) {
   return group;
 }
 
-const PRIOR = { occupied: ["#8C7BB5", 0.25], gone: [YELLOW, 0.7], new: [PURPLE, 0.7] };
+const PRIOR = { occupied: ["#8C7BB5", 0.25], gone: [YELLOW, 0.5], new: [PURPLE, 0.6] };
 const FREE = 1, OCCUPIED = 2; // states of map_change
 
 const keyOf = (x, y, z) => (x + 8192) + 16384 * ((y + 8192) + 16384 * (z + 8192));
@@ -135,7 +135,7 @@ export class Prior {
 
   cubes(places, state, resolution) {
     const [colour, opacity] = PRIOR[state];
-    const material = new MeshLambertMaterial({ color: new Color(colour), transparent: true, opacity, depthWrite: opacity > 0.5 });
+    const material = new MeshLambertMaterial({ color: new Color(colour), transparent: true, opacity, depthWrite: state === "new" });
     const mesh = new InstancedMesh(new BoxGeometry(1, 1, 1), material, places.length);
     const matrix = new Matrix4();
     const grown = state === "occupied" ? 1 : 1.06; // what turned out is around what was held

@@ -238,6 +238,9 @@ describe("a page of one flight", () => {
     await slide(page, 4);
     const later = await page.$$eval(".now", (lines) => lines.map((line) => line.style.transform));
     places.forEach((place, i) => assert.notEqual(place, later[i]));
+    const [beside, above] = await page.$$eval(".plot:first-child .u-value", (values) => values.slice(-2).map((value) => Number(value.textContent)));
+    const now = await page.$eval("#now", (element) => element.textContent.match(/beside the pad([\d.]+) mfeet above the deck(-?[\d.]+) m/).slice(1).map(Number));
+    assert.ok(Math.abs(beside - now[0]) < 0.05 && Math.abs(above - now[1]) < 0.05, `${[beside, above]} is not ${now}`);
   });
 });
 
