@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/words.h"
 #include "evaluation/base/worker_process.h"
 #include "sim/rendering/gl_context.h"
 
@@ -20,9 +21,7 @@ std::string Try() {
     sim::GlContext().MakeCurrent();
     return kWorks;
   } catch (const std::runtime_error& error) {
-    std::string why = error.what();
-    while (!why.empty() && why.back() == '.') why.pop_back();
-    return why;
+    return WithoutStop(error.what());
   }
 }
 

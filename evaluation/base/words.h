@@ -13,4 +13,10 @@ std::vector<std::string> Split(const std::string& text, char separator);
 /// "a, b or c".
 std::string Enumerate(const std::vector<std::string>& words);
 
+/// A sentence without the full stops and ends of lines behind it, to stand in another one.
+std::string WithoutStop(std::string sentence);
+
+/// "signal 9 (Killed)".
+std::string SignalWords(int signal);
+
 }  // namespace touchdown::evaluation

@@ -37,8 +37,7 @@ estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
   try {
     return sim::LoadVehicleModel(VehicleMjcf(source.scenario));
   } catch (const std::invalid_argument& error) {
-    std::string why = error.what();  // MuJoCo's own words may have several lines
-    why.erase(why.find_last_not_of(" \n.") + 1);
+    std::string why = WithoutStop(error.what());  // MuJoCo's own words may have several lines
     std::replace(why.begin(), why.end(), '\n', ' ');
     throw BadInput(fmt::format("{}: vehicle {}: {}.", source.WhereOf("vehicle").ToString(),
                                source.scenario.vehicle, why));
