@@ -217,11 +217,8 @@ void CheckSensors(const ScenarioSource& source) {
         "in (0, 200] Hz: without both the vehicle cannot tell where it is.",
         source.WhereOf("own.gps.rate").ToString()));
   }
-  if (s.sensing == SensingKind::kRendered && s.pad.deck_size < estimation::kPadSheetSide) {
-    throw BadInput(fmt::format(
-        "{}: pad.deck_size must be in [{}, 5] m with sensing: rendered, which needs room for the "
-        "pad's printed sheet, not '{}'.",
-        source.WhereOf("pad.deck_size").ToString(), estimation::kPadSheetSide, s.pad.deck_size));
+  if (s.sensing == SensingKind::kRendered) {
+    RequireSheetRoom(s, source.WhereOf("pad.deck_size").ToString(), "sensing: rendered");
   }
 }
 
@@ -426,6 +423,15 @@ const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const 
   }
   throw std::invalid_argument(
       fmt::format("term {} is unknown{}", name, Instead(name, names, "known:")));
+}
+
+void RequireSheetRoom(const Scenario& scenario, const std::string& where, const std::string& with) {
+  const double size = scenario.pad.deck_size;
+  if (size >= estimation::kPadSheetSide) return;
+  throw BadInput(
+      fmt::format("{}: pad.deck_size must be in [{}, 5] m with {}, which needs room for the pad's "
+                  "printed sheet, not '{}'.",
+                  where, estimation::kPadSheetSide, with, size));
 }
 
 void CheckScenario(const ScenarioSource& source, const Registries& registries) {

@@ -152,6 +152,17 @@ TEST(FlightVideo, WhatCannotBeMadeIsSaidBefore) {
                             "ffmpeg.");
 }
 
+TEST(FlightVideo, ADeckWithoutRoomForItsSheetIsRefusedBeforeTheFlight) {
+  Scenario scenario = LoadScenario(FindScenario("open"), {}, StandardRegistries());
+  const std::string path = ::testing::TempDir() + "touchdown_flight_video.mp4";
+  EXPECT_NO_THROW(CheckVideo("--video", path, scenario));
+  scenario.pad.deck_size = 0.6;
+  EXPECT_EQ(SaidBy<BadInput>([&] { CheckVideo("--video", path, scenario); }),
+            "--video " + path +
+                ": pad.deck_size must be in [1.28, 5] m with a video, which needs room for the "
+                "pad's printed sheet, not '0.6'.");
+}
+
 TEST(FlightVideo, AFailureLeavesNothing) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(::testing::TempDir()) / "touchdown_broken_encoder";

@@ -14,6 +14,7 @@
 #include "evaluation/base/progress.h"
 #include "evaluation/base/rendering_check.h"
 #include "evaluation/flight/pad_eye.h"
+#include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "evaluation/video/camera_insets.h"
 #include "evaluation/video/caption.h"
@@ -26,6 +27,7 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr char kVideo[] = "a video";
 constexpr double kFovDeg = 52.0;
 constexpr double kFar = 250.0;       // [m]
 constexpr double kNear = 0.1;        // [m]
@@ -61,13 +63,18 @@ int FontSize(int design, int height) {
   return std::clamp(static_cast<int>(std::lround(1.0 * design * height / kDesignHeight)), 1, 6);
 }
 
+RecordedFlight Drawable(RecordedFlight flight, const std::string& path) {
+  RequireSheetRoom(flight.scenario, path, kVideo);
+  return flight;
+}
+
 }  // namespace
 
 class FlightPictures::Impl {
  public:
   Impl(const std::string& record_path, const Registries& registries, VideoSize size)
       : size_(size),
-        flight_(ReadRecord(record_path, {}, registries)),
+        flight_(Drawable(ReadRecord(record_path, {}, registries), record_path)),
         track_(record_path),
         world_(WorldOf(flight_.scenario, DrawTrial(flight_.scenario, flight_.scenario.seed),
                        registries)),
@@ -209,6 +216,11 @@ void CheckVideo(const std::string& option, const std::string& path) {
   CheckOutputPath(option, path);
   RequireEncoder(fmt::format("{} {}", option, path));
   RequireRendering(fmt::format("{} {}", option, path));
+}
+
+void CheckVideo(const std::string& option, const std::string& path, const Scenario& scenario) {
+  CheckVideo(option, path);
+  RequireSheetRoom(scenario, fmt::format("{} {}", option, path), kVideo);
 }
 
 void WriteVideo(const std::string& record_path, const std::string& video_path,

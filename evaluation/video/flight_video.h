@@ -45,6 +45,9 @@ class FlightPictures {
 /// ffmpeg, off-screen rendering. @throws BadInput
 void CheckVideo(const std::string& option, const std::string& path);
 
+/// The same for what is to be flown: whether it can be drawn. @throws BadInput
+void CheckVideo(const std::string& option, const std::string& path, const Scenario& scenario);
+
 /// Makes a video of a record. It appears whole or not at all. @throws BadInput as FlightPictures,
 /// std::runtime_error with one sentence.
 void WriteVideo(const std::string& record_path, const std::string& video_path,

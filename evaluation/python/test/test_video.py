@@ -43,6 +43,13 @@ def test_a_bad_name_is_refused_before_the_flight(run, tmp_path, path, why):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_scene_that_cannot_be_drawn_is_refused_before_the_flight(run, tmp_path):
+    done = run("land", "open", "--set", "pad.deck_size=0.6", "--video", "f.mp4", cwd=tmp_path)
+    assert done.returncode == 2 and done.stdout == ""
+    assert "pad.deck_size must be in [1.28, 5] m with a video" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
 def test_replay_needs_a_record_and_something_to_make(run, tmp_path):
     done = run("replay", "none.db", "--video", "f.mp4", cwd=tmp_path)
     assert done.returncode == 2 and "none.db: there is no such record" in done.stderr
