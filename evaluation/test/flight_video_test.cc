@@ -111,13 +111,32 @@ TEST(FlightTrack, IsInterpolatedBetweenSamples) {
   EXPECT_FALSE(track.touchdown().has_value());
 }
 
-TEST(FlightTrack, RefusesWhatIsIncomplete) {
+TEST(FlightTrack, RefusesWhatCannotBe) {
   const std::string path = ::testing::TempDir() + "touchdown_flight_video_cut.db";
-  std::filesystem::copy_file(ShortRecord(), path,
-                             std::filesystem::copy_options::overwrite_existing);
-  SqliteDb(path, SqliteDb::Mode::kReadWrite).Execute("DELETE FROM pad WHERE t > 0.5");
-  EXPECT_THAT(SaidBy<BadInput>([&] { FlightTrack track(path); }),
-              HasSubstr("its table pad does not agree with the table vehicle"));
+  const std::string last = " WHERE source = 'true' AND t = (SELECT MAX(t) FROM vehicle)";
+  const std::string number = "its table vehicle holds what is no finite number";
+  const std::vector<std::pair<std::string, std::string>> damages = {
+      {"DELETE FROM pad WHERE t > 0.5", "its table pad does not agree with the table vehicle"},
+      {"DELETE FROM vehicle", "its table vehicle holds no true state"},
+      {"UPDATE vehicle SET t = 9e999" + last, number},
+      {"UPDATE vehicle SET px = 9e999" + last, number},
+      {"UPDATE vehicle SET px = 'abc'" + last, number},
+      {"UPDATE vehicle SET px = 1e300" + last, "its table vehicle holds a place beyond 100 km"},
+      {"UPDATE vehicle SET t = 2e9" + last,
+       "its table vehicle holds the time 2e+09 s where 0 to 601 may stand"},
+      {"UPDATE vehicle SET t = 1e6" + last,
+       "its table vehicle holds the time 1e+06 s where 0 to 601 may stand"},
+      {"UPDATE vehicle SET t = -1" + last,
+       "its table vehicle holds the time -1 s where 0 to 601 may stand"},
+      {"UPDATE vehicle SET t = 0" + last, "its table vehicle holds the time 0 s twice"},
+      {"UPDATE vehicle SET qw = 0, qx = 0, qy = 0, qz = 0" + last,
+       "its table vehicle holds a quaternion that is no unit one"}};
+  for (const auto& [sql, why] : damages) {
+    std::filesystem::copy_file(ShortRecord(), path,
+                               std::filesystem::copy_options::overwrite_existing);
+    SqliteDb(path, SqliteDb::Mode::kReadWrite).Execute(sql);
+    EXPECT_EQ(SaidBy<BadInput>([&] { FlightTrack track(path); }), path + ": " + why + ".") << sql;
+  }
 }
 
 TEST(Caption, SaysWhatHappensAndHowFarItIs) {
