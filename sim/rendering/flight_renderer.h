@@ -44,7 +44,7 @@ struct FlightMoment {
 /// gives the same bits. Belongs to the thread that made it.
 class FlightRenderer {
  public:
-  /// Throws as SceneRenderer does, and for a vehicle as VehicleLooks.
+  /// Throws as SceneRenderer does, and for a vehicle as LooksOf.
   FlightRenderer(const VisualScene& scene, const std::string& vehicle_mjcf, const ViewConfig& view);
   FlightRenderer(FlightRenderer&&) noexcept;
   FlightRenderer& operator=(FlightRenderer&&) noexcept;
