@@ -100,7 +100,7 @@ class FlightPictures::Impl {
     moment_.camera = cameras_[static_cast<std::size_t>(next_)];
     moment_.vehicle = now.vehicle;
     moment_.pad = now.pad;
-    moment_.lines = {Trail(now), Plan(now)};
+    moment_.lines = {Plan(now), Trail(now)};
     moment_.marks.clear();
     if (goal_) moment_.marks.push_back({TargetOf(now), 0.12, kGoalColor});
     renderer_.Render(moment_, &picture_.rgb);
@@ -129,12 +129,13 @@ class FlightPictures::Impl {
     return goal_ ? goal_->At(sample.vehicle.t).p_WP : sample.pad.p_WP;
   }
 
+  // From now on back: of a long flight the beginning is left out.
   sim::FlightLine Trail(const TrackSample& now) {
     while (trail_.size() * kTrailStep <= now.vehicle.t) {
       trail_.push_back(track_.At(static_cast<double>(trail_.size()) * kTrailStep).vehicle.p_WB);
     }
-    sim::FlightLine line{trail_, kLineWidth, kTrailColor};
-    line.points_W.push_back(now.vehicle.p_WB);
+    sim::FlightLine line{{now.vehicle.p_WB}, kLineWidth, kTrailColor};
+    line.points_W.insert(line.points_W.end(), trail_.rbegin(), trail_.rend());
     return line;
   }
 

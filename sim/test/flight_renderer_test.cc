@@ -89,15 +89,31 @@ TEST(FlightRenderer, ThePrintedSheetIsNotInItsOwnShadow) {
   for (int v = 45; v < 75; ++v) EXPECT_GT(Brightness(rgb, 83, v), 600) << v;
 }
 
-TEST(FlightRenderer, HasRoomForSoManyPiecesAndNoMore) {
+// A short line and the mark stand whatever a long line has, which loses its end.
+TEST(FlightRenderer, OfTooManyPiecesTheLastAreLeftOut) {
   FlightRenderer renderer({}, DefaultVehicleMjcf(), SmallView());
   FlightMoment moment = FromAbove();
-  moment.lines.resize(1);
-  for (int i = 0; i < FlightRenderer::kMostPieces + 100; ++i) {
-    moment.lines[0].points_W.emplace_back(0.001 * i, -2.0, 0.5);
+  const std::array<float, 4> red = {1.0F, 0.0F, 0.0F, 1.0F};
+  moment.lines = {{{{-3.0, -2.0, 0.5}, {-1.0, -2.0, 0.5}}, 0.4, red}, {{}, 0.4, red}};
+  for (int i = 0; i < FlightRenderer::kMostPieces + 1000; ++i) {
+    moment.lines[1].points_W.emplace_back(0.001 * i, -2.0, 0.5);
   }
+  moment.marks = {{{0.0, 2.0, 0.5}, 0.4, {0.0F, 1.0F, 0.0F, 1.0F}}};
   std::vector<std::uint8_t> rgb;
-  EXPECT_NO_THROW(renderer.Render(moment, &rgb));
+  renderer.Render(moment, &rgb);
+  // 5.5 m below the camera, 10.9 pixels a metre.
+  const auto red_at = [&](double x) {
+    const int u = 80 + static_cast<int>(10.9 * x);
+    for (int v = 79; v < 85; ++v) {
+      if (Pixel(rgb, u, v)[0] > 100 && Pixel(rgb, u, v)[1] < 30) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(red_at(-2.0));
+  EXPECT_TRUE(red_at(0.5));
+  EXPECT_TRUE(red_at(3.5));
+  EXPECT_FALSE(red_at(4.5));
+  EXPECT_GT(Pixel(rgb, 80, 60 - 22)[1], 130);
 }
 
 // The default's text with `from` replaced by `to` wherever it stands.
