@@ -111,6 +111,12 @@ TEST(Program, ATypoIsToldWhatWasMeant) {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     EXPECT_THAT(ran.err, Not(HasSubstr("try --help")));
   }
+  for (const char* key :
+       {"solver.max=1", "estimator.yaw=1", "planning.name=1", "wind.far=1", "pid.seed=1"}) {
+    const Ran ran = Call({"land", "open", "--set", key});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, Not(HasSubstr("did you mean"))) << key;
+  }
   EXPECT_THAT(Call({"land", "--quickly"}).err, HasSubstr("has no option --quickly (try --help)"));
 }
 
