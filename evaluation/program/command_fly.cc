@@ -217,9 +217,10 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
              });
   }
   if (!arguments.video.empty()) {
+    const VideoProgress tell = TellVideo();
     DrawFrom(arguments.record, arguments.video, write,
              [&](const std::string& table, const std::string& video) {
-               WriteVideo(table, video, registries);
+               WriteVideo(table, video, registries, tell);
              });
   }
   return result.succeeded() ? kDone : kFellShort;

@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/interrupt_watch.h"
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/progress.h"
@@ -76,6 +77,14 @@ ReplayProgress TellReplay() {
   const auto lines = std::make_shared<std::map<std::string, Progress>>();
   return [lines](const std::string& name, int done, int all) {
     lines->try_emplace(name, ProgressText{"steps asked again", name}).first->second(done, all);
+  };
+}
+
+VideoProgress TellVideo() {
+  const auto watch = std::make_shared<const InterruptWatch>();
+  return [watch, tell = Progress({"pictures", "video"})](int done, int all) mutable {
+    watch->ThrowIfAsked();
+    tell(done, all);
   };
 }
 
@@ -199,6 +208,9 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return kFellShort;
+  } catch (const Interrupted& end) {
+    spdlog::warn("interrupted");
+    return 128 + end.signal;
   } catch (...) {
     spdlog::error("something that is no std::exception was thrown");
     return kFellShort;

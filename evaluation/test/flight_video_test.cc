@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/interrupt_watch.h"
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/record/record.h"
@@ -192,9 +193,29 @@ TEST(FlightVideo, AFailureLeavesNothing) {
   const PathScope broken((folder / "bin").string());
   const std::string video = (folder / "flight.mp4").string();
   EXPECT_EQ(SaidBy<std::runtime_error>(
-                [&] { WriteVideo(ShortRecord(), video, StandardRegistries(), kSmall); }),
+                [&] { WriteVideo(ShortRecord(), video, StandardRegistries(), {}, kSmall); }),
             "--video " + video + ": the video was not made: ffmpeg failed (no space left).");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+TEST(FlightVideo, TellsHowFarItIsAndCanBeEnded) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / "touchdown_ended_video";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const std::string video = (folder / "flight.mp4").string();
+  std::vector<int> told;
+  EXPECT_THROW(WriteVideo(
+                   ShortRecord(), video, StandardRegistries(),
+                   [&](int done, int all) {
+                     EXPECT_EQ(all, 31);
+                     told.push_back(done);
+                     if (done == 3) throw Interrupted{15};
+                   },
+                   kSmall),
+               Interrupted);
+  EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
+  EXPECT_TRUE(fs::is_empty(folder));
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/output_path.h"
-#include "evaluation/base/progress.h"
 #include "evaluation/base/rendering_check.h"
+#include "evaluation/base/words.h"
 #include "evaluation/flight/pad_eye.h"
 #include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_world.h"
@@ -28,6 +28,8 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr char kVideo[] = "a video";
+constexpr int kHeld =
+    3 * kVideoRate / 2;  // so often the last picture is shown, which tells the outcome
 constexpr double kFovDeg = 52.0;
 constexpr double kFar = 250.0;       // [m]
 constexpr double kNear = 0.1;        // [m]
@@ -225,23 +227,24 @@ void CheckVideo(const std::string& option, const std::string& path, const Scenar
 }
 
 void WriteVideo(const std::string& record_path, const std::string& video_path,
-                const Registries& registries, VideoSize size) {
+                const Registries& registries, const VideoProgress& progress, VideoSize size) {
   try {
     FlightPictures pictures(record_path, registries, size);
     AtomicFile file(video_path);
     VideoEncoder encoder(file.working_path(), size.width, size.height, kVideoRate);
-    Progress progress({"pictures", "video"});
-    for (int i = 0; i < pictures.count(); ++i) {
-      encoder.Add(pictures.Next());
-      progress(i + 1, pictures.count());
+    for (int i = 1; i <= pictures.count(); ++i) {
+      const std::vector<std::uint8_t>& picture = pictures.Next();
+      const int times = i < pictures.count() ? 1 : kHeld;
+      for (int time = 0; time < times; ++time) encoder.Add(picture);
+      if (progress) progress(i, pictures.count());
     }
     encoder.Finish();
     file.Commit();
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
-    throw std::runtime_error(
-        fmt::format("--video {}: the video was not made: {}.", video_path, error.what()));
+    throw std::runtime_error(fmt::format("--video {}: the video was not made: {}.", video_path,
+                                         WithoutStop(error.what())));
   }
 }
 
