@@ -40,13 +40,17 @@ std::optional<std::string> WhyNotRender() {
 
 }  // namespace
 
-void RequireRendering(const std::string& who) {
+void RequireRendering(const std::string& who, const std::string& way_out) {
   static const std::optional<std::string> why = WhyNotRender();
   if (!why) return;
   throw BadInput(
       fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend its "
-                  "OSMesa (Debian: libosmesa6); sensing: fast flies without it.",
-                  who, *why));
+                  "OSMesa (Debian: libosmesa6){}{}.",
+                  who, *why, way_out.empty() ? "" : "; ", way_out));
+}
+
+void RequireRenderedSensing() {
+  RequireRendering("sensing: rendered", "sensing: fast flies without it");
 }
 
 }  // namespace touchdown::evaluation

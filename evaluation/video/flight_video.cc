@@ -218,7 +218,7 @@ void CheckVideo(const std::string& option, const std::string& path) {
   }
   CheckOutputPath(option, path);
   RequireEncoder(fmt::format("{} {}", option, path));
-  RequireRendering(fmt::format("{} {}", option, path));
+  RequireRendering(fmt::format("{} {}", option, path), "");
 }
 
 void CheckVideo(const std::string& option, const std::string& path, const Scenario& scenario) {
