@@ -158,6 +158,41 @@ TEST(Caption, SaysWhatHappensAndHowFarItIs) {
   EXPECT_LE(PlanAt(flight.plans, 0.5)->request.input.t_start, 0.5);
 }
 
+TEST(Caption, IsCutWhereThereIsNoRoom) {
+  const sim::Font font(2);
+  const std::string name(150, 'w');
+  const std::string cut = Fitting(name, 300, font);
+  EXPECT_LE(font.WidthOf(cut), 300);
+  EXPECT_GT(font.WidthOf(cut + "w"), 300);
+  EXPECT_EQ(Fitting("forest", 300, font), "forest");
+  EXPECT_EQ(Fitting("forest", font.WidthOf("forest"), font), "forest");
+  EXPECT_EQ(Fitting("forest", -5, font), "");
+}
+
+// The words at the right stand alone, however long those at the left are.
+TEST(FlightPictures, ALongNameDoesNotReachTheTime) {
+  const std::string path = ::testing::TempDir() + "touchdown_flight_video_named.db";
+  std::filesystem::copy_file(ShortRecord(), path,
+                             std::filesystem::copy_options::overwrite_existing);
+  SqliteDb(path, SqliteDb::Mode::kReadWrite)
+      .Execute("UPDATE meta SET value = '" + std::string(150, 'w') + "' WHERE key = 'scenario'");
+  FlightPictures named(path, StandardRegistries(), kSmall);
+  FlightPictures plain(ShortRecord(), StandardRegistries(), kSmall);
+  const std::vector<std::uint8_t>& a = named.Next();
+  const std::vector<std::uint8_t>& b = plain.Next();
+  const auto differ = [&](int from, int to) {
+    int count = 0;
+    for (int y = kSmall.height - 20; y < kSmall.height; ++y) {
+      for (int x = 3 * (y * kSmall.width + from); x < 3 * (y * kSmall.width + to); ++x) {
+        if (a[static_cast<std::size_t>(x)] != b[static_cast<std::size_t>(x)]) ++count;
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(differ(100, 200), 0);
+  EXPECT_EQ(differ(kSmall.width - 30, kSmall.width), 0);  // "0.00 s"
+}
+
 TEST(FlightVideo, WhatCannotBeMadeIsSaidBefore) {
   const auto said = [](const std::string& path) {
     return SaidBy<BadInput>([&] { CheckVideo("--video", path); });

@@ -175,9 +175,11 @@ class FlightPictures::Impl {
     const auto write = [&](const std::string& left, const std::string& right, int row,
                            const Rgb& color) {
       const int y = top + Scaled(5) + row * line;
-      picture_.Text(margin, y, left, caption_font_, color);
-      picture_.Text(size_.width - margin - caption_font_.WidthOf(right), y, right, caption_font_,
+      const int edge = size_.width - margin - caption_font_.WidthOf(right);
+      // The room between the two is a margin, too.
+      picture_.Text(margin, y, Fitting(left, edge - 2 * margin, caption_font_), caption_font_,
                     color);
+      picture_.Text(edge, y, right, caption_font_, color);
     };
     write(caption.flight, caption.time, 0, kDim);
     write(caption.state, caption.distance, 1, kWhite);
