@@ -84,4 +84,11 @@ std::string Instead(std::string_view word, const std::vector<std::string>& names
   return fmt::format("{}; {} {}", meant, lead, Enumerate(names));
 }
 
+std::string WithSuggestion(const std::string& sentence, std::string_view word,
+                           const std::vector<std::string>& names) {
+  const std::size_t list = sentence.find("; known:");
+  if (list == sentence.npos) return sentence;
+  return sentence.substr(0, list).append(Instead(word, names, "known:"));
+}
+
 }  // namespace touchdown::evaluation

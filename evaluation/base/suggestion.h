@@ -20,4 +20,9 @@ std::string DidYouMean(std::string_view word, const std::vector<std::string>& na
 std::string Instead(std::string_view word, const std::vector<std::string>& names,
                     const std::string& lead);
 
+/// The sentence of a room below that refuses `word`: of one that ends in "; known: a, b" the list becomes Instead's. Another one
+/// stays as it is.
+std::string WithSuggestion(const std::string& sentence, std::string_view word,
+                           const std::vector<std::string>& names);
+
 }  // namespace touchdown::evaluation

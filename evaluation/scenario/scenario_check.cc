@@ -131,12 +131,18 @@ void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
   }
 }
 
-void RequireTermKey(const planning::TermEntry& entry, const std::string& key) {
-  std::vector<std::string> keys = {"weight", "hard"};
-  for (const planning::TermParameter& parameter : entry.parameters) keys.push_back(parameter.name);
-  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
-  throw std::invalid_argument(fmt::format("term {} has no parameter {}{}", entry.info.name, key,
-                                          Instead(key, keys, "known:")));
+void ApplyTermKey(const planning::TermEntry& entry, const std::string& key,
+                  const planning::TermSettings& settings) {
+  planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
+  try {
+    planning::ApplySettings(entry, settings, &setup);
+  } catch (const std::invalid_argument& error) {
+    std::vector<std::string> keys = {"weight", "hard"};
+    for (const planning::TermParameter& parameter : entry.parameters) {
+      keys.push_back(parameter.name);
+    }
+    throw std::invalid_argument(WithSuggestion(error.what(), key, keys));
+  }
 }
 
 // Each key alone, so that the sentence names the place it came from.
@@ -149,9 +155,7 @@ void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& term
           throw std::invalid_argument(
               "term " + name + " does nothing in a flight, where nobody tells of moving obstacles");
         }
-        planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
-        RequireTermKey(entry, key);
-        planning::ApplySettings(entry, TermSettingsOf(name, {{key, value}}), &setup);
+        ApplyTermKey(entry, key, TermSettingsOf(name, {{key, value}}));
       } catch (const std::invalid_argument& error) {
         throw BadInput(fmt::format(
             "{}: {}.", source.WhereOf("terms." + name + "." + key).ToString(), error.what()));
@@ -182,9 +186,9 @@ void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& m
     } catch (const std::invalid_argument& error) {
       std::vector<std::string> names;
       for (const solvers::OptionSpec& spec : backend->options().specs()) names.push_back(spec.name);
-      throw BadInput(fmt::format("{}: {} (backend {}){}.",
-                                 source.WhereOf("solver.options." + name).ToString(), error.what(),
-                                 s.solver.backend, DidYouMean(name, names)));
+      throw BadInput(fmt::format("{}: {} (backend {}).",
+                                 source.WhereOf("solver.options." + name).ToString(),
+                                 WithSuggestion(error.what(), name, names), s.solver.backend));
     }
   }
   const planning::ReplannerOptions options = PlannerOptions(s, model, registries.terms);
@@ -416,13 +420,13 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
 }
 
 const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name) {
-  std::vector<std::string> names;
-  for (const planning::TermEntry& entry : terms) {
-    if (entry.info.name == name) return entry;
-    names.push_back(entry.info.name);
+  try {
+    return planning::FindTerm(terms, name);
+  } catch (const std::invalid_argument& error) {
+    std::vector<std::string> names;
+    for (const planning::TermEntry& entry : terms) names.push_back(entry.info.name);
+    throw std::invalid_argument(WithSuggestion(error.what(), name, names));
   }
-  throw std::invalid_argument(
-      fmt::format("term {} is unknown{}", name, Instead(name, names, "known:")));
 }
 
 void RequireSheetRoom(const Scenario& scenario, const std::string& where, const std::string& with) {

@@ -57,5 +57,13 @@ TEST(Suggestion, ALongListIsLeftOutWhereANameIsNear) {
   EXPECT_EQ(Instead("x", many, "known:").substr(0, 16), "; known: fly, fl");
 }
 
+TEST(Suggestion, StandsInASentenceInPlaceOfItsList) {
+  const std::vector<std::string> names = {"weight", "margin"};
+  EXPECT_EQ(WithSuggestion("key wieght is unknown; known: weight, margin", "wieght", names),
+            "key wieght is unknown (did you mean weight?); known: weight or margin");
+  EXPECT_EQ(WithSuggestion("weight must be in [0, 1]", "weight", names),
+            "weight must be in [0, 1]");
+}
+
 }  // namespace
 }  // namespace touchdown::evaluation
