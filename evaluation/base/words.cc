@@ -28,6 +28,21 @@ std::string WithoutStop(std::string sentence) {
   return sentence;
 }
 
+std::string InOneLine(std::string_view text) {
+  std::string line;
+  for (const char letter : text) {
+    const int code = static_cast<unsigned char>(letter);
+    if (letter == '\n') {
+      line += "\\n";
+    } else if (code < 0x20 || code == 0x7f) {
+      line += fmt::format("\\x{:02x}", code);
+    } else {
+      line += letter;
+    }
+  }
+  return line;
+}
+
 std::string SignalWords(int signal) {
   return fmt::format("signal {} ({})", signal, strsignal(signal));
 }

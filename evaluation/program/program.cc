@@ -22,6 +22,7 @@
 #include "evaluation/base/progress.h"
 #include "evaluation/base/stderr_log.h"
 #include "evaluation/base/suggestion.h"
+#include "evaluation/base/words.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
@@ -162,6 +163,9 @@ std::string Unknown(const CLI::App& app) {
                          : fmt::format("{} has no option {}", name, fmt::join(options, ", "));
 }
 
+// One sentence in one line, though words from outside stand in it: names of files, values of keys.
+void Complain(const std::string& sentence) { spdlog::error("{}", InOneLine(sentence)); }
+
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const Registries& registries) {
@@ -175,7 +179,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   try {
     RequireDistinct(registries);
   } catch (const std::invalid_argument& error) {
-    spdlog::error("{}.", error.what());
+    Complain(std::string(error.what()) + ".");
     return kBadInput;
   }
   Command(&app).EndHelp("README.md");
@@ -197,16 +201,16 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ExtrasError&) {
-    spdlog::error("{}", TryHelp(Unknown(app)));
+    Complain(TryHelp(Unknown(app)));
     return kBadInput;
   } catch (const CLI::ParseError& error) {
-    spdlog::error("{}", TryHelp(error.what()));
+    Complain(TryHelp(error.what()));
     return kBadInput;
   } catch (const BadInput& error) {
-    spdlog::error("{}", error.what());
+    Complain(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    Complain(error.what());
     return kFellShort;
   } catch (const Interrupted& end) {
     spdlog::warn("interrupted");

@@ -120,6 +120,21 @@ TEST(Program, ATypoIsToldWhatWasMeant) {
   EXPECT_THAT(Call({"land", "--quickly"}).err, HasSubstr("has no option --quickly (try --help)"));
 }
 
+TEST(Program, WordsFromOutsideDoNotBreakALine) {
+  for (const std::vector<const char*>& arguments :
+       {std::vector<const char*>{"land", "open", "--set", "description=\"a\nb\""},
+        {"land", "a\nb"},
+        {"land", "open", "--video", "a\nb"},
+        {"land", "--a\nb"},
+        {"a\nb"}}) {
+    const Ran ran = Call(arguments);
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr("a\\nb"));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  EXPECT_THAT(Call({"land", "a\x1b[2Jb"}).err, HasSubstr("a\\x1b[2Jb"));
+}
+
 TEST(Program, APageReplacesNoOtherFile) {
   const Ran ran = Call({"study", "hostile", "--flights", "1", "--html", "hostile.db"});
   EXPECT_EQ(ran.status, 2);
