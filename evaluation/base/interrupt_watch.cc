@@ -26,7 +26,7 @@ InterruptWatch::~InterruptWatch() {
 int InterruptWatch::signal() const { return g_signal; }
 
 void InterruptWatch::ThrowIfAsked() const {
-  if (signal() != 0) throw Interrupted{signal()};
+  if (signal() != 0) throw Interruption{signal()};
 }
 
 }  // namespace touchdown::evaluation

@@ -7,7 +7,7 @@ namespace touchdown::evaluation {
 
 /// Thrown on the way to the program's end, which then has the exit status 128 and the signal's number, as a shell has it. No
 /// std::exception: nothing has failed.
-struct Interrupted {
+struct Interruption {
   int signal;
 };
 
@@ -22,7 +22,7 @@ class InterruptWatch {
 
   /// The signal that came, or 0.
   int signal() const;
-  /// @throws Interrupted if one came
+  /// @throws Interruption if one came
   void ThrowIfAsked() const;
 
  private:

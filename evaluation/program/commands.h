@@ -56,7 +56,7 @@ void CheckTimings(bool allow_debug);
 /// Tells the log how far a page of flights is.
 ReplayProgress TellReplay();
 
-/// Tells the log how far a video is. While it lives SIGINT and SIGTERM end the making of it, by Interrupted: nothing of it is left.
+/// Tells the log how far a video is. While it lives SIGINT and SIGTERM end the making of it, by Interruption: nothing of it is left.
 VideoProgress TellVideo();
 
 /// `--record` of campaigns: which flights are recorded; with the words that it takes.

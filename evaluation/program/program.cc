@@ -212,7 +212,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const std::exception& error) {
     Complain(error.what());
     return kFellShort;
-  } catch (const Interrupted& end) {
+  } catch (const Interruption& end) {
     spdlog::warn("interrupted");
     return 128 + end.signal;
   } catch (...) {

@@ -245,10 +245,10 @@ TEST(FlightVideo, TellsHowFarItIsAndCanBeEnded) {
                    [&](int done, int all) {
                      EXPECT_EQ(all, 31);
                      told.push_back(done);
-                     if (done == 3) throw Interrupted{15};
+                     if (done == 3) throw Interruption{15};
                    },
                    kSmall),
-               Interrupted);
+               Interruption);
   EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
   EXPECT_TRUE(fs::is_empty(folder));
 }
