@@ -122,7 +122,7 @@ TEST(Program, ATypoIsToldWhatWasMeant) {
 
 TEST(Program, WordsFromOutsideDoNotBreakALine) {
   for (const std::vector<const char*>& arguments :
-       {std::vector<const char*>{"land", "open", "--set", "description=\"a\nb\""},
+       {std::vector<const char*>{"land", "open", "--set", "description=\"a\\nb\""},
         {"land", "a\nb"},
         {"land", "open", "--video", "a\nb"},
         {"land", "--a\nb"},
