@@ -25,4 +25,8 @@ InterruptWatch::~InterruptWatch() {
 
 int InterruptWatch::signal() const { return g_signal; }
 
+void InterruptWatch::ThrowIfAsked() const {
+  if (signal() != 0) throw Interruption{signal()};
+}
+
 }  // namespace touchdown::evaluation

@@ -5,6 +5,12 @@
 
 namespace touchdown::evaluation {
 
+/// Thrown on the way to the program's end, which then has the exit status 128 and the signal's number, as a shell has it. No
+/// std::exception: nothing has failed.
+struct Interruption {
+  int signal;
+};
+
 /// While it lives SIGINT and SIGTERM do not end the process but are noted, and end its system calls. One at a
 /// time.
 class InterruptWatch {
@@ -16,6 +22,8 @@ class InterruptWatch {
 
   /// The signal that came, or 0.
   int signal() const;
+  /// @throws Interruption if one came
+  void ThrowIfAsked() const;
 
  private:
   struct sigaction interrupt_ = {};

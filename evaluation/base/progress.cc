@@ -3,6 +3,8 @@
 #include "evaluation/base/progress.h"
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -26,11 +28,16 @@ bool ProgressPace::Due(double t_s) {
   return true;
 }
 
+double SteadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 struct ProgressTeller::Run {
-  using Clock = std::chrono::steady_clock;
+  explicit Run(SecondsClock with) : clock(std::move(with)) {}
+  const SecondsClock clock;
   const bool rewritten = StderrIsTerminal();
   ProgressPace pace{rewritten};
-  const Clock::time_point begin = Clock::now();
+  const double begin = clock();
   bool shown = false;
 
   // Of a run that ends early, too, the line stays.
@@ -40,11 +47,10 @@ struct ProgressTeller::Run {
   }
 };
 
-ProgressTeller::ProgressTeller() : run_(std::make_shared<Run>()) {}
+ProgressTeller::ProgressTeller(SecondsClock clock)
+    : run_(std::make_shared<Run>(std::move(clock))) {}
 
-double ProgressTeller::elapsed_s() const {
-  return std::chrono::duration<double>(Run::Clock::now() - run_->begin).count();
-}
+double ProgressTeller::elapsed_s() const { return run_->clock() - run_->begin; }
 
 void ProgressTeller::operator()(const std::string& line, bool last) {
   if (!run_->pace.Due(elapsed_s()) && !last) return;

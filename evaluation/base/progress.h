@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,11 +33,15 @@ class ProgressPace {
   double wait_s_ = 2.0;
 };
 
+/// Any steady time [s].
+using SecondsClock = std::function<double()>;
+double SteadySeconds();
+
 /// Tells how far a long run is: on a terminal in one line that is written over, else in the log. Copies share it. Not to be
 /// used from two threads at a time.
 class ProgressTeller {
  public:
-  ProgressTeller();
+  explicit ProgressTeller(SecondsClock clock = SteadySeconds);
   /// The last line is told whenever it comes, and stays.
   void operator()(const std::string& line, bool last);
   double elapsed_s() const;  ///< since construction [s]
@@ -50,7 +54,8 @@ class ProgressTeller {
 /// Tells how far a run of counted things is. Time counts from construction.
 class Progress {
  public:
-  explicit Progress(ProgressText text) : text_(std::move(text)) {}
+  explicit Progress(ProgressText text, SecondsClock clock = SteadySeconds)
+      : text_(std::move(text)), tell_(std::move(clock)) {}
   void operator()(int done, int all);
 
  private:

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/words.h"
 #include "evaluation/base/worker_process.h"
 #include "sim/rendering/gl_context.h"
 
@@ -20,9 +21,7 @@ std::string Try() {
     sim::GlContext().MakeCurrent();
     return kWorks;
   } catch (const std::runtime_error& error) {
-    std::string why = error.what();
-    while (!why.empty() && why.back() == '.') why.pop_back();
-    return why;
+    return WithoutStop(error.what());
   }
 }
 
@@ -41,13 +40,17 @@ std::optional<std::string> WhyNotRender() {
 
 }  // namespace
 
-void RequireRendering(const std::string& who) {
+void RequireRendering(const std::string& who, const std::string& way_out) {
   static const std::optional<std::string> why = WhyNotRender();
   if (!why) return;
   throw BadInput(
       fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend its "
-                  "OSMesa (Debian: libosmesa6); sensing: fast flies without it.",
-                  who, *why));
+                  "OSMesa (Debian: libosmesa6){}{}.",
+                  who, *why, way_out.empty() ? "" : "; ", way_out));
+}
+
+void RequireRenderedSensing() {
+  RequireRendering("sensing: rendered", "sensing: fast flies without it");
 }
 
 }  // namespace touchdown::evaluation

@@ -100,6 +100,11 @@ bool SqliteStatement::IsNull(int column) const {
   return sqlite3_column_type(statement_, column) == SQLITE_NULL;
 }
 
+bool SqliteStatement::IsNumber(int column) const {
+  const int type = sqlite3_column_type(statement_, column);
+  return type == SQLITE_FLOAT || type == SQLITE_INTEGER;
+}
+
 double SqliteStatement::Real(int column) const { return sqlite3_column_double(statement_, column); }
 
 std::int64_t SqliteStatement::Integer(int column) const {

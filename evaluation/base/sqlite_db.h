@@ -78,6 +78,7 @@ class SqliteStatement {
   /// The row's columns from `first` on.
   std::vector<SqlValue> Row(int first = 0) const;
   bool IsNull(int column) const;
+  bool IsNumber(int column) const;  ///< whole or not
   double Real(int column) const;
   std::int64_t Integer(int column) const;
   std::string Text(int column) const;

@@ -3,6 +3,8 @@
 // is one write: what another process writes stands before or behind it.
 #include "evaluation/base/stderr_log.h"
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
@@ -23,18 +25,39 @@ constexpr char kClearLine[] = "\r\x1b[K";
 void WriteToStderr(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return;  // there is nobody to tell
     text.remove_prefix(static_cast<std::size_t>(written));
   }
 }
 
-// A line that reaches the edge would go on in the next one, which is not cleared.
-std::string FitToTerminal(std::string line) {
+std::size_t TerminalColumns() {
+  constexpr std::size_t kUsual = 80;
   winsize size{};
-  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 &&
-      line.size() >= size.ws_col) {
-    line.resize(size.ws_col - 1U);
-  }
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : kUsual;
+}
+
+// In UTF-8: every byte but those that go on with a letter.
+bool BeginsLetter(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
+
+std::size_t LettersIn(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), BeginsLetter));
+}
+
+// A line that reaches the edge would go on in the next one, which is not cleared. Where there is little room, the text goes
+// before the program's name.
+std::string FitToTerminal(std::string_view text) {
+  const std::size_t room = TerminalColumns() - 1;
+  std::string line = std::string(kPrefix).append(text);
+  if (LettersIn(line) <= room) return line;
+  line = text;
+  std::size_t letters = 0;
+  const auto end = std::find_if(line.begin(), line.end(), [&](char byte) {
+    if (BeginsLetter(byte)) ++letters;
+    return letters > room;
+  });
+  line.erase(end, line.end());
   return line;
 }
 
@@ -44,7 +67,7 @@ class StderrSink : public spdlog::sinks::base_sink<std::mutex> {
 
   void Show(const std::string& text) {
     const std::lock_guard lock(mutex_);
-    status_ = FitToTerminal(std::string(kPrefix).append(text));
+    status_ = FitToTerminal(text);
     WriteToStderr(std::string(kClearLine).append(status_));
   }
 

@@ -2,6 +2,7 @@
 #include "evaluation/base/suggestion.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 #include <Eigen/Core>
@@ -14,6 +15,38 @@ namespace {
 constexpr std::size_t kLongList = 12;  // names
 constexpr int kLettersAnError = 3;     // one in so many is near
 constexpr int kMostErrors = 2;
+
+using Parts = std::vector<std::string>;  // of a dotted name
+
+// Where the two differ in one part alone: which it is.
+std::optional<std::size_t> TheOneThatDiffers(const Parts& a, const Parts& b) {
+  if (a.size() != b.size()) return std::nullopt;
+  const auto [from, to] = std::mismatch(a.begin(), a.end(), b.begin());
+  if (from == a.end() || !std::equal(from + 1, a.end(), to + 1)) return std::nullopt;
+  return static_cast<std::size_t>(from - a.begin());
+}
+
+// `same_group`: among those that differ in the last part; else among the others.
+const std::string* Nearest(const Parts& word, const std::vector<std::string>& names,
+                           bool same_group) {
+  const std::string* nearest = nullptr;
+  int least = kMostErrors + 1;
+  for (const std::string& name : names) {
+    const Parts parts = Split(name, '.');
+    const std::optional<std::size_t> at = TheOneThatDiffers(word, parts);
+    if (!at || (*at + 1 == word.size()) != same_group) continue;
+    const int distance = EditDistance(word[*at], parts[*at]);
+    const int most =
+        std::clamp(static_cast<int>(word[*at].size()) / kLettersAnError, 1, kMostErrors);
+    // Not every word of one letter is near every other.
+    if (distance > most || distance >= least || distance >= static_cast<int>(parts[*at].size())) {
+      continue;
+    }
+    least = distance;
+    nearest = &name;
+  }
+  return nearest;
+}
 
 }  // namespace
 
@@ -36,17 +69,12 @@ int EditDistance(std::string_view a, std::string_view b) {
 }
 
 std::string DidYouMean(std::string_view word, const std::vector<std::string>& names) {
-  const std::string* nearest = nullptr;
-  int least = std::clamp(static_cast<int>(word.size()) / kLettersAnError, 1, kMostErrors) + 1;
-  for (const std::string& name : names) {
-    const int distance = EditDistance(word, name);
-    if (distance == 0) return {};
-    // Not every word of one letter is near every other.
-    if (distance >= least || distance >= static_cast<int>(name.size())) continue;
-    least = distance;
-    nearest = &name;
+  if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+  for (const bool same_group : {true, false}) {
+    const std::string* const nearest = Nearest(Split(std::string(word), '.'), names, same_group);
+    if (nearest != nullptr) return fmt::format(" (did you mean {}?)", *nearest);
   }
-  return nearest == nullptr ? std::string() : fmt::format(" (did you mean {}?)", *nearest);
+  return {};
 }
 
 std::string Instead(std::string_view word, const std::vector<std::string>& names,
@@ -54,6 +82,13 @@ std::string Instead(std::string_view word, const std::vector<std::string>& names
   const std::string meant = DidYouMean(word, names);
   if (names.size() > kLongList && !meant.empty()) return meant;
   return fmt::format("{}; {} {}", meant, lead, Enumerate(names));
+}
+
+std::string WithSuggestion(const std::string& sentence, std::string_view word,
+                           const std::vector<std::string>& names) {
+  const std::size_t list = sentence.find("; known:");
+  if (list == sentence.npos) return sentence;
+  return sentence.substr(0, list).append(Instead(word, names, "known:"));
 }
 
 }  // namespace touchdown::evaluation

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -30,7 +31,12 @@ class TableRows {
   }
   double Number() {
     if (statement_.IsNull(column_)) Refuse("lacks a number");
-    return statement_.Real(column_++);
+    const double value = statement_.Real(column_);
+    // No record is written with an infinite one.
+    if (!statement_.IsNumber(column_++) || !std::isfinite(value)) {
+      Refuse("holds what is no finite number");
+    }
+    return value;
   }
   double NumberOrNan() {
     const bool missing = statement_.IsNull(column_);

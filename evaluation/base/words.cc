@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/base/words.h"
 
+#include <cstring>
+
+#include <fmt/format.h>
 #include <boost/algorithm/string/split.hpp>
 
 namespace touchdown::evaluation {
@@ -18,6 +21,30 @@ std::string Enumerate(const std::vector<std::string>& words) {
     text += words[i];
   }
   return text;
+}
+
+std::string WithoutStop(std::string sentence) {
+  sentence.erase(sentence.find_last_not_of(" \n.") + 1);
+  return sentence;
+}
+
+std::string InOneLine(std::string_view text) {
+  std::string line;
+  for (const char letter : text) {
+    const int code = static_cast<unsigned char>(letter);
+    if (letter == '\n') {
+      line += "\\n";
+    } else if (code < 0x20 || code == 0x7f) {
+      line += fmt::format("\\x{:02x}", code);
+    } else {
+      line += letter;
+    }
+  }
+  return line;
+}
+
+std::string SignalWords(int signal) {
+  return fmt::format("signal {} ({})", signal, strsignal(signal));
 }
 
 }  // namespace touchdown::evaluation

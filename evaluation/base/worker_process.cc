@@ -23,6 +23,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "evaluation/base/words.h"
+
 namespace touchdown::evaluation {
 namespace {
 
@@ -69,9 +71,7 @@ void BindTo(pid_t parent) {
 }
 
 std::string Words(int status) {
-  if (WIFSIGNALED(status)) {
-    return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
-  }
+  if (WIFSIGNALED(status)) return SignalWords(WTERMSIG(status));
   return fmt::format("exit status {} without a result", WEXITSTATUS(status));
 }
 

@@ -160,7 +160,7 @@ void CheckTrials(const Campaign& campaign) {
   const bool rendered = std::any_of(
       campaign.trials.begin(), campaign.trials.end(),
       [](const SweepTrial& trial) { return trial.scenario.sensing == SensingKind::kRendered; });
-  if (rendered) RequireRendering("sensing: rendered");
+  if (rendered) RequireRenderedSensing();
 }
 
 Shard Shard::Parse(const std::string& text) {

@@ -442,7 +442,7 @@ class Trial {
 // What the simulator or a backend refuses before the flight is the user's to mend.
 Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
             TrialRecord* record, TrialSamples* samples) {
-  if (scenario.sensing == SensingKind::kRendered) RequireRendering("sensing: rendered");
+  if (scenario.sensing == SensingKind::kRendered) RequireRenderedSensing();
   try {
     return Trial(scenario, seed, registries, record, samples);
   } catch (const std::invalid_argument& error) {

@@ -176,7 +176,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   return text;
 }
 
-void CheckFlightOutputs(const FlyArguments& arguments) {
+void CheckFlightOutputs(const FlyArguments& arguments, const Scenario& scenario) {
   CheckApart({{"--record", arguments.record},
               {"--plot", arguments.plot},
               {"--html", arguments.html},
@@ -185,13 +185,13 @@ void CheckFlightOutputs(const FlyArguments& arguments) {
   if (!arguments.record.empty()) CheckRecordPath("--record", arguments.record);
   if (!arguments.plot.empty()) CheckPicturePath("--plot", arguments.plot);
   if (!arguments.html.empty()) CheckReplayPage("--html", arguments.html);
-  if (!arguments.video.empty()) CheckVideo("--video", arguments.video);
+  if (!arguments.video.empty()) CheckVideo("--video", arguments.video, scenario);
   if (!arguments.save_map.empty()) CheckMapPath("--save-map", arguments.save_map);
 }
 
 // The result is printed first: a file or picture that fails does not take it along.
 int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registries& registries) {
-  CheckFlightOutputs(arguments);
+  CheckFlightOutputs(arguments, scenario);
   TrialRecord record;
   const bool recorded = !arguments.record.empty() || !arguments.plot.empty() ||
                         !arguments.html.empty() || !arguments.video.empty();
@@ -217,9 +217,10 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
              });
   }
   if (!arguments.video.empty()) {
+    const VideoProgress tell = TellVideo();
     DrawFrom(arguments.record, arguments.video, write,
              [&](const std::string& table, const std::string& video) {
-               WriteVideo(table, video, registries);
+               WriteVideo(table, video, registries, tell);
              });
   }
   return result.succeeded() ? kDone : kFellShort;

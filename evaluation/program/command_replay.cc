@@ -46,7 +46,10 @@ int RunReplay(const ReplayArguments& arguments, const Registries& registries) {
     WriteReplayPage(arguments.html, records, registries, TellReplay());
     std::cout << fmt::format("{}: open it in a browser\n", arguments.html) << std::flush;
   }
-  if (!arguments.video.empty()) WriteVideo(arguments.record, arguments.video, registries);
+  if (!arguments.video.empty()) {
+    WriteVideo(arguments.record, arguments.video, registries, TellVideo());
+    std::cout << fmt::format("{}: a video of the flight\n", arguments.video) << std::flush;
+  }
   return kDone;
 }
 

@@ -57,7 +57,7 @@ int Run(const TagStudyArguments& arguments) {
     throw BadInput(
         "--fit goes with one field of view and one noise: name them by --fov and --noise.");
   }
-  RequireRendering("study tags");
+  RequireRendering("study tags", "");
   if (!arguments.frames.empty()) MakeDirectory(arguments.frames);
   std::vector<TagStudyPart> parts;
   bool fulfilled = true;

@@ -8,6 +8,7 @@
 
 #include "evaluation/page/replay_page.h"
 #include "evaluation/program/command_line.h"
+#include "evaluation/video/flight_video.h"
 #include "touchdown/evaluation/program/program.h"
 #include "touchdown/evaluation/scenario/scenario.h"
 
@@ -54,6 +55,9 @@ void CheckTimings(bool allow_debug);
 
 /// Tells the log how far a page of flights is.
 ReplayProgress TellReplay();
+
+/// Tells the log how far a video is. While it lives SIGINT and SIGTERM end the making of it, by Interruption: nothing of it is left.
+VideoProgress TellVideo();
 
 /// `--record` of campaigns: which flights are recorded; with the words that it takes.
 void AddRecorded(Command command, std::string* which, const std::string& help);

@@ -16,11 +16,13 @@
 #include <CLI/CLI.hpp>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/interrupt_watch.h"
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/progress.h"
 #include "evaluation/base/stderr_log.h"
 #include "evaluation/base/suggestion.h"
+#include "evaluation/base/words.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/scenario/planner_options.h"
 #include "evaluation/scenario/scenario_schema.h"
@@ -76,6 +78,14 @@ ReplayProgress TellReplay() {
   const auto lines = std::make_shared<std::map<std::string, Progress>>();
   return [lines](const std::string& name, int done, int all) {
     lines->try_emplace(name, ProgressText{"steps asked again", name}).first->second(done, all);
+  };
+}
+
+VideoProgress TellVideo() {
+  const auto watch = std::make_shared<const InterruptWatch>();
+  return [watch, tell = Progress({"pictures", "video"})](int done, int all) mutable {
+    watch->ThrowIfAsked();
+    tell(done, all);
   };
 }
 
@@ -153,6 +163,9 @@ std::string Unknown(const CLI::App& app) {
                          : fmt::format("{} has no option {}", name, fmt::join(options, ", "));
 }
 
+// One sentence in one line, though words from outside stand in it: names of files, values of keys.
+void Complain(const std::string& sentence) { spdlog::error("{}", InOneLine(sentence)); }
+
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const Registries& registries) {
@@ -166,7 +179,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   try {
     RequireDistinct(registries);
   } catch (const std::invalid_argument& error) {
-    spdlog::error("{}.", error.what());
+    Complain(std::string(error.what()) + ".");
     return kBadInput;
   }
   Command(&app).EndHelp("README.md");
@@ -188,17 +201,20 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ExtrasError&) {
-    spdlog::error("{}", TryHelp(Unknown(app)));
+    Complain(TryHelp(Unknown(app)));
     return kBadInput;
   } catch (const CLI::ParseError& error) {
-    spdlog::error("{}", TryHelp(error.what()));
+    Complain(TryHelp(error.what()));
     return kBadInput;
   } catch (const BadInput& error) {
-    spdlog::error("{}", error.what());
+    Complain(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
+    Complain(error.what());
     return kFellShort;
+  } catch (const Interruption& end) {
+    spdlog::warn("interrupted");
+    return 128 + end.signal;
   } catch (...) {
     spdlog::error("something that is no std::exception was thrown");
     return kFellShort;

@@ -37,8 +37,7 @@ estimation::VehicleModel ReadVehicle(const ScenarioSource& source) {
   try {
     return sim::LoadVehicleModel(VehicleMjcf(source.scenario));
   } catch (const std::invalid_argument& error) {
-    std::string why = error.what();  // MuJoCo's own words may have several lines
-    why.erase(why.find_last_not_of(" \n.") + 1);
+    std::string why = WithoutStop(error.what());  // MuJoCo's own words may have several lines
     std::replace(why.begin(), why.end(), '\n', ' ');
     throw BadInput(fmt::format("{}: vehicle {}: {}.", source.WhereOf("vehicle").ToString(),
                                source.scenario.vehicle, why));
@@ -132,12 +131,18 @@ void CheckStart(const ScenarioSource& source, const ObstacleList& obstacles,
   }
 }
 
-void RequireTermKey(const planning::TermEntry& entry, const std::string& key) {
-  std::vector<std::string> keys = {"weight", "hard"};
-  for (const planning::TermParameter& parameter : entry.parameters) keys.push_back(parameter.name);
-  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
-  throw std::invalid_argument(fmt::format("term {} has no parameter {}{}", entry.info.name, key,
-                                          Instead(key, keys, "known:")));
+void ApplyTermKey(const planning::TermEntry& entry, const std::string& key,
+                  const planning::TermSettings& settings) {
+  planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
+  try {
+    planning::ApplySettings(entry, settings, &setup);
+  } catch (const std::invalid_argument& error) {
+    std::vector<std::string> keys = {"weight", "hard"};
+    for (const planning::TermParameter& parameter : entry.parameters) {
+      keys.push_back(parameter.name);
+    }
+    throw std::invalid_argument(WithSuggestion(error.what(), key, keys));
+  }
 }
 
 // Each key alone, so that the sentence names the place it came from.
@@ -150,9 +155,7 @@ void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& term
           throw std::invalid_argument(
               "term " + name + " does nothing in a flight, where nobody tells of moving obstacles");
         }
-        planning::TermSetup setup = planning::DefaultSetup(entry, kProbeSegments + 3);
-        RequireTermKey(entry, key);
-        planning::ApplySettings(entry, TermSettingsOf(name, {{key, value}}), &setup);
+        ApplyTermKey(entry, key, TermSettingsOf(name, {{key, value}}));
       } catch (const std::invalid_argument& error) {
         throw BadInput(fmt::format(
             "{}: {}.", source.WhereOf("terms." + name + "." + key).ToString(), error.what()));
@@ -183,9 +186,9 @@ void CheckSolver(const ScenarioSource& source, const estimation::VehicleModel& m
     } catch (const std::invalid_argument& error) {
       std::vector<std::string> names;
       for (const solvers::OptionSpec& spec : backend->options().specs()) names.push_back(spec.name);
-      throw BadInput(fmt::format("{}: {} (backend {}){}.",
-                                 source.WhereOf("solver.options." + name).ToString(), error.what(),
-                                 s.solver.backend, DidYouMean(name, names)));
+      throw BadInput(fmt::format("{}: {} (backend {}).",
+                                 source.WhereOf("solver.options." + name).ToString(),
+                                 WithSuggestion(error.what(), name, names), s.solver.backend));
     }
   }
   const planning::ReplannerOptions options = PlannerOptions(s, model, registries.terms);
@@ -218,11 +221,8 @@ void CheckSensors(const ScenarioSource& source) {
         "in (0, 200] Hz: without both the vehicle cannot tell where it is.",
         source.WhereOf("own.gps.rate").ToString()));
   }
-  if (s.sensing == SensingKind::kRendered && s.pad.deck_size < estimation::kPadSheetSide) {
-    throw BadInput(fmt::format(
-        "{}: pad.deck_size must be in [{}, 5] m with sensing: rendered, which needs room for the "
-        "pad's printed sheet, not '{}'.",
-        source.WhereOf("pad.deck_size").ToString(), estimation::kPadSheetSide, s.pad.deck_size));
+  if (s.sensing == SensingKind::kRendered) {
+    RequireSheetRoom(s, source.WhereOf("pad.deck_size").ToString(), "sensing: rendered");
   }
 }
 
@@ -420,13 +420,22 @@ Where ScenarioSource::WhereOf(const std::string& key) const {
 }
 
 const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name) {
-  std::vector<std::string> names;
-  for (const planning::TermEntry& entry : terms) {
-    if (entry.info.name == name) return entry;
-    names.push_back(entry.info.name);
+  try {
+    return planning::FindTerm(terms, name);
+  } catch (const std::invalid_argument& error) {
+    std::vector<std::string> names;
+    for (const planning::TermEntry& entry : terms) names.push_back(entry.info.name);
+    throw std::invalid_argument(WithSuggestion(error.what(), name, names));
   }
-  throw std::invalid_argument(
-      fmt::format("term {} is unknown{}", name, Instead(name, names, "known:")));
+}
+
+void RequireSheetRoom(const Scenario& scenario, const std::string& where, const std::string& with) {
+  const double size = scenario.pad.deck_size;
+  if (size >= estimation::kPadSheetSide) return;
+  throw BadInput(
+      fmt::format("{}: pad.deck_size must be in [{}, 5] m with {}, which needs room for the pad's "
+                  "printed sheet, not '{}'.",
+                  where, estimation::kPadSheetSide, with, size));
 }
 
 void CheckScenario(const ScenarioSource& source, const Registries& registries) {

@@ -28,6 +28,10 @@ struct ScenarioSource {
 /// A pad faster than the vehicle is none of it: the flight shows what becomes of it. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const Registries& registries);
 
+/// Whether images of the pad can be made: whether there is room for its printed sheet. @param where begins the sentence.
+/// @param with what makes them. @throws BadInput
+void RequireSheetRoom(const Scenario& scenario, const std::string& where, const std::string& with);
+
 /// A term by its name. Throws std::invalid_argument saying what was probably meant.
 const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name);
 

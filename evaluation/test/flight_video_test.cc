@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/interrupt_watch.h"
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/record/record.h"
@@ -111,13 +112,32 @@ TEST(FlightTrack, IsInterpolatedBetweenSamples) {
   EXPECT_FALSE(track.touchdown().has_value());
 }
 
-TEST(FlightTrack, RefusesWhatIsIncomplete) {
+TEST(FlightTrack, RefusesWhatCannotBe) {
   const std::string path = ::testing::TempDir() + "touchdown_flight_video_cut.db";
-  std::filesystem::copy_file(ShortRecord(), path,
-                             std::filesystem::copy_options::overwrite_existing);
-  SqliteDb(path, SqliteDb::Mode::kReadWrite).Execute("DELETE FROM pad WHERE t > 0.5");
-  EXPECT_THAT(SaidBy<BadInput>([&] { FlightTrack track(path); }),
-              HasSubstr("its table pad does not agree with the table vehicle"));
+  const std::string last = " WHERE source = 'true' AND t = (SELECT MAX(t) FROM vehicle)";
+  const std::string number = "its table vehicle holds what is no finite number";
+  const std::vector<std::pair<std::string, std::string>> damages = {
+      {"DELETE FROM pad WHERE t > 0.5", "its table pad does not agree with the table vehicle"},
+      {"DELETE FROM vehicle", "its table vehicle holds no true state"},
+      {"UPDATE vehicle SET t = 9e999" + last, number},
+      {"UPDATE vehicle SET px = 9e999" + last, number},
+      {"UPDATE vehicle SET px = 'abc'" + last, number},
+      {"UPDATE vehicle SET px = 1e300" + last, "its table vehicle holds a place beyond 100 km"},
+      {"UPDATE vehicle SET t = 2e9" + last,
+       "its table vehicle holds the time 2e+09 s where 0 to 601 may stand"},
+      {"UPDATE vehicle SET t = 1e6" + last,
+       "its table vehicle holds the time 1e+06 s where 0 to 601 may stand"},
+      {"UPDATE vehicle SET t = -1" + last,
+       "its table vehicle holds the time -1 s where 0 to 601 may stand"},
+      {"UPDATE vehicle SET t = 0" + last, "its table vehicle holds the time 0 s twice"},
+      {"UPDATE vehicle SET qw = 0, qx = 0, qy = 0, qz = 0" + last,
+       "its table vehicle holds a quaternion that is no unit one"}};
+  for (const auto& [sql, why] : damages) {
+    std::filesystem::copy_file(ShortRecord(), path,
+                               std::filesystem::copy_options::overwrite_existing);
+    SqliteDb(path, SqliteDb::Mode::kReadWrite).Execute(sql);
+    EXPECT_EQ(SaidBy<BadInput>([&] { FlightTrack track(path); }), path + ": " + why + ".") << sql;
+  }
 }
 
 TEST(Caption, SaysWhatHappensAndHowFarItIs) {
@@ -138,6 +158,41 @@ TEST(Caption, SaysWhatHappensAndHowFarItIs) {
   EXPECT_LE(PlanAt(flight.plans, 0.5)->request.input.t_start, 0.5);
 }
 
+TEST(Caption, IsCutWhereThereIsNoRoom) {
+  const sim::Font font(2);
+  const std::string name(150, 'w');
+  const std::string cut = Fitting(name, 300, font);
+  EXPECT_LE(font.WidthOf(cut), 300);
+  EXPECT_GT(font.WidthOf(cut + "w"), 300);
+  EXPECT_EQ(Fitting("forest", 300, font), "forest");
+  EXPECT_EQ(Fitting("forest", font.WidthOf("forest"), font), "forest");
+  EXPECT_EQ(Fitting("forest", -5, font), "");
+}
+
+// The words at the right stand alone, however long those at the left are.
+TEST(FlightPictures, ALongNameDoesNotReachTheTime) {
+  const std::string path = ::testing::TempDir() + "touchdown_flight_video_named.db";
+  std::filesystem::copy_file(ShortRecord(), path,
+                             std::filesystem::copy_options::overwrite_existing);
+  SqliteDb(path, SqliteDb::Mode::kReadWrite)
+      .Execute("UPDATE meta SET value = '" + std::string(150, 'w') + "' WHERE key = 'scenario'");
+  FlightPictures named(path, StandardRegistries(), kSmall);
+  FlightPictures plain(ShortRecord(), StandardRegistries(), kSmall);
+  const std::vector<std::uint8_t>& a = named.Next();
+  const std::vector<std::uint8_t>& b = plain.Next();
+  const auto differ = [&](int from, int to) {
+    int count = 0;
+    for (int y = kSmall.height - 20; y < kSmall.height; ++y) {
+      for (int x = 3 * (y * kSmall.width + from); x < 3 * (y * kSmall.width + to); ++x) {
+        if (a[static_cast<std::size_t>(x)] != b[static_cast<std::size_t>(x)]) ++count;
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(differ(100, 200), 0);
+  EXPECT_EQ(differ(kSmall.width - 30, kSmall.width), 0);  // "0.00 s"
+}
+
 TEST(FlightVideo, WhatCannotBeMadeIsSaidBefore) {
   const auto said = [](const std::string& path) {
     return SaidBy<BadInput>([&] { CheckVideo("--video", path); });
@@ -152,6 +207,17 @@ TEST(FlightVideo, WhatCannotBeMadeIsSaidBefore) {
                             "ffmpeg.");
 }
 
+TEST(FlightVideo, ADeckWithoutRoomForItsSheetIsRefusedBeforeTheFlight) {
+  Scenario scenario = LoadScenario(FindScenario("open"), {}, StandardRegistries());
+  const std::string path = ::testing::TempDir() + "touchdown_flight_video.mp4";
+  EXPECT_NO_THROW(CheckVideo("--video", path, scenario));
+  scenario.pad.deck_size = 0.6;
+  EXPECT_EQ(SaidBy<BadInput>([&] { CheckVideo("--video", path, scenario); }),
+            "--video " + path +
+                ": pad.deck_size must be in [1.28, 5] m with a video, which needs room for the "
+                "pad's printed sheet, not '0.6'.");
+}
+
 TEST(FlightVideo, AFailureLeavesNothing) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(::testing::TempDir()) / "touchdown_broken_encoder";
@@ -162,9 +228,29 @@ TEST(FlightVideo, AFailureLeavesNothing) {
   const PathScope broken((folder / "bin").string());
   const std::string video = (folder / "flight.mp4").string();
   EXPECT_EQ(SaidBy<std::runtime_error>(
-                [&] { WriteVideo(ShortRecord(), video, StandardRegistries(), kSmall); }),
+                [&] { WriteVideo(ShortRecord(), video, StandardRegistries(), {}, kSmall); }),
             "--video " + video + ": the video was not made: ffmpeg failed (no space left).");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+TEST(FlightVideo, TellsHowFarItIsAndCanBeEnded) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(::testing::TempDir()) / "touchdown_ended_video";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const std::string video = (folder / "flight.mp4").string();
+  std::vector<int> told;
+  EXPECT_THROW(WriteVideo(
+                   ShortRecord(), video, StandardRegistries(),
+                   [&](int done, int all) {
+                     EXPECT_EQ(all, 31);
+                     told.push_back(done);
+                     if (done == 3) throw Interruption{15};
+                   },
+                   kSmall),
+               Interruption);
+  EXPECT_EQ(told, (std::vector<int>{1, 2, 3}));
+  EXPECT_TRUE(fs::is_empty(folder));
 }
 
 }  // namespace

@@ -111,7 +111,28 @@ TEST(Program, ATypoIsToldWhatWasMeant) {
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     EXPECT_THAT(ran.err, Not(HasSubstr("try --help")));
   }
+  for (const char* key :
+       {"solver.max=1", "estimator.yaw=1", "planning.name=1", "wind.far=1", "pid.seed=1"}) {
+    const Ran ran = Call({"land", "open", "--set", key});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, Not(HasSubstr("did you mean"))) << key;
+  }
   EXPECT_THAT(Call({"land", "--quickly"}).err, HasSubstr("has no option --quickly (try --help)"));
+}
+
+TEST(Program, WordsFromOutsideDoNotBreakALine) {
+  for (const std::vector<const char*>& arguments :
+       {std::vector<const char*>{"land", "open", "--set", "description=\"a\\nb\""},
+        {"land", "a\nb"},
+        {"land", "open", "--video", "a\nb"},
+        {"land", "--a\nb"},
+        {"a\nb"}}) {
+    const Ran ran = Call(arguments);
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_THAT(ran.err, HasSubstr("a\\nb"));
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  EXPECT_THAT(Call({"land", "a\x1b[2Jb"}).err, HasSubstr("a\\x1b[2Jb"));
 }
 
 TEST(Program, APageReplacesNoOtherFile) {

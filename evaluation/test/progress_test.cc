@@ -2,6 +2,8 @@
 #include "evaluation/base/progress.h"
 
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,13 +60,14 @@ TEST(Progress, ALineThatIsWrittenOverComesTenTimesASecond) {
   EXPECT_LE(times.size(), 21U);
 }
 
-/// Stderr is a terminal of 30 columns for as long as this lives.
+/// Stderr is a terminal of so many columns for as long as this lives.
 class Terminal {
  public:
-  Terminal() {
+  explicit Terminal(unsigned short columns) {
+    if (const char* const term = std::getenv("TERM")) term_ = term;
     setenv("TERM", "xterm", 1);
     winsize size{};
-    size.ws_col = 30;
+    size.ws_col = columns;
     int end = -1;
     if (openpty(&read_, &end, nullptr, nullptr, &size) != 0) ADD_FAILURE() << "no terminal";
     was_ = dup(STDERR_FILENO);
@@ -73,6 +76,11 @@ class Terminal {
   }
   ~Terminal() {
     if (was_ >= 0) Read();
+    if (term_) {
+      setenv("TERM", term_->c_str(), 1);
+    } else {
+      unsetenv("TERM");
+    }
   }
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
@@ -92,32 +100,68 @@ class Terminal {
   }
 
  private:
+  std::optional<std::string> term_;  // as it was
   int read_ = -1;
   int was_ = -1;
 };
 
+// What a line looks like that is written over.
+std::string ShownOn(unsigned short columns, const std::string& text) {
+  LogToStderr();
+  Terminal terminal(columns);
+  ShowStatus(text);
+  EndStatus();
+  return terminal.Read();
+}
+
+TEST(StderrLog, ALineFitsTheTerminal) {
+  const std::string clear = "\r\x1b[K", end = "\r\n";
+  EXPECT_EQ(ShownOn(30, "7 of 9 flights"), clear + "touchdown: 7 of 9 flights" + end);
+  // The figure first, where there is no room for both.
+  EXPECT_EQ(ShownOn(20, "7 of 9 flights"), clear + "7 of 9 flights" + end);
+  EXPECT_EQ(ShownOn(6, "7 of 9 flights"), clear + "7 of " + end);
+  // Letters are counted, and none is cut in two.
+  EXPECT_EQ(ShownOn(17, "\u00e4\u00f6\u00fc\u00df\u00e4"),
+            clear + "touchdown: \u00e4\u00f6\u00fc\u00df\u00e4" + end);
+  EXPECT_EQ(ShownOn(4, "\u00e4\u00f6\u00fc\u00df\u00e4"), clear + "\u00e4\u00f6\u00fc" + end);
+  // A terminal that does not know its width.
+  EXPECT_EQ(ShownOn(0, std::string(200, 'x')), clear + std::string(79, 'x') + end);
+}
+
+// Tells how many seconds have passed; the test lets them pass.
+struct Seconds {
+  std::shared_ptr<double> now = std::make_shared<double>(0.0);
+  double operator()() const { return *now; }
+};
+
 TEST(Progress, OnATerminalALineOfTheLogStandsAboveTheOneThatIsWrittenOver) {
   LogToStderr();
-  Terminal terminal;
+  Terminal terminal(60);
   {
-    Progress progress({.things = "flights", .of = "kind C"});
-    progress(1, 3);
+    const Seconds clock;
+    Progress progress({.things = "flights", .of = "kind C"}, clock);
+    *clock.now = 1.0;
+    progress(1, 4);
     spdlog::warn("look");
-    progress(2, 3);  // too soon
-    progress(3, 3);
+    *clock.now = 1.05;
+    progress(2, 4);  // too soon
+    *clock.now = 1.5;
+    progress(3, 4);
+    progress(4, 4);  // the last one is told whenever it comes
   }
   spdlog::info("done");
   // The terminal writes a carriage return before every end of a line.
   EXPECT_EQ(terminal.Read(),
-            "\r\x1b[Ktouchdown: kind C: 1 of 3 fli"
-            "\r\x1b[Ktouchdown: look\r\ntouchdown: kind C: 1 of 3 fli"
-            "\r\x1b[Ktouchdown: kind C: 3 of 3 fli\r\n"
+            "\r\x1b[Ktouchdown: kind C: 1 of 4 flights, 3 s left"
+            "\r\x1b[Ktouchdown: look\r\ntouchdown: kind C: 1 of 4 flights, 3 s left"
+            "\r\x1b[Ktouchdown: kind C: 3 of 4 flights, 0 s left"
+            "\r\x1b[Ktouchdown: kind C: 4 of 4 flights, 0 s left\r\n"
             "touchdown: done\r\n");
 }
 
 TEST(Progress, ARunThatEndsEarlyLeavesItsLine) {
   LogToStderr();
-  Terminal terminal;
+  Terminal terminal(60);
   {
     Progress progress({.things = "views"});
     progress(1, 0);
@@ -129,7 +173,7 @@ TEST(Progress, ARunThatEndsEarlyLeavesItsLine) {
 TEST(Progress, ALogThatKeepsItsLinesGetsTheLastOneOfAShortRun) {
   LogToStderr();
   testing::internal::CaptureStderr();
-  Progress progress({.things = "flights"});
+  Progress progress({.things = "flights"}, Seconds());
   for (int done = 1; done <= 500; ++done) progress(done, 500);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "touchdown: 500 of 500 flights, 0 s left\n");
 }

@@ -128,6 +128,8 @@ TEST_F(ScenarioTest, KeysOfTermsAndBackendsAreTheRegistries) {
   EXPECT_THAT(Refusal("terms: {speed_limit: 1}\n"), HasSubstr("a map of keys"));
   EXPECT_THAT(Refusal("solver: {options: {foo: 1}}\n"),
               HasSubstr("solver option foo is unknown; known:"));
+  EXPECT_THAT(Refusal("solver: {backend: banded, options: {gap_tolerence: 1}}\n"),
+              HasSubstr("option gap_tolerence is unknown (did you mean gap_tolerance?)"));
 }
 
 TEST_F(ScenarioTest, AFormulationThatTheBackendRefusesIsRefused) {

@@ -30,6 +30,23 @@ TEST(Suggestion, OnlyWhatIsNearIsMeant) {
   EXPECT_EQ(DidYouMean("land", {}), "");
 }
 
+TEST(Suggestion, OfDottedNamesOnePartIsMeantAndComparedAlone) {
+  const std::vector<std::string> names = {"solver.gap",     "planning.rate", "pad.rate",
+                                          "pad.speed",      "wind.max",      "wind.gust.speed",
+                                          "pads.prediction"};
+  EXPECT_EQ(DidYouMean("pad.sped", names), " (did you mean pad.speed?)");
+  EXPECT_EQ(DidYouMean("planing.rate", names), " (did you mean planning.rate?)");
+  EXPECT_EQ(DidYouMean("wind.gus.speed", names), " (did you mean wind.gust.speed?)");
+  EXPECT_EQ(DidYouMean("pads.prediktion", names), " (did you mean pads.prediction?)");
+  // The same group is asked first, though pad.rate is as near.
+  EXPECT_EQ(DidYouMean("pad.rats", {"pat.rats", "pad.rate"}), " (did you mean pad.rate?)");
+  // What all of them begin with does not make them near, nor do two parts that are both a little wrong.
+  for (const char* word : {"solver.max", "planning.name", "wind.far", "pid.seed", "planing.rat",
+                           "pad", "wind.gust", "wind.speed"}) {
+    EXPECT_EQ(DidYouMean(word, names), "") << word;
+  }
+}
+
 TEST(Suggestion, ALongListIsLeftOutWhereANameIsNear) {
   EXPECT_EQ(Instead("lnad", {"fly", "land"}, "known:"),
             " (did you mean land?); known: fly or land");
@@ -38,6 +55,14 @@ TEST(Suggestion, ALongListIsLeftOutWhereANameIsNear) {
   many.emplace_back("land");
   EXPECT_EQ(Instead("lnad", many, "known:"), " (did you mean land?)");
   EXPECT_EQ(Instead("x", many, "known:").substr(0, 16), "; known: fly, fl");
+}
+
+TEST(Suggestion, StandsInASentenceInPlaceOfItsList) {
+  const std::vector<std::string> names = {"weight", "margin"};
+  EXPECT_EQ(WithSuggestion("key wieght is unknown; known: weight, margin", "wieght", names),
+            "key wieght is unknown (did you mean weight?); known: weight or margin");
+  EXPECT_EQ(WithSuggestion("weight must be in [0, 1]", "weight", names),
+            "weight must be in [0, 1]");
 }
 
 }  // namespace

@@ -41,6 +41,15 @@ const RecordPlan* PlanAt(const std::vector<RecordPlan>& plans, double t) {
   return after == plans.begin() ? nullptr : &*(after - 1);
 }
 
+std::string Fitting(const std::string& text, int width, const sim::Font& font) {
+  std::size_t letters = 0;
+  for (; letters < text.size(); ++letters) {
+    width -= font.Of(text[letters]).width;
+    if (width < 0) break;
+  }
+  return text.substr(0, letters);
+}
+
 Caption CaptionOf(const RecordedFlight& flight, const FlightTrack& track, const TrackSample& now,
                   double t_next, const Eigen::Vector3d& target_W) {
   const Scenario& scenario = flight.scenario;

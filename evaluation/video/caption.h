@@ -6,6 +6,7 @@
 
 #include "evaluation/record/record_reader.h"
 #include "evaluation/video/flight_track.h"
+#include "sim/rendering/font.h"
 
 namespace touchdown::evaluation {
 
@@ -21,6 +22,9 @@ struct Caption {
 /// @param target pad or goal.
 Caption CaptionOf(const RecordedFlight& flight, const FlightTrack& track, const TrackSample& now,
                   double t_next, const Eigen::Vector3d& target_W);
+
+/// As much of the text, from its beginning, as this width has room for [pixel].
+std::string Fitting(const std::string& text, int width, const sim::Font& font);
 
 /// The step whose curve is flown at `t`, the last that has taken over; nullptr: none yet.
 const RecordPlan* PlanAt(const std::vector<RecordPlan>& plans, double t);

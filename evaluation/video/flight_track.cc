@@ -2,6 +2,7 @@
 #include "evaluation/video/flight_track.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -13,7 +14,32 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr char kTrue[] = "true";  // source of a state, beside the estimates
+constexpr char kTrue[] = "true";          // source of a state, beside the estimates
+constexpr double kLongestFlight = 601.0;  // flight: the schema's time-out, and its last step [s]
+constexpr double kFarthest = 1e5;         // that anything is from the origin [m]
+
+void CheckTime(const TableRows& rows, double t, const std::vector<TrackSample>& before) {
+  if (t < 0.0 || t > kLongestFlight) {
+    rows.Refuse(fmt::format("holds the time {:g} s where 0 to {:g} may stand", t, kLongestFlight));
+  }
+  if (!before.empty() && t <= before.back().vehicle.t) {
+    rows.Refuse(fmt::format("holds the time {:g} s twice", t));
+  }
+}
+
+Eigen::Vector3d Place(TableRows* rows) {
+  const Eigen::Vector3d p_W = rows->Vector3();
+  if (p_W.norm() > kFarthest) rows->Refuse("holds a place beyond 100 km");
+  return p_W;
+}
+
+Eigen::Quaterniond Attitude(TableRows* rows) {
+  const double w = rows->Number();
+  const Eigen::Vector3d q = rows->Vector3();
+  const Eigen::Quaterniond q_WB(w, q.x(), q.y(), q.z());
+  if (std::abs(q_WB.norm() - 1.0) > 0.01) rows->Refuse("holds a quaternion that is no unit one");
+  return q_WB.normalized();
+}
 
 std::vector<TrackSample> ReadSamples(SqliteDb& db) {
   std::vector<TrackSample> samples;
@@ -21,13 +47,13 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
                     "t");
   while (vehicle.Next()) {
     if (vehicle.Text() != kTrue) continue;
+    const double t = vehicle.Number();
+    CheckTime(vehicle, t, samples);
     estimation::VehicleState& s = samples.emplace_back().vehicle;
-    s.t = vehicle.Number();
-    s.p_WB = vehicle.Vector3();
+    s.t = t;
+    s.p_WB = Place(&vehicle);
     s.v_WB = vehicle.Vector3();
-    const double qw = vehicle.Number();
-    const Eigen::Vector3d q = vehicle.Vector3();
-    s.q_WB = Eigen::Quaterniond(qw, q.x(), q.y(), q.z()).normalized();
+    s.q_WB = Attitude(&vehicle);
     s.w_WB_B = vehicle.Vector3();
   }
   if (samples.empty()) vehicle.Refuse("holds no true state");
@@ -39,7 +65,7 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
       pad.Refuse("does not agree with the table vehicle");
     }
     estimation::PadState& s = (sample++)->pad;
-    s.p_WP = pad.Vector3();
+    s.p_WP = Place(&pad);
     s.v_WP = pad.Vector3();
     s.yaw = pad.Number();
     s.yaw_rate = pad.Number();

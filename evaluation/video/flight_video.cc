@@ -11,9 +11,10 @@
 #include "evaluation/base/atomic_file.h"
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/output_path.h"
-#include "evaluation/base/progress.h"
 #include "evaluation/base/rendering_check.h"
+#include "evaluation/base/words.h"
 #include "evaluation/flight/pad_eye.h"
+#include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "evaluation/video/camera_insets.h"
 #include "evaluation/video/caption.h"
@@ -26,6 +27,9 @@
 namespace touchdown::evaluation {
 namespace {
 
+constexpr char kVideo[] = "a video";
+constexpr int kHeld =
+    3 * kVideoRate / 2;  // so often the last picture is shown, which tells the outcome
 constexpr double kFovDeg = 52.0;
 constexpr double kFar = 250.0;       // [m]
 constexpr double kNear = 0.1;        // [m]
@@ -61,13 +65,18 @@ int FontSize(int design, int height) {
   return std::clamp(static_cast<int>(std::lround(1.0 * design * height / kDesignHeight)), 1, 6);
 }
 
+RecordedFlight Drawable(RecordedFlight flight, const std::string& path) {
+  RequireSheetRoom(flight.scenario, path, kVideo);
+  return flight;
+}
+
 }  // namespace
 
 class FlightPictures::Impl {
  public:
   Impl(const std::string& record_path, const Registries& registries, VideoSize size)
       : size_(size),
-        flight_(ReadRecord(record_path, {}, registries)),
+        flight_(Drawable(ReadRecord(record_path, {}, registries), record_path)),
         track_(record_path),
         world_(WorldOf(flight_.scenario, DrawTrial(flight_.scenario, flight_.scenario.seed),
                        registries)),
@@ -93,7 +102,7 @@ class FlightPictures::Impl {
     moment_.camera = cameras_[static_cast<std::size_t>(next_)];
     moment_.vehicle = now.vehicle;
     moment_.pad = now.pad;
-    moment_.lines = {Trail(now), Plan(now)};
+    moment_.lines = {Plan(now), Trail(now)};
     moment_.marks.clear();
     if (goal_) moment_.marks.push_back({TargetOf(now), 0.12, kGoalColor});
     renderer_.Render(moment_, &picture_.rgb);
@@ -122,12 +131,13 @@ class FlightPictures::Impl {
     return goal_ ? goal_->At(sample.vehicle.t).p_WP : sample.pad.p_WP;
   }
 
+  // From now on back: of a long flight the beginning is left out.
   sim::FlightLine Trail(const TrackSample& now) {
     while (trail_.size() * kTrailStep <= now.vehicle.t) {
       trail_.push_back(track_.At(static_cast<double>(trail_.size()) * kTrailStep).vehicle.p_WB);
     }
-    sim::FlightLine line{trail_, kLineWidth, kTrailColor};
-    line.points_W.push_back(now.vehicle.p_WB);
+    sim::FlightLine line{{now.vehicle.p_WB}, kLineWidth, kTrailColor};
+    line.points_W.insert(line.points_W.end(), trail_.rbegin(), trail_.rend());
     return line;
   }
 
@@ -165,9 +175,11 @@ class FlightPictures::Impl {
     const auto write = [&](const std::string& left, const std::string& right, int row,
                            const Rgb& color) {
       const int y = top + Scaled(5) + row * line;
-      picture_.Text(margin, y, left, caption_font_, color);
-      picture_.Text(size_.width - margin - caption_font_.WidthOf(right), y, right, caption_font_,
+      const int edge = size_.width - margin - caption_font_.WidthOf(right);
+      // The room between the two is a margin, too.
+      picture_.Text(margin, y, Fitting(left, edge - 2 * margin, caption_font_), caption_font_,
                     color);
+      picture_.Text(edge, y, right, caption_font_, color);
     };
     write(caption.flight, caption.time, 0, kDim);
     write(caption.state, caption.distance, 1, kWhite);
@@ -208,27 +220,33 @@ void CheckVideo(const std::string& option, const std::string& path) {
   }
   CheckOutputPath(option, path);
   RequireEncoder(fmt::format("{} {}", option, path));
-  RequireRendering(fmt::format("{} {}", option, path));
+  RequireRendering(fmt::format("{} {}", option, path), "");
+}
+
+void CheckVideo(const std::string& option, const std::string& path, const Scenario& scenario) {
+  CheckVideo(option, path);
+  RequireSheetRoom(scenario, fmt::format("{} {}", option, path), kVideo);
 }
 
 void WriteVideo(const std::string& record_path, const std::string& video_path,
-                const Registries& registries, VideoSize size) {
+                const Registries& registries, const VideoProgress& progress, VideoSize size) {
   try {
     FlightPictures pictures(record_path, registries, size);
     AtomicFile file(video_path);
     VideoEncoder encoder(file.working_path(), size.width, size.height, kVideoRate);
-    Progress progress({"pictures", "video"});
-    for (int i = 0; i < pictures.count(); ++i) {
-      encoder.Add(pictures.Next());
-      progress(i + 1, pictures.count());
+    for (int i = 1; i <= pictures.count(); ++i) {
+      const std::vector<std::uint8_t>& picture = pictures.Next();
+      const int times = i < pictures.count() ? 1 : kHeld;
+      for (int time = 0; time < times; ++time) encoder.Add(picture);
+      if (progress) progress(i, pictures.count());
     }
     encoder.Finish();
     file.Commit();
   } catch (const BadInput&) {
     throw;
   } catch (const std::exception& error) {
-    throw std::runtime_error(
-        fmt::format("--video {}: the video was not made: {}.", video_path, error.what()));
+    throw std::runtime_error(fmt::format("--video {}: the video was not made: {}.", video_path,
+                                         WithoutStop(error.what())));
   }
 }
 

@@ -45,9 +45,15 @@ class FlightPictures {
 /// ffmpeg, off-screen rendering. @throws BadInput
 void CheckVideo(const std::string& option, const std::string& path);
 
-/// Makes a video of a record. It appears whole or not at all. @throws BadInput as FlightPictures,
-/// std::runtime_error with one sentence.
+/// The same for what is to be flown: whether it can be drawn. @throws BadInput
+void CheckVideo(const std::string& option, const std::string& path, const Scenario& scenario);
+
+using VideoProgress = std::function<void(int done, int all)>;
+
+/// Makes a video of a record. It appears whole or not at all. `progress`, where it is not empty, is told how many of the
+/// pictures have been made; what it throws, if it is no std::exception, ends the work.
+/// @throws BadInput as FlightPictures, std::runtime_error with one sentence.
 void WriteVideo(const std::string& record_path, const std::string& video_path,
-                const Registries& registries, VideoSize size = {});
+                const Registries& registries, const VideoProgress& progress, VideoSize size = {});
 
 }  // namespace touchdown::evaluation

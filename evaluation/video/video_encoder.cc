@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program gets a socket as its standard input: unlike a pipe, writing to one whose other end is gone can be told not to
-// raise a signal. What it says goes to a file without a name, so that it never waits for a reader. It is spawned, not
-// forked: the rasteriser has threads.
+// raise a signal. What it says goes to a file in memory, so that it never waits for a reader, nor for room on a full disk. It
+// is spawned, not forked: the rasteriser has threads. It is not in this process's group: a keyboard's signals are for this one,
+// which then ends it.
 #include "evaluation/video/video_encoder.h"
 
 #include <array>
@@ -16,11 +17,13 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/words.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -43,6 +46,15 @@ bool OnPath(const std::string& program) {
 // Names that begin with a dash or look like a protocol are no options or addresses.
 std::string FileWord(const std::string& path) { return "file:" + path; }
 
+// The same file, not among the three standard ones: those may be closed here, and are the program's to be replaced. The program
+// does not get it by itself.
+int BehindStandard(int descriptor) {
+  if (descriptor < 0) return -1;
+  const int behind = fcntl(descriptor, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  close(descriptor);
+  return behind;
+}
+
 }  // namespace
 
 void RequireEncoder(const std::string& who) {
@@ -52,31 +64,38 @@ void RequireEncoder(const std::string& who) {
 }
 
 VideoEncoder::VideoEncoder(const std::string& path, int width, int height, int rate_hz)
-    : words_(std::tmpfile()) {
-  if (words_ == nullptr) throw std::runtime_error("no temporary file could be made");
+    : path_(path), words_(fdopen(BehindStandard(memfd_create(kEncoder, MFD_CLOEXEC)), "r")) {
+  if (words_ == nullptr) throw std::runtime_error("no file in memory could be made");
   std::array<int, 2> ends;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw std::runtime_error("no socket could be made");
   }
+  for (int& end : ends) end = BehindStandard(end);
   to_child_ = ends[0];
   const std::string size = fmt::format("{}x{}", width, height);
   const std::string rate = std::to_string(rate_hz);
   const std::string file = FileWord(path);
   const std::vector<const char*> words = {
-      kEncoder, "-nostdin", "-y", "-loglevel", "error",
+      kEncoder, "-nostdin", "-y", "-loglevel", "error", "-xerror",
       // What comes in.
       "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", size.c_str(), "-framerate",
       rate.c_str(), "-i", "pipe:0",
-      // What comes out: plays everywhere, begins before it is wholly loaded, names no encoder's version.
-      "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt", "yuv420p", "-fflags",
-      "+bitexact", "-movflags", "+faststart", "-f", "mp4", file.c_str(), nullptr};
+      // What comes out: plays everywhere, begins before it is wholly loaded. Its bits depend on the number of threads, which
+      // otherwise is that of the cores.
+      "-c:v", "libx264", "-threads", "4", "-preset", "veryfast", "-crf", "20", "-pix_fmt",
+      "yuv420p", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4", file.c_str(),
+      nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(words_.get()), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(words_.get()), STDERR_FILENO);
-  const int failed = posix_spawnp(&child_, kEncoder, &actions, nullptr,
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int failed = posix_spawnp(&child_, kEncoder, &actions, &attributes,
                                   const_cast<char* const*>(words.data()), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   if (failed != 0) {
@@ -88,15 +107,12 @@ VideoEncoder::VideoEncoder(const std::string& path, int width, int height, int r
 
 VideoEncoder::~VideoEncoder() { Wait(); }
 
-int VideoEncoder::Wait() noexcept {
+void VideoEncoder::Wait() noexcept {
   if (to_child_ >= 0) close(std::exchange(to_child_, -1));
-  int status = 0;
-  if (child_ > 0) {
-    while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
-    }
-    child_ = -1;
+  if (child_ < 0) return;
+  while (waitpid(child_, &status_, 0) < 0 && errno == EINTR) {
   }
-  return status;
+  child_ = -1;
 }
 
 void VideoEncoder::Add(const std::vector<std::uint8_t>& rgb) {
@@ -106,24 +122,38 @@ void VideoEncoder::Add(const std::vector<std::uint8_t>& rgb) {
     if (count < 0) Fail();
     sent += static_cast<std::size_t>(count);
   }
+  empty_ = false;
 }
 
 void VideoEncoder::Finish() {
-  const int status = Wait();
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) Fail();
+  if (empty_) throw std::runtime_error("there is no picture to be shown");
+  Wait();
+  // Of a file's last part that could not be written the program may speak only, and end well.
+  if (status_ != 0 || !LastWords().empty()) Fail();
+  std::error_code error;
+  if (std::filesystem::file_size(path_, error) > 0 && !error) return;
+  throw std::runtime_error(fmt::format("{} ended without a file", kEncoder));
 }
 
-void VideoEncoder::Fail() {
-  Wait();
+std::string VideoEncoder::LastWords() {
   std::rewind(words_.get());
   std::array<char, 512> line;
   std::string last;
   while (std::fgets(line.data(), static_cast<int>(line.size()), words_.get()) != nullptr) {
-    last = line.data();
-    while (!last.empty() && (last.back() == '\n' || last.back() == '.')) last.pop_back();
+    if (std::string words = WithoutStop(line.data()); !words.empty()) last = std::move(words);
   }
-  throw std::runtime_error(
-      fmt::format("{} failed ({})", kEncoder, last.empty() ? "it gave no reason" : last));
+  return last;
+}
+
+void VideoEncoder::Fail() {
+  Wait();
+  std::string why = LastWords();
+  if (WIFSIGNALED(status_)) {
+    why = SignalWords(WTERMSIG(status_));
+  } else if (why.empty()) {
+    why = fmt::format("exit status {}", WEXITSTATUS(status_));
+  }
+  throw std::runtime_error(fmt::format("{} failed ({})", kEncoder, why));
 }
 
 }  // namespace touchdown::evaluation

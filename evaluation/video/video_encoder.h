@@ -28,20 +28,24 @@ class VideoEncoder {
   /// The next picture: height x width x 3. @throws std::runtime_error with the program's own last words.
   void Add(const std::vector<std::uint8_t>& rgb);
 
-  /// Waits until the file is whole. Nothing can be added any more. @throws as Add
+  /// Waits until the file is whole. Nothing can be added any more. @throws as Add, and if nothing was added
   void Finish();
 
  private:
   [[noreturn]] void Fail();
-  int Wait() noexcept;  // for the program's end; its status
+  std::string LastWords();
+  void Wait() noexcept;  // for the program's end
 
   struct Close {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
 
+  std::string path_;
   std::unique_ptr<std::FILE, Close> words_;  // what the program says
   int to_child_ = -1;
   pid_t child_ = -1;
+  int status_ = 0;  // with which it ended
+  bool empty_ = true;
 };
 
 }  // namespace touchdown::evaluation

@@ -53,11 +53,12 @@ std::string GeomText(const Obstacle& obstacle, const std::string& name, const st
   return std::holds_alternative<Mesh>(obstacle) ? text + " mesh='" + name + "'" : text;
 }
 
-std::string MeshAssetText(const TriangleMesh& mesh, const std::string& name) {
+std::string MeshAssetText(const std::vector<Eigen::Vector3d>& corners,
+                          const std::vector<Eigen::Vector3i>& triangles, const std::string& name) {
   std::string text = "<mesh name='" + name + "' vertex='";
-  for (const Eigen::Vector3d& corner : mesh.corners()) text += VectorText(corner) + ' ';
+  for (const Eigen::Vector3d& corner : corners) text += VectorText(corner) + ' ';
   text += "' face='";
-  for (const Eigen::Vector3i& of : mesh.triangles()) {
+  for (const Eigen::Vector3i& of : triangles) {
     for (const int i : of) text += std::to_string(i) + ' ';
   }
   return text + "'/>\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -16,7 +17,8 @@ std::string VectorText(const Eigen::Vector3d& v);
 /// (MeshAssetText). Throws std::invalid_argument as CheckGeom.
 std::string GeomText(const Obstacle& obstacle, const std::string& name, const std::string& user);
 
-/// A mesh as an asset.
-std::string MeshAssetText(const TriangleMesh& mesh, const std::string& name);
+/// A mesh as an asset: its corners [m], and per triangle the indices of its three.
+std::string MeshAssetText(const std::vector<Eigen::Vector3d>& corners,
+                          const std::vector<Eigen::Vector3i>& triangles, const std::string& name);
 
 }  // namespace touchdown::sim

@@ -93,14 +93,14 @@ class FlightRenderer::Impl {
     mjvScene* const scene = stage_.Update();
     for (const int flag : {mjRND_SHADOW, mjRND_SKYBOX, mjRND_FOG}) scene->flags[flag] = 1;
     MoveSun(moment.camera, scene);
+    for (const FlightMark& mark : moment.marks) {
+      AddGeom(mjGEOM_SPHERE, Eigen::Vector3d::Constant(mark.radius), mark.p_W,
+              Eigen::Matrix3d::Identity(), mark.rgba, scene);
+    }
     for (const FlightLine& line : moment.lines) {
       for (std::size_t i = 1; i < line.points_W.size(); ++i) {
         AddPiece(line.points_W[i - 1], line.points_W[i], line, moment.camera.p_WC, scene);
       }
-    }
-    for (const FlightMark& mark : moment.marks) {
-      AddGeom(mjGEOM_SPHERE, Eigen::Vector3d::Constant(mark.radius), mark.p_W,
-              Eigen::Matrix3d::Identity(), mark.rgba, scene);
     }
     stage_.Draw(rgb, nullptr);
   }

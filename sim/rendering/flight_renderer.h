@@ -44,14 +44,14 @@ struct FlightMoment {
 /// gives the same bits. Belongs to the thread that made it.
 class FlightRenderer {
  public:
-  /// Throws as SceneRenderer does, and for a vehicle as VehicleLooks.
+  /// Throws as SceneRenderer does, and for a vehicle as LooksOf.
   FlightRenderer(const VisualScene& scene, const std::string& vehicle_mjcf, const ViewConfig& view);
   FlightRenderer(FlightRenderer&&) noexcept;
   FlightRenderer& operator=(FlightRenderer&&) noexcept;
   ~FlightRenderer();
 
-  /// @param rgb height x width x 3, row-major, row 0 at the top; resized. Lines beyond
-  /// kMostPieces pieces are left out.
+  /// @param rgb height x width x 3, row-major, row 0 at the top; resized. There is room for kMostPieces: the marks, then
+  /// the pieces of the lines, in order, each from its first point on; the others are left out.
   void Render(const FlightMoment& moment, std::vector<std::uint8_t>* rgb);
 
   static constexpr int kMostPieces = 4000;

@@ -21,6 +21,7 @@ constexpr double kSheetDepth = 0.015;  // [m]
 
 std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle_mjcf,
                             const ViewConfig& view) {
+  const VehicleLooks looks = LooksOf(vehicle_mjcf);
   std::ostringstream xml;
   xml << "<mujoco model='touchdown flight scene'>\n"
       << "<compiler angle='degree'/>\n"
@@ -37,12 +38,12 @@ std::string FlightSceneMjcf(const VisualScene& scene, const std::string& vehicle
       << "<asset>\n"
       << "<texture type='skybox' builtin='gradient' rgb1='0.80 0.86 0.92' rgb2='0.30 0.50 0.76' "
       << "width='256' height='1536'/>\n"
-      << SceneAssets(scene) << "</asset>\n"
+      << SceneAssets(scene) << looks.assets << "</asset>\n"
       << "<worldbody>\n"
       << "<light directional='true' castshadow='true' pos='0 0 30' dir='0.42 0.30 -1' "
       << "ambient='0 0 0' diffuse='0.58 0.56 0.51' specular='0.25 0.25 0.25'/>\n"
       << SceneBodies(scene, view, kSheetDepth) << "<body name='vehicle' mocap='true'>\n"
-      << VehicleLooks(vehicle_mjcf) << "</body>\n"
+      << looks.geoms << "</body>\n"
       << "</worldbody>\n"
       << "</mujoco>\n";
   return xml.str();

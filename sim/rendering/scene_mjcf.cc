@@ -82,7 +82,7 @@ std::string SceneAssets(const VisualScene& scene) {
   const std::vector<Obstacle>& obstacles = scene.obstacles.obstacles();
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     if (const auto* mesh = std::get_if<Mesh>(&obstacles[i])) {
-      xml << MeshAssetText(*mesh->surface, NameOf(i));
+      xml << MeshAssetText(mesh->surface->corners(), mesh->surface->triangles(), NameOf(i));
     }
   }
   return xml.str();

@@ -1,84 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/rendering/vehicle_looks.h"
 
-#include <mujoco/mujoco.h>
-
-#include <algorithm>
-#include <limits>
 #include <sstream>
-#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include "estimation/base/argument_check.h"
 #include "sim/mujoco/mjcf_text.h"
-#include "sim/mujoco/mujoco_model.h"
+#include "sim/vehicle/vehicle_file.h"
 #include "sim/vehicle/vehicle_shapes.h"
 
 namespace touchdown::sim {
 namespace {
 
-constexpr char kRotor[] = "rotor";
 constexpr char kDiscColor[] = "0.75 0.86 0.97 0.38";
 constexpr double kDiscHeight = 0.004;  // half of it [m]
-constexpr double kDiscShare = 0.48;    // of the distance to the next rotor
+constexpr double kUnknownRadius =
+    0.1;  // of a rotor whose file does not tell, as on the replay page [m]
 
-template <typename Number>
-std::string Numbers(const Number* first, int count) {
-  std::string text;
-  for (int i = 0; i < count; ++i) text += estimation::NumberText(first[i]) + ' ';
-  return text;
+std::string QuaternionText(const Eigen::Quaterniond& q) {
+  return estimation::NumberText(q.w()) + ' ' + VectorText(q.vec());
 }
 
-void WriteShape(const char* kind, const Eigen::Vector3d& size, const Eigen::Vector3d& p_BG,
-                const Eigen::Quaterniond& q_BG, const std::string& rgba, std::ostream& xml) {
-  const double quat[4] = {q_BG.w(), q_BG.x(), q_BG.y(), q_BG.z()};
-  xml << "<geom type='" << kind << "' size='" << Numbers(size.data(), 3) << "' pos='"
-      << Numbers(p_BG.data(), 3) << "' quat='" << Numbers(quat, 4) << "' rgba='" << rgba << "'/>\n";
+std::string ColorText(const Eigen::Vector4d& rgba) {
+  return VectorText(rgba.head<3>()) + ' ' + estimation::NumberText(rgba[3]);
 }
 
-std::vector<int> RotorSites(const mjModel& m, int body) {
-  std::vector<int> sites;
-  for (int i = 0; i < m.nsite; ++i) {
-    const std::string name = m.names + m.name_siteadr[i];
-    if (m.site_bodyid[i] == body && name.starts_with(kRotor)) sites.push_back(i);
+void AddShape(const VehicleShape& shape, const std::string& name, VehicleLooks* looks) {
+  std::ostringstream xml;
+  xml << "<geom type='" << ToString(shape.kind) << "' ";
+  if (shape.kind == VehicleShape::Kind::kMesh) {
+    looks->assets += MeshAssetText(shape.corners, shape.triangles, name);
+    xml << "mesh='" << name << "' ";
+  } else {
+    xml << "size='" << VectorText(shape.size) << "' ";
   }
-  return sites;
+  xml << "pos='" << VectorText(shape.p_BG) << "' quat='" << QuaternionText(shape.q_BG) << "' rgba='"
+      << ColorText(shape.rgba) << "'/>\n";
+  looks->geoms += xml.str();
 }
 
-double DistanceToNext(const mjModel& m, const std::vector<int>& sites, int site) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto at = [&](int i) { return Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * i); };
-  for (const int other : sites) {
-    const double distance = (at(other) - at(site)).norm();
-    if (distance > 0.0) least = std::min(least, distance);
-  }
-  return least;
+void AddDisc(const Eigen::Vector3d& p_BR, double radius, VehicleLooks* looks) {
+  looks->geoms.append("<geom type='cylinder' size='")
+      .append(VectorText({radius, kDiscHeight, 0.0}))
+      .append("' pos='")
+      .append(VectorText(p_BR))
+      .append("' rgba='")
+      .append(kDiscColor)
+      .append("'/>\n");
 }
 
 }  // namespace
 
-std::string VehicleLooks(const std::string& vehicle_mjcf) {
-  std::ostringstream xml;
+VehicleLooks LooksOf(const std::string& vehicle_mjcf) {
+  VehicleLooks looks;
+  int shapes = 0;
   for (const VehicleShape& shape : VehicleShapes(vehicle_mjcf)) {
-    if (shape.kind == VehicleShape::Kind::kMesh) continue;  // it would need an asset
-    WriteShape(ToString(shape.kind), shape.size, shape.p_BG, shape.q_BG,
-               Numbers(shape.rgba.data(), 4), xml);
+    AddShape(shape, "vehicle " + std::to_string(shapes++), &looks);
   }
-  const MujocoModel model = CompileMjcf(vehicle_mjcf);
-  const mjModel& m = *model;
-  const std::vector<int> sites = RotorSites(m, mj_name2id(&m, mjOBJ_BODY, "vehicle"));
-  for (const int i : sites) {
-    const bool has_disc = m.site_type[i] == mjGEOM_CYLINDER;
-    const double next = DistanceToNext(m, sites, i);
-    if (!has_disc && next == std::numeric_limits<double>::infinity()) continue;
-    const mjtNum* const q = m.site_quat + 4 * i;
-    WriteShape("cylinder", {has_disc ? m.site_size[3 * i] : kDiscShare * next, kDiscHeight, 0.0},
-               Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * i), {q[0], q[1], q[2], q[3]},
-               kDiscColor, xml);
+  const estimation::VehicleModel model = LoadVehicleModel(vehicle_mjcf);
+  const double radius = model.rotor_radius > 0.0 ? model.rotor_radius : kUnknownRadius;
+  for (const estimation::Actuator& actuator : model.actuators) {
+    // What makes a moment alone has no place.
+    if (actuator.thrust != 0.0) AddDisc(actuator.p_BR, radius, &looks);
   }
-  return xml.str();
+  return looks;
 }
 
 }  // namespace touchdown::sim

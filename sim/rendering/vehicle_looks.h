@@ -5,9 +5,14 @@
 
 namespace touchdown::sim {
 
-/// The vehicle of an MJCF text (sim/vehicle/vehicle_file.h) as geoms in B, to stand in a <body>: what is for the eye, feet and rotor
-/// discs, but not the hull. Of a vehicle that has nothing for the eye, arms to rotors and feet.
-/// Throws std::invalid_argument with MuJoCo's message, or if there is no body `vehicle`.
-std::string VehicleLooks(const std::string& vehicle_mjcf);
+/// Parts of MJCF text that show a vehicle.
+struct VehicleLooks {
+  std::string assets;  ///< its meshes, to stand in <asset>
+  std::string geoms;   ///< in B, to stand in a <body>
+};
+
+/// The vehicle of an MJCF text (sim/vehicle/vehicle_file.h): its VehicleShapes, and a disc of rotor_radius at each rotor.
+/// Throws std::invalid_argument as LoadVehicleModel.
+VehicleLooks LooksOf(const std::string& vehicle_mjcf);
 
 }  // namespace touchdown::sim

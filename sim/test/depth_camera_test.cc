@@ -43,7 +43,7 @@ std::string WithObstacles(const WorldConfig& config) {
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::string name = "obstacle " + std::to_string(i);
     if (const auto* mesh = std::get_if<Mesh>(&obstacles[i])) {
-      assets += MeshAssetText(*mesh->surface, name);
+      assets += MeshAssetText(mesh->surface->corners(), mesh->surface->triangles(), name);
     }
     geoms += "<geom " + GeomText(obstacles[i], name, "mj_ray") + "/>\n";
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/rendering/flight_renderer.h"
 
-#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -89,42 +89,99 @@ TEST(FlightRenderer, ThePrintedSheetIsNotInItsOwnShadow) {
   for (int v = 45; v < 75; ++v) EXPECT_GT(Brightness(rgb, 83, v), 600) << v;
 }
 
-TEST(FlightRenderer, HasRoomForSoManyPiecesAndNoMore) {
+// A short line and the mark stand whatever a long line has, which loses its end.
+TEST(FlightRenderer, OfTooManyPiecesTheLastAreLeftOut) {
   FlightRenderer renderer({}, DefaultVehicleMjcf(), SmallView());
   FlightMoment moment = FromAbove();
-  moment.lines.resize(1);
-  for (int i = 0; i < FlightRenderer::kMostPieces + 100; ++i) {
-    moment.lines[0].points_W.emplace_back(0.001 * i, -2.0, 0.5);
+  const std::array<float, 4> red = {1.0F, 0.0F, 0.0F, 1.0F};
+  moment.lines = {{{{-3.0, -2.0, 0.5}, {-1.0, -2.0, 0.5}}, 0.4, red}, {{}, 0.4, red}};
+  for (int i = 0; i < FlightRenderer::kMostPieces + 1000; ++i) {
+    moment.lines[1].points_W.emplace_back(0.001 * i, -2.0, 0.5);
   }
+  moment.marks = {{{0.0, 2.0, 0.5}, 0.4, {0.0F, 1.0F, 0.0F, 1.0F}}};
   std::vector<std::uint8_t> rgb;
-  EXPECT_NO_THROW(renderer.Render(moment, &rgb));
+  renderer.Render(moment, &rgb);
+  // 5.5 m below the camera, 10.9 pixels a metre.
+  const auto red_at = [&](double x) {
+    const int u = 80 + static_cast<int>(10.9 * x);
+    for (int v = 79; v < 85; ++v) {
+      if (Pixel(rgb, u, v)[0] > 100 && Pixel(rgb, u, v)[1] < 30) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(red_at(-2.0));
+  EXPECT_TRUE(red_at(0.5));
+  EXPECT_TRUE(red_at(3.5));
+  EXPECT_FALSE(red_at(4.5));
+  EXPECT_GT(Pixel(rgb, 80, 60 - 22)[1], 130);
 }
 
-TEST(VehicleLooks, LeavesOutTheHull) {
-  const std::string looks = VehicleLooks(DefaultVehicleMjcf());
-  EXPECT_THAT(looks, ::testing::Not(HasSubstr("size='0.3 ")));
-  EXPECT_THAT(looks, HasSubstr("type='box' size='0.08 0.08 0.03 '"));
-  std::size_t discs = 0;
-  for (std::size_t at = 0; (at = looks.find("type='cylinder' size='0.127", at)) != looks.npos;
-       ++at) {
-    ++discs;
+// The default's text with `from` replaced by `to` wherever it stands.
+std::string With(const std::string& from, const std::string& to) {
+  std::string text = DefaultVehicleMjcf();
+  EXPECT_NE(text.find(from), text.npos) << from;
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
+    text.replace(at, from.size(), to);
   }
-  EXPECT_EQ(discs, 4U);
+  return text;
 }
 
-TEST(VehicleLooks, OfAVehicleWithoutGeomsForTheEyeThereAreArms) {
-  const std::string looks = VehicleLooks(
-      "<mujoco><worldbody><body name='vehicle'><freejoint/><inertial pos='0 0 0' mass='1' "
-      "diaginertia='1 1 1'/><geom name='hull' type='cylinder' size='0.3 0.1' group='3'/>"
-      "<geom name='foot0' type='sphere' size='0.01' pos='0 0.1 -0.1'/>"
-      "<site name='rotor0' pos='0.2 0 0'/><site name='rotor1' pos='-0.2 0 0'/>"
-      "</body></worldbody></mujoco>");
-  EXPECT_THAT(looks, HasSubstr("type='capsule' size='0.012 0.1 0 ' pos='0.1 0 0 '"));
-  EXPECT_THAT(looks, HasSubstr("pos='0 0.05 -0.05 '"));
-  EXPECT_THAT(looks, HasSubstr("type='cylinder' size='0.192 "));
+std::size_t DiscsIn(const std::string& geoms, const std::string& radius) {
+  const std::string disc = "type='cylinder' size='" + radius + " 0.004 0'";
+  std::size_t discs = 0;
+  for (std::size_t at = 0; (at = geoms.find(disc, at)) != geoms.npos; ++at) ++discs;
+  return discs;
+}
+
+TEST(VehicleLooks, LeaveOutTheHull) {
+  const VehicleLooks looks = LooksOf(DefaultVehicleMjcf());
+  EXPECT_EQ(looks.assets, "");
+  EXPECT_THAT(looks.geoms, ::testing::Not(HasSubstr("size='0.3 ")));
+  EXPECT_THAT(looks.geoms, HasSubstr("type='box' size='0.08 0.08 0.03'"));
+}
+
+// As the replay page has them: all of the least radius, or of one that is assumed.
+TEST(VehicleLooks, DiscsHaveTheModelsRadius) {
+  EXPECT_EQ(DiscsIn(LooksOf(DefaultVehicleMjcf()).geoms, "0.127"), 4U);
+  const std::string without = With(" type=\"cylinder\" size=\"0.127 0.004\"", "");
+  ASSERT_EQ(LoadVehicleModel(without).rotor_radius, 0.0);
+  EXPECT_EQ(DiscsIn(LooksOf(without).geoms, "0.1"), 4U);
+}
+
+TEST(VehicleLooks, OfNoVehicleThereAreNone) {
   EXPECT_THAT(
-      test::MessageOf<std::invalid_argument>([] { VehicleLooks("<mujoco><worldbody/></mujoco>"); }),
+      test::MessageOf<std::invalid_argument>([] { LooksOf("<mujoco><worldbody/></mujoco>"); }),
       HasSubstr("lacks the body"));
+}
+
+// A red plate of 1.2 m by 0.4 m that is a mesh, with its own corners' middle off its geom's origin.
+TEST(FlightRenderer, DrawsAMeshOfTheVehicle) {
+  std::string mjcf = With(
+      "<worldbody>",
+      "<asset><mesh name='plate' vertex='0 0 0  1.2 0 0  0 0.4 0  1.2 0.4 0  0 0 0.1  1.2 0 0.1  "
+      "0 0.4 0.1  1.2 0.4 0.1'/></asset><worldbody>");
+  const std::size_t at = mjcf.find("<geom name=\"hull\"");
+  ASSERT_NE(at, mjcf.npos);
+  mjcf.insert(at,
+              "<geom type='mesh' mesh='plate' pos='0.5 -0.2 0.2' rgba='1 0 0 1' mass='0' "
+              "contype='0' conaffinity='0'/>");
+  FlightRenderer renderer({}, mjcf, SmallView());
+  FlightMoment moment = FromAbove();
+  std::vector<std::uint8_t> rgb;
+  renderer.Render(moment, &rgb);
+  const auto red = [&](double x, double y) {
+    // The plate's upper face is 3.7 m below the camera: 16.2 pixels a metre.
+    const double per_metre = 60.0 / 3.7;
+    const std::array<int, 3> pixel =
+        Pixel(rgb, 80 + static_cast<int>(std::lround(per_metre * (-2.0 + x))),
+              60 - static_cast<int>(std::lround(per_metre * y)));
+    return pixel[0] > 90 && pixel[1] < 60 && pixel[2] < 60;
+  };
+  EXPECT_TRUE(red(0.7, 0.0));
+  EXPECT_TRUE(red(1.5, 0.1));
+  EXPECT_TRUE(red(1.5, -0.1));
+  EXPECT_FALSE(red(1.5, 0.5));
+  EXPECT_FALSE(red(1.9, 0.0));
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(WorldGeometry, RaysAgreeWithMuJoCo) {
       const std::string name = std::to_string(i);
       const Obstacle& obstacle = field.obstacles()[i];
       if (const auto* mesh = std::get_if<Mesh>(&obstacle)) {
-        assets += MeshAssetText(*mesh->surface, name);
+        assets += MeshAssetText(mesh->surface->corners(), mesh->surface->triangles(), name);
       }
       geoms += "<geom " + GeomText(obstacle, name, "mj_ray") + "/>";
     }

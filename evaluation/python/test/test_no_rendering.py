@@ -7,16 +7,16 @@ import pytest
 
 
 @pytest.mark.parametrize(
-    "arguments",
+    ("arguments", "fast"),  # whether sensing: fast is a way out
     [
-        ("land", "open", "--set", "sensing=rendered", "--record", "out"),
-        ("sweep", "open", "--trials", "2", "--set", "sensing=rendered", "--db", "out"),
-        ("study", "pad", "--trials", "1", "--set", "sensing=rendered", "--db", "out"),
-        ("study", "tags", "--poses", "2", "--db", "out"),
-        ("land", "open", "--video", "out.mp4"),
+        (("land", "open", "--set", "sensing=rendered", "--record", "out"), True),
+        (("sweep", "open", "--trials", "2", "--set", "sensing=rendered", "--db", "out"), True),
+        (("study", "pad", "--trials", "1", "--set", "sensing=rendered", "--db", "out"), True),
+        (("study", "tags", "--poses", "2", "--db", "out"), False),
+        (("land", "open", "--video", "out.mp4"), False),
     ],
 )
-def test_without_rendering_it_ends_with_one_sentence(program, tmp_path, arguments):
+def test_without_rendering_it_ends_with_one_sentence(program, tmp_path, arguments, fast):
     library = os.environ.get("TOUCHDOWN_NO_OSMESA")
     if not library:
         pytest.skip("TOUCHDOWN_NO_OSMESA is not set; CTest sets it where nothing is sanitized")
@@ -30,5 +30,5 @@ def test_without_rendering_it_ends_with_one_sentence(program, tmp_path, argument
     )
     assert done.returncode == 2 and done.stdout == ""
     assert len(done.stderr.strip().splitlines()) == 1
-    assert "OSMesa" in done.stderr and "sensing: fast" in done.stderr
+    assert "OSMesa" in done.stderr and ("sensing: fast" in done.stderr) == fast
     assert not list(tmp_path.iterdir())

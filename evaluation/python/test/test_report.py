@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+import shutil
 import sqlite3
 
 import numpy as np
@@ -48,6 +49,15 @@ def test_the_picture_is_drawn(record_path, tmp_path):
     out = tmp_path / "landing.png"
     assert landing.main([record_path, str(out)]) == 0
     assert out.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_a_mode_that_is_not_known_is_drawn_too(record_path, tmp_path):
+    path = tmp_path / "other.db"
+    shutil.copy(record_path, path)
+    with sqlite3.connect(path) as db:
+        assert db.execute("UPDATE mode SET mode = 'gliding' WHERE mode = 'tracking'").rowcount > 0
+    assert landing.main([str(path), str(tmp_path / "other.png")]) == 0
+    assert landing.look_of("gliding") not in landing.MODE_LOOKS.values()
 
 
 def test_columns_of_cubes_and_the_line_around_them():

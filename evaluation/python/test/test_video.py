@@ -2,7 +2,9 @@
 """`--video` as a user has it: what the file is, and how it fails."""
 import json
 import os
+import signal
 import subprocess
+import time
 
 import pytest
 
@@ -21,14 +23,29 @@ def test_a_flight_and_its_record_give_the_same_video(run, tmp_path):
     done = run("land", "open", "--set", "timeout=1", "--record", str(record), "--video", str(flown))
     assert done.returncode == 1 and done.stdout.startswith("timeout"), done.stderr
     done = run("replay", str(record), "--video", str(again))
-    assert done.returncode == 0 and done.stdout == "", done.stderr
+    assert done.returncode == 0 and done.stdout == f"{again}: a video of the flight\n", done.stderr
     assert "pictures" in done.stderr  # how far it is
     assert flown.read_bytes() == again.read_bytes()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["again.mp4", "f.db", "flown.mp4"]
     stream = probe(flown)
     assert (stream["codec_name"], stream["width"], stream["height"]) == ("h264", 1280, 720)
     assert (stream["r_frame_rate"], stream["pix_fmt"]) == ("25/1", "yuv420p")
-    assert float(stream["duration"]) == pytest.approx(1.0, abs=0.08)
+    held = 1.5  # the last picture
+    assert float(stream["duration"]) == pytest.approx(1.0 + held, abs=0.08)
+
+
+def test_a_signal_leaves_nothing_of_a_video(program, tmp_path):
+    command = [program, "land", "open", "--video", "f.mp4"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        for _ in range(1200):  # until the flight has ended
+            if list(tmp_path.glob("f.mp4.table.partial-*")):
+                break
+            time.sleep(0.05)
+        process.send_signal(signal.SIGTERM)
+        said = process.stderr.read()
+    assert process.returncode == 128 + signal.SIGTERM
+    assert said.splitlines()[-1] == "touchdown: interrupted"
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize(
@@ -40,6 +57,13 @@ def test_a_bad_name_is_refused_before_the_flight(run, tmp_path, path, why):
         done = run(*command, "--video", path, cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
         assert why in done.stderr and len(done.stderr.strip().splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_scene_that_cannot_be_drawn_is_refused_before_the_flight(run, tmp_path):
+    done = run("land", "open", "--set", "pad.deck_size=0.6", "--video", "f.mp4", cwd=tmp_path)
+    assert done.returncode == 2 and done.stdout == ""
+    assert "pad.deck_size must be in [1.28, 5] m with a video" in done.stderr
     assert not list(tmp_path.iterdir())
 
 

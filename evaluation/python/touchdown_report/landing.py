@@ -30,6 +30,7 @@ MODE_LOOKS = {
     "go_around": ("#CC79A7", (0, (5, 1, 1, 1))),
     "emergency_stop": ("#000000", (0, (3, 2))),
 }
+ANOTHER_LOOK = ("#8C510A", (0, (4, 1.5)))  # of a mode that is not among them
 DONE_COLOUR, FAILED_COLOUR = "#009E73", "#D55E00"
 LEAST_WIND = 0.05  # that is shown [m/s]
 WIND_ARROW = 36.0  # its length [points]
@@ -73,6 +74,11 @@ def title_lines(record):
     return headline, "  ·  ".join(figures)
 
 
+def look_of(mode):
+    """Colour and line style of a mode; a record may have one that is not known here."""
+    return MODE_LOOKS.get(mode, ANOTHER_LOOK)
+
+
 def runs_of(modes):
     """(mode, first index, last index) of each stretch of one mode."""
     starts = [i for i, mode in enumerate(modes) if i == 0 or mode != modes[i - 1]]
@@ -82,7 +88,7 @@ def runs_of(modes):
 def mode_path(axes, x, y, modes, **kwargs):
     """The curve (x, y), each stretch as its mode looks, up to where the next one begins."""
     for mode, first, last in runs_of(modes):
-        colour, dashes = MODE_LOOKS[mode]
+        colour, dashes = look_of(mode)
         piece = slice(first, last + 2)
         axes.plot(x[piece], y[piece], color=colour, ls=dashes, **kwargs)
 
@@ -283,7 +289,7 @@ def draw_history(axes, record, contact):
     modes = record.modes[: contact + 1]
     for mode, first, last in runs_of(modes):
         begin, end = t[first], t[min(last + 1, len(t) - 1)]
-        axes.axvspan(begin, end, color=MODE_LOOKS[mode][0], alpha=0.13, lw=0)
+        axes.axvspan(begin, end, color=look_of(mode)[0], alpha=0.13, lw=0)
         if end - begin > LEAST_BAND * (t[-1] - t[0]):
             axes.text(
                 0.5 * (begin + end), 0.98, mode.replace("_", " "), color="#555555", fontsize=7,
@@ -308,7 +314,7 @@ def legend_entries(record, contact):
     """Handles for the states that occurred and for everything else drawn."""
     seen = list(dict.fromkeys(record.modes[: contact + 1]))
     handles = [
-        Line2D([], [], color=MODE_LOOKS[m][0], ls=MODE_LOOKS[m][1], lw=2.4, label=m.replace("_", " "))
+        Line2D([], [], color=look_of(m)[0], ls=look_of(m)[1], lw=2.4, label=m.replace("_", " "))
         for m in seen
     ]
     handles += [

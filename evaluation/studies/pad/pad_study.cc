@@ -256,7 +256,7 @@ PadStudy RunPadStudy(const PadStudyOptions& options, const Registries& registrie
   const bool rendered = std::any_of(scenario_of.begin(), scenario_of.end(), [](const Scenario& s) {
     return s.sensing == SensingKind::kRendered;
   });
-  if (rendered) RequireRendering("sensing: rendered");
+  if (rendered) RequireRenderedSensing();
   const auto fly = [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     TrialSamples samples;
