@@ -13,8 +13,7 @@ build_release OFF touchdown
 
 say "Landing on a moving vehicle between buildings that are unknown at take-off"
 mkdir -p out
-build/release/bin/touchdown land straight_turn \
-  --record out/landing.db --html out/landing.html --plot out/landing.png
+build/release/bin/touchdown land straight_turn --record out/landing.db --html out/landing.html --plot out/landing.png
 echo
 echo "Look at it, in a browser: out/landing.html"
 echo "Record: out/landing.db    Picture: out/landing.png"

@@ -47,13 +47,9 @@ void CheckOutputPath(const std::string& option, const std::string& path) {
 
 void CheckRecordPath(const std::string& option, const std::string& path) {
   CheckOutputPath(option, path);
-  constexpr std::string_view kMagic = "SQLite format 3";
   std::error_code ignored;
   if (!fs::exists(path, ignored) || fs::file_size(path, ignored) == 0) return;
-  std::string head(kMagic.size(), '\0');
-  std::ifstream(path, std::ios::binary)
-      .read(head.data(), static_cast<std::streamsize>(head.size()));
-  if (head != kMagic) Refuse(option, path, "a file that is no SQLite file is in its place");
+  if (!IsSqliteFile(path)) Refuse(option, path, "a file that is no SQLite file is in its place");
   try {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
     SqliteStatement trials = db.Prepare("SELECT 1 FROM sqlite_master WHERE name = 'manifest'");

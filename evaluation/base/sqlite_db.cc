@@ -4,6 +4,7 @@
 #include "evaluation/base/sqlite_db.h"
 
 #include <cmath>
+#include <fstream>
 #include <utility>
 
 #include <sqlite3.h>
@@ -116,6 +117,14 @@ std::string SqliteStatement::Text(int column) const {
   const int bytes = sqlite3_column_bytes(statement_, column);
   if (text == nullptr) return {};
   return {text, text + bytes};
+}
+
+bool IsSqliteFile(const std::string& path) {
+  constexpr std::string_view kMagic = "SQLite format 3";
+  std::string head(kMagic.size(), '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == kMagic;
 }
 
 SqliteDb::SqliteDb(const std::string& path, Mode mode) {

@@ -109,6 +109,9 @@ class SqliteDb {
   sqlite3* db_ = nullptr;
 };
 
+/// Whether the file begins as SQLite's do.
+bool IsSqliteFile(const std::string& path);
+
 /// Begins a transaction; rolls it back unless Commit() was called.
 class SqliteTransaction {
  public:

@@ -160,7 +160,7 @@ std::map<int, std::string> RecordFlown(const std::string& page, const std::vecto
     pages[flight.trial->index] =
         Address(shown) + (flight.flown->succeeded()
                               ? std::string()
-                              : fmt::format("#t={:.2f}", flight.flown->simulated_s));
+                              : fmt::format("#t={:.2f}&view=follow", flight.flown->simulated_s));
   }
   return pages;
 }

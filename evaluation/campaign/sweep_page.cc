@@ -51,7 +51,8 @@ std::string SweepPage(const Campaign& campaign, const std::vector<SweepRow>& row
   std::string body = fmt::format("<h1>{}: {} flights</h1>\n<pre>{}</pre>\n<h2>Every flight</h2>\n",
                                  Escaped(title), rows.size(), Escaped(SweepText(campaign, rows)));
   body +=
-      "<table><tr><th>trial</th><th>varied</th><th>outcome</th><th>after [s]</th><th>touchdown "
+      "<table><tr><th>trial</th><th>varied</th><th>outcome</th><th>flight ended after "
+      "[s]</th><th>touchdown "
       "error "
       "[m]</th><th>least clearance [m]</th><th>replans</th><th>what went wrong; the command that "
       "flies it alone</th></tr>\n";

@@ -215,6 +215,7 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
                WriteReplayPage(page, {{kept, stays ? kept : scenario.name, stays}}, registries,
                                TellReplay());
              });
+    if (!arguments.json) TellPage(arguments.html);
   }
   if (!arguments.video.empty()) {
     const VideoProgress tell = TellVideo();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // touchdown replay: a recorded flight to be looked at, as a page or as a video.
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,7 +43,7 @@ int RunReplay(const ReplayArguments& arguments, const Registries& registries) {
     std::vector<ShownRecord> records = {{arguments.record, arguments.record}};
     if (!arguments.beside.empty()) records.push_back({arguments.beside, arguments.beside});
     WriteReplayPage(arguments.html, records, registries, TellReplay());
-    std::cout << fmt::format("{}: open it in a browser\n", arguments.html) << std::flush;
+    TellPage(arguments.html);
   }
   if (!arguments.video.empty()) {
     WriteVideo(arguments.record, arguments.video, registries, TellVideo());

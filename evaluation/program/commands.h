@@ -53,6 +53,9 @@ struct ScenarioArguments {
 /// @throws BadInput if the timings of this build mean nothing and the user did not ask for them.
 void CheckTimings(bool allow_debug);
 
+/// Says on stdout that a page was written.
+void TellPage(const std::string& path);
+
 /// Tells the log how far a page of flights is.
 ReplayProgress TellReplay();
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <map>
 #include <memory>
 
@@ -74,10 +75,14 @@ void CheckTimings(bool allow_debug) {
       "or give --allow-debug.");
 }
 
+void TellPage(const std::string& path) {
+  std::cout << fmt::format("{}: open it in a browser\n", path) << std::flush;
+}
+
 ReplayProgress TellReplay() {
   const auto lines = std::make_shared<std::map<std::string, Progress>>();
   return [lines](const std::string& name, int done, int all) {
-    lines->try_emplace(name, ProgressText{"steps asked again", name}).first->second(done, all);
+    lines->try_emplace(name, ProgressText{"steps", name}).first->second(done, all);
   };
 }
 

@@ -12,6 +12,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/sqlite_db.h"
 #include "evaluation/base/suggestion.h"
 #include "evaluation/base/words.h"
 #include "evaluation/scenario/obstacle_keys.h"
@@ -310,6 +311,12 @@ const char* ToString(DescentKind kind) {
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides,
                       const Registries& registries) {
+  if (IsSqliteFile(path)) {
+    throw BadInput(
+        fmt::format("{}: that is a result file and no scenario; a flight's record is shown by "
+                    "`touchdown replay`.",
+                    path));
+  }
   const auto load = [&path] { return YAML::LoadAllFromFile(path); };
   return Complete(OneDocument(path, load), std::filesystem::path(path).stem().string(), path,
                   overrides, registries);

@@ -315,7 +315,7 @@ def test_a_sweep_s_page_opens_its_failures(run, tmp_path):
     page = (tmp_path / "s.html").read_text()
     assert page.count("look at it") == 2
     assert sorted(p.name for p in (tmp_path / "s_flights").iterdir()) == ["0.db", "0.html", "2.db", "2.html"]
-    assert "href='s_flights/0.html#t=1.00'" in page
+    assert "href='s_flights/0.html#t=1.00&amp;view=follow'" in page
     before = (tmp_path / "s_flights" / "0.db").stat().st_mtime_ns
     assert run(*fly, "--record", "all").returncode == 0
     page = (tmp_path / "s.html").read_text()
@@ -329,7 +329,12 @@ def test_replay_refuses_what_is_no_record(run, tmp_path):
     page = tmp_path / "page.html"
     foreign = tmp_path / "foreign.db"
     foreign.write_text("no database")
+    record = tmp_path / "flight.db"
+    run("land", "open", "--record", str(record), *SHORT)
     for arguments, said in (
+        (("land", str(record)), "touchdown replay"),
+        (("land", "open", "--record", str(record), "--html", str(record)), "the same file"),
+        (("replay", str(record), "--html", str(tmp_path / "." / "flight.db")), "the same file"),
         (("replay", str(foreign), "--html", str(page)), "foreign.db"),
         (("replay", "none.db", "--html", str(page)), "there is no such record"),
         (("replay", str(foreign), "--html", str(tmp_path / "page.pdf")), ".html"),

@@ -119,6 +119,26 @@ std::string List(const std::string& title, const std::vector<SweepRow>& rows,
   return items.empty() ? std::string() : fmt::format("<h2>{}</h2>\n<ul>\n{}</ul>\n", title, items);
 }
 
+// All that can be looked at, whatever came of them.
+std::string RecordedFlights(const std::vector<SweepRow>& rows,
+                            const std::map<int, std::string>& flights) {
+  if (flights.empty()) return {};
+  std::string html =
+      "<h2>Flights to look at</h2>\n<table><tr><th>flight</th><th>family</th><th>outcome</th>"
+      "<th>flight ended after [s]</th><th>least clearance [m]</th><th></th></tr>\n";
+  for (const SweepRow& row : rows) {
+    if (!flights.contains(row.trial.index)) continue;
+    const TrialResult& r = row.result;
+    html += fmt::format(
+        "<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{:.2f}</td><td>{}</td><td>{}</td></tr>\n",
+        r.succeeded() ? "" : " class='bad'", row.trial.index, LabelOf(row.trial, "family"),
+        ToString(r.outcome), r.simulated_s,
+        r.min_clearance_m ? fmt::format("{:.3f}", *r.min_clearance_m) : "",
+        FlightLink(flights, row.trial.index));
+  }
+  return html + "</table>\n";
+}
+
 std::string CountTable(const std::string& title, const std::map<std::string, int>& within,
                        const std::map<std::string, int>& beyond) {
   std::map<std::string, std::pair<int, int>> both;
@@ -199,6 +219,7 @@ std::string HostilePage(const HostileOptions& options, const std::vector<SweepRo
   html += CountTable("Why flights stood", within.stood, beyond.stood);
   html += List("Stood, or out of time", rows, flights, CameToNothing);
   html += List("Ended otherwise", rows, flights, EndedOtherwise);
+  html += RecordedFlights(rows, flights);
   return HtmlPage("Hostile worlds", html + Worlds(rows, registries) + Conditions());
 }
 

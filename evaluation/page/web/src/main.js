@@ -119,13 +119,11 @@ class Replay {
     Object.assign(this.sun.shadow.camera, { left: -14, right: 14, top: 14, bottom: -14, near: 1, far: 60 });
     this.scene.add(this.sun, this.sun.target);
     const begin = this.flights[0].vehicleAt(this.begin, new Vector3());
-    const worlds = new Set();
-    for (const flight of this.flights) {
-      const key = JSON.stringify(flight.document.obstacles);
-      if (!worlds.has(key)) this.scene.add(makeWorld(flight.document.obstacles, begin));
-      worlds.add(key);
-    }
-    this.differ = worlds.size > 1;
+    // Of two worlds that of the flight is drawn that is looked at.
+    const [one, other] = this.flights.map((flight) => JSON.stringify(flight.document.obstacles));
+    this.differ = other !== undefined && one !== other;
+    this.worlds = (this.differ ? this.flights : this.flights.slice(0, 1)).map((flight) => makeWorld(flight.document.obstacles, begin));
+    this.scene.add(...this.worlds);
     this.all = this.flights.map((flight) => new Shown(flight, this.scene));
     this.views = new Views(canvas, this.flights);
     this.views.controls.addEventListener("change", () => (this.stale = true));
@@ -134,8 +132,8 @@ class Replay {
   }
 
   makeControls() {
-    const heading = this.flights.map((flight) => `${flight.document.scenario}, ${flight.document.planner}: ${outcomeWords(flight)}`).join("   |   ");
-    at("heading").textContent = this.differ ? `${heading} (they flew in different worlds)` : heading;
+    const heading = this.flights.map((flight) => `${flight.document.scenario}, planner ${flight.document.planner}: ${outcomeWords(flight)}`).join("   |   ");
+    at("heading").textContent = this.differ ? `In different worlds: ${heading}` : heading;
     document.title = heading;
     at("slider").min = this.begin;
     at("slider").max = this.end;
@@ -261,6 +259,7 @@ class Replay {
       n: () => this.seek(this.timeline.markFrom(this.t, true)),
       p: () => this.seek(this.timeline.markFrom(this.t, false)),
       x: () => this.select((this.selected + 1) % this.flights.length),
+      Escape: () => (at("help").hidden = true),
       "0": () => { this.look("orbit"); this.views.reset(); },
       "?": () => (at("help").hidden = !at("help").hidden),
     };
@@ -307,6 +306,7 @@ class Replay {
   draw() {
     const { t } = this;
     const [first] = this.flights;
+    if (this.differ) this.worlds.forEach((world, i) => (world.visible = i === this.selected));
     this.all.forEach((shown, i) => {
       // Where both have the same pad it is drawn once.
       const drawsPad = i === 0 || shown.flight.padAt(t).distanceTo(first.padAt(t)) > 1e-3;
@@ -330,7 +330,7 @@ class Replay {
       if (shown.label.hidden) return;
       p.copy(shown.vehicle.body.position).add(new Vector3(0, 0, 0.35)).project(this.views.camera);
       shown.label.hidden = p.z > 1;
-      shown.label.textContent = `${i + 1}  ${shown.flight.document.planner}`;
+      shown.label.textContent = `${i + 1}: planner ${shown.flight.document.planner}${this.t > shown.flight.end + 1e-6 ? ", ended" : ""}`;
       shown.label.style.transform = `translate(${((p.x + 1) / 2) * this.size[0]}px, ${((1 - p.y) / 2) * this.size[1]}px) translate(-50%, -100%)`;
     });
   }

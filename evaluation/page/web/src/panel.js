@@ -36,6 +36,17 @@ export function outcomeWords(flight) {
   return result.detail ? `${what} after ${after}: ${result.detail}` : `${what} after ${after}`;
 }
 
+/** How many steps ended how, and for which reasons there was no new plan; the first of each. */
+function reasonsOf(flight) {
+  const found = new Map();
+  flight.steps.forEach(({ status, reason }, i) => {
+    const words = (reason && reason !== "none" ? `${status}: ${reason}` : status).replaceAll("_", " ");
+    found.set(words, [...(found.get(words) ?? []), i]);
+  });
+  if (found.size === 0) return ["The planner was never asked for a plan."];
+  return [...found].map(([words, steps]) => `${steps.length} steps ${words} (${steps.slice(0, 8).join(", ")}${steps.length > 8 ? ", …" : ""})`);
+}
+
 export class Panel {
   constructor({ now, step, layers, flight: about }, choices) {
     this.now = new Table(choices.leadsToGoal ? [...NOW.slice(0, 1), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"]);
@@ -73,6 +84,7 @@ export class Panel {
     this.about.replaceChildren(
       element("p", { textContent: outcomeWords(flight) }),
       element("p", { textContent: `${d.scenario}, planner ${d.planner}, backend ${d.backend}, seed ${d.seed}; touchdown ${d.build.touchdown_version}, ${d.build.revision.slice(0, 12)}, ${d.build.build_type}` }),
+      ...reasonsOf(flight).map((text) => element("p", { textContent: text })),
       element("details", {}, element("summary", { textContent: "result" }), element("pre", { textContent: JSON.stringify(result, null, 1) })),
       element("details", {}, element("summary", { textContent: "scenario" }), element("pre", { textContent: d.scenario_yaml })),
     );
@@ -93,7 +105,8 @@ export class Panel {
     const aim = flight.aimAt(t), above = vehicle.pz[i] - aim.z - (flight.goal ? 0 : model.foot_depth);
     const gate = flight.eventAt("gate", t), descent = flight.eventAt("descent", t)?.text ?? "none";
     const wind = Math.hypot(air.vx[i], air.vy[i], air.vz[i]);
-    const mode = flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t));
+    const ended = t > flight.end + 1e-6 ? `ended at ${flight.end.toFixed(2)} s; then: ` : "";
+    const mode = ended + flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t));
     const place = [
       flight.estimates ? `estimated, ${flight.eventAt("own_state", t)?.text ?? "good"}` : "given",
       metres(Math.hypot(vehicle.px[i] - aim.x, vehicle.py[i] - aim.y)),
@@ -130,8 +143,8 @@ export class Panel {
     const pieces = [`At ${step.t.toFixed(2)} s: ${step.status.replaceAll("_", " ")}`];
     if (step.reason && step.reason !== "none") pieces.push(`no new plan: ${step.reason.replaceAll("_", " ")}`);
     if (step.stops) pieces.push("a stored stop is flown");
-    pieces.push(`${step.solves} solves, ${step.iterations} iterations`);
-    if (step.work > 0) pieces.push(`${step.work} of ${flight.document.max_work} units of work${step.work >= flight.document.max_work ? " (spent)" : ""}`);
+    pieces.push(step.solves > 0 ? `${step.solves} solves, the last of ${step.iterations} iterations` : "nothing was solved");
+    if (step.work > 0) pieces.push(`${step.work} of ${flight.document.max_work} units of work${step.reason === "budget_spent" ? ", too little left for the next" : ""}`);
     pieces.push(`${step.wall_ms.toFixed(2)} ms in flight${step.wall_ms > step.latency_ms ? `, later than its latency of ${step.latency_ms} ms` : ""}`);
     if (step.same === false) pieces.push("asked again by this build it answers otherwise: stop, ways that lost, pairs, stages and words are of that answer");
     this.summary.textContent = pieces.join("; ") + ".";

@@ -4,6 +4,7 @@ import uPlot from "uplot";
 import { indexAt } from "./flight.js";
 import { BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 
+const SECOND = " (2)";
 const distance = (a, b, i) => Math.hypot(a.px[i] - b.px[i], a.py[i] - b.py[i], a.pz[i] - b.pz[i]);
 
 /** What is plotted of a flight: [title, unit, [times, [name, colour, values] ...]]. */
@@ -76,7 +77,7 @@ function tableOf(figures, begin, end) {
       if (times.length === 0 || list.length === 0) continue;
       tables.push([times, ...list.map(([, , values]) => values)]);
       for (const [name, colour] of list) {
-        series.push({ label: figures.length > 1 ? `${name} (${number + 1})` : name, stroke: colour, width: 1.4, spanGaps: false, value: (plot, value, series, index) => newest(plot, series, index), points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
+        series.push({ label: number > 0 ? name + SECOND : name, stroke: colour, width: 1.4, spanGaps: false, value: (plot, value, series, index) => newest(plot, series, index), points: { show: false }, dash: number > 0 ? [5, 4] : undefined });
       }
     }
   });
@@ -100,6 +101,10 @@ export class Plots {
         axes: [{ size: 24, font: "10px sans-serif", grid: { stroke: "#eee" } }, { size: 38, font: "10px sans-serif", grid: { stroke: "#eee" } }],
         cursor: { sync: { key: "replay" }, drag: { x: false, y: false }, points: { size: 5 } },
       }, data, box);
+      // One legend for both: the second is dashed.
+      for (const row of plot.root.querySelectorAll(".u-legend .u-series")) {
+        if (row.textContent.includes(SECOND)) row.remove();
+      }
       const now = document.createElement("div");
       now.className = "now";
       plot.over.append(now);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The line of time: modes as a band, marks for what happened, a handle for now.
-import { BLACK, MODES, ORANGE, PURPLE, VERMILLION, GREEN } from "./colours.js";
+import { BLACK, GREEN, MODES, ORANGE, PURPLE, VERMILLION } from "./colours.js";
 
 const KINDS = {
   stop: { colour: VERMILLION, shape: "square", words: "a stored stop begins" },
+  spent: { colour: PURPLE, shape: "square", words: "no new plan: its budget was spent" },
   late: { colour: ORANGE, shape: "tick", words: "a step later than its latency" },
   mode: { colour: BLACK, shape: "triangle", words: "mode" },
   descent: { colour: PURPLE, shape: "triangle", words: "descent" },
@@ -16,9 +17,10 @@ const KINDS = {
 export function marksOf(flight) {
   // The gate opens and closes with every tag that is seen: the panel tells of it.
   const events = flight.document.events.filter(({ kind }) => kind !== "gate");
-  const marks = events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? descentWords(text) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
+  const marks = events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? (text === "none" ? "descent: nothing keeps it any more" : descentWords(text)) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
   flight.steps.forEach((step, i) => {
     if (step.stops && !flight.steps[i - 1]?.stops) marks.push({ t: Math.max(step.t_stop ?? step.t, step.t), kind: "stop", text: `step ${i}: ${KINDS.stop.words}`, step: i });
+    if (step.reason === "budget_spent") marks.push({ t: step.t_start, kind: "spent", text: `step ${i}: ${KINDS.spent.words}`, step: i });
     if (step.wall_ms > step.latency_ms) marks.push({ t: step.t, kind: "late", text: `step ${i}: took ${step.wall_ms.toFixed(1)} ms, its latency is ${step.latency_ms} ms`, step: i });
   });
   return marks.sort((a, b) => a.t - b.t);
@@ -26,7 +28,7 @@ export function marksOf(flight) {
 
 export function descentWords(text) {
   return {
-    none: "nothing keeps it",
+    none: "–",
     gate: "descent waits: the gate is closed",
     above: "waits above the pad until the gate opens",
     corridor: "descent waits: too far beside the pad for this height",
@@ -39,7 +41,7 @@ export function gateWords(text) {
     open: "open",
     own_state: "closed: the own state is not sure",
     no_pad: "closed: the pad was not found yet",
-    tags_unseen: "closed: no tag is seen, and the way is too long without",
+    tags_unseen: "closed: no tag is seen, and contact is too far off in time without one",
     pad_uncertain: "closed: the pad is not known well enough",
     gust: "closed: it leans too far in the wind",
   }[text] ?? text;

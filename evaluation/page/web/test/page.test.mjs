@@ -269,7 +269,13 @@ test("two flights fly on one clock, each with its own words", async () => {
   const ours = await position(page, 0), theirs = await position(page, 1);
   assert.ok(Math.hypot(...ours.map((x, k) => x - theirs[k])) > 0.2);
   const labels = await page.$$eval(".label:not([hidden])", (found) => found.map((label) => label.textContent));
-  assert.deepEqual(labels, ["1  landing", "2  ego"]);
+  assert.deepEqual(labels, ["1: planner landing", "2: planner ego"]);
+  const ends = await page.evaluate(() => replay.flights.map((flight) => flight.end));
+  const shorter = ends.indexOf(Math.min(...ends));
+  await slide(page, Math.max(...ends));
+  const after = await page.$$eval(".label", (found) => found.map((label) => label.textContent.endsWith(", ended")));
+  assert.deepEqual(after, ends.map((_, i) => i === shorter));
+  await slide(page, 2);
   const words = await page.$eval("#words", (element) => element.textContent);
   await page.select("#which", "1");
   await page.evaluate(() => replay.draw());
