@@ -97,9 +97,9 @@ export class Plots {
       const plot = new uPlot({
         width: 200, height: 150, series,
         title: unit ? `${title} [${unit}]` : title,
-        scales: { x: { time: false, range: [begin, end] }, y: { range: (u, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1e-3) * 1.05] } },
+        scales: { x: { time: false, range: (u, low, high) => [low, high] }, y: { range: (u, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1e-3) * 1.05] } },
         axes: [{ size: 24, font: "10px sans-serif", grid: { stroke: "#eee" } }, { size: 38, font: "10px sans-serif", grid: { stroke: "#eee" } }],
-        cursor: { sync: { key: "replay" }, drag: { x: false, y: false }, points: { size: 5 } },
+        cursor: { sync: { key: "replay", scales: ["x", null] }, drag: { x: true, y: false, dist: 6 }, points: { size: 5 } },
       }, data, box);
       // One legend for both: the second is dashed.
       for (const row of plot.root.querySelectorAll(".u-legend .u-series")) {
@@ -108,7 +108,10 @@ export class Plots {
       const now = document.createElement("div");
       now.className = "now";
       plot.over.append(now);
-      plot.over.addEventListener("click", (event) => seek(plot.posToVal(event.offsetX, "x")));
+      // A drag is a closer look, a double click the whole again.
+      let pressed = 0;
+      plot.over.addEventListener("mousedown", (event) => (pressed = event.clientX));
+      plot.over.addEventListener("click", (event) => Math.abs(event.clientX - pressed) < 6 && seek(plot.posToVal(event.offsetX, "x")));
       this.plots.push({ plot, now, box });
     });
   }

@@ -38,7 +38,7 @@ export class Views {
     const across = along.length() > 0.1 ? new Vector3(along.y, -along.x, 0).normalize() : new Vector3(0, -1, 0);
     this.controls.target.copy(middle);
     this.camera.fov = FOV;
-    this.camera.position.copy(middle).addScaledVector(across, 1.6 * radius).add(new Vector3(0, 0, 1.4 * radius));
+    this.camera.position.copy(middle).addScaledVector(across, 1.75 * radius).add(new Vector3(0, 0, 1.5 * radius));
     this.controls.update();
   }
 

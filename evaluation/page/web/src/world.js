@@ -7,7 +7,7 @@ import {
 } from "three";
 import { GREEN, PURPLE, YELLOW } from "./colours.js";
 
-const BUILDING = "#CFC6B8", EDGE = "#7A7368", GROUND = "#F0F2EE", GRID = "#C3CAC2";
+const BUILDING = "#C4BAAA", EDGE = "#7A7368", GROUND = "#F0F2EE", GRID = "#C3CAC2";
 const EXTENT = 400; // of the ground, a whole and even number [m]
 const MOST_EDGES = 800; // obstacles whose edges are drawn
 

@@ -244,6 +244,22 @@ describe("a page of one flight", () => {
   });
 });
 
+test("a drag in a plot is a closer look in all of them, a double click the whole again", async () => {
+  const page = await ready("one.html");
+  const ranges = () => page.evaluate(() => replay.plots.plots.map(({ plot }) => [plot.scales.x.min, plot.scales.x.max]));
+  const whole = await ranges();
+  const box = await page.$eval(".u-over", (over) => { const { left, top, width, height } = over.getBoundingClientRect(); return { left, top, width, height }; });
+  const y = box.top + box.height / 2;
+  await page.mouse.move(box.left + 0.3 * box.width, y);
+  await page.mouse.down();
+  await page.mouse.move(box.left + 0.6 * box.width, y, { steps: 4 });
+  await page.mouse.up();
+  for (const [low, high] of await ranges()) assert.ok(high - low < 0.5 * (whole[0][1] - whole[0][0]), `${[low, high]}`);
+  await page.mouse.click(box.left + 0.5 * box.width, y, { count: 2 });
+  assert.deepEqual(await ranges(), whole);
+  await page.close();
+});
+
 test("`land --html` writes the same page as `replay --html`", async () => {
   const page = await ready("land.html");
   assert.deepEqual(page.said, []);
