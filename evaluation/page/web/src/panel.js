@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The words beside the picture: how it stands now, the step at hand, the layers, the flight.
+import { endOf } from "./spline.js";
 import { descentWords, gateWords } from "./timeline.js";
 
 const metres = (x) => (x == null || Number.isNaN(x) ? "–" : `${x.toFixed(2)} m`);
@@ -10,7 +11,7 @@ function element(tag, properties = {}, ...children) {
   return made;
 }
 
-const NOW = ["mode", "gate", "descent"], NOW_THEN = ["speed", "clearance", "off its reference"];
+const NOW = ["mode", "flown", "gate", "descent"], NOW_THEN = ["speed", "clearance", "off its reference"];
 
 /** Rows of names and values, kept and filled again. */
 class Table {
@@ -25,8 +26,43 @@ class Table {
   }
 }
 
-function reasonOf(event) {
-  return event ? ` since ${event.t.toFixed(2)} s${event.text.includes("(") ? `, ${event.text.slice(event.text.indexOf("("))}` : ""}` : "";
+// Why a mode began: the mission's own words, and what they mean.
+const REASONS = {
+  pad_converged: "the pad is known well enough",
+  align_timeout: "turning towards its way took too long",
+  above_pad: "near the pad and slow over it",
+  arriving: "contact is near and the gate is open",
+  contact: "the feet stand on the deck",
+  pad_lost: "the pad was not known well enough for too long",
+  tags_lost: "the gate was closed for too long, or too close to the deck",
+  error_too_large: "too far beside the pad",
+  too_fast: "the pad moves otherwise than foretold",
+  gust: "it leans too far in the wind",
+  plan_failed: "there was no new plan for too long",
+  no_contact: "contact did not come in time",
+  climb_complete: "high enough above the pad again",
+  climb_timeout: "the climb took too long",
+  recovered: "there is a plan and a known pad again",
+  invalid_input: "something was not a number",
+  emergency: "the emergency flag is up",
+  emergency_cleared: "the emergency flag is down again",
+  own_state_lost: "the own state was not usable for too long",
+};
+
+function reasonOf(event, leadsTo) {
+  if (!event) return "";
+  const reason = event.text.match(/\((.*)\)/)?.[1];
+  return ` since ${event.t.toFixed(2)} s${reason ? `: ${(REASONS[reason] ?? "").replace("pad", leadsTo)} (${reason})` : ""}`;
+}
+
+/** What is flown at t: the plan, or the stop that takes over from it, and until when. */
+function flownWords(flight, t) {
+  const step = flight.steps[flight.stepAt(t)];
+  if (!step) return "the hover at the start";
+  const stops = step.stop && step.t_stop != null && t >= step.t_stop;
+  const end = endOf(stops ? step.stop : step.curve);
+  const left = end - t;
+  return `${stops ? "a stored stop" : step.earlier ? "what was committed before" : "the step's plan"}, until ${end.toFixed(2)} s${left > 0 ? `, ${left.toFixed(2)} s more` : ": past its end"}`;
 }
 
 export function outcomeWords(flight) {
@@ -49,7 +85,7 @@ function reasonsOf(flight) {
 
 export class Panel {
   constructor({ now, step, layers, flight: about }, choices) {
-    this.now = new Table(choices.leadsToGoal ? [...NOW.slice(0, 1), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"]);
+    this.now = new Table(choices.leadsToGoal ? [...NOW.slice(0, 2), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"]);
     now.append(this.now.object);
     this.title = element("div", { className: "step-title" });
     this.summary = element("p", { className: "step-summary" });
@@ -106,7 +142,7 @@ export class Panel {
     const gate = flight.eventAt("gate", t), descent = flight.eventAt("descent", t)?.text ?? "none";
     const wind = Math.hypot(air.vx[i], air.vy[i], air.vz[i]);
     const ended = t > flight.end + 1e-6 ? `ended at ${flight.end.toFixed(2)} s; then: ` : "";
-    const mode = ended + flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t));
+    const mode = ended + flight.modeAt(t).replace("_", " ") + reasonOf(flight.eventAt("mode", t), flight.goal ? "goal" : "pad");
     const place = [
       flight.estimates ? `estimated, ${flight.eventAt("own_state", t)?.text ?? "good"}` : "given",
       metres(Math.hypot(vehicle.px[i] - aim.x, vehicle.py[i] - aim.y)),
@@ -117,12 +153,13 @@ export class Panel {
     ];
     const blows = wind < 0.005 ? "none" : `${wind.toFixed(1)} m/s`;
     if (flight.goal) {
-      this.now.set([mode, ...place, blows]);
+      this.now.set([mode, flownWords(flight, t), ...place, blows]);
       return;
     }
     const doubt = b < 0 ? 0 : flight.deckDoubt(b);
     this.now.set([
       mode,
+      flownWords(flight, t),
       gateWords(gate?.text ?? "no_pad") + (gate ? `, since ${gate.t.toFixed(2)} s` : ""),
       descentWords(descent),
       ...place,

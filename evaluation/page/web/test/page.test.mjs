@@ -212,6 +212,19 @@ describe("a page of one flight", () => {
     assert.match(await page.$eval(".step-summary", (element) => element.textContent), /a stored stop is flown/);
   });
 
+  test("tells what is flown, and until when, and why the mode began", async () => {
+    const asked = await page.evaluate(() => {
+      const i = replay.flight.steps.findIndex((step) => step.stops && step.t_stop < replay.flight.stepTimes[replay.flight.steps.indexOf(step) + 1]);
+      const step = replay.flight.steps[i];
+      replay.seek(Math.max(step.t_stop, step.t_start) + 1e-3);
+      replay.draw();
+      const { q, h, t0 } = step.stop;
+      return { end: t0 + (q.length / 3 - 3) * h, now: document.getElementById("now").textContent };
+    });
+    assert.ok(asked.now.includes(`a stored stop, until ${asked.end.toFixed(2)} s`), asked.now);
+    assert.match(asked.now, /tracking since [\d.]+ s: the pad is known well enough \(pad_converged\)/);
+  });
+
   test("opens where its address says", async () => {
     const other = await browser.newPage();
     await other.goto(`file://${file("one.html")}#step=9&view=top`);
