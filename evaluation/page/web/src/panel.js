@@ -62,7 +62,7 @@ function flownWords(flight, t) {
   const stops = step.stop && step.t_stop != null && t >= step.t_stop;
   const end = endOf(stops ? step.stop : step.curve);
   const left = end - t;
-  return `${stops ? "a stored stop" : step.earlier ? "what was committed before" : "the step's plan"}, until ${end.toFixed(2)} s${left > 0 ? `, ${left.toFixed(2)} s more` : ": past its end"}`;
+  return `${stops ? "a stored stop" : step.status === "planned" ? "the step's plan" : "what was committed before"}, until ${end.toFixed(2)} s${left > 0 ? `, ${left.toFixed(2)} s more` : ": past its end"}`;
 }
 
 export function outcomeWords(flight) {
