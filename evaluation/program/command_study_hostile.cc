@@ -67,9 +67,7 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
   if (!arguments.against.empty()) ReadHostileTimes(arguments.options, arguments.against);
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
-  if (arguments.record != "none" && arguments.html.empty()) {
-    throw BadInput("--record: the flights stand beside the report, so it needs --html.");
-  }
+  CheckRecorded(arguments.record, arguments.html);
 }
 
 int Show(const HostileArguments& arguments, const Registries& registries) {

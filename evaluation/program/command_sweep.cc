@@ -67,9 +67,7 @@ void CheckSweepOutputs(const SweepArguments& arguments) {
   if (!arguments.db.empty()) CheckOutputPath("--db", arguments.db);
   if (!arguments.picture.empty()) CheckPicturePath("--picture", arguments.picture);
   if (!arguments.html.empty()) CheckPagePath("--html", arguments.html);
-  if (arguments.record != "none" && arguments.html.empty()) {
-    throw BadInput("--record: the flights stand beside the report, so it needs --html.");
-  }
+  CheckRecorded(arguments.record, arguments.html);
 }
 
 int Sweep(const SweepArguments& arguments, const Registries& registries) {

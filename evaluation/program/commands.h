@@ -65,6 +65,9 @@ VideoProgress TellVideo();
 /// `--record` of campaigns: which flights are recorded; with the words that it takes.
 void AddRecorded(Command command, std::string* which, const std::string& help);
 
+/// @throws BadInput where flights are to be recorded and there is no report that they could stand beside.
+void CheckRecorded(const std::string& which, const std::string& html);
+
 /// CheckOutputPath for a study, which is never overwritten. @throws BadInput
 void CheckNewStudy(const std::string& option, const std::string& path);
 

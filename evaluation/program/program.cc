@@ -101,6 +101,11 @@ void AddRecorded(Command command, std::string* which, const std::string& help) {
       .ShowDefault();
 }
 
+void CheckRecorded(const std::string& which, const std::string& html) {
+  if (which == "none" || !html.empty()) return;
+  throw BadInput("--record: the flights stand beside the report, so it needs --html.");
+}
+
 void CheckNewStudy(const std::string& option, const std::string& path) {
   CheckOutputPath(option, path);
   if (std::filesystem::exists(path)) {
