@@ -112,7 +112,7 @@ Json VehicleDocument(const Scenario& scenario) {
                       {"lifts", actuator.thrust != 0.0},
                       {"max", Rounded(actuator.max, 3)}});
   }
-  json["rotor_radius"] = Rounded(model.rotor_radius, 3);
+  json["rotor_radius"] = Rounded(sim::DrawnRotorRadius(model), 3);
   json["foot_depth"] = Rounded(model.foot_depth, 3);
   json["cameras"] = {DepthCameraJson(scenario), PadCameraJson(scenario)};
   return json;

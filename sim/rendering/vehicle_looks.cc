@@ -16,8 +16,6 @@ namespace {
 
 constexpr char kDiscColor[] = "0.75 0.86 0.97 0.38";
 constexpr double kDiscHeight = 0.004;  // half of it [m]
-constexpr double kUnknownRadius =
-    0.1;  // of a rotor whose file does not tell, as on the replay page [m]
 
 std::string QuaternionText(const Eigen::Quaterniond& q) {
   return estimation::NumberText(q.w()) + ' ' + VectorText(q.vec());
@@ -60,7 +58,7 @@ VehicleLooks LooksOf(const std::string& vehicle_mjcf) {
     AddShape(shape, "vehicle " + std::to_string(shapes++), &looks);
   }
   const estimation::VehicleModel model = LoadVehicleModel(vehicle_mjcf);
-  const double radius = model.rotor_radius > 0.0 ? model.rotor_radius : kUnknownRadius;
+  const double radius = DrawnRotorRadius(model);
   for (const estimation::Actuator& actuator : model.actuators) {
     // What makes a moment alone has no place.
     if (actuator.thrust != 0.0) AddDisc(actuator.p_BR, radius, &looks);

@@ -118,4 +118,9 @@ std::vector<VehicleShape> VehicleShapes(const std::string& mjcf) {
   return shapes;
 }
 
+double DrawnRotorRadius(const estimation::VehicleModel& model) {
+  constexpr double kUnknown = 0.1;
+  return model.rotor_radius > 0.0 ? model.rotor_radius : kUnknown;
+}
+
 }  // namespace touchdown::sim

@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "touchdown/estimation/base/vehicle_model.h"
+
 namespace touchdown::sim {
 
 /// A geom of a vehicle, for pictures. G: the geom's own axes.
@@ -27,5 +29,8 @@ const char* ToString(VehicleShape::Kind kind);
 /// are wholly transparent or in a group from 3 on. Of a vehicle that then has nothing but feet, arms to these and to the rotors.
 /// Throws std::invalid_argument as LoadVehicleModel.
 std::vector<VehicleShape> VehicleShapes(const std::string& mjcf);
+
+/// Of the rotors' discs as they are drawn: the model's, or 0.1 m where its file does not tell [m].
+double DrawnRotorRadius(const estimation::VehicleModel& model);
 
 }  // namespace touchdown::sim
