@@ -154,8 +154,8 @@ class Replay {
       else this.choose(step);
     });
     this.plots = new Plots(at("plots"), this.flights, this.begin, this.end, (t) => this.seek(t));
-    this.panel = new Panel({ now: at("now"), step: at("step"), layers: at("layers"), flight: at("about") }, { layers: this.layers(), leadsToGoal: Boolean(this.flight.goal) });
-    this.panel.about_(this.flight);
+    this.panel = new Panel({ now: at("now"), step: at("step"), layers: at("layers"), flight: at("about") }, this.layers());
+    this.panel.choose(this.flight);
     document.addEventListener("keydown", (event) => this.key(event));
     window.addEventListener("resize", () => this.resize());
   }
@@ -218,7 +218,7 @@ class Replay {
   select(number) {
     this.selected = number;
     at("which").value = number;
-    this.panel.about_(this.flight);
+    this.panel.choose(this.flight);
     this.look(this.views.name);
   }
 

@@ -84,9 +84,8 @@ function reasonsOf(flight) {
 }
 
 export class Panel {
-  constructor({ now, step, layers, flight: about }, choices) {
-    this.now = new Table(choices.leadsToGoal ? [...NOW.slice(0, 2), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"]);
-    now.append(this.now.object);
+  constructor({ now, step, layers: list, flight: about }, layers) {
+    this.place = now;
     this.title = element("div", { className: "step-title" });
     this.summary = element("p", { className: "step-summary" });
     this.command = element("code");
@@ -95,9 +94,9 @@ export class Panel {
     this.asked = element("div", { className: "command" }, this.command, this.copy);
     this.words = element("pre", { id: "words" });
     step.append(this.title, this.summary, this.asked, this.words);
-    this.layers = layers;
+    this.layers = list;
     this.about = about;
-    for (const layer of choices.layers) this.addLayer(layer);
+    for (const layer of layers) this.addLayer(layer);
     this.shown = null;
   }
 
@@ -114,7 +113,11 @@ export class Panel {
     set(on);
   }
 
-  about_(flight) {
+  /** Whose words are shown. */
+  choose(flight) {
+    const rows = flight.goal ? [...NOW.slice(0, 2), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"];
+    this.now = new Table(rows);
+    this.place.replaceChildren(this.now.object);
     const { document: d } = flight;
     const result = { ...d.result };
     this.about.replaceChildren(

@@ -64,12 +64,11 @@ export class Vehicle {
     this.body = new Group();
     const { shapes, rotors, rotor_radius, cameras } = flight.document.vehicle;
     for (const shape of shapes) this.body.add(meshOf(shape));
-    const radius = rotor_radius > 0 ? rotor_radius : 0.1;
     // The discs tell the flight: with two of them the colour is that of the flight's path.
     const disc = new MeshBasicMaterial({ color: colour, transparent: true, opacity: 0.35, side: DoubleSide, depthWrite: false });
     this.thrusts = rotors.map((rotor) => {
       if (!rotor.lifts) return null;
-      const mesh = new Mesh(new CircleGeometry(radius, 32), disc);
+      const mesh = new Mesh(new CircleGeometry(rotor_radius, 32), disc);
       mesh.position.set(...rotor.p);
       const arrow = new Arrow(ORANGE);
       this.body.add(mesh, arrow.object);

@@ -334,6 +334,19 @@ test("a flight to a goal is told without a pad, an estimated own state with its 
   await page.close();
 });
 
+test("a flight to a goal beside a landing has its own words", async () => {
+  run("replay", file("goal.db"), "--beside", file("ours.db"), "--html", file("mixed.html"));
+  const page = await ready("mixed.html");
+  const now = async () => { await page.evaluate(() => replay.draw()); return page.$eval("#now", (element) => element.textContent); };
+  assert.match(await now(), /beside the goal/);
+  await page.evaluate(() => replay.select(1));
+  assert.match(await now(), /feet above the deck.*pad believed/);
+  await page.evaluate(() => replay.select(0));
+  assert.match(await now(), /beside the goal/);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
 describe("a page that is damaged", () => {
   const whole = () => readFileSync(file("one.html"), "utf8");
   const at = (text, share) => Math.floor(text.indexOf('class="flight"') + share * (text.length - text.indexOf('class="flight"')));
