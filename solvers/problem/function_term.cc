@@ -10,16 +10,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "solvers/problem/run_time_term.h"
+
 namespace touchdown::solvers {
-
-namespace {
-
-template <class Loss>
-constexpr bool kHasResidual = requires(const Loss& loss) {
-  loss.Residual(0.0);
-};
-
-}  // namespace
 
 FunctionTerm::FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss,
                            Functions functions)
@@ -45,17 +38,12 @@ FunctionTerm::FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss,
   shape_.outputs = shape.outputs;
   shape_.max_windows = shape.windows;
   shape_.uses_interval = false;
-  shape_.has_residual =
-      std::visit([](const auto& l) { return kHasResidual<std::decay_t<decltype(l)>>; }, loss_);
+  shape_.has_residual = LossHasResidual(loss_);
 }
 
-LossBounds FunctionTerm::bounds() const {
-  return std::visit([](const auto& loss) { return loss.bounds(); }, loss_);
-}
+LossBounds FunctionTerm::bounds() const { return BoundsOf(loss_); }
 
-double FunctionTerm::nominal_row_weight() const {
-  return std::visit([](const auto& loss) { return loss.NominalCurvature(0.0); }, loss_);
-}
+double FunctionTerm::nominal_row_weight() const { return NominalRowWeight(loss_); }
 
 void FunctionTerm::Place(TermBlock* block) const {
   block->windows = windows_;
@@ -72,11 +60,10 @@ void FunctionTerm::Evaluate(const TermInput& input, const TermRequest& request, 
     const int first = shape_.row(k, 0);
     EvaluateFunction(k, q, derivatives, &block->u[first], block->slopes(first));
     if (derivatives) std::fill_n(&block->du_dh[first], m, 0.0);
-    if (request.role == Role::kCost) EvaluateLoss(k, request, block);
-    if (request.want.gradient) AddGradient(k, request, *block, sums);
-    if (request.want.hessian && !request.hessian_known) {
-      AddHessian(k, q, request, *block, sums.hessian);
-    }
+    if (request.role == Role::kCost) EvaluateLoss(loss_, k, shape_, request, block);
+    if (request.want.gradient) AddGradient(k, shape_, input, request, *block, sums);
+    if (request.want.hessian && !request.hessian_known)
+      AddHessian(k, q, input, request, *block, sums);
   }
 }
 
@@ -111,79 +98,32 @@ void FunctionTerm::EvaluateFunction(int window, const double* q, bool derivative
   }
 }
 
-void FunctionTerm::EvaluateLoss(int window, const TermRequest& request, TermBlock* block) const {
-  std::visit(
-      [&](const auto& loss) {
-        const int m = shape_.outputs;
-        for (int i = window * m; i < (window + 1) * m; ++i) {
-          const LossValue value = loss.Value(block->u[i]);
-          block->rho[i] = value.rho;
-          block->drho[i] = value.drho;
-          block->d2rho[i] =
-              request.nominal_curvature ? loss.NominalCurvature(block->u[i]) : value.d2rho;
-          if constexpr (kHasResidual<std::decay_t<decltype(loss)>>) {
-            if (!request.want.residual) continue;
-            const LossResidual residual = loss.Residual(block->u[i]);
-            block->r[i] = residual.r;
-            block->dr[i] = residual.dr;
-          }
-        }
-      },
-      loss_);
-}
-
-void FunctionTerm::AddGradient(int window, const TermRequest& request, const TermBlock& block,
-                               const TermSums& sums) const {
-  const int m = shape_.outputs;
-  const bool cost = request.role == Role::kCost;
-  const double* weights = cost ? &block.drho[window * m] : nullptr;
-  if (!cost && request.rows.multiplier) weights = request.rows.multiplier + window * m;
-  if (!weights) return;
-  double* out =
-      (cost ? sums.gradient : sums.row_gradient) + block.first_block[window] * shape_.block_size;
-  for (int c = 0; c < m; ++c) {
-    if (weights[c] == 0.0) continue;
-    const double* du = block.slopes(shape_.row(window, c));
-    for (int i = 0; i < variables_; ++i) out[i] += weights[c] * du[i];
-  }
-}
-
-/// Adds sum_c (weight_c du_c du_c^T + slope_c d2u_c) of one window.
-void FunctionTerm::AddHessian(int window, const double* q, const TermRequest& request,
-                              const TermBlock& block, BorderedBandMatrix* hessian) const {
-  const int m = shape_.outputs, n = variables_, d = shape_.block_size;
-  std::array<double, kMostOutputs> weight{}, slope{};
+void FunctionTerm::AddHessian(int window, const double* q, const TermInput& input,
+                              const TermRequest& request, const TermBlock& block,
+                              const TermSums& sums) const {
+  const int m = shape_.outputs, v = variables_, n = v + 1;
   bool bends = false;
   for (int c = 0; c < m; ++c) {
-    const int i = shape_.row(window, c);
-    if (request.role == Role::kCost) {
-      weight[c] = request.objective_factor * block.d2rho[i];
-      slope[c] = request.objective_factor * block.drho[i];
-    } else {
-      if (request.rows.weight) weight[c] = request.rows.weight[i];
-      if (request.rows.multiplier) slope[c] = request.rows.multiplier[i];
-    }
-    bends = bends || slope[c] != 0.0;
+    bends = bends || SlopeOf(shape_.row(window, c), request, block) != 0.0;
   }
+  if (!bends || request.nominal_curvature) {
+    return solvers::AddHessian(window, shape_, input, request, block, nullptr, sums);
+  }
+  std::array<Second, kMostVariables> in;
   std::array<Second, kMostOutputs> out;
-  bends = bends && !request.nominal_curvature;
-  if (bends) {
-    std::array<Second, kMostVariables> in;
-    for (int i = 0; i < n; ++i) in[i] = Second(q[i], i);
-    functions_.second(window, in.data(), out.data());
+  for (int i = 0; i < v; ++i) in[i] = Second(q[i], i);
+  functions_.second(window, in.data(), out.data());
+  std::array<double, (kMostVariables + 1) * (kMostVariables + 1)> curvature;
+  std::fill_n(curvature.begin(), n * n, 0.0);
+  for (int c = 0; c < m; ++c) {
+    const double slope = SlopeOf(shape_.row(window, c), request, block);
+    if (slope == 0.0) continue;
+    out[c].ForEachCurvature([&](int i, int j, double d2u) {
+      curvature[i * n + j] += slope * d2u;
+      if (i != j) curvature[j * n + i] += slope * d2u;
+    });
   }
-  for (int i = 0; i < n; ++i) {
-    for (int j = i / d * d; j < n; ++j) {
-      double sum = 0.0;
-      for (int c = 0; c < m; ++c) {
-        const double* du = block.slopes(shape_.row(window, c));
-        sum += weight[c] * du[i] * du[j];
-        if (bends && slope[c] != 0.0) sum += slope[c] * out[c].curvature(i, j);
-      }
-      const int a = i / d, b = j / d;
-      hessian->block(block.first_block[window] + a, b - a)[i % d * d + j % d] += sum;
-    }
-  }
+  solvers::AddHessian(window, shape_, input, request, block, curvature.data(), sums);
 }
 
 }  // namespace touchdown::solvers

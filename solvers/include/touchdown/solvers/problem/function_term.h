@@ -5,7 +5,6 @@
 #include <memory>
 #include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "touchdown/solvers/problem/dual.h"
 #include "touchdown/solvers/problem/term.h"
@@ -32,7 +31,7 @@ class FunctionTerm : public Term {
  public:
   static constexpr int kMostVariables = 32;  ///< w d
   static constexpr int kMostOutputs = 32;    ///< m
-  using Loss = std::variant<SquareLoss, HingeLoss, RangeLoss, LinearLoss>;
+  using Loss = AnyLoss;
 
   /// Throws std::invalid_argument on a size out of range. A function that writes the output behind the last
   /// cannot be evaluated: the solve says so.
@@ -73,11 +72,8 @@ class FunctionTerm : public Term {
   FunctionTerm(TermInfo info, const FunctionShape& shape, Loss loss, Functions functions);
   [[noreturn]] void RefuseOutput() const;
   void EvaluateFunction(int window, const double* q, bool derivatives, double* u, double* du) const;
-  void EvaluateLoss(int window, const TermRequest& request, TermBlock* block) const;
-  void AddGradient(int window, const TermRequest& request, const TermBlock& block,
-                   const TermSums& sums) const;
-  void AddHessian(int window, const double* q, const TermRequest& request, const TermBlock& block,
-                  BorderedBandMatrix* hessian) const;
+  void AddHessian(int window, const double* q, const TermInput& input, const TermRequest& request,
+                  const TermBlock& block, const TermSums& sums) const;
 
   TermInfo info_;
   TermShape shape_;

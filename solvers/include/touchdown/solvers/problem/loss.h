@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <variant>
 
 namespace touchdown::solvers {
 
@@ -114,5 +115,8 @@ class LinearLoss {
  private:
   double w_;
 };
+
+/// Any of them, where it is chosen at run time.
+using AnyLoss = std::variant<SquareLoss, HingeLoss, RangeLoss, LinearLoss>;
 
 }  // namespace touchdown::solvers

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "touchdown/solvers/problem/batch_term.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "solvers/problem/run_time_term.h"
+
+namespace touchdown::solvers {
+
+namespace {
+
+// Where truncation and rounding are of one size: for a first difference, and for a second one of values.
+const double kFirstStep = std::cbrt(std::numeric_limits<double>::epsilon());
+const double kSecondStep = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
+
+double StepAt(double x, double share) { return share * std::max(1.0, std::abs(x)); }
+
+}  // namespace
+
+/// The term's windows at one point, moved about as a list of copies asks.
+class BatchTerm::Differences {
+ public:
+  Differences(const BatchTerm& term, const TermInput& input, const TermBlock& block)
+      : term_(term),
+        t0_(input.t0),
+        h_(input.h),
+        free_(term.UsesInterval(input)),
+        n_(block.windows),
+        v_(term.shape_.variables()),
+        m_(term.shape_.outputs) {
+    const int d = term.shape_.block_size;
+    for (int k = 0; k < n_; ++k) {
+      first_block_.push_back(block.first_block[k]);
+      const double* q = input.x + block.first_block[k] * d;
+      q_.insert(q_.end(), q, q + v_);
+    }
+  }
+
+  void Values(TermBlock* block) {
+    const std::vector<double> u = ValuesAt(h_);
+    std::copy_n(u.begin(), n_ * m_, block->u.begin());
+  }
+
+  /// u, du and du_dh of the block.
+  void Slopes(TermBlock* block) {
+    const OwnSlopes own = term_.map_->own_slopes();
+    if (own == OwnSlopes::kNone) {
+      CallForSlopes(block);
+    } else {
+      Start(h_);
+      Add([](int, double*) {});
+      term_.map_->Jacobian(Batch(), block->u.data(), block->du.data(), block->du_dh.data());
+    }
+    if (own == OwnSlopes::kAll) return;
+    std::fill_n(block->du_dh.begin(), n_ * m_, 0.0);
+    if (!free_) return;
+    const double step = h_ * kFirstStep;
+    const std::vector<double> up = ValuesAt(h_ + step), down = ValuesAt(h_ - step);
+    for (int i = 0; i < n_ * m_; ++i) block->du_dh[i] = (up[i] - down[i]) / (2.0 * step);
+  }
+
+  /// sum_c slope[k][c] d2u_c of every window k, (v + 1) x (v + 1) each.
+  std::vector<double> Curvature(const std::vector<double>& slope) {
+    std::vector<double> out(static_cast<std::size_t>(n_ * (v_ + 1) * (v_ + 1)), 0.0);
+    slope_ = &slope;
+    if (!term_.linear_) {
+      if (term_.map_->own_slopes() == OwnSlopes::kNone) {
+        BlocksFromValues(&out);
+      } else {
+        BlocksFromSlopes(&out);
+      }
+    }
+    if (free_) Border(&out);
+    return out;
+  }
+
+ private:
+  // Copies of all windows: each is the point, changed by `move(window, q)`.
+  void Start(double h) {
+    at_h_ = h;
+    copies_ = 0;
+    moved_.clear();
+    t_.clear();
+    window_.clear();
+  }
+  template <class Move>
+  void Add(const Move& move) {
+    for (int k = 0; k < n_; ++k) {
+      const std::size_t at = moved_.size();
+      moved_.insert(moved_.end(), q_.begin() + k * v_, q_.begin() + (k + 1) * v_);
+      move(k, &moved_[at]);
+      t_.push_back(t0_ + first_block_[static_cast<std::size_t>(k)] * at_h_);
+      window_.push_back(k);
+    }
+    ++copies_;
+  }
+  WindowBatch Batch() const {
+    return {copies_ * n_, moved_.data(), at_h_, t_.data(), window_.data()};
+  }
+  std::vector<double> Values() const {
+    std::vector<double> u(static_cast<std::size_t>(copies_ * n_ * m_),
+                          std::numeric_limits<double>::quiet_NaN());
+    term_.map_->Value(Batch(), u.data());
+    return u;
+  }
+  std::vector<double> ValuesAt(double h) {
+    Start(h);
+    Add([](int, double*) {});
+    return Values();
+  }
+  // Variable i of a window one step up or down.
+  double Step(int k, int i, double share) const {
+    return StepAt(q_[static_cast<std::size_t>(k * v_ + i)], share);
+  }
+  void AddMoved(int i, double sign, double share) {
+    Add([&](int k, double* q) { q[i] += sign * Step(k, i, share); });
+  }
+
+  void CallForSlopes(TermBlock* block) {
+    Start(h_);
+    Add([](int, double*) {});
+    for (int i = 0; i < v_; ++i) {
+      AddMoved(i, 1.0, kFirstStep);
+      AddMoved(i, -1.0, kFirstStep);
+    }
+    const std::vector<double> u = Values();
+    std::copy_n(u.begin(), n_ * m_, block->u.begin());
+    for (int k = 0; k < n_; ++k) {
+      for (int c = 0; c < m_; ++c) {
+        double* du = block->slopes(k * m_ + c);
+        for (int i = 0; i < v_; ++i) {
+          const double difference = u[Row(1 + 2 * i, k, c)] - u[Row(2 + 2 * i, k, c)];
+          du[i] = difference / (2.0 * Step(k, i, kFirstStep));
+        }
+      }
+    }
+  }
+
+  std::size_t Row(int copy, int k, int c) const {
+    return static_cast<std::size_t>((copy * n_ + k) * m_ + c);
+  }
+  // sum_c slope u_c of a copy of a window.
+  double Sum(const std::vector<double>& u, int copy, int k) const {
+    double sum = 0.0;
+    for (int c = 0; c < m_; ++c) {
+      const double slope = (*slope_)[static_cast<std::size_t>(k * m_ + c)];
+      if (slope != 0.0) sum += slope * u[Row(copy, k, c)];
+    }
+    return sum;
+  }
+  double* At(std::vector<double>* out, int k) const {
+    return &(*out)[static_cast<std::size_t>(k * (v_ + 1) * (v_ + 1))];
+  }
+
+  void BlocksFromValues(std::vector<double>* out) {
+    Start(h_);
+    Add([](int, double*) {});
+    for (int i = 0; i < v_; ++i) {
+      AddMoved(i, 1.0, kSecondStep);
+      AddMoved(i, -1.0, kSecondStep);
+    }
+    for (int i = 0; i < v_; ++i) {
+      for (int j = i + 1; j < v_; ++j) {
+        for (const double sign : {1.0, -1.0}) {
+          Add([&](int k, double* q) {
+            q[i] += sign * Step(k, i, kSecondStep);
+            q[j] += sign * Step(k, j, kSecondStep);
+          });
+        }
+      }
+    }
+    const std::vector<double> u = Values();
+    for (int k = 0; k < n_; ++k) {
+      double* to = At(out, k);
+      const double middle = Sum(u, 0, k);
+      const auto both = [&](int i) { return Sum(u, 1 + 2 * i, k) + Sum(u, 2 + 2 * i, k); };
+      int copy = 1 + 2 * v_;
+      for (int i = 0; i < v_; ++i) {
+        const double step = Step(k, i, kSecondStep);
+        to[i * (v_ + 1) + i] = (both(i) - 2.0 * middle) / (step * step);
+        for (int j = i + 1; j < v_; ++j, copy += 2) {
+          const double ends = Sum(u, copy, k) + Sum(u, copy + 1, k);
+          const double mixed =
+              (ends + 2.0 * middle - both(i) - both(j)) / (2.0 * step * Step(k, j, kSecondStep));
+          to[i * (v_ + 1) + j] = to[j * (v_ + 1) + i] = mixed;
+        }
+      }
+    }
+  }
+
+  void BlocksFromSlopes(std::vector<double>* out) {
+    Start(h_);
+    for (int i = 0; i < v_; ++i) {
+      AddMoved(i, 1.0, kFirstStep);
+      AddMoved(i, -1.0, kFirstStep);
+    }
+    const std::vector<double> du = MapSlopes();
+    for (int k = 0; k < n_; ++k) {
+      double* to = At(out, k);
+      for (int i = 0; i < v_; ++i) {
+        for (int j = 0; j < v_; ++j) {
+          const double difference = SlopeSum(du, 2 * i, k, j) - SlopeSum(du, 2 * i + 1, k, j);
+          const double half = 0.5 * difference / (2.0 * Step(k, i, kFirstStep));
+          to[i * (v_ + 1) + j] += half;
+          to[j * (v_ + 1) + i] += half;
+        }
+      }
+    }
+  }
+  // du of all copies.
+  std::vector<double> MapSlopes() const {
+    const auto rows = static_cast<std::size_t>(copies_ * n_ * m_);
+    std::vector<double> u(rows), du_dh(rows), du(rows * static_cast<std::size_t>(v_));
+    term_.map_->Jacobian(Batch(), u.data(), du.data(), du_dh.data());
+    return du;
+  }
+  double SlopeSum(const std::vector<double>& du, int copy, int k, int i) const {
+    double sum = 0.0;
+    for (int c = 0; c < m_; ++c) {
+      const double slope = (*slope_)[static_cast<std::size_t>(k * m_ + c)];
+      const std::size_t at = Row(copy, k, c) * static_cast<std::size_t>(v_);
+      if (slope != 0.0) sum += slope * du[at + static_cast<std::size_t>(i)];
+    }
+    return sum;
+  }
+
+  // With the interval: as differences of values, copies at one step up and one down.
+  void Border(std::vector<double>* out) {
+    const double step = h_ * kSecondStep;
+    const std::vector<double> middle = ValuesAt(h_);
+    std::vector<double> moved[2];
+    for (const int side : {0, 1}) {
+      Start(h_ + (side == 0 ? step : -step));
+      Add([](int, double*) {});
+      for (int i = 0; i < v_; ++i) {
+        AddMoved(i, 1.0, kSecondStep);
+        AddMoved(i, -1.0, kSecondStep);
+      }
+      moved[side] = Values();
+    }
+    for (int k = 0; k < n_; ++k) {
+      double* to = At(out, k);
+      const double ends = Sum(moved[0], 0, k) + Sum(moved[1], 0, k);
+      to[v_ * (v_ + 1) + v_] = (ends - 2.0 * Sum(middle, 0, k)) / (step * step);
+      for (int i = 0; i < v_; ++i) {
+        const auto difference = [&](int side) {
+          return Sum(moved[side], 1 + 2 * i, k) - Sum(moved[side], 2 + 2 * i, k);
+        };
+        to[i * (v_ + 1) + v_] =
+            (difference(0) - difference(1)) / (4.0 * step * Step(k, i, kSecondStep));
+      }
+    }
+  }
+
+  const BatchTerm& term_;
+  double t0_, h_;
+  bool free_;
+  int n_, v_, m_;
+  std::vector<int> first_block_;
+  std::vector<double> q_;                       // [n][v]
+  const std::vector<double>* slope_ = nullptr;  // [n][m]
+  double at_h_ = 1.0;
+  int copies_ = 0;
+  std::vector<double> moved_, t_;  // of all copies
+  std::vector<int> window_;
+};
+
+BatchTerm::BatchTerm(TermInfo info, const BatchShape& shape, const AnyLoss& loss,
+                     std::shared_ptr<BatchMap> map)
+    : info_(std::move(info)), linear_(shape.linear), loss_(loss), map_(std::move(map)) {
+  const auto require = [this](const char* name, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    throw std::invalid_argument("term " + info_.name + ": " + name + " is " +
+                                std::to_string(value) + ", it must be " + std::to_string(low) +
+                                " to " + std::to_string(high));
+  };
+  require("block_size", shape.block_size, 1, 1 << 16);
+  require("window", shape.window, 1, kMaxWindow);
+  require("outputs", shape.outputs, 1, 1 << 16);
+  require("max_windows", shape.max_windows, 0, 1 << 24);
+  if (!map_) throw std::invalid_argument("term " + info_.name + ": there is no map");
+  shape_.block_size = shape.block_size;
+  shape_.window = shape.window;
+  shape_.outputs = shape.outputs;
+  shape_.max_windows = shape.max_windows;
+  shape_.uses_interval = shape.uses_interval;
+  shape_.quadratic = shape.linear && IsQuadratic(loss);
+  shape_.has_residual = LossHasResidual(loss);
+}
+
+LossBounds BatchTerm::bounds() const { return BoundsOf(loss_); }
+
+double BatchTerm::nominal_row_weight() const { return NominalRowWeight(loss_); }
+
+void BatchTerm::Place(TermBlock* block) const {
+  const int windows = map_->windows(), first = map_->first_block();
+  if (windows < 0 || windows > shape_.max_windows || first < 0) {
+    throw std::length_error("term " + info_.name + ": " + std::to_string(windows) +
+                            " windows from block " + std::to_string(first) +
+                            " on, and it was sized for " + std::to_string(shape_.max_windows));
+  }
+  block->windows = windows;
+  for (int k = 0; k < windows; ++k) block->first_block[k] = first + k;
+}
+
+void BatchTerm::Evaluate(const TermInput& input, const TermRequest& request, TermBlock* block,
+                         const TermSums& sums) const {
+  if (block->windows == 0) return;
+  Differences at(*this, input, *block);
+  const bool derivatives = request.want.gradient || request.want.residual;
+  if (derivatives && !request.jacobian_known) {
+    at.Slopes(block);
+  } else {
+    at.Values(block);
+  }
+  for (int k = 0; k < block->windows; ++k) {
+    if (request.role == Role::kCost) EvaluateLoss(loss_, k, shape_, request, block);
+    if (request.want.gradient) AddGradient(k, shape_, input, request, *block, sums);
+  }
+  if (!request.want.hessian || request.hessian_known) return;
+  std::vector<double> slope, curvature;
+  bool bends = false;
+  for (int row = 0; row < block->rows(); ++row) {
+    slope.push_back(SlopeOf(row, request, *block));
+    bends = bends || slope.back() != 0.0;
+  }
+  bends = bends && !request.nominal_curvature && (!linear_ || UsesInterval(input));
+  if (bends) curvature = at.Curvature(slope);
+  const int size = (shape_.variables() + 1) * (shape_.variables() + 1);
+  for (int k = 0; k < block->windows; ++k) {
+    AddHessian(k, shape_, input, request, *block, bends ? &curvature[k * size] : nullptr, sums);
+  }
+}
+
+}  // namespace touchdown::solvers
