@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the parts of the Python module have in common.
+#pragma once
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "evaluation/binding/docstrings.h"
+#include "evaluation/binding/words.h"
+
+namespace touchdown::binding {
+
+namespace py = pybind11;
+
+/// An object that one call may use at a time: others raise RuntimeError, whether they come from another thread or
+/// from a term, planner or callback that is called meanwhile.
+class InUse {
+ public:
+  InUse() = default;
+  InUse(InUse&& other) noexcept : name_(other.name_) {}  // nobody uses what is moved
+  explicit InUse(const char* name) : name_(name) {}
+
+  class Claim {
+   public:
+    explicit Claim(InUse& of) : of_(of) {
+      if (of_.taken_.exchange(true)) {
+        throw std::runtime_error(std::string("this ") + of_.name_ + " is in use by another call");
+      }
+    }
+    ~Claim() { of_.taken_ = false; }
+    Claim(const Claim&) = delete;
+    Claim& operator=(const Claim&) = delete;
+
+   private:
+    InUse& of_;
+  };
+
+ private:
+  const char* name_ = "object";
+  std::atomic<bool> taken_ = false;
+};
+
+/// A class of plain data: attributes, of which the constructor takes any by name, and a text.
+template <class T>
+class Plain {
+ public:
+  Plain(py::module_& m, const char* name, const char* of = nullptr)
+      : class_(m, name, Doc(of ? of : name)), name_(of ? of : name) {}
+
+  template <class Owner, class Member>
+  Plain& Field(const char* name, Member Owner::*member) {
+    class_.def_readwrite(name, member, DocOf(name));
+    names_.append(name);
+    return *this;
+  }
+  /// What Python gives it and takes of it is another type than what is held.
+  template <class Get, class Set>
+  Plain& Field(const char* name, Get get, Set set) {
+    class_.def_property(name, get, set, DocOf(name));
+    names_.append(name);
+    return *this;
+  }
+  /// May be looked at alone.
+  template <class Get>
+  Plain& Look(const char* name, Get get, const char* doc = nullptr) {
+    class_.def_property_readonly(name, get, doc ? doc : DocOf(name));
+    return *this;
+  }
+
+  /// With its constructor and text.
+  py::class_<T>& Done() {
+    class_.attr("_fields") = py::tuple(names_);
+    class_.def(py::init([](const py::kwargs& values) {
+                 T made{};
+                 Fill(values, &made);
+                 return made;
+               }),
+               "Every attribute may be given by its name.");
+    class_.def("__repr__", [](const py::object& self) {
+      std::string text = py::str(py::type::of(self).attr("__name__"));
+      const char* before = "(";
+      for (const py::handle& name : py::type::of(self).attr("_fields")) {
+        text += before + std::string(py::str(name)) + "=" +
+                std::string(py::repr(self.attr(name.cast<py::str>())));
+        before = ", ";
+      }
+      return text + (before[0] == '(' ? "()" : ")");
+    });
+    class_.def("__copy__", [](const T& self) { return T(self); });
+    class_.def("__deepcopy__", [](const T& self, const py::dict&) { return T(self); });
+    return class_;
+  }
+
+  py::class_<T>& cls() { return class_; }
+
+ private:
+  const char* DocOf(const char* name) const { return Doc(name_ + "::" + name); }
+  static void Fill(const py::kwargs& values, T* made) {
+    const py::object self = py::cast(made, py::return_value_policy::reference);
+    for (const auto& [name, value] : values) {
+      const py::object fields = py::type::of(self).attr("_fields");
+      if (!fields.contains(name)) {
+        throw py::type_error(std::string(py::str(py::type::of(self).attr("__name__"))) +
+                             " has no " + std::string(py::str(name)) + ", it has " +
+                             std::string(py::str(py::str(", ").attr("join")(fields))));
+      }
+      py::setattr(self, name, value);
+    }
+  }
+
+  py::class_<T> class_;
+  std::string name_;
+  py::list names_;
+};
+
+/// A copy as an array of the last shape.
+inline py::array_t<double> Array(const std::vector<double>& numbers) {
+  return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+}
+
+void BindLosses(py::module_& m);
+void BindSolve(py::module_& m);
+void BindSpline(py::module_& m);
+void BindLanding(py::module_& m);
+void BindMap(py::module_& m);
+void BindReplan(py::module_& m);
+void BindOnboard(py::module_& m);
+void BindRegistries(py::module_& m);
+void BindFlight(py::module_& m);
+
+}  // namespace touchdown::binding

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <type_traits>
+
+#include <pybind11/pybind11.h>
+
+namespace touchdown::binding {
+
+/// Thrown through C++ where Python code that it called has raised: the call that Python waits for raises that then.
+class PythonRaised : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One call of C++ from Python, without the lock of the interpreter. Calls of one thread are nested.
+class Call {
+ public:
+  Call();
+  ~Call();
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  /// The innermost of this thread; nullptr: none.
+  static Call* Now();
+
+  /// Keeps the first error. The lock is held.
+  void Keep(const pybind11::error_already_set& error);
+  /// An error is kept: what is called may end.
+  bool failed() const { return error_.has_value(); }
+  /// The same, and Ctrl-C: it looks for signals 50 times a second at most. The lock is not held.
+  bool MustEnd();
+  /// Raises what is kept. The lock is held.
+  void Raise();
+
+ private:
+  Call* outer_;
+  std::optional<pybind11::error_already_set> error_;
+  std::chrono::steady_clock::time_point looked_;
+};
+
+/// Calls `work` without the lock. What Python code that it calls raises, and Ctrl-C, is raised in the end, before
+/// what C++ throws.
+template <class Work>
+auto WithoutLock(Work&& work) {
+  Call call;
+  std::exception_ptr thrown;
+  using Result = std::invoke_result_t<Work>;
+  if constexpr (std::is_void_v<Result>) {
+    {
+      const pybind11::gil_scoped_release release;
+      try {
+        work();
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+    }
+    call.Raise();
+    if (thrown) std::rethrow_exception(thrown);
+  } else {
+    std::optional<Result> result;
+    {
+      const pybind11::gil_scoped_release release;
+      try {
+        result.emplace(work());
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+    }
+    call.Raise();
+    if (thrown) std::rethrow_exception(thrown);
+    return std::move(*result);
+  }
+}
+
+/// Calls `work`, which uses Python, with the lock. @throws PythonRaised
+template <class Work>
+auto WithLock(Work&& work) {
+  Call* call = Call::Now();
+  if (call != nullptr && call->failed()) throw PythonRaised("an earlier call raised");
+  const pybind11::gil_scoped_acquire acquire;
+  try {
+    return work();
+  } catch (const pybind11::error_already_set& error) {
+    const std::string what = error.what();
+    if (call != nullptr) call->Keep(error);
+    throw PythonRaised(what);
+  } catch (const pybind11::builtin_exception& error) {  // ours, about what Python returned
+    const std::string what = error.what();
+    error.set_error();
+    if (call != nullptr) {
+      call->Keep(pybind11::error_already_set());
+    } else {
+      PyErr_Clear();
+    }
+    throw PythonRaised(what);
+  }
+}
+
+}  // namespace touchdown::binding

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A term that is written in Python (touchdown.Term).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <pybind11/pybind11.h>
+
+#include "touchdown/planning/problem/landing_term.h"
+#include "touchdown/solvers/problem/batch_term.h"
+
+namespace touchdown::binding {
+
+/// What the calls of a term cost, of all its instances since it was entered.
+struct TermTime {
+  long calls = 0;
+  long windows = 0;  ///< that were asked for, those of differences included
+  double wall_s = 0.0;
+};
+
+/// The term of a Python object for a problem with so many blocks of this size. The object is asked for everything, and
+/// its functions only for arrays. Raises what is wrong with its attributes.
+std::shared_ptr<solvers::Term> MakePythonTerm(const pybind11::object& term, int blocks,
+                                              int block_size,
+                                              std::shared_ptr<TermTime> time = nullptr);
+
+/// The entry of a class that derives from touchdown.Term.
+planning::TermEntry PythonTermEntry(const pybind11::object& type);
+
+/// `time` gets what the entry's terms cost.
+planning::TermEntry PythonTermEntry(const pybind11::object& type, std::shared_ptr<TermTime> time);
+
+/// A Python object that C++ may copy, keep and drop without the lock.
+class Kept {
+ public:
+  explicit Kept(pybind11::object object);
+  /// The lock is held.
+  const pybind11::object& get() const { return *object_; }
+
+ private:
+  std::shared_ptr<pybind11::object> object_;
+};
+
+}  // namespace touchdown::binding
