@@ -7,7 +7,9 @@
 #include <iterator>
 #include <thread>
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 #include <sqlite3.h>
 #include <sys/utsname.h>
 #include <Eigen/Core>
@@ -52,10 +54,22 @@ std::string Kernel() {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
+// The file that this code is in: the program, or the Python module.
+std::string CodeFile() {
+  Dl_info info{};
+  void* extra = nullptr;
+  const auto* here = reinterpret_cast<const void*>(&CodeFile);
+  if (dladdr1(here, &info, &extra, RTLD_DL_LINKMAP) != 0 && extra != nullptr) {
+    const char* name = static_cast<const link_map*>(extra)->l_name;
+    if (*name != '\0') return name;  // the program itself has none
+  }
+  return "/proc/self/exe";
+}
+
 // Of the facts and of the program file. The program file holds the library's own code; the facts stand
 // for what it is linked to and runs on.
 std::string Hash(const Pairs& facts) {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
+  std::ifstream file(CodeFile(), std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   for (const auto& [key, value] : facts) {
     bytes.append(key).append(1, '\0').append(value).append(1, '\0');

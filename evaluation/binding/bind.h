@@ -22,32 +22,51 @@ namespace touchdown::binding {
 
 namespace py = pybind11;
 
-/// An object that one call may use at a time: others raise RuntimeError, whether they come from another thread or
-/// from a term, planner or callback that is called meanwhile.
+/// An object that calls share or one alone may change: others raise RuntimeError meanwhile, whether they come from
+/// another thread or from a term, planner or callback that is called.
 class InUse {
  public:
-  InUse() = default;
-  InUse(InUse&& other) noexcept : name_(other.name_) {}  // nobody uses what is moved
   explicit InUse(const char* name) : name_(name) {}
 
+  /// Nobody else may use it.
   class Claim {
    public:
     explicit Claim(InUse& of) : of_(of) {
-      if (of_.taken_.exchange(true)) {
-        throw std::runtime_error(std::string("this ") + of_.name_ + " is in use by another call");
-      }
+      int nobody = 0;
+      if (!of.users_.compare_exchange_strong(nobody, kAlone)) of.Refuse();
     }
-    ~Claim() { of_.taken_ = false; }
+    ~Claim() { of_.users_ = 0; }
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;
 
    private:
     InUse& of_;
   };
+  /// Others may look at it, too.
+  class Share {
+   public:
+    explicit Share(InUse& of) : of_(of) {
+      int users = of.users_;
+      do {
+        if (users == kAlone) of.Refuse();
+      } while (!of.users_.compare_exchange_weak(users, users + 1));
+    }
+    ~Share() { --of_.users_; }
+    Share(const Share&) = delete;
+    Share& operator=(const Share&) = delete;
+
+   private:
+    InUse& of_;
+  };
 
  private:
-  const char* name_ = "object";
-  std::atomic<bool> taken_ = false;
+  static constexpr int kAlone = -1;
+  [[noreturn]] void Refuse() const {
+    throw std::runtime_error(std::string("this ") + name_ + " is in use by another call");
+  }
+
+  const char* name_;
+  std::atomic<int> users_ = 0;
 };
 
 /// A class of plain data: attributes, of which the constructor takes any by name, and a text.
@@ -58,15 +77,15 @@ class Plain {
       : class_(m, name, Doc(of ? of : name)), name_(of ? of : name) {}
 
   template <class Owner, class Member>
-  Plain& Field(const char* name, Member Owner::*member) {
-    class_.def_readwrite(name, member, DocOf(name));
+  Plain& Field(const char* name, Member Owner::*member, const char* doc = nullptr) {
+    class_.def_readwrite(name, member, doc ? doc : DocOf(name));
     names_.append(name);
     return *this;
   }
   /// What Python gives it and takes of it is another type than what is held.
   template <class Get, class Set>
-  Plain& Field(const char* name, Get get, Set set) {
-    class_.def_property(name, get, set, DocOf(name));
+  Plain& Field(const char* name, Get get, Set set, const char* doc = nullptr) {
+    class_.def_property(name, get, set, doc ? doc : DocOf(name));
     names_.append(name);
     return *this;
   }

@@ -21,6 +21,18 @@ void Call::Keep(const pybind11::error_already_set& error) {
   if (!error_) error_.emplace(error);
 }
 
+bool Call::interrupted() {
+  const pybind11::gil_scoped_acquire acquire;
+  if (!error_ || !error_->matches(PyExc_KeyboardInterrupt)) return false;
+  if (outer_ != nullptr) outer_->Keep(*error_);
+  return true;
+}
+
+std::string Call::what() const {
+  const pybind11::gil_scoped_acquire acquire;
+  return error_ ? error_->what() : "";
+}
+
 bool Call::MustEnd() {
   if (failed()) return true;
   const auto now = std::chrono::steady_clock::now();

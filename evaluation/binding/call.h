@@ -5,6 +5,7 @@
 #include <exception>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include <pybind11/pybind11.h>
@@ -32,6 +33,10 @@ class Call {
   void Keep(const pybind11::error_already_set& error);
   /// An error is kept: what is called may end.
   bool failed() const { return error_.has_value(); }
+  /// What is kept is Ctrl-C. Then the call around this one fails, too.
+  bool interrupted();
+  /// What is kept, in words.
+  std::string what() const;
   /// The same, and Ctrl-C: it looks for signals 50 times a second at most. The lock is not held.
   bool MustEnd();
   /// Raises what is kept. The lock is held.

@@ -164,13 +164,36 @@ class PythonMap : public solvers::BatchMap {
     });
   }
 
-  const Kept& term() const { return term_; }
+  /// Tells the object of a solve, and takes its windows from it.
+  void Update(const planning::LandingContext& context) {
+    pad_ = context.pad;
+    WithLock([&] {
+      const Lent lent(*this);
+      term_.get().attr("update")(TermContext{context.segments, context.start, context.t0,
+                                             context.interval, context.target, context.limits,
+                                             context.pull_W, lent_});
+      Place();
+    });
+  }
 
  private:
+  /// The pad of the solve may be asked while the object is.
+  class Lent {
+   public:
+    explicit Lent(const PythonMap& map) : map_(map) { map_.lent_->Lend(map_.pad_); }
+    ~Lent() { map_.lent_->Return(); }
+    Lent(const Lent&) = delete;
+    Lent& operator=(const Lent&) = delete;
+
+   private:
+    const PythonMap& map_;
+  };
+
   template <class Work>
   void Ask(const solvers::WindowBatch& batch, const Work& work) const {
     const auto begin = std::chrono::steady_clock::now();
     WithLock([&] {
+      const Lent lent(*this);
       const py::ssize_t n = batch.size, w = shape_.window, d = shape_.block_size;
       work(windows_type_.get()(py::array_t<double>({n, w, d}, batch.q), batch.h,
                                py::array_t<double>(n, batch.t), py::array_t<int>(n, batch.window)));
@@ -190,6 +213,9 @@ class PythonMap : public solvers::BatchMap {
   Kept windows_type_;
   solvers::OwnSlopes own_ = solvers::OwnSlopes::kNone;
   int windows_ = 0, first_ = 0;
+  const estimation::PadPrediction* pad_ = nullptr;  // of the solve
+  std::shared_ptr<Prediction> lent_ =
+      std::make_shared<Prediction>(static_cast<const estimation::PadPrediction*>(nullptr));
 };
 
 /// The same in a landing: told of every solve, and pressed harder.
@@ -199,12 +225,7 @@ class PythonTerm : public solvers::BatchTerm, public planning::ContextUser {
              std::shared_ptr<PythonMap> map)
       : BatchTerm(std::move(info), shape, loss, map), loss_(loss), map_(std::move(map)) {}
 
-  void Update(const planning::LandingContext& context) override {
-    WithLock([&] {
-      map_->term().get().attr("update")(py::cast(context, py::return_value_policy::copy));
-      map_->Place();
-    });
-  }
+  void Update(const planning::LandingContext& context) override { map_->Update(context); }
   void ScaleWeight(double factor) override {
     if (const auto* hinge = std::get_if<solvers::HingeLoss>(&loss_)) {
       set_loss(hinge->Scaled(factor));

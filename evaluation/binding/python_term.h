@@ -7,6 +7,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include "evaluation/binding/predictions.h"
 #include "touchdown/planning/problem/landing_term.h"
 #include "touchdown/solvers/problem/batch_term.h"
 
@@ -30,6 +31,18 @@ planning::TermEntry PythonTermEntry(const pybind11::object& type);
 
 /// `time` gets what the entry's terms cost.
 planning::TermEntry PythonTermEntry(const pybind11::object& type, std::shared_ptr<TermTime> time);
+
+/// What a solve is about, as its terms are told: touchdown's LandingContext without what ends with the call.
+struct TermContext {
+  int segments = 0;
+  planning::SplineState start;
+  double t0 = 0.0;
+  double interval = 1.0;
+  planning::EndpointTarget target;
+  planning::Limits limits;
+  Eigen::Vector3d pull_W = Eigen::Vector3d::Zero();
+  std::shared_ptr<Prediction> pad;  ///< may be asked while the term is
+};
 
 /// A Python object that C++ may copy, keep and drop without the lock.
 class Kept {

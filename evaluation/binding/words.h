@@ -2,6 +2,7 @@
 // Enumerations are words in Python, those of the program's files.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -99,3 +100,30 @@ TOUCHDOWN_WORDS(estimation::OwnStatus, "OwnStatus",
                 WordsUpTo(touchdown::estimation::OwnStatus::kImuStale));
 
 #undef TOUCHDOWN_WORDS
+
+namespace touchdown::binding {
+
+/// Every enumeration, by its name in Python.
+inline std::map<std::string, std::vector<std::string>> AllWords() {
+  return {
+      {"SolveStatus", touchdown::binding::Words<touchdown::solvers::SolveStatus>::List()},
+      {"Role", touchdown::binding::Words<touchdown::solvers::Role>::List()},
+      {"ArrivalMode", touchdown::binding::Words<touchdown::planning::ArrivalMode>::List()},
+      {"EndpointMode", touchdown::binding::Words<touchdown::planning::EndpointMode>::List()},
+      {"LimitsMode", touchdown::binding::Words<touchdown::planning::LimitsMode>::List()},
+      {"CheckedView", touchdown::binding::Words<touchdown::planning::CheckedView>::List()},
+      {"CheckedPoint", touchdown::binding::Words<touchdown::planning::CheckedPoint>::List()},
+      {"ReplanStatus", touchdown::binding::Words<touchdown::planning::ReplanStatus>::List()},
+      {"ReplanReason", touchdown::binding::Words<touchdown::planning::ReplanReason>::List()},
+      {"CellState", touchdown::binding::Words<touchdown::planning::CellState>::List()},
+      {"MissionMode", touchdown::binding::Words<touchdown::control::MissionMode>::List()},
+      {"TransitionReason", touchdown::binding::Words<touchdown::control::TransitionReason>::List()},
+      {"Gate", touchdown::binding::Words<touchdown::control::Gate>::List()},
+      {"DescentHold", touchdown::binding::Words<touchdown::control::DescentHold>::List()},
+      {"DescentStyle", touchdown::binding::Words<touchdown::control::DescentStyle>::List()},
+      {"Taken", touchdown::binding::Words<touchdown::control::Taken>::List()},
+      {"OwnStatus", touchdown::binding::Words<touchdown::estimation::OwnStatus>::List()},
+  };
+}
+
+}  // namespace touchdown::binding

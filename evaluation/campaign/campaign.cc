@@ -49,11 +49,7 @@ TrialResult Fly(const SweepTrial& trial, const Registries& registries) {
   try {
     return RunTrial(trial.scenario, trial.seed, registries);
   } catch (const std::exception& error) {
-    TrialResult failed;
-    failed.seed = trial.seed;
-    failed.outcome = Outcome::kError;
-    failed.detail = error.what();
-    return failed;
+    return FailedTrial(trial, error.what());
   }
 }
 
@@ -104,8 +100,11 @@ class Flight {
   const std::vector<int>& alone() const { return alone_; }
 
   void Take(const WorkerReply& reply) {
-    const TrialResult result = ResultFrom(reply, TrialOf(campaign_, reply.item), limit_s_);
-    store_.Add(reply.item, result);
+    Add(reply.item, ResultFrom(reply, TrialOf(campaign_, reply.item), limit_s_));
+  }
+
+  void Add(int index, const TrialResult& result) {
+    store_.Add(index, result);
     ++state_.flown;
     state_.succeeded = store_.succeeded();
     progress_(state_);
@@ -178,6 +177,25 @@ Shard Shard::Parse(const std::string& text) {
 }
 
 std::string Shard::ToString() const { return fmt::format("{}/{}", number, of); }
+
+TrialResult FailedTrial(const SweepTrial& trial, const std::string& what) {
+  TrialResult failed;
+  failed.seed = trial.seed;
+  failed.outcome = Outcome::kError;
+  failed.detail = what;
+  return failed;
+}
+
+CampaignResult FlyHere(const Campaign& campaign, const CampaignOptions& options,
+                       const std::function<TrialResult(const SweepTrial&)>& fly,
+                       const std::function<void(const CampaignState&)>& progress) {
+  CheckTrials(campaign);
+  Flight flight(campaign, options, progress);
+  for (const std::vector<int>* indices : {&flight.together(), &flight.alone()}) {
+    for (const int index : *indices) flight.Add(index, fly(TrialOf(campaign, index)));
+  }
+  return flight.Result(0);
+}
 
 CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& options,
                            const Registries& registries,

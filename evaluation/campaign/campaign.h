@@ -109,4 +109,13 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
                            const Registries& registries,
                            const std::function<void(const CampaignState&)>& progress);
 
+/// The result of a trial that ended in an error.
+TrialResult FailedTrial(const SweepTrial& trial, const std::string& what);
+
+/// The same in this process, one trial after the other: for parts that cannot be had in another. `fly` is the flight of a
+/// trial; what it throws ends the campaign, and what was flown is in the file.
+CampaignResult FlyHere(const Campaign& campaign, const CampaignOptions& options,
+                       const std::function<TrialResult(const SweepTrial&)>& fly,
+                       const std::function<void(const CampaignState&)>& progress);
+
 }  // namespace touchdown::evaluation

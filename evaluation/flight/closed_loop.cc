@@ -84,9 +84,12 @@ class Trial {
       : Trial(scenario, seed, DrawTrial(scenario, seed), PlannerOf(scenario, registries),
               registries, record, samples) {}
 
-  TrialResult Run() {
+  TrialResult Run(const std::function<void()>& each_step) {
     try {
-      while (!judge_.outcome()) Step();
+      while (!judge_.outcome()) {
+        Step();
+        if (each_step) each_step();
+      }
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("internal error in flight at {:.3f} s (seed {}): {}",
                                            world_.time(), result_.seed, error.what()));
@@ -455,11 +458,11 @@ Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& regi
 
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
                      TrialRecord* record, std::optional<planning::PersistentMap>* map,
-                     TrialSamples* samples) {
+                     TrialSamples* samples, const std::function<void()>& each_step) {
   const auto wall = std::chrono::steady_clock::now();
   const double cpu = solvers::ThreadCpuSeconds();
   Trial trial = SetUp(scenario, seed, registries, record, samples);
-  TrialResult result = trial.Run();
+  TrialResult result = trial.Run(each_step);
   result.timing.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
   result.timing.cpu_s = solvers::ThreadCpuSeconds() - cpu;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "evaluation/flight/trial_record.h"
@@ -19,12 +20,13 @@ namespace touchdown::evaluation {
 /// @param map what was known at the end, filled if not null.
 /// @param samples filled with what every replanning step and depth image cost, and with what the pad
 /// filter was given, if not null.
+/// @param each_step called after every step, if there is one: what it throws that is no std::exception ends the flight.
 /// Physics that fails is an outcome, `unstable`.
 /// @throws BadInput if the scenario cannot be set up, std::runtime_error with the time of flight if
 /// a part of the program fails.
 TrialResult RunTrial(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
                      TrialRecord* record = nullptr,
                      std::optional<planning::PersistentMap>* map = nullptr,
-                     TrialSamples* samples = nullptr);
+                     TrialSamples* samples = nullptr, const std::function<void()>& each_step = {});
 
 }  // namespace touchdown::evaluation

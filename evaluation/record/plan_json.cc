@@ -28,23 +28,6 @@ Json CurveJson(const planning::UniformBspline& curve) {
   return {{"t0", curve.t0()}, {"h", curve.interval()}, {"control_points", std::move(points)}};
 }
 
-Json CertificateJson(const planning::Certificate& c) {
-  return {{"passed", c.passed()},
-          {"endpoint_required", c.endpoint_required},
-          {"endpoint_position_residual_m", c.endpoint_position_residual},
-          {"endpoint_velocity_residual_mps", c.endpoint_velocity_residual},
-          {"speed_bound_mps", c.speed_bound},
-          {"acceleration_bound_mps2", c.acceleration_bound},
-          {"body_rate_bound_radps", c.body_rate_bound},
-          {"earlier", c.earlier},
-          {"limits_kept", c.limits_kept},
-          {"recovering", c.recovering},
-          {"clear", c.clear},
-          {"clearance_m", c.clearance},
-          {"escaping", c.escaping},
-          {"stops_in_observed_space", c.stops_in_observed_space}};
-}
-
 Json OutcomeJson(const ReplanOutcome& r) {
   return {{"status", planning::ToString(r.status)},
           {"reason", planning::ToString(r.reason)},
@@ -136,6 +119,31 @@ Json InputJson(const SolvedStep& solved) {
 
 }  // namespace
 
+Json CertificateJson(const planning::Certificate& c) {
+  return {{"passed", c.passed()},
+          {"endpoint_required", c.endpoint_required},
+          {"endpoint_position_residual_m", c.endpoint_position_residual},
+          {"endpoint_velocity_residual_mps", c.endpoint_velocity_residual},
+          {"speed_bound_mps", c.speed_bound},
+          {"acceleration_bound_mps2", c.acceleration_bound},
+          {"body_rate_bound_radps", c.body_rate_bound},
+          {"earlier", c.earlier},
+          {"limits_kept", c.limits_kept},
+          {"recovering", c.recovering},
+          {"clear", c.clear},
+          {"clearance_m", c.clearance},
+          {"escaping", c.escaping},
+          {"stops_in_observed_space", c.stops_in_observed_space}};
+}
+
+Json AttemptsJson(const planning::ReplanLog& log) {
+  Json attempts = Json::array();
+  for (const planning::AttemptLog& attempt : log.attempts) {
+    attempts.push_back(AttemptJson(attempt));
+  }
+  return attempts;
+}
+
 Json PlanJson(const SolvedStep& solved, bool drawn) {
   Json json;
   json["source"] = solved.source;
@@ -145,10 +153,7 @@ Json PlanJson(const SolvedStep& solved, bool drawn) {
   json["replan"] = solved.step;
   json["input"] = InputJson(solved);
   json["terms"] = solved.terms;
-  Json& attempts = json["attempts"] = Json::array();
-  for (const planning::AttemptLog& attempt : solved.log.attempts) {
-    attempts.push_back(AttemptJson(attempt));
-  }
+  json["attempts"] = AttemptsJson(solved.log);
   Json& paths = json["guide_paths"] = Json::array();
   for (const auto& path : solved.outcome.guide_paths) paths.push_back(PathJson(path));
   json["result"] = OutcomeJson(solved.outcome);

@@ -17,11 +17,20 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Differences resolve a derivative up to so much of value / step: some ulps, over the relative
-// error that callers ask for.
-constexpr double kRounding = 1e6 * std::numeric_limits<double>::epsilon();
+// Differences resolve a derivative up to so many times the relative error of the value, over the step: some of these
+// errors, over the relative error that callers ask for.
+constexpr double kRounding = 1e6;
 // Share of a term's nominal curvature below which differences across a hinge's edge say nothing.
 constexpr double kReach = 1e-3;
+
+/// The largest of its terms.
+double SlopeError(const Problem& problem) {
+  double error = std::numeric_limits<double>::epsilon();
+  for (int i = 0; i < problem.num_terms(); ++i) {
+    error = std::max(error, problem.term(i).shape().slope_error);
+  }
+  return error;
+}
 
 /// All u (or all residuals) of a view's evaluation in one vector.
 VectorXd Stack(const View& view, const ViewEvaluation& e, bool residuals) {
@@ -253,11 +262,13 @@ DerivativeErrors CheckDerivatives(const View& view, const VectorXd& y, const Lag
   nominal.nominal_curvature = true;
   if (!view.Evaluate(y.data(), kAll, nominal, &s.plus)) return errors;
   const double bend = Largest(in.Rows(in.Rows(Dense(s.plus.hessian)).transpose()));
-  const double rounding = kRounding / shortest;
+  const double rounding = kRounding * std::numeric_limits<double>::epsilon() / shortest;
+  const double slope_rounding = kRounding * SlopeError(view.problem()) / shortest;
   errors.evaluated = true;
   errors.gradient =
       RelativeError(slope, gradient, std::max(rounding * sizes.value, bend * longest));
-  errors.hessian = RelativeError(mine, hessian, std::max(rounding * sizes.slope, kReach * bend));
+  errors.hessian =
+      RelativeError(mine, hessian, std::max(slope_rounding * sizes.slope, kReach * bend));
   errors.residual_jacobian = RelativeError(r_jacobian, r_difference, rounding * sizes.r);
   errors.row_jacobian = RelativeError(u_jacobian, u_difference, rounding * sizes.u);
   return errors;

@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Terms that are written in Python."""
 from dataclasses import dataclass
+from typing import Any, ClassVar, Dict, Optional, Tuple, Union
 
 import numpy as np
 
-from touchdown._touchdown import SquareLoss
+from touchdown._touchdown import HingeLoss, LandingContext, LinearLoss, RangeLoss, SquareLoss, TermSetup
+
+
+def snake(name: str) -> str:
+    """The name of a class as scenarios have it."""
+    return "".join("_" + c.lower() if c.isupper() else c for c in name).lstrip("_")
 
 
 @dataclass(frozen=True)
@@ -28,21 +34,21 @@ class Windows:
 
     __slots__ = ("q", "h", "t", "index")
 
-    def __init__(self, q, h, t, index):
+    def __init__(self, q: np.ndarray, h: float, t: np.ndarray, index: np.ndarray) -> None:
         self.q, self.h, self.t, self.index = q, h, t, index
 
     @property
-    def position(self):
+    def position(self) -> np.ndarray:
         """p_WB at the knot in the middle of three control points [m], shape (n, block_size)."""
         return (self.q[:, 0] + 4.0 * self.q[:, 1] + self.q[:, 2]) / 6.0
 
     @property
-    def velocity(self):
+    def velocity(self) -> np.ndarray:
         """v_WB there [m/s], shape (n, block_size)."""
         return (self.q[:, 2] - self.q[:, 0]) / (2.0 * self.h)
 
     @property
-    def acceleration(self):
+    def acceleration(self) -> np.ndarray:
         """a_WB there [m/s^2], shape (n, block_size)."""
         return (self.q[:, 0] - 2.0 * self.q[:, 1] + self.q[:, 2]) / self.h**2
 
@@ -63,48 +69,45 @@ class Term:
     can_be_hard, is_limit, is_clearance   what a landing may do with it (docs/adding_a_term.md)
     """
 
-    name = ""
-    formula = ""
-    unit = ""
-    source = ""
-    convex = False
-    window = 1
-    outputs = 1
-    uses_interval = False
-    linear = False
-    weight = 1.0
-    parameters = {}
-    first_block = 0
-    windows = None
-    can_be_hard = True
-    is_limit = False
-    is_clearance = False
-    context = None
-    setup = None
+    name: str = ""
+    formula: str = ""
+    unit: str = ""
+    source: str = ""
+    convex: bool = False
+    window: int = 1
+    outputs: int = 1
+    uses_interval: bool = False
+    linear: bool = False
+    weight: float = 1.0
+    parameters: ClassVar[Dict[str, Parameter]] = {}
+    first_block: int = 0
+    windows: Optional[int] = None
+    can_be_hard: bool = True
+    is_limit: bool = False
+    is_clearance: bool = False
+    context: Optional[LandingContext] = None
+    setup: Optional[TermSetup] = None
 
-    def __init_subclass__(cls, **kwargs):
+    def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         if not cls.__dict__.get("name"):
-            cls.name = "".join("_" + c.lower() if c.isupper() else c for c in cls.__name__).lstrip("_")
+            cls.name = snake(cls.__name__)
         for name, parameter in cls.parameters.items():
             setattr(cls, name, parameter.value)
 
-    def __init__(self, **settings):
+    def __init__(self, **settings: float) -> None:
         """Takes the weight and parameters by name."""
         for name, value in settings.items():
             if name != "weight" and name not in self.parameters:
                 known = ", ".join(["weight", *self.parameters])
                 raise TypeError(f"term {self.name} has no {name}, it has {known}")
             value = float(value)
-            low, high = (0.0, np.inf) if name == "weight" else self._range(name)
-            if not low <= value <= high:
-                raise ValueError(f"term {self.name}: {name} is {value}, it must be in [{low}, {high}]")
+            allowed = Parameter(1.0, 0.0, np.inf) if name == "weight" else self.parameters[name]
+            if not allowed.lo <= value <= allowed.hi:
+                raise ValueError(f"term {self.name}: {name} is {value}, it must be in [{allowed.lo}, {allowed.hi}]")
             setattr(self, name, value)
 
-    def _range(self, name):
-        return self.parameters[name].lo, self.parameters[name].hi
-
-    def value(self, w):
+    def value(self, w: Windows) -> Union[np.ndarray, Tuple[Any, ...]]:
         """u at the windows `w`: an array of shape (n, outputs), or a tuple with one array of shape (n,) for each output.
 
         Where a term also has `jacobian(w)`, du by the blocks of shape (n, outputs, window, block_size), that is taken.
@@ -113,10 +116,10 @@ class Term:
         """
         raise NotImplementedError(f"term {self.name} has no value(self, w)")
 
-    def loss(self):
+    def loss(self) -> Union[SquareLoss, HingeLoss, RangeLoss, LinearLoss]:
         """What u costs: a SquareLoss, HingeLoss, RangeLoss or LinearLoss. As rows the interval on which it is 0."""
         return SquareLoss(self.weight)
 
-    def update(self, context):
+    def update(self, context: LandingContext) -> None:
         """Told before every solve of a landing what it is about; keeps it as `context`."""
         self.context = context

@@ -24,6 +24,7 @@
 
 namespace touchdown::planning {
 
+/// How a Replanner plans; the defaults land the default vehicle.
 struct ReplannerOptions {
   std::string backend = "banded";
   std::vector<std::pair<std::string, double>> solver_options;  ///< of the backend, by name

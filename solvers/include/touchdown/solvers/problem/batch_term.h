@@ -52,8 +52,9 @@ struct BatchShape {
   bool linear = false;         ///< u is affine in the blocks at a fixed h
 };
 
-/// A term of a BatchMap. What the map has not is found by central differences, all windows and variables in three
-/// calls: slopes to about 1e-10 of u's size, curvatures to 1e-7 of it from values, to 1e-9 from the map's own slopes.
+/// A term of a BatchMap. What the map has not is found by central differences, all windows and variables in a call, and
+/// a few for the interval: slopes to about 1e-12 of u's size, curvatures to 1e-7 of it from values, to 1e-9 from the
+/// map's own slopes.
 /// Allocates at every evaluation.
 class BatchTerm : public Term {
  public:

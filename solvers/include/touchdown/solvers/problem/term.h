@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct TermShape {
   bool quadratic = false;     ///< u affine in the blocks, rho quadratic, r affine in u: one Hessian
                               ///< and one residual Jacobian for all x
   bool has_residual = true;   ///< its cost is a sum of squares r^2 / 2
+  /// Relative error of du: rounding, unless du is found by differences.
+  double slope_error = std::numeric_limits<double>::epsilon();
 
   /// Scalars in a window, v = w d.
   int variables() const { return window * block_size; }

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pybind11/pybind11.h>
+
+#include "evaluation/binding/python_term.h"
+#include "touchdown/evaluation/scenario/registries.h"
+
+namespace touchdown::binding {
+
+/// What a program of one's own offers: the library's parts, and those of Python.
+struct PartRegistries {
+  evaluation::Registries all = evaluation::StandardRegistries();
+  std::map<std::string, std::shared_ptr<TermTime>> term_times;  ///< of terms of Python
+};
+
+/// {name: {"weight": ..., "hard": ..., parameter: ...}}
+std::vector<planning::TermSettings> TermSettingsOf(const pybind11::dict& terms);
+
+}  // namespace touchdown::binding

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where something will be: a pad, a goal, or whatever Python says.
+#pragma once
+
+#include <memory>
+
+#include <pybind11/pybind11.h>
+
+#include "touchdown/estimation/pad/pad_prediction.h"
+
+namespace touchdown::binding {
+
+/// A prediction that C++ has lent to Python for a call, or one that Python owns.
+class Prediction {
+ public:
+  explicit Prediction(std::shared_ptr<const estimation::PadPrediction> owned)
+      : owned_(std::move(owned)), it_(owned_.get()) {}
+  /// Lent: until Return.
+  explicit Prediction(const estimation::PadPrediction* lent) : it_(lent) {}
+  void Lend(const estimation::PadPrediction* lent) { it_ = lent; }
+  void Return() { it_ = nullptr; }
+
+  /// Raises RuntimeError after Return.
+  const estimation::PadPrediction& get() const;
+  const std::shared_ptr<const estimation::PadPrediction>& owned() const { return owned_; }
+
+ private:
+  std::shared_ptr<const estimation::PadPrediction> owned_;
+  const estimation::PadPrediction* it_;
+};
+
+/// What C++ can ask: of a Prediction that Python owns, or of any object with at(t), which gives a PadState. Raises
+/// TypeError, and ValueError for what was lent.
+std::shared_ptr<const estimation::PadPrediction> PredictionOf(const pybind11::object& object);
+
+/// Lends a prediction to Python while it lives; None without one.
+class Loan {
+ public:
+  explicit Loan(const estimation::PadPrediction* prediction);
+  ~Loan();
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+  pybind11::object object() const { return object_; }
+
+ private:
+  std::shared_ptr<Prediction> lent_;
+  pybind11::object object_;
+};
+
+}  // namespace touchdown::binding

@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Curves, maps, predictions, landing problems, replanning and the part that would fly, from Python."""
+import copy
+import gc
+
+import numpy as np
+import pytest
+
+td = pytest.importorskip("touchdown")
+
+START = [-4.0, 0.0, 1.5]
+
+
+def wall(**options):
+    place = td.OccupancyMap(td.OccupancyMapOptions(**options), centre=START)
+    y, z = np.meshgrid(np.arange(-1.0, 1.01, 0.1), np.arange(0.05, 3.0, 0.1))
+    place.set_occupied(np.stack([np.zeros(y.size), y.ravel(), z.ravel()], axis=1))
+    place.mark_rest_free()
+    return place
+
+
+def ask(t=0.0, p=START, v=(0.0, 0.0, 0.0)):
+    vehicle = td.VehicleState(t=t, p_WB=p, v_WB=v)
+    return td.ReplanInput(t_now=t, t_start=t + 0.02, vehicle=vehicle, endpoint=td.EndpointTarget(height=0.0))
+
+
+# Plain data
+
+
+def test_plain_data_takes_its_attributes_by_name_and_tells_them():
+    limits = td.Limits(speed=2.0, pull_W=[0.0, 1.0, 0.0])
+    assert limits.speed == 2.0 and limits.acceleration == 6.0
+    assert "speed=2.0" in repr(limits)
+    limits.pull_W[0] = 3.0  # a view
+    assert limits.pull_W.tolist() == [3.0, 1.0, 0.0]
+    twin = copy.deepcopy(limits)
+    twin.speed = 5.0
+    assert limits.speed == 2.0
+
+
+def test_plain_data_refuses_what_it_has_not():
+    with pytest.raises(TypeError, match="Limits has no sped, it has speed, acceleration"):
+        td.Limits(sped=2.0)
+    with pytest.raises(TypeError):
+        td.Limits(speed="fast")
+    with pytest.raises(TypeError):
+        td.Limits(pull_W=[1.0, 2.0])
+
+
+def test_a_view_outlives_its_owner():
+    pull = td.Limits(pull_W=[1.0, 2.0, 3.0]).pull_W
+    points = td.hermite(td.SplineState(), td.SplineState(p=[1.0, 0.0, 0.0]), 6, 2.0).control_points
+    gc.collect()
+    [td.Limits() for _ in range(1000)]
+    assert pull.tolist() == [1.0, 2.0, 3.0]
+    assert points.shape == (9, 3) and points[-2].tolist() == pytest.approx([1.0, 0.0, 0.0])
+
+
+# Curves
+
+
+def test_a_curve_meets_its_ends_and_cannot_be_written():
+    curve = td.hermite(td.SplineState(p=[0, 0, 1], v=[1, 0, 0]), td.SplineState(p=[4, 1, 2]), 10, 3.0, t0=5.0)
+    assert (curve.t0, curve.t_end, curve.segments) == (5.0, pytest.approx(8.0), 10)
+    assert curve.at(5.0).v_WB == pytest.approx([1, 0, 0])
+    assert curve.at(curve.t_end).p_WB == pytest.approx([4, 1, 2])
+    with pytest.raises(ValueError):
+        curve.control_points[0, 0] = 1.0
+    times = np.linspace(5.0, 8.0, 7)
+    np.testing.assert_allclose(curve.sample(times)[3], curve.at(6.5).p_WB)
+    np.testing.assert_allclose(curve.sample(times, 2)[3], curve.at(6.5).a_WB)
+    same = td.UniformBspline(curve.control_points, curve.interval, curve.t0)
+    assert same.squared_jerk() == curve.squared_jerk()
+    bounds = curve.bounds()
+    assert np.linalg.norm(curve.sample(times, 1), axis=1).max() <= bounds["speed"]
+
+
+@pytest.mark.parametrize(
+    "points, interval", [(np.zeros((3, 3)), 1.0), (np.full((6, 3), np.nan), 1.0), (np.zeros((6, 3)), 0.0)]
+)
+def test_a_curve_that_is_none_is_refused(points, interval):
+    with pytest.raises(ValueError):
+        td.UniformBspline(points, interval)
+
+
+def test_a_rest_trajectory_ends_at_rest():
+    curve = td.rest_trajectory(td.SplineState(v=[2.0, 0.0, 0.0]), 1.0)
+    assert np.linalg.norm(curve.at(curve.t_end).v_WB) < 1e-9
+    with pytest.raises(ValueError, match="must be > 0"):
+        td.rest_trajectory(td.SplineState(), 0.0, limits=td.Limits(speed=0.0))
+
+
+# Predictions
+
+
+def test_a_goal_that_moves_is_differentiated_exactly():
+    goal = td.MovingGoal(lambda t: (2.0 + 0.5 * t, np.sin(t), np.exp(-t) + np.sqrt(t + 1.0)))
+    at = goal.at(2.0)
+    assert at.p_WP == pytest.approx([3.0, np.sin(2.0), np.exp(-2.0) + np.sqrt(3.0)])
+    assert at.v_WP == pytest.approx([0.5, np.cos(2.0), -np.exp(-2.0) + 0.5 / np.sqrt(3.0)])
+    assert at.a_WP[1] == pytest.approx(-np.sin(2.0)) and at.j_WP[1] == pytest.approx(-np.cos(2.0))
+    assert not goal.has_deck
+    assert goal.positions([0.0, 1.0]).shape == (2, 3)
+
+
+def test_a_goal_that_is_no_function_is_refused():
+    with pytest.raises(TypeError):
+        td.MovingGoal(3.0)
+    with pytest.raises(ValueError):
+        td.GoalAt([np.nan, 0.0, 0.0])
+
+
+# Maps
+
+
+def test_a_map_from_points_blocks_around_them():
+    place = wall()
+    assert place.blocked([[0.0, 0.0, 1.5], [-3.0, 0.0, 1.5], [500.0, 0.0, 0.0]]).tolist() == [True, False, False]
+    states = place.states()
+    assert states.shape == tuple(place.size[::-1]) and set(np.unique(states)) == {1, 2}
+    assert (states == 2).sum() >= 21 * 29
+    through = td.hermite(td.SplineState(p=START), td.SplineState(p=[4, 0, 1.5]), 10, 4.0)
+    assert 0.0 < place.first_blocked(through) < 4.0
+    twin = td.OccupancyMap(centre=START)
+    twin.set_states(states)
+    np.testing.assert_array_equal(twin.states(), states)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda m: m.set_occupied([[np.nan, 0.0, 0.0]]),
+        lambda m: m.set_states(np.zeros((2, 2, 2), np.uint8)),
+        lambda m: m.set_states(np.full(m.size[::-1], 9, np.uint8)),
+        lambda m: m.mark_free([0.0, 0.0, np.inf], 1.0),
+        lambda m: m.mark_free([0.0, 0.0, 0.0], -1.0),
+        lambda m: m.recentre([np.nan, 0.0, 0.0]),
+        lambda m: m.integrate(td.DepthFrame(depth=[1.0, 2.0])),
+        lambda m: m.read_octomap("nowhere.bt"),
+        lambda m: td.OccupancyMap(td.OccupancyMapOptions(resolution=-1.0)),
+    ],
+)
+def test_a_map_refuses(call):
+    with pytest.raises(ValueError):
+        call(wall())
+
+
+def test_a_depth_image_frees_and_blocks():
+    place = td.OccupancyMap(centre=[0.0, 0.0, 1.5])
+    frame = td.DepthFrame(
+        p_WC=[0.0, 0.0, 1.5], R_WC=[[0, 0, 1], [-1, 0, 0], [0, -1, 0]], depth=np.full(80 * 60, 3.0)
+    )
+    place.integrate(frame)
+    assert place.count_observed_free() > 1000
+    assert place.blocked([[3.05, 0.0, 1.5]])[0]
+
+
+# The landing problem
+
+
+def landing(**options):
+    problem = td.LandingProblem(20, **options)
+    problem.set_boundary(td.SplineState(p=[0.0, 0.0, 3.0]), td.MovingGoal(lambda t: (5.0 + t, np.sin(t), 1.0)))
+    problem.set_duration(4.0)
+    return problem
+
+
+def test_a_landing_ends_above_the_pad():
+    for arrival in ("fixed", "free"):
+        problem = landing(arrival=arrival)
+        solved = td.solve(problem)
+        assert solved.status == "converged"
+        curve = problem.curve(solved.x)
+        pad = td.MovingGoal(lambda t: (5.0 + t, np.sin(t), 1.0)).at(curve.t_end)
+        np.testing.assert_allclose(curve.at(curve.t_end).p_WB, pad.p_WP + [0.0, 0.0, 1.5], atol=1e-6)
+        np.testing.assert_allclose(curve.at(curve.t_end).v_WB, pad.v_WP, atol=1e-6)
+
+
+def test_the_pad_lives_as_long_as_the_problem():
+    problem = landing()
+    gc.collect()
+    assert td.solve(problem).usable
+
+
+def test_a_landing_problem_refuses():
+    with pytest.raises(ValueError, match="segments"):
+        td.LandingProblem(3)
+    with pytest.raises(ValueError, match="before SetBoundary"):
+        td.LandingProblem(10).guess()
+    with pytest.raises(ValueError, match="smothness"):
+        td.LandingProblem(10, terms={"smothness": {"weight": 1.0}})
+    with pytest.raises(TypeError, match="predicts nothing"):
+        td.LandingProblem(10).set_boundary(td.SplineState(), 3.0)
+    with pytest.raises(ValueError, match="duration"):
+        landing().set_duration(-1.0)
+    with pytest.raises(ValueError, match="pairs"):
+        landing().set_pairs(np.arange(999) % 20, np.zeros((999, 3)), np.ones((999, 3)))
+
+
+def test_a_term_sees_the_pad_during_the_call_alone():
+    kept = []
+
+    class Above(td.Term):
+        window, uses_interval, weight = 3, True, 5.0
+
+        def value(self, w):
+            pad = self.context.pad.positions(w.t)
+            kept.append(self.context.pad)
+            return w.position[:, 2:] - pad[:, 2:] - 2.0
+
+        def loss(self):
+            return td.HingeLoss(self.weight, 0.5)
+
+    parts = td.Registries()
+    parts.add(Above)
+    problem = landing(registries=parts)
+    without = td.solve(landing())
+    solved = td.solve(problem)
+    assert solved.cost_by_term["above"] > 0.0 and not np.allclose(solved.x, without.x)
+    with pytest.raises(RuntimeError, match="of a call that has ended"):
+        kept[-1].at(0.0)
+
+
+def test_wrong_slopes_are_found_when_a_term_is_entered():
+    class Wrong(td.Term):
+        window = 3
+
+        def value(self, w):
+            return (w.position**2)[:, 2:]
+
+        def jacobian(self, w):
+            return np.ones((len(w.t), 1, 3, 3))
+
+    with pytest.raises(ValueError, match="derivatives disagree"):
+        td.Registries().add(Wrong)
+    with pytest.raises(ValueError, match="derivatives disagree"):
+        td.check_term(Wrong)
+    parts = td.Registries()
+    before = parts.terms
+    with pytest.raises(ValueError):
+        parts.add(Wrong)
+    assert parts.terms == before
+
+
+@pytest.mark.parametrize("name", td.Registries().terms)
+def test_the_librarys_terms_pass_the_check(name):
+    rows = td.check_term(name, trials=2)
+    assert max(row["gradient"] for row in rows) < 1e-4
+
+
+# Replanning
+
+
+def test_a_replanner_flies_around_a_wall():
+    place, planner, there = wall(), td.Replanner(), np.array([4.0, 0.5, 1.2])
+    planner.commit_hover(START)
+    goal, clearance = td.GoalAt(there), []
+    for k in range(200):
+        now = planner.reference(0.1 * k)
+        clearance.append(place.blocked([now.p_WB])[0])
+        if np.linalg.norm(now.p_WB - there) < 0.05 and np.linalg.norm(now.v_WB) < 0.05:
+            break
+        answer = planner.replan(place, ask(0.1 * k, now.p_WB, now.v_WB), goal, explain=k == 0)
+        if k == 0:
+            first = answer
+    assert k == 52, "as docs/library.md's program in C++: there after 5.2 s"
+    assert not any(clearance)
+    assert first.status == "planned" and first.reason == "none" and first.certificate.passed
+    assert first.attempts[0]["rounds"][0]["cost_by_term"]
+    assert first.curve.t0 == pytest.approx(0.02) and first.times["total"]["wall_s"] > 0.0
+
+
+def test_an_answer_is_kept_while_the_next_is_asked():
+    place, planner = wall(), td.Replanner()
+    planner.commit_hover(START)
+    first = planner.replan(place, ask(), td.GoalAt([4.0, 0.5, 1.2]))
+    before = first.curve.control_points.copy()
+    planner.replan(place, ask(0.1, planner.reference(0.1).p_WB), td.GoalAt([4.0, -3.0, 1.2]))
+    np.testing.assert_array_equal(first.curve.control_points, before)
+
+
+def test_a_term_of_ones_own_is_in_the_replanner():
+    class Low(td.Term):
+        window, weight = 3, 50.0
+
+        def value(self, w):
+            return w.position[:, 2:] - 1.4
+
+        def loss(self):
+            return td.HingeLoss(self.weight, 0.2)
+
+    parts = td.Registries()
+    parts.add(Low)
+    heights = []
+    for registries in (None, parts):
+        planner = td.Replanner(registries=registries)
+        planner.commit_hover(START)
+        answer = planner.replan(wall(), ask(), td.GoalAt([4.0, 0.5, 1.2]))
+        curve = answer.curve
+        heights.append(curve.sample(np.linspace(curve.t0, curve.t_end, 50))[:, 2].mean())
+    assert heights[1] < heights[0] - 0.02
+
+
+def test_a_replanner_refuses():
+    with pytest.raises(ValueError, match="simplex"):
+        td.Replanner(td.ReplannerOptions(backend="simplex"))
+    planner = td.Replanner()
+    with pytest.raises(ValueError, match="before commit_hover"):
+        planner.reference(0.0)
+    with pytest.raises(ValueError, match="CommitHover"):
+        planner.replan(wall(), ask(), td.GoalAt([0.0, 0.0, 2.0]))
+    planner.commit_hover(START)
+    odd = planner.replan(wall(), td.ReplanInput(t_now=np.nan), td.GoalAt([0.0, 0.0, 2.0]))
+    assert odd.reason == "invalid_input" and odd.detail and odd.explanation
+
+
+def test_what_a_prediction_raises_comes_out():
+    class Odd:
+        def at(self, t):
+            raise LookupError("no pad today")
+
+    planner = td.Replanner()
+    planner.commit_hover(START)
+    with pytest.raises(LookupError, match="no pad today"):
+        planner.replan(wall(), ask(), Odd())
+
+
+# The part that would fly
+
+
+def test_onboard_hovers_and_follows_what_it_is_told():
+    model = td.load_scenario("open").vehicle_model()
+    onboard = td.Onboard(model, deck_height=0.5)
+    state = td.VehicleState(p_WB=[0.0, 0.0, 2.0])
+    assert onboard.take(state) == "used"
+    onboard.begin(0.0, np.full(4, 0.25 * model.hover_thrust))
+    for k in range(200):
+        t = 0.002 * k
+        state.t = t
+        onboard.take(state)
+        if k % 50 == 0:
+            assert onboard.take(td.PadGpsFix(t=t, p_WP=[4.0 + 0.5 * t, 1.0], sigma=0.05)) == "used"
+        setpoint = onboard.step(t)
+    assert setpoint.armed and setpoint.wrench.thrust == pytest.approx(model.hover_thrust, rel=0.5)
+    assert onboard.status["pad_known"] and onboard.pad_at(0.4).p_WP[0] == pytest.approx(4.2, abs=0.2)
+    assert onboard.own.p_WB.tolist() == [0.0, 0.0, 2.0]
+    assert onboard.map().count_observed_free() > 0
+    assert onboard.take(td.FootForce(t=np.nan)) == "invalid"
+
+
+def test_onboard_refuses():
+    model = td.load_scenario("open").vehicle_model()
+    with pytest.raises(ValueError):
+        td.Onboard(model, 0.5, envelope=td.Envelope(speed=-1.0))
+    with pytest.raises(ValueError):
+        td.Onboard(model, 0.5).begin(0.0, np.full(4, 2.0))
+    with pytest.raises(ValueError, match="thrusts has 99 numbers"):
+        td.Onboard(model, 0.5).begin(0.0, np.zeros(99))

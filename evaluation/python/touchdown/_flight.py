@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""One flight: its result as data, its record as arrays."""
+import json
+import os
+import sqlite3
+import tempfile
+from contextlib import closing
+from dataclasses import dataclass, field
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+
+import numpy as np
+
+from touchdown import _touchdown
+
+ScenarioLike = Union[str, "os.PathLike[str]", Mapping[str, Any], _touchdown.Scenario]
+
+
+@dataclass(frozen=True)
+class Touchdown:
+    """First contact of a foot with the deck."""
+
+    error_m: float
+    relative_velocity_mps: Tuple[float, float, float]
+    tilt_deg: float
+    tilt_over_equilibrium_deg: float
+
+
+class Record:
+    """The tables of a recorded flight (docs/record.md): record["vehicle"]["px"] is an array, record.frame("vehicle") a
+    pandas frame. The file is read once, when the record is made."""
+
+    def __init__(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        self.path = os.fspath(path)
+        if not os.path.isfile(self.path):
+            raise FileNotFoundError(f"{self.path}: there is no such record.")
+        self._db = sqlite3.connect(":memory:", check_same_thread=False)
+        with closing(sqlite3.connect(f"file:{self.path}?mode=ro", uri=True)) as file:
+            file.backup(self._db)
+        self.meta = dict(self._db.execute("SELECT key, value FROM meta"))
+
+    @property
+    def tables(self) -> List[str]:
+        """Their names."""
+        rows = self._db.execute("SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name")
+        return [name for (name,) in rows]
+
+    def __getitem__(self, table: str) -> Dict[str, np.ndarray]:
+        """The columns of a table as arrays by name; NULL of a number is NaN."""
+        if table not in self.tables:
+            raise KeyError(f"the record has no table {table}, it has {', '.join(self.tables)}")
+        cursor = self._db.execute(f"SELECT * FROM {table} ORDER BY rowid")
+        names = [column[0] for column in cursor.description]
+        rows = cursor.fetchall()
+        return {name: _column([row[i] for row in rows]) for i, name in enumerate(names)}
+
+    def frame(self, table: str) -> Any:
+        """A table as a pandas frame."""
+        import pandas as pd
+
+        return pd.DataFrame(self[table])
+
+    def states(self, table: str, source: str = "true") -> Dict[str, np.ndarray]:
+        """The columns of `vehicle` or `pad` from this source: "true" or "estimate"."""
+        columns = self[table]
+        rows = columns["source"] == source
+        return {name: column[rows] for name, column in columns.items() if name != "source"}
+
+
+def _column(values: List[Any]) -> np.ndarray:
+    if all(value is None or isinstance(value, (int, float)) for value in values):
+        if values and all(isinstance(value, int) for value in values):
+            return np.array(values)
+        return np.array([np.nan if value is None else value for value in values], dtype=float)
+    return np.array(values, dtype=object)
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What a flight came to: the document of `touchdown land --json` as attributes. `document` is all of it, `record` the
+    tables, if they were asked for. None stands for what does not apply."""
+
+    landed: bool
+    outcome: str
+    detail: str
+    time_to_land_s: Optional[float]
+    t_star_s: Optional[float]
+    t_star_upper_s: Optional[float]
+    time_ratio: Optional[float]
+    within_limits: bool
+    touchdown: Optional[Touchdown]
+    min_clearance_m: Optional[float]
+    simulated_s: float
+    effort_n2s: float
+    saturation_share: float
+    max_speed_mps: float
+    max_acceleration_mps2: float
+    replans: int
+    replans_by_status: Dict[str, int]
+    replans_by_reason: Dict[str, int]
+    following: Optional[Dict[str, Any]]
+    estimator: Optional[Dict[str, Any]]
+    own_state: Optional[Dict[str, Any]]
+    safety: Optional[Dict[str, Any]]
+    map_prior: Optional[Dict[str, Any]]
+    planner: str
+    backend: str
+    scenario: str
+    seed: int
+    wall_clock: Dict[str, Any] = field(repr=False)
+    document: Dict[str, Any] = field(repr=False)
+    record: Optional[Record] = field(default=None, repr=False)
+
+    @classmethod
+    def _of(cls, document: Dict[str, Any], record: Optional[Record]) -> "TrialResult":
+        names = [f for f in cls.__dataclass_fields__ if f not in ("document", "record", "touchdown")]
+        touched = document["touchdown"]
+        if touched["error_m"] is None:  # no foot has touched the deck
+            touched = None
+        return cls(
+            **{name: document.get(name) for name in names},
+            touchdown=Touchdown(**{**touched, "relative_velocity_mps": tuple(touched["relative_velocity_mps"])})
+            if touched
+            else None,
+            document=document,
+            record=record,
+        )
+
+
+def overrides(changes: Optional[Mapping[str, Any]]) -> List[str]:
+    """KEY=VALUE texts of a dictionary {"pad.speed": 1.2, "start.position_spread": [1, 1, 0]}."""
+    return [f"{key}={_text(value)}" for key, value in (changes or {}).items()]
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_text(item) for item in value) + "]"
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    return str(value)
+
+
+def load_scenario(
+    scenario: ScenarioLike = "straight_turn",
+    *,
+    set: Optional[Mapping[str, Any]] = None,
+    registries: Optional[_touchdown.Registries] = None,
+) -> _touchdown.Scenario:
+    """A Scenario: of a shipped name, a path, a dictionary as a scenario file has it, or one that is there already.
+
+    `set` changes keys: {"pad.speed": 1.2}. Raises BadInput with one sentence."""
+    if isinstance(scenario, _touchdown.Scenario):
+        return _touchdown.Scenario.parse(scenario.yaml, overrides(set), registries) if set else scenario
+    if isinstance(scenario, Mapping):
+        # JSON is YAML.
+        return _touchdown.Scenario.parse(json.dumps(_plain(scenario)), overrides(set), registries)
+    return _touchdown.Scenario.load(os.fspath(scenario), overrides(set), registries)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
+
+
+def run_trial(
+    scenario: ScenarioLike = "straight_turn",
+    *,
+    seed: Optional[int] = None,
+    set: Optional[Mapping[str, Any]] = None,
+    planner: Optional[str] = None,
+    backend: Optional[str] = None,
+    registries: Optional[_touchdown.Registries] = None,
+    record: Union[bool, str, "os.PathLike[str]"] = False,
+) -> TrialResult:
+    """Flies one trial: a pure function of scenario and seed, but for its times.
+
+    scenario    as in load_scenario
+    seed        of what is drawn; None: the scenario's
+    set         keys of the scenario to change: {"pad.speed": 1.2}
+    planner, backend   short for the keys planner and solver.backend
+    registries  Registries, where parts of Python take part
+    record      True: the result has a `record`; a path: the file is kept there
+
+    Gives a TrialResult. Raises BadInput where the scenario cannot be flown; what a part of Python raises in flight is
+    raised here.
+    """
+    changes = dict(set or {})
+    if planner is not None:
+        changes["planner"] = planner
+    if backend is not None:
+        changes["solver.backend"] = backend
+    if seed is not None:
+        changes["seed"] = int(seed)
+    flown = load_scenario(scenario, set=changes, registries=registries)
+    if not record:
+        return TrialResult._of(json.loads(_touchdown._run(flown, registries, "")), None)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "record.db") if record is True else os.fspath(record)
+        document = json.loads(_touchdown._run(flown, registries, path))
+        return TrialResult._of(document, Record(path))
+
+
+def explain_step(
+    record: Union[Record, str, "os.PathLike[str]"],
+    step: int,
+    *,
+    set: Optional[Mapping[str, Any]] = None,
+    registries: Optional[_touchdown.Registries] = None,
+) -> Dict[str, Any]:
+    """A recorded replanning step, asked again and explained: the document of `touchdown plan --from RECORD:STEP --json`.
+
+    `set` changes keys solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start. Raises BadInput, and
+    IndexError for a step that is not there."""
+    path = record.path if isinstance(record, Record) else os.fspath(record)
+    return json.loads(_touchdown._explain(path, int(step), overrides(set), registries))
