@@ -7,6 +7,7 @@
 import inspect
 import re
 import sys
+from typing import Literal, get_args, get_origin
 
 from touchdown import _touchdown
 
@@ -97,7 +98,8 @@ def members(cls):
     for name, member in sorted(cls.__dict__.items()):
         if name == "__init__":
             if fields is None:
-                lines += function(name, member.__doc__, "    ")
+                made = function(name, member.__doc__, "    ")
+                lines += made or ["    def __init__(self, *args: Any, **kwargs: Any) -> None: ..."]
         elif isinstance(member, property):
             _, result = next(signatures(member.fget.__doc__))
             lines.append("    @property")
@@ -116,15 +118,16 @@ def members(cls):
 
 def stub():
     lines = [HEAD.replace("Tuple\n", "Tuple, overload\n")]
-    for name, words in _touchdown._words.items():
-        lines.append(f"{name} = Literal[{', '.join(repr(word) for word in words)}]".replace("'", '"'))
-    lines += ["", "__version__: str", "_words: Dict[str, List[str]]", ""]
+    for name, value in sorted(vars(_touchdown).items()):
+        if get_origin(value) is Literal:
+            lines.append(f"{name} = Literal[{', '.join(repr(word) for word in get_args(value))}]".replace("'", '"'))
+    lines += ["", "__version__: str", ""]
     for name, value in sorted(vars(_touchdown).items()):
         if inspect.isclass(value):
             base = value.__mro__[1].__name__
             base = "" if base == "pybind11_object" else f"({base})"
             lines += ["", f"class {name}{base}:", *members(value)]
-        elif callable(value):
+        elif callable(value) and get_origin(value) is None:
             lines += ["", *function(name, value.__doc__)]
     return "\n".join(lines).replace("\n\n\n\n", "\n\n\n") + "\n"
 

@@ -23,7 +23,7 @@ def without_times(document):
         ("straight_turn", 1, {}),
         ("open", 3, {"wind.mean": 4.0}),
         ("forest", 2, {"planner": "ego"}),
-        ("circle", 5, {"descent": "vertical", "pad.speed": 1.1, "timeout": 12}),
+        ("circle", 5, {"descent": "vertical", "timeout": 12}),
         ("open", 4, {"own_state": "estimated"}),
     ],
 )
@@ -45,7 +45,7 @@ def test_a_record_is_the_programs(run, tmp_path):
             continue
         for name, column in mine[table].items():
             np.testing.assert_array_equal(column, its[table][name], err_msg=f"{table}.{name}")
-    same = set(mine.meta) - {"result_json", "build_hash", "compiler_flags"}
+    same = set(mine.meta) - {"result_json", "build_hash", "revision"}
     assert {key: mine.meta[key] for key in same} == {key: its.meta[key] for key in same}
 
 
@@ -74,7 +74,7 @@ def test_a_scenario_is_a_dictionary_a_file_or_a_name(tmp_path):
 @pytest.mark.parametrize(
     "call, error",
     [
-        (lambda: td.run_trial("opn"), "opn: there is no such scenario file; did you mean open"),
+        (lambda: td.run_trial("opn"), "opn: there is no such scenario file .did you mean open"),
         (lambda: td.run_trial("open", set={"pad.sped": 1.0}), "pad.sped"),
         (lambda: td.run_trial("open", set={"pad.speed": -1.0}), "pad.speed"),
         (lambda: td.run_trial("open", planner="nobody"), "nobody"),
@@ -175,7 +175,7 @@ def test_a_planner_of_ones_own_lands_and_is_judged(parts):
     assert without_times(again.document) == without_times(result.document)
     hit = td.run_trial("straight_turn", planner="straight", registries=parts)
     assert hit.outcome == "collision" and "obstacle" in hit.detail
-    slow = td.run_trial("open", planner="straight", registries=parts, set={"straight.share": 0.3})
+    slow = td.run_trial("open", planner="straight", registries=parts, set={"straight.share": 0.6})
     assert slow.time_to_land_s > result.time_to_land_s
 
 
