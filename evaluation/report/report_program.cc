@@ -2,7 +2,7 @@
 // Runs the distribution's Python as a child, without a shell: paths are arguments, not text. What
 // the child prints is read from a pipe: stdout stays one JSON document, and a traceback becomes one
 // sentence.
-#include "evaluation/base/report_program.h"
+#include "evaluation/report/report_program.h"
 
 #include <array>
 #include <cerrno>
