@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 '''
+OPERATORS = ["add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv", "neg"]
+SPECIAL = {f"__{name}__" for name in [*OPERATORS, "copy", "deepcopy"]}
 ARRAY = re.compile(r"numpy\.ndarray\[(numpy\.)?(\w+)(\[[^\]]*\])?(, [^\]]*)?\]")
 KINDS = {"float64": "np.float64", "int32": "np.int32", "uint8": "np.uint8", "bool": "np.bool_", "float32": "np.float32"}
 
@@ -110,8 +112,7 @@ def members(cls):
                 lines.append(f"    def {name}(self, value: {typed(kind, True)}) -> None: ...")
         elif isinstance(member, staticmethod):
             lines += function(name, member.__func__.__doc__, "    ", ["staticmethod"])
-        elif callable(member) and not name.startswith("__") or name in ("__add__", "__radd__", "__sub__", "__rsub__",
-                "__mul__", "__rmul__", "__truediv__", "__rtruediv__", "__neg__"):
+        elif callable(member) and (not name.startswith("__") or name in SPECIAL):
             lines += function(name, member.__doc__, "    ")
     return lines or ["    ..."]
 

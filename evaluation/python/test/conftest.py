@@ -2,8 +2,12 @@
 """Fixtures: the built program (environment TOUCHDOWN_PROGRAM) and a record that it wrote."""
 import os
 import subprocess
+import sys
 
 import pytest
+
+# The Python of these tests makes the program's reports, too, whatever environment is active.
+os.environ["TOUCHDOWN_PYTHON"] = sys.executable
 
 
 @pytest.fixture(scope="session")
