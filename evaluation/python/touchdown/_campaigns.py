@@ -9,7 +9,7 @@ import shlex
 import sys
 import tempfile
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 _LOST = ("error", "crashed", "hung")
 
 
-@dataclass(repr=False)
+@dataclass(repr=False, eq=False)
 class SweepResult:
     """What `sweep` flew.
 
     trials    a row a trial: columns of the tables trial and timing (docs/record.md), one for each varied key, and
-              `command`, which flies it alone
+              `command`, which flies it alone; with a scenario that was a dictionary it names a file that is gone
     cells     a row for each combination of listed values: these, planned and flown trials, succeeded, `rate` and its
               95 % interval `rate_lo`, `rate_hi`, medians of the landed
     manifest  {key: value}: build, machine, `scenario_yaml` of the first trial
@@ -54,7 +54,7 @@ class SweepResult:
         return f"<sweep of {self.manifest['scenario']}: {succeeded} of {trials} trials succeeded>"
 
 
-@dataclass(repr=False)
+@dataclass(repr=False, eq=False)
 class CompareResult:
     """What `compare` measured.
 
@@ -79,7 +79,7 @@ class CompareResult:
         return f"<comparison: {len(self.problems)} problems, {len(self.solves)} solves>"
 
 
-@dataclass(repr=False)
+@dataclass(repr=False, eq=False)
 class StudyResult:
     """What `study` flew.
 
@@ -96,9 +96,9 @@ class StudyResult:
     rates: pd.DataFrame
     trials: pd.DataFrame
     replans: pd.DataFrame
-    plan: Dict[str, Any] = field(default_factory=dict)
-    report: Optional[Path] = None
-    command: str = ""
+    plan: Dict[str, Any]
+    report: Optional[Path]
+    command: str
 
     def __repr__(self) -> str:
         return f"<study {self.plan['study']}: {len(self.trials)} trials in {self.folder}>"
@@ -226,6 +226,8 @@ def sweep(
     """
     if record is not None and html is None:
         raise ValueError(f"record is {record!r}: the flights stand beside the report, so it needs html")
+    if retry and db is None:
+        raise ValueError("retry is True: there is nothing to fly again without db")
     settings = overrides(set)
     settings += [f"planner={planner}"] if planner is not None else []
     settings += [f"solver.backend={backend}"] if backend is not None else []
