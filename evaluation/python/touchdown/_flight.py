@@ -11,8 +11,7 @@ from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 import numpy as np
 
 from touchdown import _touchdown
-
-ScenarioLike = Union[str, "os.PathLike[str]", Mapping[str, Any], _touchdown.Scenario]
+from touchdown._scenarios import ScenarioLike, overrides, scenario_text
 
 
 @dataclass(frozen=True)
@@ -126,21 +125,6 @@ class TrialResult:
         )
 
 
-def overrides(changes: Optional[Mapping[str, Any]]) -> List[str]:
-    """KEY=VALUE texts of a dictionary {"pad.speed": 1.2, "start.position_spread": [1, 1, 0]}."""
-    return [f"{key}={_text(value)}" for key, value in (changes or {}).items()]
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(_text(item) for item in value) + "]"
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
-    return str(value)
-
-
 def load_scenario(
     scenario: ScenarioLike = "straight_turn",
     *,
@@ -151,21 +135,12 @@ def load_scenario(
 
     `set` changes keys: {"pad.speed": 1.2}. Raises BadInput with one sentence."""
     if isinstance(scenario, _touchdown.Scenario):
-        return _touchdown.Scenario.parse(scenario.yaml, overrides(set), registries) if set else scenario
+        if not set:
+            return scenario
+        return _touchdown.Scenario.parse(scenario_text(scenario), overrides(set), registries)
     if isinstance(scenario, Mapping):
-        # JSON is YAML.
-        return _touchdown.Scenario.parse(json.dumps(_plain(scenario)), overrides(set), registries)
+        return _touchdown.Scenario.parse(scenario_text(scenario), overrides(set), registries)
     return _touchdown.Scenario.load(os.fspath(scenario), overrides(set), registries)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return value.item()
-    return value
 
 
 def run_trial(
