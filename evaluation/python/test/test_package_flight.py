@@ -92,6 +92,7 @@ def test_a_step_is_explained_as_the_program_does(run, tmp_path):
     path = tmp_path / "flight.db"
     td.run_trial("straight_turn", seed=1, record=path, set={"timeout": 4})
     told = td.explain_step(path, 3)
+    assert told["input"] == td.explain_step(td.Record(path), 3)["input"], "of a record without its file, too"
     program = json.loads(run("plan", "--from", f"{path}:3", "--json").stdout)
     for told_one in (told, program):
         del told_one["wall_clock"], told_one["source"]

@@ -7,6 +7,7 @@ import tempfile
 from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from urllib.parse import quote
 
 import numpy as np
 
@@ -29,13 +30,17 @@ class Record:
     pandas frame. The file is read once, when the record is made."""
 
     def __init__(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        self.path = os.fspath(path)
-        if not os.path.isfile(self.path):
-            raise FileNotFoundError(f"{self.path}: there is no such record.")
+        if not os.path.isfile(path):
+            raise FileNotFoundError(f"{os.fspath(path)}: there is no such record.")
         self._db = sqlite3.connect(":memory:", check_same_thread=False)
-        with closing(sqlite3.connect(f"file:{self.path}?mode=ro", uri=True)) as file:
+        with closing(sqlite3.connect(f"file:{quote(os.fspath(path))}?mode=ro", uri=True)) as file:
             file.backup(self._db)
         self.meta = dict(self._db.execute("SELECT key, value FROM meta"))
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes it to a file, as `touchdown replay`, `plan` and `profile` read it."""
+        with closing(sqlite3.connect(os.fspath(path))) as file:
+            self._db.backup(file)
 
     @property
     def tables(self) -> List[str]:
@@ -192,5 +197,8 @@ def explain_step(
 
     `set` changes keys solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start. Raises BadInput, and
     IndexError for a step that is not there."""
-    path = record.path if isinstance(record, Record) else os.fspath(record)
-    return json.loads(_touchdown._explain(path, int(step), overrides(set), registries))
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "record.db") if isinstance(record, Record) else os.fspath(record)
+        if isinstance(record, Record):
+            record.save(path)
+        return json.loads(_touchdown._explain(path, int(step), overrides(set), registries))
