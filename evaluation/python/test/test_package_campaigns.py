@@ -4,6 +4,7 @@ import json
 import shutil
 import sqlite3
 import subprocess
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,7 @@ def test_the_problems_of_a_file_are_compared(record_path):
         source=record_path, problems=2, every=20, backends=["banded"], repeats=1, progress=False
     )
     assert json.loads(done.manifest["from"]) == record_path and len(done.problems) == 2 and done.db is None
+    assert done.manifest["every"] == "20"
 
 
 def test_a_set_of_known_problems_has_a_row_for_each_problem_and_backend():
@@ -160,6 +162,20 @@ def test_columns_without_a_number_are_numbers(tmp_path):
     part = touchdown.read(path)["part"]
     assert [part[name].dtype for name in "abc"] == [float, float, object]
     assert part["d"][0] == b"\x01\x02"
+
+
+def test_what_a_killed_writer_left_is_taken_in(tmp_path):
+    path, left = tmp_path / "a.db", tmp_path / "left"
+    left.mkdir()
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("PRAGMA journal_mode=WAL")
+        db.execute("CREATE TABLE manifest(key TEXT, value TEXT)")
+        db.execute("INSERT INTO manifest VALUES('format', 'touchdown trials')")
+        db.commit()
+        for file in (path, tmp_path / "a.db-wal"):
+            shutil.copy(file, left)
+    assert list(touchdown.read(left / "a.db")["manifest"]["value"]) == ["touchdown trials"]
+    assert [file.name for file in left.iterdir()] == ["a.db"]
 
 
 def test_a_file_that_grows_can_be_read(program, tmp_path):

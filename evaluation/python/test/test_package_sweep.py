@@ -197,6 +197,12 @@ def test_a_bar_follows_the_growing_file(bars, monkeypatch):
     assert bar.text == "0 succeeded"
 
 
+def test_a_bar_is_full_after_a_sweep_that_was_faster_than_a_look(bars, monkeypatch):
+    monkeypatch.setattr(_program, "_WATCH_S", 100.0)
+    touchdown.sweep("open", trials=2, set={"timeout": 1})
+    assert (bars[0].total, bars[0].shown, bars[0].closed) == (2, [2], True)
+
+
 def test_no_bar_is_shown_where_none_is_wanted_or_possible(bars, monkeypatch, capfd):
     touchdown.sweep("open", trials=1, set={"timeout": 1}, progress=False)
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
