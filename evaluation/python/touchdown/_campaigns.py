@@ -63,7 +63,7 @@ class CompareResult:
     problems  table problem
     refusals  who did not run all, and why: table refusal
     manifest  {key: value}: settings, build, machine
-    command   what was run, without what was temporary
+    command   what was run, without what was temporary; None: solved in this process
     db        the file; None: it is not kept
     """
 
@@ -72,7 +72,7 @@ class CompareResult:
     problems: pd.DataFrame
     refusals: pd.DataFrame
     manifest: Dict[str, str]
-    command: str
+    command: Optional[str]
     db: Optional[Path]
 
     def __repr__(self) -> str:
@@ -290,6 +290,7 @@ def compare(
     picture: Optional[PathLike] = None,
     allow_debug: bool = False,
     progress: bool = True,
+    registries: Optional[_touchdown.Registries] = None,
 ) -> CompareResult:
     """Compares solver backends on what flights ask for, or on a set of known problems (docs/compare.md).
 
@@ -300,12 +301,11 @@ def compare(
     deadline_ms  solves are also stopped after this wall time
     pin          runs on this CPU only
     db           keeps every solve in a new SQLite file
+    registries   with terms that are written in Python: the flights are then flown, and solved, in this process
 
     The others are the options of the same names; None leaves the program's default. Raises BadInput for what the
     program refuses, ProgramFailed otherwise.
     """
-    import pandas as pd
-
     words: List[Word] = ["compare", *_options(problem_set=problem_set, **{"from": source})]
     for text in overrides(set):
         words += ["--set", text]
@@ -317,6 +317,21 @@ def compare(
     with tempfile.TemporaryDirectory(prefix="touchdown-") as temporary, Bar("problem", progress) as bar:
         file = Path(temporary) / "compare.db" if db is None else Path(db)
 
+        if registries is not None:
+            _check_in_process(
+                1, pin=pin, picture=picture, starts=starts, problem_set=None if problem_set == "landing" else problem_set
+            )
+            short = {"solver.arrival": arrival, "solver.limits": limits, "solver.endpoint": endpoint}
+            given = {
+                "source": None if source is None else os.fspath(source),
+                "set": overrides({**(set or {}), **{key: word for key, word in short.items() if word is not None}}),
+                "seed": seed, "problems": problems, "every": every, "gap": gap, "repeats": repeats,
+                "backends": None if backends is None else list(backends),
+                "deadline_ms": deadline_ms, "backend_seconds": backend_seconds,
+            }  # fmt: skip
+            _touchdown._compare(given, str(file), registries, lambda done, all: bar.show(done, all))
+            return _compared(read(file), None, None, db)
+
         def watch(said: str) -> None:
             told = re.findall(r"(\d+) of (\d+) problems, ", said)
             if told:
@@ -326,14 +341,24 @@ def compare(
         check(status, out, lines)
         watch("\n".join(lines))
         frames = read(file)
+    return _compared(frames, out, _command(words if db is None else [*words, "--db", file]), db)
+
+
+def _compared(
+    frames: Dict[str, Any], document: Optional[str], command: Optional[str], db: Optional[PathLike]
+) -> CompareResult:
+    import pandas as pd
+
+    if document is not None and "summary" not in frames:  # of a set of known problems
+        frames["summary"] = pd.DataFrame(json.loads(document)["cells"])
     return CompareResult(
-        summary=frames["summary"] if "summary" in frames else pd.DataFrame(json.loads(out)["cells"]),
+        summary=frames["summary"],
         solves=frames["solve"],
         problems=frames["problem"],
         refusals=frames["refusal"],
         manifest=dict(frames["manifest"].to_numpy()),
-        command=_command(words if db is None else [*words, "--db", file]),
-        db=None if db is None else file,
+        command=command,
+        db=None if db is None else Path(db),
     )
 
 
