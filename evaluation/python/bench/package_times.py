@@ -6,6 +6,7 @@
 """
 import statistics
 import subprocess
+import tempfile
 import time
 
 import numpy as np
@@ -72,9 +73,10 @@ def sweep_ratio(pairs=5, trials=100):
     words = [str(td.program_path()), "sweep", "straight_turn", "--trials", str(trials), "--jobs", "2"]
     ratios = []
     for k in range(pairs):
-        begin = time.perf_counter()
-        subprocess.run([*words, "--seed", str(k + 1)], capture_output=True, check=True)
-        program = time.perf_counter() - begin
+        with tempfile.TemporaryDirectory() as folder:
+            begin = time.perf_counter()
+            subprocess.run([*words, "--seed", str(k + 1), "--db", f"{folder}/t.db"], capture_output=True, check=True)
+            program = time.perf_counter() - begin
         begin = time.perf_counter()
         td.sweep("straight_turn", trials=trials, seed=k + 1, jobs=2, progress=False)
         ratios.append((time.perf_counter() - begin) / program)

@@ -8,7 +8,9 @@ import sys
 
 import pytest
 
-td = pytest.importorskip("touchdown")
+import the_package
+
+td = the_package.touchdown
 pytest.importorskip("hypothesis")
 
 CALLS = '''

@@ -10,7 +10,9 @@ import threading
 import numpy as np
 import pytest
 
-td = pytest.importorskip("touchdown")
+import the_package
+
+td = the_package.touchdown
 
 
 def without_times(document):
@@ -353,6 +355,17 @@ def test_a_comparison_in_this_process_has_the_programs_solves(run, tmp_path, par
         td.compare(pin=1, registries=parts)
     with pytest.raises(td.BadInput, match="simplex"):
         td.compare(backends=["simplex"], registries=parts)
+
+
+def test_two_hundred_trials_leave_nothing_behind(parts):
+    def fly_many(n):
+        for seed in range(n):
+            td.run_trial("open", seed=seed, planner=("landing", "straight")[seed % 2], registries=parts, set={"timeout": 1})
+
+    fly_many(40)
+    before = the_package.resident_kb()
+    fly_many(200)
+    assert the_package.resident_kb() - before < 6000, "less than 30 kB a flight"
 
 
 def test_a_flight_ends_at_ctrl_c():

@@ -10,7 +10,9 @@ from typing import Literal, get_origin
 
 import pytest
 
-td = pytest.importorskip("touchdown")
+import the_package
+
+td = the_package.touchdown
 
 ROOT = Path(__file__).resolve().parents[3]
 PACKAGE = Path(td.__file__).parent
