@@ -113,7 +113,7 @@ def look_at_script(name, arguments):
     script = ROOT / name
     if not os.access(script, os.X_OK):
         raise Wrong(f"{name} is no program at the top of the repository")
-    for word in arguments if name != "python.sh" else []:  # whose argument is a folder
+    for word in arguments if name != "python.sh" else []:  # whose word is a folder
         if not re.search(rf"^  {re.escape(word)}\)", script.read_text(), re.M):
             raise Wrong(f"{name} knows no {word}")
     if subprocess.run(["/bin/bash", "-n", script], check=False).returncode != 0:
