@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -69,6 +70,32 @@ class InUse {
   std::atomic<int> users_ = 0;
 };
 
+/// Something of C++ that Python may use during one call, in the thread that was called.
+template <class T>
+class Lent {
+ public:
+  void Lend(const T* it) {
+    it_ = it;
+    to_ = std::this_thread::get_id();
+  }
+  void Return() { it_ = nullptr; }
+
+  /// Raises RuntimeError for who may not use it. `name`: "this map".
+  const T& get(const char* name) const {
+    if (it_ == nullptr) {
+      throw std::runtime_error(std::string(name) + " is of a call that has ended");
+    }
+    if (std::this_thread::get_id() != to_) {
+      throw std::runtime_error(std::string(name) + " is lent to the thread that was called");
+    }
+    return *it_;
+  }
+
+ private:
+  const T* it_ = nullptr;
+  std::thread::id to_;
+};
+
 /// A class of plain data: attributes, of which the constructor takes any by name, and a text.
 template <class T>
 class Plain {
@@ -115,6 +142,19 @@ class Plain {
       }
       return text + (before[0] == '(' ? "()" : ")");
     });
+    class_.def(py::pickle(
+        [](const py::object& self) {
+          py::dict values;
+          for (const py::handle& name : py::type::of(self).attr("_fields")) {
+            values[name] = self.attr(name.cast<py::str>());
+          }
+          return values;
+        },
+        [](const py::dict& values) {
+          T made{};
+          Fill(values, &made);
+          return made;
+        }));
     class_.def("__copy__", [](const T& self) { return T(self); });
     class_.def("__deepcopy__", [](const T& self, const py::dict&) { return T(self); });
     return class_;
@@ -124,7 +164,7 @@ class Plain {
 
  private:
   const char* DocOf(const char* name) const { return Doc(name_ + "::" + name); }
-  static void Fill(const py::kwargs& values, T* made) {
+  static void Fill(const py::dict& values, T* made) {
     const py::object self = py::cast(made, py::return_value_policy::reference);
     for (const auto& [name, value] : values) {
       const py::object fields = py::type::of(self).attr("_fields");
@@ -133,7 +173,14 @@ class Plain {
                              " has no " + std::string(py::str(name)) + ", it has " +
                              std::string(py::str(py::str(", ").attr("join")(fields))));
       }
-      py::setattr(self, name, value);
+      try {
+        py::setattr(self, name, value);
+      } catch (const py::error_already_set& error) {
+        if (!error.matches(PyExc_TypeError)) throw;
+        throw py::type_error(std::string(py::str(py::type::of(self).attr("__name__"))) + ": " +
+                             std::string(py::str(name)) + " is " + std::string(py::repr(value)) +
+                             ", which is of another type or shape");
+      }
     }
   }
 

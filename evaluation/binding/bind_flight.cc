@@ -38,13 +38,17 @@ evaluation::Registries Of(const PartRegistries* registries) {
 
 Scenario Load(const std::string& name_or_path, const std::vector<std::string>& overrides,
               const PartRegistries* registries) {
-  return evaluation::LoadScenario(evaluation::FindScenario(name_or_path), overrides,
-                                  Of(registries));
+  const evaluation::Registries parts = Of(registries);
+  return WithoutLock([&] {
+    return evaluation::LoadScenario(evaluation::FindScenario(name_or_path), overrides, parts);
+  });
 }
 
 Scenario Parse(const std::string& yaml, const std::vector<std::string>& overrides,
                const PartRegistries* registries) {
-  return evaluation::ParseScenario(yaml, "own", "the dictionary", overrides, Of(registries));
+  const evaluation::Registries parts = Of(registries);
+  return WithoutLock(
+      [&] { return evaluation::ParseScenario(yaml, "own", "the dictionary", overrides, parts); });
 }
 
 /// The `land --json` document; a record where there is a path.
@@ -99,7 +103,8 @@ void Sweep(const std::string& scenario_path, const std::vector<std::string>& ove
   }
   options.trials = trials;
   options.seed = seed;
-  const evaluation::Campaign campaign = evaluation::SweepCampaign(options, parts);
+  const evaluation::Campaign campaign =
+      WithoutLock([&] { return evaluation::SweepCampaign(options, parts); });
   const Kept tell(progress);
   const auto fly = [&](const evaluation::SweepTrial& trial) {
     // What a part raises is the trial's own error; Ctrl-C ends the sweep.
@@ -110,10 +115,10 @@ void Sweep(const std::string& scenario_path, const std::vector<std::string>& ove
                                     if (call.MustEnd()) throw Ended();
                                   });
     } catch (const Ended&) {
-      if (call.interrupted()) throw;
     } catch (const std::exception& error) {
       if (!call.failed()) return evaluation::FailedTrial(trial, error.what());
     }
+    if (call.interrupted()) throw Ended();
     return evaluation::FailedTrial(trial, call.what());
   };
   WithoutLock([&] {
@@ -134,11 +139,11 @@ void Sweep(const std::string& scenario_path, const std::vector<std::string>& ove
 void Compare(const evaluation::CompareOptions& options, const std::string& db,
              const PartRegistries& registries, const py::object& progress) {
   const Kept tell(progress);
+  evaluation::Registries parts = registries.all;
   WithoutLock([&] {
     const auto end = [call = Call::Now()] {
       if (call->MustEnd()) throw Ended();
     };
-    evaluation::Registries parts = registries.all;
     parts.backends = solvers::Overheard(parts.backends, [&](const solvers::AskedSolve&) { end(); });
     try {
       evaluation::MachineState machine;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The landing problem, and what its terms are told.
-#include <algorithm>
 
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
@@ -32,9 +31,10 @@ class OwnLanding : public Solvable {
 
   void SetBoundary(const planning::SplineState& start, const py::object& pad, double t0,
                    const planning::EndpointTarget& target, const Eigen::Vector3d& pull_W) {
-    auto prediction = PredictionOf(pad);
-    WithoutLock([&] { problem_.SetBoundary(start, t0, *prediction, target, pull_W); });
-    pad_ = std::move(prediction);
+    // Where a term raises the problem may look at this one or at the one before.
+    pads_.push_back(PredictionOf(pad));
+    WithoutLock([&] { problem_.SetBoundary(start, t0, *pads_.back(), target, pull_W); });
+    pads_.erase(pads_.begin(), pads_.end() - 1);
   }
   void SetPrevious(const UniformBspline* previous) {
     std::optional<UniformBspline> kept;
@@ -47,7 +47,7 @@ class OwnLanding : public Solvable {
   }
 
  private:
-  std::shared_ptr<const estimation::PadPrediction> pad_;
+  std::vector<std::shared_ptr<const estimation::PadPrediction>> pads_;
   std::optional<UniformBspline> previous_;
   LandingProblem problem_;
 };
@@ -66,7 +66,7 @@ std::unique_ptr<OwnLanding> Make(int segments, planning::ArrivalMode arrival,
   options.free_end_acceleration = free_end_acceleration;
   if (registries != nullptr) options.terms = registries->all.terms;
   options.settings = TermSettingsOf(terms);
-  return std::make_unique<OwnLanding>(segments, options);
+  return WithoutLock([&] { return std::make_unique<OwnLanding>(segments, options); });
 }
 
 template <class Work>
@@ -100,11 +100,11 @@ void SetPairs(
 py::list CheckTerm(const py::object& term, const PartRegistries* registries, int trials,
                    std::uint64_t seed) {
   const PartRegistries standard;
+  const bool named = py::isinstance<py::str>(term);
   const planning::TermEntry entry =
-      py::isinstance<py::str>(term)
-          ? planning::FindTerm((registries ? *registries : standard).all.terms,
-                               term.cast<std::string>())
-          : PythonTermEntry(term);
+      named ? planning::FindTerm((registries ? *registries : standard).all.terms,
+                                 term.cast<std::string>())
+            : PythonTermEntry(term);
   planning::TermCheckOptions options;
   options.trials = trials;
   options.seed = seed;
@@ -119,16 +119,8 @@ py::list CheckTerm(const py::object& term, const PartRegistries* registries, int
   }
   const std::string complaint = planning::Complaint(rows);
   if (complaint.empty()) return told;
-  const auto worst = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
-    return a.errors.worst() < b.errors.worst();
-  });
-  const solvers::DerivativeErrors& errors = worst->errors;
-  throw py::value_error(std::string("term ") + entry.info.name + ": " + complaint +
-                        "; the worst relative errors: gradient " +
-                        std::to_string(errors.gradient) + ", Hessian " +
-                        std::to_string(errors.hessian) + ", residuals " +
-                        std::to_string(errors.residual_jacobian) + ", rows " +
-                        std::to_string(errors.row_jacobian));
+  throw py::value_error(
+      WhatIsWrong(entry.info.name, complaint, rows, !named && !py::hasattr(term, "jacobian")));
 }
 
 }  // namespace

@@ -19,14 +19,36 @@ using PointsIn = Eigen::Ref<const Points>;
 
 namespace {
 
-py::array_t<bool> Blocked(const MapLook& look, const PointsIn& points) {
+template <class Work>
+auto Look(const MapLook& look, Work&& work) {
   const InUse::Share share(look.use);
-  py::array_t<bool> blocked(points.rows());
-  bool* out = blocked.mutable_data();
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
-    out[i] = look.get().IsBlocked(Eigen::Vector3d(points.row(i)));
-  }
-  return blocked;
+  return work(look.get());
+}
+
+template <class Ask>
+py::array_t<bool> OfPoints(const MapLook& look, const PointsIn& points, const Ask& ask) {
+  py::array_t<bool> told(points.rows());
+  bool* out = told.mutable_data();
+  Look(look, [&](const OccupancyMap& map) {
+    WithoutLock([&] {
+      for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        out[i] = ask(map, Eigen::Vector3d(points.row(i)));
+      }
+    });
+  });
+  return told;
+}
+
+py::array_t<bool> Blocked(const MapLook& look, const PointsIn& points) {
+  return OfPoints(look, points, [](const OccupancyMap& map, const Eigen::Vector3d& p) {
+    return map.IsBlocked(p);
+  });
+}
+
+py::array_t<bool> ObservedFree(const MapLook& look, const PointsIn& points) {
+  return OfPoints(look, points, [](const OccupancyMap& map, const Eigen::Vector3d& p) {
+    return map.HasIndex(p) && map.IsObservedFree(map.CellOf(p));
+  });
 }
 
 py::array_t<std::uint8_t> States(const MapLook& look) {
@@ -54,13 +76,24 @@ double FirstBlocked(const MapLook& look, const planning::UniformBspline& curve,
 template <class Class>
 void DefLooks(Class& c) {
   c.def_property_readonly(
-       "resolution", [](const MapLook& l) { return l.get().resolution(); }, "Side of a cell [m].")
+       "resolution",
+       [](const MapLook& l) { return Look(l, [](const auto& map) { return map.resolution(); }); },
+       "Side of a cell [m].")
       .def_property_readonly(
-          "origin", [](const MapLook& l) { return Eigen::Vector3i(l.get().origin()); },
+          "origin",
+          [](const MapLook& l) {
+            return Look(l, [](const auto& map) { return Eigen::Vector3i(map.origin()); });
+          },
           "Lowest cell of the window: the cell of a place p is floor(p / resolution).")
       .def_property_readonly(
-          "size", [](const MapLook& l) { return Eigen::Vector3i(l.get().size()); },
+          "size",
+          [](const MapLook& l) {
+            return Look(l, [](const auto& map) { return Eigen::Vector3i(map.size()); });
+          },
           "Of the window along x, y and z [cells].")
+      .def("observed_free", &ObservedFree, "points"_a,
+           "Whether the cells of places of shape (n, 3) [m] were observed free: (n,). Out of the "
+           "window: no.")
       .def("blocked", &Blocked, "points"_a,
            "Whether places of shape (n, 3) [m] are blocked after inflation: (n,). Out of the "
            "window: no.")
@@ -72,7 +105,10 @@ void DefLooks(Class& c) {
            "floor"_a = -std::numeric_limits<double>::infinity(),
            "ceiling"_a = std::numeric_limits<double>::infinity(), Doc("FirstBlockedTime"))
       .def(
-          "count_observed_free", [](const MapLook& l) { return l.get().CountObservedFree(); },
+          "count_observed_free",
+          [](const MapLook& l) {
+            return Look(l, [](const auto& map) { return map.CountObservedFree(); });
+          },
           Doc("OccupancyMap::CountObservedFree"));
 }
 
@@ -89,18 +125,23 @@ void SetOccupied(OwnMap& self, const PointsIn& points) {
   });
 }
 
-void SetStates(OwnMap& self, const py::array_t<std::uint8_t, py::array::c_style>& states) {
+void SetStates(OwnMap& self, const py::array& given) {
+  const std::string kind = py::str(given.dtype().attr("kind"));
+  const bool whole = kind == "i" || kind == "u";
+  if (!whole || given.ndim() != 3 ||
+      (given.size() > 0 && (py::cast<double>(given.attr("min")()) < 0.0 ||
+                            py::cast<double>(given.attr("max")()) > 2.0))) {
+    throw py::value_error(
+        "states must be whole numbers 0, 1 and 2 of the shape (size z, size y, size x) of the map");
+  }
+  const py::array_t<std::uint8_t, py::array::c_style> states = given.attr("astype")("uint8");
   Change(self, [&](OccupancyMap& map) {
     const Eigen::Vector3i size = map.size();
-    if (states.ndim() != 3 || states.shape(0) != size.z() || states.shape(1) != size.y() ||
-        states.shape(2) != size.x()) {
+    if (states.shape(0) != size.z() || states.shape(1) != size.y() || states.shape(2) != size.x()) {
       throw py::value_error("states has the shape " + std::string(py::str(states.attr("shape"))) +
                             ", it must be (size z, size y, size x) of the map");
     }
     const std::uint8_t* at = states.data();
-    for (py::ssize_t i = 0; i < states.size(); ++i) {
-      if (at[i] > 2) throw py::value_error("a state is none of 0, 1, 2");
-    }
     planning::ForEachCell({map.origin(), map.origin() + size}, [&](const planning::CellIndex& c) {
       map.SetState(c, static_cast<planning::CellState>(*at++));
     });
@@ -122,11 +163,6 @@ void Integrate(OwnMap& self, const estimation::DepthFrame& frame, const planning
 }
 
 }  // namespace
-
-const OccupancyMap& MapLook::get() const {
-  if (it_ == nullptr) throw std::runtime_error("this map is of a call that has ended");
-  return *it_;
-}
 
 void BindMap(py::module_& m) {
   using Options = OccupancyMapOptions;

@@ -17,50 +17,59 @@ using evaluation::Registries;
 
 namespace {
 
+std::string NameOf(const planning::TermEntry& entry) { return entry.info.name; }
+std::string NameOf(const evaluation::Part& part) { return part.name; }
+
 /// The registry is as before where something is wrong.
 template <class Entry>
-void Enter(PartRegistries& self, std::vector<Entry> Registries::*registry, Entry entry) {
+void Enter(PartRegistries& self, std::vector<Entry> Registries::*registry, Entry entry,
+           bool replace) {
   Registries changed = self.all;
+  const std::string name = NameOf(entry);
+  if (replace && self.own.count(name) > 0) {
+    std::erase_if(changed.*registry, [&](const Entry& old) { return NameOf(old) == name; });
+  }
   (changed.*registry).push_back(std::move(entry));
   evaluation::RequireDistinct(changed);
   self.all = std::move(changed);
+  self.own.insert(name);
 }
 
-void EnterTerm(PartRegistries& self, const py::object& type, bool check) {
+void EnterTerm(PartRegistries& self, const py::object& type, bool check, bool replace) {
   auto time = std::make_shared<TermTime>();
   const planning::TermEntry entry = PythonTermEntry(type, time);
   const std::string name = entry.info.name;
-  Enter(self, &Registries::terms, entry);
   if (check) {
     planning::TermCheckOptions options;
     options.trials = 2;
-    const std::string complaint =
-        WithoutLock([&] { return planning::Complaint(planning::CheckTerm(entry, options)); });
+    const auto rows = WithoutLock([&] { return planning::CheckTerm(entry, options); });
+    const std::string complaint = planning::Complaint(rows);
     if (!complaint.empty()) {
-      self.all.terms.pop_back();
-      throw py::value_error(std::string("term ") + name + ": " + complaint);
+      throw py::value_error(WhatIsWrong(name, complaint, rows, !py::hasattr(type, "jacobian")));
     }
   }
+  Enter(self, &Registries::terms, entry, replace);
   *time = {};
   self.term_times[name] = time;
 }
 
-void Add(PartRegistries& self, const py::object& type, bool check) {
+void Add(PartRegistries& self, const py::object& type, bool check, bool replace) {
+  const InUse::Claim claim(self.use);
   const py::module_ parts = py::module_::import("touchdown._parts");
   const auto derives = [&](const py::object& base) {
     return PyType_Check(type.ptr()) && PyObject_IsSubclass(type.ptr(), base.ptr()) == 1;
   };
   if (derives(py::module_::import("touchdown._terms").attr("Term"))) {
-    return EnterTerm(self, type, check);
+    return EnterTerm(self, type, check, replace);
   }
   if (derives(parts.attr("Planner"))) {
-    return Enter(self, &Registries::planners, PythonPlannerEntry(type));
+    return Enter(self, &Registries::planners, PythonPlannerEntry(type), replace);
   }
   if (derives(parts.attr("Controller"))) {
-    return Enter(self, &Registries::controllers, PythonControllerEntry(type));
+    return Enter(self, &Registries::controllers, PythonControllerEntry(type), replace);
   }
   if (derives(parts.attr("PadPredictor"))) {
-    return Enter(self, &Registries::predictors, PythonPredictorEntry(type));
+    return Enter(self, &Registries::predictors, PythonPredictorEntry(type), replace);
   }
   throw py::type_error(std::string(py::repr(type)) +
                        " is no class that derives from Term, Planner, Controller or PadPredictor");
@@ -140,12 +149,12 @@ void BindRegistries(py::module_& m) {
       "What scenarios can ask for: the parts of the library, and what `add` enters. Parts of "
       "Python fly in this process, one flight at a time.")
       .def(py::init<>())
-      .def("add", &Add, "part"_a, "check"_a = true,
+      .def("add", &Add, "part"_a, "check"_a = true, "replace"_a = false,
            "Enters a class that derives from Term, Planner, Controller or PadPredictor. The "
            "derivatives of a term are "
            "checked at once, unless `check` is False. Raises ValueError that says what is wrong, "
            "or whose name there "
-           "is already.")
+           "is already, unless `replace` is True and it was entered here.")
       .def_property_readonly(
           "backends", [=](const PartRegistries& r) { return names(r.all.backends); }, "Names.")
       .def_property_readonly(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One replanning step, what it proves, and what it tried.
+#include <map>
 #include <memory>
 
 #include <nlohmann/json.hpp>
@@ -26,37 +27,45 @@ namespace {
 class OwnReplanner {
  public:
   OwnReplanner(const ReplannerOptions& options, const PartRegistries* registries)
-      : use("Replanner"), planner_(With(options, registries), solvers::StandardBackends()) {}
+      : use("Replanner"), planner_(Made(With(options, registries))) {}
+
+  ~OwnReplanner() {
+    const UnderWay under_way;
+    const py::gil_scoped_release release;  // a backend may wait for another one's solve
+    planner_.reset();
+  }
+  OwnReplanner(const OwnReplanner&) = delete;
+  OwnReplanner& operator=(const OwnReplanner&) = delete;
 
   void CommitHover(const Eigen::Vector3d& p_W, double t) {
     const InUse::Claim claim(use);
     if (!p_W.allFinite() || !std::isfinite(t)) throw py::value_error("p_W and t must be finite");
-    WithoutLock([&] { planner_.CommitHover(p_W, t); });
+    WithoutLock([&] { planner_->CommitHover(p_W, t); });
     hovers_ = true;
   }
 
   std::unique_ptr<Replanned> Replan(const MapLook& map, const ReplanInput& input,
                                     const py::object& pad, bool explain) {
     return Ask(map, input, pad, explain, [&](const ReplanInput& asked) -> const ReplanResult& {
-      return planner_.Replan(asked, map.get());
+      return planner_->Replan(asked, map.get());
     });
   }
   std::unique_ptr<Replanned> Rest(const MapLook& map, const ReplanInput& input,
                                   const py::object& pad, double climb, bool explain) {
     if (!std::isfinite(climb)) throw py::value_error("climb must be finite");
     return Ask(map, input, pad, explain, [&](const ReplanInput& asked) -> const ReplanResult& {
-      return planner_.Rest(asked, climb, map.get());
+      return planner_->Rest(asked, climb, map.get());
     });
   }
 
   void TakeOverAt(double t) {
     const InUse::Claim claim(use);
-    planner_.TakeOverAt(t);
+    planner_->TakeOverAt(t);
   }
   planning::FlatState Reference(double t) {
     const InUse::Share share(use);
     if (!hovers_) throw py::value_error("reference before commit_hover: nothing is flown");
-    return planner_.Reference(t);
+    return planner_->Reference(t);
   }
 
   InUse use;
@@ -76,20 +85,26 @@ class OwnReplanner {
     input.pad = prediction.get();
     auto replanned = std::make_unique<Replanned>();
     planning::ReplanLog log;
-    planner_.set_log(explain ? &log : nullptr);
+    planner_->set_log(explain ? &log : nullptr);
     try {
       WithoutLock([&] { replanned->result = question(input); });
     } catch (...) {
-      planner_.set_log(nullptr);
+      planner_->set_log(nullptr);
       throw;
     }
-    planner_.set_log(nullptr);
+    planner_->set_log(nullptr);
     replanned->Keep();
     if (explain) replanned->attempts = evaluation::AttemptsJson(log).dump();
     return replanned;
   }
 
-  planning::Replanner planner_;
+  static std::unique_ptr<planning::Replanner> Made(const ReplannerOptions& options) {
+    return WithoutLock([&] {
+      return std::make_unique<planning::Replanner>(options, solvers::StandardBackends());
+    });
+  }
+
+  std::unique_ptr<planning::Replanner> planner_;
   bool hovers_ = false;
 };
 
@@ -111,7 +126,16 @@ void BindOptions(py::module_& m) {
   using Options = ReplannerOptions;
   Plain<Options>(m, "ReplannerOptions")
       .Field("backend", &Options::backend)
-      .Field("solver_options", &Options::solver_options)
+      .Field(
+          "solver_options",
+          [](const Options& o) {
+            py::dict options;
+            for (const auto& [name, value] : o.solver_options) options[py::str(name)] = value;
+            return options;
+          },
+          [](Options& o, const std::map<std::string, double>& options) {
+            o.solver_options.assign(options.begin(), options.end());
+          })
       .Field("arrival", &Options::arrival)
       .Field("limits", &Options::limits)
       .Field("floor_height", &Options::floor_height)

@@ -51,6 +51,11 @@ std::unique_ptr<OwnProblem> MakeProblem(int blocks, int block_size, bool free_in
 void Add(OwnProblem& self, const py::object& term, solvers::Role role) {
   const InUse::Claim claim(self.use);
   const solvers::ProblemShape& shape = self.problem().shape();
+  const std::string name = py::str(term.attr("name"));
+  for (int i = 0; i < self.problem().num_terms(); ++i) {
+    if (self.problem().term(i).info().name != name) continue;
+    throw py::value_error("there is a term " + name + " already: give this one another `name`");
+  }
   self.problem().AddTerm(MakePythonTerm(term, shape.blocks, shape.block_size), role);
 }
 
@@ -66,7 +71,15 @@ py::dict EvaluateAt(Solvable& self, const Vector& y, bool gradient, bool hessian
   });
   py::dict told;
   told["ok"] = at.full.ok;
-  told["failure"] = at.full.failure;
+  std::string failure = at.full.failure;
+  if (!at.full.ok && failure.empty()) {
+    const int failed = at.full.failed_term;
+    failure = failed < 0 ? "there is no boundary yet, or the sum of the terms is not finite"
+                         : "term " + view.problem().term(failed).info().name + " is not finite";
+  }
+  told["failure"] = failure;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  if (!at.full.ok) std::fill(at.gradient.begin(), at.gradient.end(), nan);
   told["cost"] = at.full.value;
   told["max_violation"] = at.full.max_violation;
   py::dict costs;
@@ -141,13 +154,30 @@ class Solver {
  public:
   Solver(const std::string& backend, const py::dict& options)
       : use("Solver"), backend_(solvers::MakeBackend(solvers::StandardBackends(), backend)) {
-    for (const auto& [name, value] : options) Set(name.cast<std::string>(), value.cast<double>());
+    for (const auto& [name, value] : options) {
+      const std::string word = py::str(name);
+      if (!py::isinstance<py::float_>(value) && !py::isinstance<py::int_>(value)) {
+        throw py::type_error("option " + word + " is " + std::string(py::repr(value)) +
+                             ", it must be a number");
+      }
+      Set(word, value.cast<double>());
+    }
   }
+  ~Solver() {
+    const UnderWay under_way;
+    const py::gil_scoped_release release;  // a backend may wait for another one's solve
+    backend_.reset();
+  }
+  Solver(const Solver&) = delete;
+  Solver& operator=(const Solver&) = delete;
 
   void Set(const std::string& option, double value) { backend_->options().Set(option, value); }
   const std::string& name() const { return backend_->name(); }
   const solvers::SolverOptions& options() const { return backend_->options(); }
-  std::string Refusal(const Solvable& problem) const { return backend_->Refusal(problem.view()); }
+  std::string Refusal(Solvable& problem) {
+    const InUse::Share mine(use), its(problem.use);
+    return backend_->Refusal(problem.view());
+  }
 
   std::unique_ptr<SolverResult> Solve(Solvable& problem, const Vector& start,
                                       std::vector<std::vector<double>> multipliers,
@@ -243,7 +273,8 @@ void BindResult(py::module_& m) {
                              "No step is worth taking.");
   py::class_<SolverResult>(m, "SolverResult", Doc("SolverSummary"))
       .def_readonly("status", &SolverResult::status, Doc("SolveStatus"))
-      .def_readonly("x", &SolverResult::x, Doc("SolverResult::x"))
+      .def_property_readonly(
+          "x", [](const SolverResult& r) { return Eigen::VectorXd(r.x); }, Doc("SolverResult::x"))
       .def_readonly("cost", &SolverResult::cost, "Of the point.")
       .def_property_readonly("cost_by_term", &CostByTerm, Doc("TermCost"))
       .def_readonly("max_violation", &SolverResult::max_violation,
@@ -334,7 +365,8 @@ void BindSolve(py::module_& m) {
           "How many numbers a point has.")
       .def_property_readonly(
           "terms",
-          [](const Solvable& p) {
+          [](Solvable& p) {
+            const InUse::Share share(p.use);
             py::list names;
             for (int i = 0; i < p.view().problem().num_terms(); ++i) {
               names.append(p.view().problem().term(i).info().name);
@@ -363,7 +395,12 @@ void BindSolve(py::module_& m) {
           },
           "lower"_a, "upper"_a, Doc("Problem::SetBounds"))
       .def_property_readonly(
-          "convex", [](OwnProblem& p) { return p.problem().convex(); }, Doc("Problem::convex"));
+          "convex",
+          [](OwnProblem& p) {
+            const InUse::Share share(p.use);
+            return p.problem().convex();
+          },
+          Doc("Problem::convex"));
   py::class_<Solver>(
       m, "Solver",
       "A backend with its options. It keeps its memory from solve to solve of one structure.")
@@ -379,7 +416,10 @@ void BindSolve(py::module_& m) {
           "name"_a, "value"_a, Doc("SolverOptions::Set"))
       .def(
           "option",
-          [](const Solver& self, const std::string& name) { return self.options().Get(name); },
+          [](Solver& self, const std::string& name) {
+            const InUse::Share share(self.use);
+            return self.options().Get(name);
+          },
           "name"_a, Doc("SolverOptions::Get"))
       .def("refusal", &Solver::Refusal, "problem"_a, Doc("SolverBackend::Refusal"))
       .def("solve", &Solver::Solve, "problem"_a, "start"_a,

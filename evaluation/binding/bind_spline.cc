@@ -76,12 +76,21 @@ std::shared_ptr<const PadPrediction> MovingGoalOf(const py::object& position) {
   return std::make_shared<planning::MovingGoal>(ask);
 }
 
+/// What a prediction says. What a goal or a prediction of Python raises is raised.
+template <class Work>
+auto Asked(const Prediction& prediction, Work&& work) {
+  const PadPrediction& it = prediction.get();
+  return WithoutLock([&] { return work(it); });
+}
+
 Points PositionsAt(const Prediction& prediction, const Eigen::VectorXd& times) {
-  Points points(times.size(), 3);
-  for (Eigen::Index i = 0; i < times.size(); ++i) {
-    points.row(i) = prediction.get().MeanAt(times[i]).p_WP.transpose();
-  }
-  return points;
+  return Asked(prediction, [&](const PadPrediction& it) {
+    Points points(times.size(), 3);
+    for (Eigen::Index i = 0; i < times.size(); ++i) {
+      points.row(i) = it.MeanAt(times[i]).p_WP.transpose();
+    }
+    return points;
+  });
 }
 
 /// Control points of the shape that Python gives them in: one per row.
@@ -197,11 +206,6 @@ void BindTaylor(py::module_& m) {
 
 }  // namespace
 
-const PadPrediction& Prediction::get() const {
-  if (it_ == nullptr) throw std::runtime_error("this prediction is of a call that has ended");
-  return *it_;
-}
-
 std::shared_ptr<const PadPrediction> PredictionOf(const py::object& object) {
   if (py::isinstance<Prediction>(object)) {
     const auto& prediction = object.cast<const Prediction&>();
@@ -220,12 +224,13 @@ Loan::Loan(const PadPrediction* prediction) {
     object_ = py::none();
     return;
   }
-  lent_ = std::make_shared<Prediction>(prediction);
+  lent_ = std::make_shared<Prediction>();
+  lent_->lent.Lend(prediction);
   object_ = py::cast(lent_);
 }
 
 Loan::~Loan() {
-  if (lent_) lent_->Return();
+  if (lent_) lent_->lent.Return();
 }
 
 void BindSpline(py::module_& m) {
@@ -233,8 +238,11 @@ void BindSpline(py::module_& m) {
   BindTaylor(m);
   py::class_<Prediction, std::shared_ptr<Prediction>>(m, "PadPrediction", Doc("PadPrediction"))
       .def(
-          "at", [](const Prediction& p, double t) { return p.get().At(t); }, "t"_a,
-          Doc("PadPrediction::At"))
+          "at",
+          [](const Prediction& p, double t) {
+            return Asked(p, [&](const PadPrediction& it) { return it.At(t); });
+          },
+          "t"_a, Doc("PadPrediction::At"))
       .def("positions", &PositionsAt, "times"_a, "Positions at times of shape (n,): (n, 3) [m].")
       .def_property_readonly(
           "has_deck", [](const Prediction& p) { return p.get().has_deck(); },
@@ -242,7 +250,9 @@ void BindSpline(py::module_& m) {
       .def(
           "end_state",
           [](const Prediction& p, const planning::EndpointTarget& endpoint, double t_arrival) {
-            return planning::EndStateAt(p.get(), endpoint, t_arrival).state;
+            return Asked(p, [&](const PadPrediction& it) {
+              return planning::EndStateAt(it, endpoint, t_arrival).state;
+            });
           },
           "endpoint"_a, "t_arrival"_a, Doc("EndStateAt"));
   m.def(
@@ -305,6 +315,18 @@ void BindSpline(py::module_& m) {
                             "body_rate"_a = bounds.body_rate);
           },
           "pull_W"_a = Eigen::Vector3d(Eigen::Vector3d::Zero()), Doc("DerivativeBounds"))
+      .def(py::pickle(
+          [](const UniformBspline& curve) {
+            return py::make_tuple(Points(curve.control_points().transpose()), curve.interval(),
+                                  curve.t0());
+          },
+          [](const py::tuple& state) {
+            return MakeCurve(state[0].cast<Points>(), state[1].cast<double>(),
+                             state[2].cast<double>());
+          }))
+      .def("__copy__", [](const UniformBspline& curve) { return UniformBspline(curve); })
+      .def("__deepcopy__",
+           [](const UniformBspline& curve, const py::dict&) { return UniformBspline(curve); })
       .def("__repr__", [](const UniformBspline& curve) {
         return "UniformBspline(" + std::to_string(curve.segments() + 3) +
                " control points, t = " + std::string(py::str(py::float_(curve.t0()))) + " to " +

@@ -33,7 +33,7 @@ class Call {
   void Keep(const pybind11::error_already_set& error);
   /// An error is kept: what is called may end.
   bool failed() const { return error_.has_value(); }
-  /// What is kept is Ctrl-C. Then the call around this one fails, too.
+  /// What is kept is no Exception, but Ctrl-C or the interpreter's end. Then the call around this one fails, too.
   bool interrupted();
   /// What is kept, in words.
   std::string what() const;
@@ -48,10 +48,27 @@ class Call {
   std::chrono::steady_clock::time_point looked_;
 };
 
+/// When the interpreter ends, calls of other threads than its main one end before it, as by Ctrl-C, and later ones never
+/// return. Once, when the module is imported.
+void HearOfTheEnd();
+
+/// A call is under way in this thread. The lock is held.
+class UnderWay {
+ public:
+  UnderWay();
+  ~UnderWay();
+  UnderWay(const UnderWay&) = delete;
+  UnderWay& operator=(const UnderWay&) = delete;
+};
+
+/// The interpreter ends, and this is not its main thread.
+bool MustEndWithIt();
+
 /// Calls `work` without the lock. What Python code that it calls raises, and Ctrl-C, is raised in the end, before
 /// what C++ throws.
 template <class Work>
 auto WithoutLock(Work&& work) {
+  const UnderWay under_way;
   Call call;
   std::exception_ptr thrown;
   using Result = std::invoke_result_t<Work>;
@@ -82,26 +99,25 @@ auto WithoutLock(Work&& work) {
   }
 }
 
-/// Calls `work`, which uses Python, with the lock. @throws PythonRaised
+/// Calls `work`, which uses Python, with the lock. @throws PythonRaised; where no call waits what was raised itself
 template <class Work>
 auto WithLock(Work&& work) {
   Call* call = Call::Now();
   if (call != nullptr && call->failed()) throw PythonRaised("an earlier call raised");
+  if (MustEndWithIt()) throw PythonRaised("the interpreter ends");
   const pybind11::gil_scoped_acquire acquire;
   try {
     return work();
   } catch (const pybind11::error_already_set& error) {
+    if (call == nullptr) throw;
     const std::string what = error.what();
-    if (call != nullptr) call->Keep(error);
+    call->Keep(error);
     throw PythonRaised(what);
   } catch (const pybind11::builtin_exception& error) {  // ours, about what Python returned
+    if (call == nullptr) throw;
     const std::string what = error.what();
     error.set_error();
-    if (call != nullptr) {
-      call->Keep(pybind11::error_already_set());
-    } else {
-      PyErr_Clear();
-    }
+    call->Keep(pybind11::error_already_set());
     throw PythonRaised(what);
   }
 }

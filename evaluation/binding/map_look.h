@@ -9,25 +9,23 @@ namespace touchdown::binding {
 /// A map that may be looked at: one's own, or one that is lent for a call.
 class MapLook {
  public:
-  explicit MapLook(const planning::OccupancyMap* map) : it_(map) {}
+  MapLook() = default;
   MapLook(const MapLook&) = delete;
   MapLook& operator=(const MapLook&) = delete;
   virtual ~MapLook() = default;
 
-  /// Raises RuntimeError once the call that it was lent for has ended.
-  const planning::OccupancyMap& get() const;
-  void Return() { it_ = nullptr; }
+  /// Raises RuntimeError for one that is lent no more.
+  virtual const planning::OccupancyMap& get() const { return lent.get("this map"); }
 
+  Lent<planning::OccupancyMap> lent;
   mutable InUse use{"map"};
-
- private:
-  const planning::OccupancyMap* it_;
 };
 
 /// A map that Python owns.
 class OwnMap : public MapLook {
  public:
-  explicit OwnMap(const planning::OccupancyMapOptions& options) : MapLook(&map_), map_(options) {}
+  explicit OwnMap(const planning::OccupancyMapOptions& options) : map_(options) {}
+  const planning::OccupancyMap& get() const override { return map_; }
   planning::OccupancyMap& map() { return map_; }
 
  private:

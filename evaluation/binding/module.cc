@@ -3,6 +3,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/binding/bind.h"
+#include "evaluation/binding/call.h"
 
 namespace touchdown::binding {
 
@@ -23,6 +24,14 @@ PYBIND11_MODULE(_touchdown, m) {
     m.attr(name.c_str()) = literal[py::tuple(py::cast(words))];
   }
   py::register_exception<touchdown::evaluation::BadInput>(m, "BadInput", PyExc_ValueError);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const py::cast_error&) {
+      PyErr_SetString(PyExc_TypeError, "a value is of another type than is asked for");
+    }
+  });
+  HearOfTheEnd();
   BindLosses(m);
   BindSolve(m);
   BindSpline(m);

@@ -3,11 +3,13 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include <pybind11/pybind11.h>
 
+#include "evaluation/binding/bind.h"
 #include "evaluation/binding/python_term.h"
 #include "touchdown/evaluation/scenario/registries.h"
 
@@ -16,7 +18,9 @@ namespace touchdown::binding {
 /// What a program of one's own offers: the library's parts, and those of Python.
 struct PartRegistries {
   evaluation::Registries all = evaluation::StandardRegistries();
+  std::set<std::string> own;                                    ///< names of what was entered
   std::map<std::string, std::shared_ptr<TermTime>> term_times;  ///< of terms of Python
+  InUse use{"Registries"};
 };
 
 /// {name: {"weight": ..., "hard": ..., parameter: ...}}

@@ -6,6 +6,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include "evaluation/binding/bind.h"
 #include "touchdown/estimation/pad/pad_prediction.h"
 
 namespace touchdown::binding {
@@ -13,20 +14,20 @@ namespace touchdown::binding {
 /// A prediction that C++ has lent to Python for a call, or one that Python owns.
 class Prediction {
  public:
+  Prediction() = default;
   explicit Prediction(std::shared_ptr<const estimation::PadPrediction> owned)
-      : owned_(std::move(owned)), it_(owned_.get()) {}
-  /// Lent: until Return.
-  explicit Prediction(const estimation::PadPrediction* lent) : it_(lent) {}
-  void Lend(const estimation::PadPrediction* lent) { it_ = lent; }
-  void Return() { it_ = nullptr; }
+      : owned_(std::move(owned)) {}
 
-  /// Raises RuntimeError after Return.
-  const estimation::PadPrediction& get() const;
+  /// Raises RuntimeError for one that is lent no more.
+  const estimation::PadPrediction& get() const {
+    return owned_ ? *owned_ : lent.get("this prediction");
+  }
   const std::shared_ptr<const estimation::PadPrediction>& owned() const { return owned_; }
+
+  Lent<estimation::PadPrediction> lent;
 
  private:
   std::shared_ptr<const estimation::PadPrediction> owned_;
-  const estimation::PadPrediction* it_;
 };
 
 /// What C++ can ask: of a Prediction that Python owns, or of any object with at(t), which gives a PadState. Raises

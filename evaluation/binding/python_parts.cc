@@ -59,14 +59,14 @@ py::object MakePart(const py::object& type, const evaluation::PartSetup& setup) 
 /// Lends a map for a call.
 class MapLoan {
  public:
-  explicit MapLoan(const OccupancyMap& map) : lent_(std::make_shared<MapLook>(&map)) {}
-  ~MapLoan() { lent_->Return(); }
+  explicit MapLoan(const OccupancyMap& map) { lent_->lent.Lend(&map); }
+  ~MapLoan() { lent_->lent.Return(); }
   MapLoan(const MapLoan&) = delete;
   MapLoan& operator=(const MapLoan&) = delete;
   py::object object() const { return py::cast(lent_); }
 
  private:
-  std::shared_ptr<MapLook> lent_;
+  std::shared_ptr<MapLook> lent_ = std::make_shared<MapLook>();
 };
 
 /// Holds what `plan` of the object gives; brakes and climbs by itself.
@@ -159,6 +159,14 @@ class PythonPlanner : public planning::Planner {
         throw py::value_error(
             "planner " + name_ + ": the curve starts at t0 = " + std::to_string((*curve)->t0()) +
             " s, it must be request.t_start = " + std::to_string(input.t_start) + " s");
+      }
+      const Eigen::Vector3d p = (*curve)->Position(input.t_start);
+      const double off =
+          std::min((p - StartAt(input.t_start).p).norm(), (p - input.vehicle.p_WB).norm());
+      constexpr double kFarthest = 0.1;  // [m]
+      if (off > kFarthest) {
+        throw py::value_error("planner " + name_ + ": the curve starts " + std::to_string(off) +
+                              " m from request.start.p");
       }
       return false;
     });

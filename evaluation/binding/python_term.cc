@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/binding/python_term.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -168,7 +171,7 @@ class PythonMap : public solvers::BatchMap {
   void Update(const planning::LandingContext& context) {
     pad_ = context.pad;
     WithLock([&] {
-      const Lent lent(*this);
+      const PadLoan loan(*this);
       term_.get().attr("update")(TermContext{context.segments, context.start, context.t0,
                                              context.interval, context.target, context.limits,
                                              context.pull_W, lent_});
@@ -178,12 +181,12 @@ class PythonMap : public solvers::BatchMap {
 
  private:
   /// The pad of the solve may be asked while the object is.
-  class Lent {
+  class PadLoan {
    public:
-    explicit Lent(const PythonMap& map) : map_(map) { map_.lent_->Lend(map_.pad_); }
-    ~Lent() { map_.lent_->Return(); }
-    Lent(const Lent&) = delete;
-    Lent& operator=(const Lent&) = delete;
+    explicit PadLoan(const PythonMap& map) : map_(map) { map_.lent_->lent.Lend(map_.pad_); }
+    ~PadLoan() { map_.lent_->lent.Return(); }
+    PadLoan(const PadLoan&) = delete;
+    PadLoan& operator=(const PadLoan&) = delete;
 
    private:
     const PythonMap& map_;
@@ -193,16 +196,16 @@ class PythonMap : public solvers::BatchMap {
   void Ask(const solvers::WindowBatch& batch, const Work& work) const {
     const auto begin = std::chrono::steady_clock::now();
     WithLock([&] {
-      const Lent lent(*this);
+      const PadLoan loan(*this);
       const py::ssize_t n = batch.size, w = shape_.window, d = shape_.block_size;
       work(windows_type_.get()(py::array_t<double>({n, w, d}, batch.q), batch.h,
                                py::array_t<double>(n, batch.t), py::array_t<int>(n, batch.window)));
+      if (!time_) return;
+      ++time_->calls;
+      time_->windows += batch.size;
+      time_->wall_s +=
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     });
-    if (!time_) return;
-    ++time_->calls;
-    time_->windows += batch.size;
-    time_->wall_s +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
   Kept term_;
@@ -214,8 +217,7 @@ class PythonMap : public solvers::BatchMap {
   solvers::OwnSlopes own_ = solvers::OwnSlopes::kNone;
   int windows_ = 0, first_ = 0;
   const estimation::PadPrediction* pad_ = nullptr;  // of the solve
-  std::shared_ptr<Prediction> lent_ =
-      std::make_shared<Prediction>(static_cast<const estimation::PadPrediction*>(nullptr));
+  std::shared_ptr<Prediction> lent_ = std::make_shared<Prediction>();
 };
 
 /// The same in a landing: told of every solve, and pressed harder.
@@ -247,6 +249,10 @@ Kept::Kept(py::object object)
 
 std::shared_ptr<solvers::Term> MakePythonTerm(const py::object& term, int blocks, int block_size,
                                               std::shared_ptr<TermTime> time) {
+  if (!py::isinstance(term, py::module_::import("touchdown._terms").attr("Term"))) {
+    throw py::type_error(std::string(py::repr(term)) +
+                         " is no instance of a class that derives from touchdown.Term");
+  }
   const solvers::TermInfo info = InfoOf(term);
   solvers::BatchShape shape;
   shape.block_size = block_size;
@@ -254,6 +260,7 @@ std::shared_ptr<solvers::Term> MakePythonTerm(const py::object& term, int blocks
   shape.outputs = Attribute<int>(term, "outputs", info.name);
   shape.uses_interval = Attribute<bool>(term, "uses_interval", info.name);
   shape.linear = Attribute<bool>(term, "linear", info.name);
+  shape.scale = Attribute<double>(term, "scale", info.name);
   shape.max_windows = std::max(0, blocks - shape.window + 1);
   if (shape.window < 1 || shape.window > solvers::kMaxWindow || shape.window > blocks) {
     throw py::value_error(Of(info.name, "window is " + std::to_string(shape.window) +
@@ -263,6 +270,29 @@ std::shared_ptr<solvers::Term> MakePythonTerm(const py::object& term, int blocks
   const solvers::AnyLoss loss = LossOf(term, info.name);
   auto map = std::make_shared<PythonMap>(Kept(term), shape, info.name, blocks, std::move(time));
   return std::make_shared<PythonTerm>(info, shape, loss, std::move(map));
+}
+
+std::string WhatIsWrong(const std::string& term, const std::string& complaint,
+                        const std::vector<planning::TermCheckRow>& rows, bool differenced) {
+  const auto worst = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
+    return a.errors.worst() < b.errors.worst();
+  });
+  std::ostringstream text;
+  text << "term " << term << ": " << complaint;
+  if (std::isfinite(worst->errors.worst()) &&
+      worst->errors.worst() > planning::kTermCheckTolerance) {
+    text << "; at worst, with "
+         << (worst->arrival == planning::ArrivalMode::kFree ? "free" : "fixed")
+         << " arrival, relative errors are " << worst->errors.gradient << " of the gradient, "
+         << worst->errors.hessian << " of the Hessian, " << worst->errors.residual_jacobian
+         << " of residuals, " << worst->errors.row_jacobian << " of rows";
+    if (differenced) {
+      text << "; without a jacobian that says: u is not smooth over its `scale`, it depends on h "
+              "or t without "
+              "uses_interval, or it is not linear though it says so";
+    }
+  }
+  return text.str();
 }
 
 planning::TermEntry PythonTermEntry(const py::object& type) {

@@ -4,11 +4,13 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <pybind11/pybind11.h>
 
 #include "evaluation/binding/predictions.h"
 #include "touchdown/planning/problem/landing_term.h"
+#include "touchdown/planning/problem/term_check.h"
 #include "touchdown/solvers/problem/batch_term.h"
 
 namespace touchdown::binding {
@@ -31,6 +33,10 @@ planning::TermEntry PythonTermEntry(const pybind11::object& type);
 
 /// `time` gets what the entry's terms cost.
 planning::TermEntry PythonTermEntry(const pybind11::object& type, std::shared_ptr<TermTime> time);
+
+/// One sentence on a term whose check has a complaint; `differenced`: it has no slopes of its own.
+std::string WhatIsWrong(const std::string& term, const std::string& complaint,
+                        const std::vector<planning::TermCheckRow>& rows, bool differenced);
 
 /// What a solve is about, as its terms are told: touchdown's LandingContext without what ends with the call.
 struct TermContext {

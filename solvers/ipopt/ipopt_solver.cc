@@ -27,9 +27,10 @@ namespace {
 /// as converged.
 constexpr double kStationary = 1e-6;
 
-/// Held while anything of Ipopt's runs, in whichever instance.
-std::mutex& IpoptMutex() {
-  static std::mutex mutex;
+/// Held while anything of Ipopt's runs, in whichever instance. A term may solve with another one meanwhile: it is called
+/// between Ipopt's steps.
+std::recursive_mutex& IpoptMutex() {
+  static std::recursive_mutex mutex;
   return mutex;
 }
 
@@ -53,7 +54,8 @@ class IpoptSolver : public SolverBackend {
   IpoptSolver(const std::string& name, bool exact_hessian)
       : SolverBackend(name, OptionsOf(exact_hessian)), exact_hessian_(exact_hessian) {}
   ~IpoptSolver() override {
-    const std::lock_guard<std::mutex> lock(IpoptMutex());
+    if (!Ipopt::IsValid(application_)) return;  // nothing of Ipopt's was made
+    const std::lock_guard<std::recursive_mutex> lock(IpoptMutex());
     nlp_ = nullptr;
     application_ = nullptr;
   }
@@ -66,7 +68,7 @@ class IpoptSolver : public SolverBackend {
 
  private:
   void DoPrepare(const View& view) override {
-    const std::lock_guard<std::mutex> lock(IpoptMutex());
+    const std::lock_guard<std::recursive_mutex> lock(IpoptMutex());
     nlp_ = new IpoptNlp(exact_hessian_);
     nlp_->Prepare(view);
     if (Ipopt::IsValid(application_)) return;
@@ -93,7 +95,7 @@ class IpoptSolver : public SolverBackend {
       result->status = SolveStatus::kEvaluationFailed;
       return;
     }
-    const std::lock_guard<std::mutex> lock(IpoptMutex());
+    const std::lock_guard<std::recursive_mutex> lock(IpoptMutex());
     if (evaluator->CheckStop()) {
       result->status = evaluator->stop_status();
       return;

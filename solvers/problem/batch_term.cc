@@ -27,7 +27,17 @@ const double kFineStep = std::pow(std::numeric_limits<double>::epsilon(), 0.2);
 const double kFirstStep = std::cbrt(std::numeric_limits<double>::epsilon());
 const double kSecondStep = std::pow(std::numeric_limits<double>::epsilon(), 0.25);
 
-double StepAt(double x, double share) { return share * std::max(1.0, std::abs(x)); }
+// One-sided, over 0, 1, ... 4 steps: of fourth order, too.
+constexpr std::array<double, 5> kSideWeights = {-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -0.25};
+
+// A smaller step would be rounded in x.
+double StepAt(double x, double step) {
+  constexpr double kRounding = 1e4 * std::numeric_limits<double>::epsilon();
+  return std::max(step, kRounding * std::abs(x));
+}
+
+// Numbers of the copies that a call asks for at a time.
+constexpr std::size_t kMostNumbers = std::size_t{1} << 22;
 
 }  // namespace
 
@@ -41,7 +51,8 @@ class BatchTerm::Differences {
         free_(term.UsesInterval(input)),
         n_(block.windows),
         v_(term.shape_.variables()),
-        m_(term.shape_.outputs) {
+        m_(term.shape_.outputs),
+        end_(block.windows) {
     const int d = term.shape_.block_size;
     for (int k = 0; k < n_; ++k) {
       first_block_.push_back(block.first_block[k]);
@@ -77,20 +88,36 @@ class BatchTerm::Differences {
 
   /// sum_c slope[k][c] d2u_c of every window k, (v + 1) x (v + 1) each.
   std::vector<double> Curvature(const std::vector<double>& slope) {
-    std::vector<double> out(static_cast<std::size_t>(n_ * (v_ + 1) * (v_ + 1)), 0.0);
+    const auto n = static_cast<std::size_t>(v_ + 1);
+    std::vector<double> out(static_cast<std::size_t>(n_) * n * n, 0.0);
     slope_ = &slope;
-    if (!term_.linear_) {
-      if (term_.map_->own_slopes() == OwnSlopes::kNone) {
-        BlocksFromValues(&out);
-      } else {
-        BlocksFromSlopes(&out);
-      }
+    const bool values = term_.map_->own_slopes() == OwnSlopes::kNone;
+    if (!term_.linear_ && values) {
+      InParts(v_ * (v_ + 1) + 1, [&] { BlocksFromValues(&out); });
+    } else if (!term_.linear_) {
+      InParts(2 * v_, [&] { BlocksFromSlopes(&out); });
     }
-    if (free_) Border(&out);
+    if (free_) InParts(2 * v_ + 1, [&] { Border(&out); });
+    for (double& curvature : out) {
+      if (!std::isfinite(curvature)) curvature = 0.0;  // a moved copy cannot be evaluated
+    }
     return out;
   }
 
  private:
+  // Windows by parts, so that so many copies of them are a bounded number of numbers.
+  template <class Work>
+  void InParts(int copies, const Work& work) {
+    const std::size_t numbers = static_cast<std::size_t>(copies) * static_cast<std::size_t>(v_);
+    const int part = static_cast<int>(std::max<std::size_t>(1, kMostNumbers / numbers));
+    for (begin_ = 0; begin_ < n_; begin_ = end_) {
+      end_ = std::min(n_, begin_ + part);
+      work();
+    }
+    begin_ = 0;
+    end_ = n_;
+  }
+
   // Copies of all windows: each is the point, changed by `move(window, q)`.
   void Start(double h) {
     at_h_ = h;
@@ -101,7 +128,7 @@ class BatchTerm::Differences {
   }
   template <class Move>
   void Add(const Move& move) {
-    for (int k = 0; k < n_; ++k) {
+    for (int k = begin_; k < end_; ++k) {
       const std::size_t at = moved_.size();
       moved_.insert(moved_.end(), q_.begin() + k * v_, q_.begin() + (k + 1) * v_);
       move(k, &moved_[at]);
@@ -111,10 +138,10 @@ class BatchTerm::Differences {
     ++copies_;
   }
   WindowBatch Batch() const {
-    return {copies_ * n_, moved_.data(), at_h_, t_.data(), window_.data()};
+    return {copies_ * (end_ - begin_), moved_.data(), at_h_, t_.data(), window_.data()};
   }
   std::vector<double> Values() const {
-    std::vector<double> u(static_cast<std::size_t>(copies_ * n_ * m_),
+    std::vector<double> u(window_.size() * static_cast<std::size_t>(m_),
                           std::numeric_limits<double>::quiet_NaN());
     term_.map_->Value(Batch(), u.data());
     return u;
@@ -126,35 +153,80 @@ class BatchTerm::Differences {
   }
   // A step of variable i of a window.
   double Step(int k, int i, double share) const {
-    return StepAt(q_[static_cast<std::size_t>(k * v_ + i)], share);
+    return StepAt(q_[static_cast<std::size_t>(k * v_ + i)], share * term_.scale_);
   }
   void AddMoved(int i, double steps, double share) {
     Add([&](int k, double* q) { q[i] += steps * Step(k, i, share); });
   }
 
   void CallForSlopes(TermBlock* block) {
-    Start(h_);
-    Add([](int, double*) {});
-    for (int i = 0; i < v_; ++i) {
-      for (const double steps : kSteps) AddMoved(i, steps, kFineStep);
-    }
-    const std::vector<double> u = Values();
-    std::copy_n(u.begin(), n_ * m_, block->u.begin());
     constexpr int kCopies = static_cast<int>(kSteps.size());
-    for (int k = 0; k < n_; ++k) {
+    InParts(1 + kCopies * v_, [&] {
+      Start(h_);
+      Add([](int, double*) {});
+      for (int i = 0; i < v_; ++i) {
+        for (const double steps : kSteps) AddMoved(i, steps, kFineStep);
+      }
+      const std::vector<double> u = Values();
+      std::copy_n(u.begin(), (end_ - begin_) * m_, block->u.begin() + begin_ * m_);
+      const auto difference = [&](int k, int c, int i) {
+        double sum = 0.0;
+        for (int s = 0; s < kCopies; ++s) sum += kWeights[s] * u[Row(1 + kCopies * i + s, k, c)];
+        return sum / Step(k, i, kFineStep);
+      };
+      SetSlopes(difference, block);
+    });
+    AskTheOtherSide(block);
+  }
+
+  template <class Slope>
+  void SetSlopes(const Slope& slope, TermBlock* block) const {
+    for (int k = begin_; k < end_; ++k) {
       for (int c = 0; c < m_; ++c) {
         double* du = block->slopes(k * m_ + c);
-        for (int i = 0; i < v_; ++i) {
-          double sum = 0.0;
-          for (int s = 0; s < kCopies; ++s) sum += kWeights[s] * u[Row(1 + kCopies * i + s, k, c)];
-          du[i] = sum / Step(k, i, kFineStep);
-        }
+        for (int i = 0; i < v_; ++i) du[i] = slope(k, c, i);
       }
     }
   }
 
+  /// Slopes that a copy which cannot be evaluated has spoilt: from above, else from below.
+  void AskTheOtherSide(TermBlock* block) {
+    constexpr int kCopies = static_cast<int>(kSideWeights.size());
+    for (const double side : {1.0, -1.0}) {
+      const auto spoilt = [&](int k, int c) {
+        const double* du = block->slopes(k * m_ + c);
+        return std::isfinite(block->u[k * m_ + c]) &&
+               !std::all_of(du, du + v_, [](double x) { return std::isfinite(x); });
+      };
+      bool any = false;
+      for (int k = 0; k < n_; ++k) {
+        for (int c = 0; c < m_; ++c) any = any || spoilt(k, c);
+      }
+      if (!any) return;
+      InParts(kCopies * v_, [&] {
+        Start(h_);
+        for (int i = 0; i < v_; ++i) {
+          for (int s = 0; s < kCopies; ++s) AddMoved(i, side * s, kFineStep);
+        }
+        const std::vector<double> u = Values();
+        SetSlopes(
+            [&](int k, int c, int i) {
+              const double known = block->slopes(k * m_ + c)[i];
+              if (std::isfinite(known)) return known;
+              double sum = 0.0;
+              for (int s = 0; s < kCopies; ++s)
+                sum += kSideWeights[s] * u[Row(kCopies * i + s, k, c)];
+              return side * sum / Step(k, i, kFineStep);
+            },
+            block);
+      });
+    }
+  }
+
   std::size_t Row(int copy, int k, int c) const {
-    return static_cast<std::size_t>((copy * n_ + k) * m_ + c);
+    const auto window = static_cast<std::size_t>(copy) * static_cast<std::size_t>(end_ - begin_) +
+                        static_cast<std::size_t>(k - begin_);
+    return window * static_cast<std::size_t>(m_) + static_cast<std::size_t>(c);
   }
   // sum_c slope u_c of a copy of a window.
   double Sum(const std::vector<double>& u, int copy, int k) const {
@@ -166,7 +238,8 @@ class BatchTerm::Differences {
     return sum;
   }
   double* At(std::vector<double>* out, int k) const {
-    return &(*out)[static_cast<std::size_t>(k * (v_ + 1) * (v_ + 1))];
+    const auto n = static_cast<std::size_t>(v_ + 1);
+    return &(*out)[static_cast<std::size_t>(k) * n * n];
   }
 
   void BlocksFromValues(std::vector<double>* out) {
@@ -187,7 +260,7 @@ class BatchTerm::Differences {
       }
     }
     const std::vector<double> u = Values();
-    for (int k = 0; k < n_; ++k) {
+    for (int k = begin_; k < end_; ++k) {
       double* to = At(out, k);
       const double middle = Sum(u, 0, k);
       const auto both = [&](int i) { return Sum(u, 1 + 2 * i, k) + Sum(u, 2 + 2 * i, k); };
@@ -212,7 +285,7 @@ class BatchTerm::Differences {
       AddMoved(i, -1.0, kFirstStep);
     }
     const std::vector<double> du = MapSlopes();
-    for (int k = 0; k < n_; ++k) {
+    for (int k = begin_; k < end_; ++k) {
       double* to = At(out, k);
       for (int i = 0; i < v_; ++i) {
         for (int j = 0; j < v_; ++j) {
@@ -226,7 +299,7 @@ class BatchTerm::Differences {
   }
   // du of all copies.
   std::vector<double> MapSlopes() const {
-    const auto rows = static_cast<std::size_t>(copies_ * n_ * m_);
+    const std::size_t rows = window_.size() * static_cast<std::size_t>(m_);
     std::vector<double> u(rows), du_dh(rows), du(rows * static_cast<std::size_t>(v_));
     term_.map_->Jacobian(Batch(), u.data(), du.data(), du_dh.data());
     return du;
@@ -255,7 +328,7 @@ class BatchTerm::Differences {
       }
       moved[side] = Values();
     }
-    for (int k = 0; k < n_; ++k) {
+    for (int k = begin_; k < end_; ++k) {
       double* to = At(out, k);
       const double ends = Sum(moved[0], 0, k) + Sum(moved[1], 0, k);
       to[v_ * (v_ + 1) + v_] = (ends - 2.0 * Sum(middle, 0, k)) / (step * step);
@@ -276,6 +349,7 @@ class BatchTerm::Differences {
   std::vector<int> first_block_;
   std::vector<double> q_;                       // [n][v]
   const std::vector<double>* slope_ = nullptr;  // [n][m]
+  int begin_ = 0, end_;                         // windows of the part at hand
   double at_h_ = 1.0;
   int copies_ = 0;
   std::vector<double> moved_, t_;  // of all copies
@@ -284,7 +358,11 @@ class BatchTerm::Differences {
 
 BatchTerm::BatchTerm(TermInfo info, const BatchShape& shape, const AnyLoss& loss,
                      std::shared_ptr<BatchMap> map)
-    : info_(std::move(info)), linear_(shape.linear), loss_(loss), map_(std::move(map)) {
+    : info_(std::move(info)),
+      linear_(shape.linear),
+      scale_(shape.scale),
+      loss_(loss),
+      map_(std::move(map)) {
   const auto require = [this](const char* name, int value, int low, int high) {
     if (value >= low && value <= high) return;
     throw std::invalid_argument("term " + info_.name + ": " + name + " is " +
@@ -295,6 +373,10 @@ BatchTerm::BatchTerm(TermInfo info, const BatchShape& shape, const AnyLoss& loss
   require("window", shape.window, 1, kMaxWindow);
   require("outputs", shape.outputs, 1, 1 << 16);
   require("max_windows", shape.max_windows, 0, 1 << 24);
+  if (!(shape.scale > 0.0) || !std::isfinite(shape.scale)) {
+    throw std::invalid_argument("term " + info_.name + ": scale is " + std::to_string(shape.scale) +
+                                ", it must be > 0 and finite");
+  }
   if (!map_) throw std::invalid_argument("term " + info_.name + ": there is no map");
   shape_.block_size = shape.block_size;
   shape_.window = shape.window;
@@ -344,9 +426,10 @@ void BatchTerm::Evaluate(const TermInput& input, const TermRequest& request, Ter
   }
   bends = bends && !request.nominal_curvature && (!linear_ || UsesInterval(input));
   if (bends) curvature = at.Curvature(slope);
-  const int size = (shape_.variables() + 1) * (shape_.variables() + 1);
+  const auto n = static_cast<std::size_t>(shape_.variables() + 1);
   for (int k = 0; k < block->windows; ++k) {
-    AddHessian(k, shape_, input, request, *block, bends ? &curvature[k * size] : nullptr, sums);
+    AddHessian(k, shape_, input, request, *block,
+               bends ? &curvature[static_cast<std::size_t>(k) * n * n] : nullptr, sums);
   }
 }
 

@@ -152,6 +152,83 @@ TEST(BatchTerm, LetsEveryBackendConverge) {
   }
 }
 
+// u = log(x - x0), which is steep beside its edge.
+class Log : public BatchMap {
+ public:
+  Log(double offset, double length) : offset_(offset), length_(length) {}
+  int windows() const override { return 1; }
+  int first_block() const override { return 0; }
+  void Value(const WindowBatch& b, double* u) const override {
+    for (int i = 0; i < b.size; ++i) u[i] = std::log((b.q[i] - offset_) / length_);
+  }
+
+ private:
+  double offset_, length_;
+};
+
+double SlopeAt(double offset, double length, double scale, double x) {
+  Problem problem({.blocks = 1, .block_size = 1});
+  const BatchShape shape{.block_size = 1, .max_windows = 1, .scale = scale};
+  problem.AddTerm(std::make_shared<BatchTerm>(TermInfo{"log"}, shape, LinearLoss(1.0),
+                                              std::make_shared<Log>(offset, length)),
+                  Role::kCost);
+  Evaluation at;
+  problem.Resize(&at);
+  EXPECT_TRUE(problem.Evaluate(&x, 1.0, {.gradient = true, .hessian = true}, {}, &at));
+  return at.gradient[0];
+}
+
+TEST(BatchTerm, StepsAreSharesOfTheScaleWhereverTheBlocksAre) {
+  EXPECT_NEAR(SlopeAt(5e5, 1.0, 1.0, 5e5 + 2.0), 0.5, 1e-6);  // as in UTM coordinates
+  EXPECT_NEAR(SlopeAt(0.0, 1e-6, 1e-6, 2e-6) / 5e5, 1.0, 1e-9);
+}
+
+TEST(BatchTerm, BesideAnEdgeItAsksTheOtherSide) {
+  EXPECT_NEAR(SlopeAt(0.0, 1.0, 1.0, 0.01), 100.0, 0.5);
+  EXPECT_NEAR(SlopeAt(0.0, 1.0, 0.01, 1e-3), 1000.0, 1e-3);
+  // A step of 7e-4 from above, where two steps below there is nothing.
+  EXPECT_NEAR(SlopeAt(0.0, 1.0, 1.0, 1e-3), 1000.0, 150.0);
+}
+
+/// u = |q|^2 / 2 of many variables.
+class Bowl : public BatchMap {
+ public:
+  static constexpr int kSize = 36;
+  explicit Bowl(int windows) : windows_(windows) {}
+  int windows() const override { return windows_; }
+  int first_block() const override { return 0; }
+  void Value(const WindowBatch& b, double* u) const override {
+    most = std::max(most, b.size);
+    for (int i = 0; i < b.size; ++i) {
+      u[i] = 0.0;
+      for (int j = 0; j < kSize; ++j) u[i] += 0.5 * b.q[i * kSize + j] * b.q[i * kSize + j];
+    }
+  }
+  mutable int most = 0;
+
+ private:
+  int windows_;
+};
+
+TEST(BatchTerm, AsksForABoundedNumberOfCopiesAtATime) {
+  constexpr int kWindowsOfMany = 200;
+  const auto map = std::make_shared<Bowl>(kWindowsOfMany);
+  Problem problem({.blocks = kWindowsOfMany + 5, .block_size = 6});
+  const BatchShape shape{.block_size = 6, .window = 6, .max_windows = kWindowsOfMany};
+  problem.AddTerm(std::make_shared<BatchTerm>(TermInfo{"bowl"}, shape, LinearLoss(1.0), map),
+                  Role::kCost);
+  Evaluation at;
+  problem.Resize(&at);
+  const std::vector<double> x(6 * (kWindowsOfMany + 5), 0.3);
+  ASSERT_TRUE(problem.Evaluate(x.data(), 1.0, {.gradient = true, .hessian = true}, {}, &at));
+  EXPECT_LE(map->most * Bowl::kSize, 1 << 22);
+  for (int i = 0; i < at.hessian.size(); ++i) {
+    const int block = i / 6, windows = std::min({block + 1, 6, kWindowsOfMany + 5 - block});
+    EXPECT_NEAR(at.hessian.At(i, i), windows, 1e-5) << i;
+    EXPECT_NEAR(at.gradient[i], 0.3 * windows, 1e-9) << i;
+  }
+}
+
 TEST(BatchTerm, RefusesSizes) {
   const auto make = [](const BatchShape& shape, std::shared_ptr<BatchMap> map) {
     return BatchTerm(TermInfo{"a"}, shape, SquareLoss(1.0), std::move(map));
@@ -159,6 +236,9 @@ TEST(BatchTerm, RefusesSizes) {
   EXPECT_THROW(make(Shape(), nullptr), std::invalid_argument);
   BatchShape shape = Shape();
   shape.window = 7;
+  EXPECT_THROW(make(shape, std::make_shared<Valley>()), std::invalid_argument);
+  shape = Shape();
+  shape.scale = 0.0;
   EXPECT_THROW(make(shape, std::make_shared<Valley>()), std::invalid_argument);
   shape = Shape();
   shape.max_windows = 3;  // the map has more

@@ -3,6 +3,7 @@
 
 A crash would take pytest along: the calls are made in a process of their own.
 """
+import os
 import subprocess
 import sys
 
@@ -122,9 +123,10 @@ print("done", flush=True)
 '''
 
 
-def test_no_argument_crashes_the_interpreter():
+def test_no_argument_crashes_the_interpreter(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-c", CALLS, "3000", "same"], capture_output=True, text=True, timeout=600, check=False
+        [sys.executable, "-c", CALLS, "3000", "same"], capture_output=True, text=True, timeout=600, check=False,
+        env={**os.environ, "HYPOTHESIS_STORAGE_DIRECTORY": str(tmp_path)},
     )
     last = "\n".join(done.stderr.splitlines()[-8:])
     assert done.returncode == 0 and done.stdout.endswith("done\n"), f"status {done.returncode} after\n{last}"

@@ -244,6 +244,109 @@ def test_what_is_wrong_with_a_plan_comes_out(plan, error):
         td.run_trial("open", planner="odd", registries=parts, seed=7)
 
 
+def test_a_map_is_lent_to_one_thread_and_to_a_planner_within():
+    told = {}
+
+    class Delegates(td.Planner):
+        """Asks the library's planner."""
+
+        inner = None
+
+        def plan(self, request):
+            if self.inner is None:
+                self.inner = td.Replanner(td.ReplannerOptions(limits=request.limits))
+                self.inner.commit_hover(request.start.p, request.t_now)
+            asked = td.ReplanInput(t_now=request.t_now, t_start=request.t_start, vehicle=request.vehicle)
+            goal = td.GoalAt(request.pad.at(request.t_start + 2.0).p_WP)
+            told["status"] = self.inner.replan(request.map, asked, goal).status
+
+            def look():
+                try:
+                    request.map.states()
+                except RuntimeError as error:
+                    told["other"] = str(error)
+
+            thread = threading.Thread(target=look)
+            thread.start()
+            thread.join()
+            return None
+
+    parts = td.Registries()
+    parts.add(Delegates)
+    td.run_trial("open", planner="delegates", registries=parts, set={"timeout": 2})
+    assert told["status"] in ("planned", "kept") and "lent to the thread" in told["other"]
+
+
+def test_a_curve_that_starts_elsewhere_is_refused():
+    class Jumps(td.Planner):
+        def plan(self, request):
+            far = td.SplineState(p=[50.0, 50.0, 20.0])
+            return td.hermite(far, far, 6, 2.0, request.t_start)
+
+    parts = td.Registries()
+    parts.add(Jumps)
+    with pytest.raises(ValueError, match="the curve starts .* m from request.start.p"):
+        td.run_trial("open", planner="jumps", registries=parts)
+
+
+def test_what_raises_while_it_is_made_keeps_its_type():
+    class Odd(td.Planner):
+        def __init__(self, **settings):
+            raise LookupError("while it is made")
+
+    class OddTerm(td.Term):
+        def __init__(self, **settings):
+            raise LookupError("while it is made")
+
+    parts = td.Registries()
+    parts.add(Odd)
+    with pytest.raises(LookupError, match="while it is made"):
+        parts.add(OddTerm)
+    assert "odd_term" not in parts.terms
+    parts.add(OddTerm, check=False)
+    for call in (
+        lambda: td.run_trial("open", planner="odd", registries=parts),
+        lambda: td.LandingProblem(10, registries=parts),
+        lambda: td.Replanner(registries=parts),
+    ):
+        with pytest.raises(LookupError, match="while it is made"):
+            call()
+
+
+def test_a_part_may_be_entered_again_where_one_says_so(parts):
+    class Again(Low):
+        name = "low"
+
+    with pytest.raises(ValueError, match="low"):
+        parts.add(Again)
+    parts.add(Again, replace=True)
+    assert parts.terms.count("low") == 1
+    with pytest.raises(ValueError, match="smoothness"):
+        parts.add(type("Smoothness", (Low,), {"name": "smoothness"}), replace=True)
+
+
+def test_ctrl_c_ends_a_sweep_with_parts_of_ones_own():
+    script = """
+import touchdown as td
+class Slow(td.Planner):
+    def plan(self, request):
+        sum(range(200000))
+        return None
+parts = td.Registries()
+parts.add(Slow)
+print("begins", flush=True)
+try:
+    td.sweep("open", planner="slow", registries=parts, trials=500, progress=False)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+    for delay in (0.5, 0.7, 0.9):
+        with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as process:
+            assert process.stdout.readline() == "begins\n"
+            threading.Timer(delay, lambda: os.kill(process.pid, signal.SIGINT)).start()
+            assert process.communicate(timeout=20)[0] == "interrupted\n"
+
+
 def test_a_predictor_and_a_controller_of_ones_own_fly():
     class Same(td.PadPredictor):
         def predict(self, known):

@@ -2,6 +2,7 @@
 """Curves, maps, predictions, landing problems, replanning and the part that would fly, from Python."""
 import copy
 import gc
+import pickle
 
 import numpy as np
 import pytest
@@ -184,6 +185,52 @@ def test_the_pad_lives_as_long_as_the_problem():
     problem = landing()
     gc.collect()
     assert td.solve(problem).usable
+
+
+def test_a_boundary_that_raises_leaves_nothing_dangling():
+    class Odd:
+        raises = False
+
+        def at(self, t):
+            if self.raises:
+                raise LookupError("no pad")
+            return td.PadState(p_WP=[5.0, 0.0, 1.0])
+
+    problem = td.LandingProblem(10)
+    problem.set_boundary(td.SplineState(p=[0.0, 0.0, 3.0]), td.GoalAt([5.0, 0.0, 1.0]))
+    odd = Odd()
+    odd.raises = True
+    for _ in range(5):
+        with pytest.raises(LookupError, match="no pad"):
+            problem.set_boundary(td.SplineState(p=[0.0, 0.0, 3.0]), odd)
+            td.solve(problem)
+        gc.collect()
+        with pytest.raises(LookupError, match="no pad"):
+            problem.set_duration(3.0)
+            td.solve(problem)
+    odd.raises = False
+    problem.set_boundary(td.SplineState(p=[0.0, 0.0, 3.0]), odd)
+    assert td.solve(problem).usable
+
+
+def test_what_a_goal_raises_comes_out():
+    with pytest.raises(ZeroDivisionError):
+        td.MovingGoal(lambda t: 1 / 0).at(0.0)
+
+
+@pytest.mark.parametrize(
+    "thing", [td.Limits(speed=2.0, pull_W=[1.0, 2.0, 3.0]), td.hermite(td.SplineState(), td.SplineState(p=[1, 0, 0]), 6, 1.0)]
+)
+def test_plain_data_and_curves_are_pickled(thing):
+    for twin in (pickle.loads(pickle.dumps(thing)), copy.copy(thing), copy.deepcopy(thing)):
+        assert repr(twin) == repr(thing) and twin is not thing
+
+
+def test_a_map_tells_what_was_observed_free():
+    place = wall()
+    assert place.observed_free([[0.0, 0.0, 1.5], [-3.0, 0.0, 1.5], [500.0, 0.0, 0.0]]).tolist() == [False, True, False]
+    place.set_states(np.where(place.states() == 2, 0, 1))  # of int64
+    assert place.observed_free([[-3.0, 0.0, 1.5]])[0] and not place.blocked([[0.0, 0.0, 1.5]])[0]
 
 
 def test_a_landing_problem_refuses():

@@ -316,6 +316,108 @@ def test_ten_thousand_solves_leave_nothing_behind():
     assert the_package.resident_kb() - before < 2000, "less than 0.2 kB a solve"
 
 
+@pytest.mark.parametrize("backend", ["banded", "nlopt-lbfgs", "ceres", "ipopt"])
+def test_the_interpreter_ends_while_a_thread_solves(backend):
+    script = f"""
+import threading, time, numpy as np, touchdown as td
+class Slow(td.Term):
+    window, outputs = 2, 2
+    def value(self, w):
+        x, y = w.q[:, 0, 0], w.q[:, 1, 0]
+        time.sleep(0.001)
+        return 10 * (y - x**2), 1 - x
+def work():
+    problem = td.Problem(20)
+    problem.add(Slow())
+    while True:
+        td.solve(problem, np.full(20, -1.0), {backend!r})
+threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+"""
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=30, check=False)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("backend", [b["name"] for b in td.backends() if b["compiled"]])
+def test_a_term_may_solve_with_the_same_backend(backend):
+    class Outer(td.Term):
+        def value(self, w):
+            td.backends()
+            inner = td.solve(valley(4), np.full(4, 0.5), backend, max_iterations=5)
+            return w.q[:, 0] - inner.usable
+
+    problem = td.Problem(1)
+    problem.add(Outer())
+    assert td.solve(problem, [3.0], backend, max_iterations=20).x[0] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_threads_solve_with_ipopt_and_make_and_drop_solvers():
+    script = """
+import threading, numpy as np, touchdown as td
+class Valley(td.Term):
+    window, outputs = 2, 2
+    def value(self, w):
+        x, y = w.q[:, 0, 0], w.q[:, 1, 0]
+        return 10 * (y - x**2), 1 - x
+def work():
+    for _ in range(5):
+        problem = td.Problem(10)
+        problem.add(Valley())
+        td.Solver("ipopt").solve(problem, np.full(10, -1.0))
+        td.backends()
+threads = [threading.Thread(target=work) for _ in range(4)]
+[t.start() for t in threads]
+[t.join() for t in threads]
+"""
+    assert subprocess.run([sys.executable, "-c", script], timeout=60, check=False).returncode == 0
+
+
+def test_steps_are_shares_of_a_terms_scale():
+    class Range(td.Term):
+        def value(self, w):  # a distance of metres in large coordinates
+            return 1.0 / (w.q[:, 0, 0] - 5e5)
+
+    problem = td.Problem(1)
+    problem.add(Range())
+    assert problem.evaluate([5e5 + 3.0])["gradient"][0] == pytest.approx(-1.0 / 27.0, rel=1e-5)
+
+    class Small(td.Term):
+        scale = 1e-6
+
+        def value(self, w):
+            return np.sin(w.q[:, 0, 0] / 1e-6)
+
+    problem = td.Problem(1)
+    problem.add(Small())
+    slope = problem.evaluate([1e-6])["gradient"][0]
+    assert slope == pytest.approx(np.sin(1.0) * np.cos(1.0) * 1e6, rel=1e-6)
+
+
+def test_a_second_term_of_one_name_is_refused():
+    problem = valley(4)
+    with pytest.raises(ValueError, match="there is a term valley already"):
+        problem.add(Valley())
+
+
+def test_a_point_that_cannot_be_evaluated_is_named():
+    class Nowhere(td.Term):
+        def value(self, w):
+            return w.q[:, 0] * np.nan
+
+    problem = td.Problem(3)
+    problem.add(Nowhere())
+    at = problem.evaluate(np.zeros(3))
+    assert not at["ok"] and at["failure"] == "term nowhere is not finite" and np.isnan(at["gradient"]).all()
+
+
+def test_what_a_solve_returns_is_ones_own():
+    solved = td.solve(valley(4), np.full(4, 0.5))
+    point = solved.x
+    point += 1.0
+    assert not np.allclose(point, solved.x)
+
+
 def test_losses():
     assert td.SquareLoss(2.0).value(3.0) == (9.0, 6.0, 2.0)
     assert td.HingeLoss(1.0, 0.5).value(-1.0) == (0.0, 0.0, 0.0)

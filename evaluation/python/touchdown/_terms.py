@@ -78,6 +78,7 @@ class Term:
     outputs: int = 1
     uses_interval: bool = False
     linear: bool = False
+    scale: float = 1.0
     weight: float = 1.0
     parameters: ClassVar[Dict[str, Parameter]] = {}
     first_block: int = 0

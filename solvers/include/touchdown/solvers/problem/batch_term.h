@@ -50,11 +50,13 @@ struct BatchShape {
   int max_windows = 0;         ///< most windows it can ever have
   bool uses_interval = false;  ///< u depends on h or t
   bool linear = false;         ///< u is affine in the blocks at a fixed h
+  double scale = 1.0;          ///< change of a block's number over which u is smooth, > 0
 };
 
 /// A term of a BatchMap. What the map has not is found by central differences, all windows and variables in a call, and
-/// a few for the interval: slopes to about 1e-12 of u's size, curvatures to 1e-7 of it from values, to 1e-9 from the
-/// map's own slopes.
+/// a few for the interval. Of a u that is smooth over `scale`: slopes to about 1e-12 of u over scale, curvatures to 1e-7
+/// of u over scale^2 from values, to 1e-9 from the map's own slopes. Where a moved copy is not finite, slopes are
+/// found from the other side, and the curvature is left out.
 /// Allocates at every evaluation.
 class BatchTerm : public Term {
  public:
@@ -81,6 +83,7 @@ class BatchTerm : public Term {
   TermInfo info_;
   TermShape shape_;
   bool linear_;
+  double scale_;
   AnyLoss loss_;
   std::shared_ptr<BatchMap> map_;
 };
