@@ -26,7 +26,7 @@ case ${1:-} in
     ;;
 esac
 
-install_tiers build report study notebooks video page test
+install_tiers build report study python notebooks video page test
 build_release ON
 
 say "Testing"

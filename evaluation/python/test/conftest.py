@@ -2,6 +2,8 @@
 """Fixtures: the built program (environment TOUCHDOWN_PROGRAM) and a record that it wrote."""
 import os
 import subprocess
+import sys
+import types
 
 import pytest
 
@@ -37,3 +39,28 @@ def record_path(run, tmp_path_factory):
     done = run("land", "straight_turn", "--record", str(path), "--set", "timeout=6")
     assert done.returncode == 1, done.stderr
     return str(path)
+
+
+class FakeBar:
+    made = []
+
+    def __init__(self, total, unit):
+        self.total, self.unit, self.n, self.closed, self.shown = total, unit, 0, False, []
+        FakeBar.made.append(self)
+
+    def update(self, more):
+        self.n += more
+        self.shown.append(self.n)
+
+    def set_postfix_str(self, text, refresh):
+        self.text = text
+
+    def close(self):
+        self.closed = True
+
+
+@pytest.fixture
+def bars(monkeypatch):
+    FakeBar.made = []
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=FakeBar))
+    return FakeBar.made

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenarios as Python has them: names, paths, dictionaries, values."""
+import json
+import os
+import re
+from pathlib import Path
+from typing import Any, List, Mapping, Optional, Sequence, Tuple, Union
+
+Scenario = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+"""A shipped one by its name, a file by its path, or its keys (docs/scenario.md), nested or dotted."""
+
+Variation = Union[Sequence[Any], Tuple[float, float]]
+"""Of a varied key: a list of values that are taken in turn, or a tuple (lo, hi), a range that is drawn from."""
+
+_PLAIN_TEXT = re.compile(r"[\w./+-]+")
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know: NumPy's numbers and arrays, paths, other mappings."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, Mapping):
+        return dict(value)
+    raise TypeError(f"{value!r} is no value of a scenario: it must be a number, a text, a truth or a list of these")
+
+
+def value_text(value: Any) -> str:
+    """A value as `--set KEY=` takes it. YAML reads what JSON writes."""
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if isinstance(value, str) and _PLAIN_TEXT.fullmatch(value):
+        return value
+    return json.dumps(value, default=_plain, ensure_ascii=False)
+
+
+def overrides(keys: Optional[Mapping[str, Any]]) -> List[str]:
+    """{key: value} as the words KEY=VALUE."""
+    return [f"{key}={value_text(value)}" for key, value in (keys or {}).items()]
+
+
+def variation_text(key: str, values: Variation) -> str:
+    """The word KEY=LO..HI or KEY=a,b,c. Raises ValueError."""
+    if isinstance(values, tuple):
+        if len(values) != 2:
+            raise ValueError(f"vary[{key!r}] is {values}: a tuple is a range (lo, hi), values in turn are a list")
+        return f"{key}={value_text(values[0])}..{value_text(values[1])}"
+    if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
+        raise ValueError(f"vary[{key!r}] is {values!r}: it must be a list of values or a tuple (lo, hi)")
+    texts = [value_text(value) for value in values]
+    for text in texts:
+        if "," in text or ".." in text:
+            raise ValueError(f"vary[{key!r}] has {text}: a value must have no comma and no two dots in a row")
+    return f"{key}={','.join(texts)}"
+
+
+def scenario_word(scenario: Scenario, folder: Path) -> str:
+    """The scenario's name or path; a dictionary becomes a file in `folder`."""
+    if not isinstance(scenario, Mapping):
+        return os.fspath(scenario)
+    path = folder / "scenario.yaml"
+    path.write_text(
+        json.dumps(dict(scenario), default=_plain, ensure_ascii=False, indent=1) + "\n", encoding="utf-8"
+    )
+    return str(path)
