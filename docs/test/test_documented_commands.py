@@ -14,7 +14,7 @@ import pytest
 from documents import ROOT, Document, documents
 
 STAND_IN = Path(__file__).resolve().parent / "stand_in.py"
-CALLED = ["demo.sh", "test.sh", "build/release/bin/touchdown", "build/release/estimation/estimation_test",
+CALLED = ["demo.sh", "test.sh", "python.sh", "my_env/bin/python", "build/release/bin/touchdown", "build/release/estimation/estimation_test",
           "build/release/sim/sim_test", "build/own/own_program", "build/own_parts/own_parts", "build/own_backend/own_backend",
           "build/go_to_goal/go_to_goal", "build/onboard/onboard", "bin/cmake"]  # fmt: skip
 # Words that stand for something: NAME, FILE, N, K=V.

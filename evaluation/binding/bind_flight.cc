@@ -6,10 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "evaluation/base/machine.h"
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
 #include "evaluation/binding/part_registries.h"
 #include "evaluation/campaign/sweep.h"
+#include "evaluation/compare/compare_table.h"
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/record/plan_case.h"
 #include "evaluation/record/plan_report.h"
@@ -128,6 +130,54 @@ void Sweep(const std::string& scenario_path, const std::vector<std::string>& ove
   });
 }
 
+/// A comparison in this process, of all that registries hold. Its tables are in the file `db`.
+void Compare(const evaluation::CompareOptions& options, const std::string& db,
+             const PartRegistries& registries, const py::object& progress) {
+  const Kept tell(progress);
+  WithoutLock([&] {
+    const auto end = [call = Call::Now()] {
+      if (call->MustEnd()) throw Ended();
+    };
+    evaluation::Registries parts = registries.all;
+    parts.backends = solvers::Overheard(parts.backends, [&](const solvers::AskedSolve&) { end(); });
+    try {
+      evaluation::MachineState machine;
+      machine.load_before = evaluation::LoadAverage();
+      const evaluation::CompareResult result =
+          evaluation::RunCompare(options, parts, [&](int done, int all) {
+            WithLock([&] {
+              if (!tell.get().is_none()) tell.get()(done, all);
+            });
+            end();
+          });
+      machine.load_after = evaluation::LoadAverage();
+      evaluation::WriteCompareTable(db, options, result, machine);
+    } catch (const Ended&) {
+    }
+  });
+}
+
+void CompareByWords(const py::dict& given, const std::string& db, const PartRegistries& registries,
+                    const py::object& progress) {
+  evaluation::CompareOptions options;
+  const auto take = [&](const char* name, auto* to) {
+    if (!given.contains(name) || given[name].is_none()) return;
+    *to = given[name].cast<std::decay_t<decltype(*to)>>();
+  };
+  take("source", &options.from);
+  take("seed", &options.seed);
+  take("set", &options.set);
+  take("problems", &options.problems);
+  take("every", &options.every);
+  take("backends", &options.bench.backends);
+  take("gap", &options.bench.gap);
+  take("repeats", &options.bench.repeats);
+  take("deadline_ms", &options.bench.deadline_ms);
+  take("backend_seconds", &options.bench.backend_seconds);
+  options.bench.seed = options.seed;
+  Compare(options, db, registries, progress);
+}
+
 }  // namespace
 
 void BindFlight(py::module_& m) {
@@ -157,6 +207,7 @@ void BindFlight(py::module_& m) {
   m.def("_explain", &Explain, "record"_a, "step"_a, "overrides"_a, "registries"_a);
   m.def("_sweep", &Sweep, "scenario"_a, "overrides"_a, "variations"_a, "trials"_a, "seed"_a, "db"_a,
         "registries"_a, "progress"_a);
+  m.def("_compare", &CompareByWords, "options"_a, "db"_a, "registries"_a, "progress"_a);
   m.def("_use_share", &evaluation::UseShare, "directory"_a);
   m.def("scenarios", &evaluation::ListScenarios, Doc("ListScenarios"));
 }

@@ -17,7 +17,11 @@ PYBIND11_MODULE(_touchdown, m) {
   using namespace touchdown::binding;
   m.doc() = "The C++ of the package touchdown.";
   m.attr("__version__") = TOUCHDOWN_VERSION;
-  m.attr("_words") = AllWords();
+  // Annotations of those who use it: touchdown.SolveStatus and the others.
+  const py::object literal = py::module_::import("typing").attr("Literal");
+  for (const auto& [name, words] : AllWords()) {
+    m.attr(name.c_str()) = literal[py::tuple(py::cast(words))];
+  }
   py::register_exception<touchdown::evaluation::BadInput>(m, "BadInput", PyExc_ValueError);
   BindLosses(m);
   BindSolve(m);

@@ -130,7 +130,7 @@ class PythonMap : public solvers::BatchMap {
     first_ = Attribute<int>(term, "first_block", name_);
     const int room = std::max(0, blocks_ - shape_.window + 1 - first_);
     windows_ = term.attr("windows").is_none() ? room : Attribute<int>(term, "windows", name_);
-    if (first_ < 0 || windows_ < 0 || windows_ > room) {
+    if (first_ < 0 || first_ > blocks_ - shape_.window + 1 || windows_ < 0 || windows_ > room) {
       throw py::value_error(Of(name_, "windows " + std::to_string(windows_) + " from first_block " +
                                           std::to_string(first_) + " on, and there is room for " +
                                           std::to_string(room)));

@@ -7,6 +7,7 @@
 import inspect
 import re
 import sys
+from typing import Literal, get_args, get_origin
 
 from touchdown import _touchdown
 
@@ -17,6 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 '''
+OPERATORS = ["add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv", "neg"]
+SPECIAL = {f"__{name}__" for name in [*OPERATORS, "copy", "deepcopy"]}
 ARRAY = re.compile(r"numpy\.ndarray\[(numpy\.)?(\w+)(\[[^\]]*\])?(, [^\]]*)?\]")
 KINDS = {"float64": "np.float64", "int32": "np.int32", "uint8": "np.uint8", "bool": "np.bool_", "float32": "np.float32"}
 
@@ -97,7 +100,8 @@ def members(cls):
     for name, member in sorted(cls.__dict__.items()):
         if name == "__init__":
             if fields is None:
-                lines += function(name, member.__doc__, "    ")
+                made = function(name, member.__doc__, "    ")
+                lines += made or ["    def __init__(self, *args: Any, **kwargs: Any) -> None: ..."]
         elif isinstance(member, property):
             _, result = next(signatures(member.fget.__doc__))
             lines.append("    @property")
@@ -108,23 +112,23 @@ def members(cls):
                 lines.append(f"    def {name}(self, value: {typed(kind, True)}) -> None: ...")
         elif isinstance(member, staticmethod):
             lines += function(name, member.__func__.__doc__, "    ", ["staticmethod"])
-        elif callable(member) and not name.startswith("__") or name in ("__add__", "__radd__", "__sub__", "__rsub__",
-                "__mul__", "__rmul__", "__truediv__", "__rtruediv__", "__neg__"):
+        elif callable(member) and (not name.startswith("__") or name in SPECIAL):
             lines += function(name, member.__doc__, "    ")
     return lines or ["    ..."]
 
 
 def stub():
     lines = [HEAD.replace("Tuple\n", "Tuple, overload\n")]
-    for name, words in _touchdown._words.items():
-        lines.append(f"{name} = Literal[{', '.join(repr(word) for word in words)}]".replace("'", '"'))
-    lines += ["", "__version__: str", "_words: Dict[str, List[str]]", ""]
+    for name, value in sorted(vars(_touchdown).items()):
+        if get_origin(value) is Literal:
+            lines.append(f"{name} = Literal[{', '.join(repr(word) for word in get_args(value))}]".replace("'", '"'))
+    lines += ["", "__version__: str", ""]
     for name, value in sorted(vars(_touchdown).items()):
         if inspect.isclass(value):
             base = value.__mro__[1].__name__
             base = "" if base == "pybind11_object" else f"({base})"
             lines += ["", f"class {name}{base}:", *members(value)]
-        elif callable(value):
+        elif callable(value) and get_origin(value) is None:
             lines += ["", *function(name, value.__doc__)]
     return "\n".join(lines).replace("\n\n\n\n", "\n\n\n") + "\n"
 

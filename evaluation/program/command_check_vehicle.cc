@@ -9,9 +9,9 @@
 
 #include "estimation/base/degrees.h"
 #include "evaluation/base/output_path.h"
-#include "evaluation/base/report_program.h"
 #include "evaluation/flight/vehicle_check.h"
 #include "evaluation/program/commands.h"
+#include "evaluation/report/report_program.h"
 
 namespace touchdown::evaluation {
 namespace {

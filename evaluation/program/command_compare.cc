@@ -13,7 +13,6 @@
 #include "evaluation/base/machine.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/progress.h"
-#include "evaluation/base/report_program.h"
 #include "evaluation/compare/compare.h"
 #include "evaluation/compare/compare_report.h"
 #include "evaluation/compare/compare_table.h"
@@ -21,6 +20,7 @@
 #include "evaluation/compare/reference_table.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/record/record_reader.h"
+#include "evaluation/report/report_program.h"
 
 namespace touchdown::evaluation {
 namespace {

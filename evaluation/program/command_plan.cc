@@ -10,10 +10,10 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/output_path.h"
-#include "evaluation/base/report_program.h"
 #include "evaluation/program/commands.h"
 #include "evaluation/record/plan_case.h"
 #include "evaluation/record/plan_report.h"
+#include "evaluation/report/report_program.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/progress.h"
-#include "evaluation/base/report_program.h"
+#include "evaluation/report/report_program.h"
 #include "evaluation/studies/pad/pad_report.h"
 #include "evaluation/studies/pad/pad_summary.h"
 

@@ -16,10 +16,10 @@
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/launch.h"
-#include "evaluation/base/report_program.h"
 #include "evaluation/campaign/campaign_progress.h"
 #include "evaluation/campaign/study_rates.h"
 #include "evaluation/campaign/study_run.h"
+#include "evaluation/report/report_program.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {

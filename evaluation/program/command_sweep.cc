@@ -11,7 +11,6 @@
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/html.h"
 #include "evaluation/base/output_path.h"
-#include "evaluation/base/report_program.h"
 #include "evaluation/campaign/campaign_progress.h"
 #include "evaluation/campaign/recorded_trials.h"
 #include "evaluation/campaign/sweep.h"
@@ -19,6 +18,7 @@
 #include "evaluation/campaign/sweep_report.h"
 #include "evaluation/campaign/trial_store.h"
 #include "evaluation/program/commands.h"
+#include "evaluation/report/report_program.h"
 #include "touchdown/evaluation/base/shipped_files.h"
 
 namespace touchdown::evaluation {

@@ -7,10 +7,8 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -23,25 +21,13 @@
 #include <unistd.h>
 
 #include "evaluation/base/bad_input.h"
+#include "evaluation/base/child_program.h"
 #include "evaluation/base/words.h"
 
 namespace touchdown::evaluation {
 namespace {
 
 constexpr char kEncoder[] = "ffmpeg";
-
-bool OnPath(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::filesystem::path file = std::filesystem::path(folder) / program;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0) {
-      return true;
-    }
-  }
-  return false;
-}
 
 // Names that begin with a dash or look like a protocol are no options or addresses.
 std::string FileWord(const std::string& path) { return "file:" + path; }
@@ -58,7 +44,7 @@ int BehindStandard(int descriptor) {
 }  // namespace
 
 void RequireEncoder(const std::string& who) {
-  if (OnPath(kEncoder)) return;
+  if (!FindOnPath(kEncoder).empty()) return;
   throw BadInput(fmt::format(
       "{} needs the program {}, which is not on PATH: install the package ffmpeg.", who, kEncoder));
 }

@@ -7,6 +7,9 @@ import types
 
 import pytest
 
+# The Python of these tests makes the program's reports, too, whatever environment is active.
+os.environ["TOUCHDOWN_PYTHON"] = sys.executable
+
 
 @pytest.fixture(scope="session")
 def program():

@@ -8,7 +8,9 @@ import sys
 
 import pytest
 
-td = pytest.importorskip("touchdown")
+import the_package
+
+td = the_package.touchdown
 pytest.importorskip("hypothesis")
 
 CALLS = '''
@@ -48,7 +50,7 @@ def planner():
     return made
 
 
-SCENARIO = td.load_scenario("open", set={"timeout": 0.5})
+SCENARIO = td.load_scenario("open", set={"timeout": 1})
 OPTIONS = td.OccupancyMapOptions(size_log2=[5, 5, 5])
 CURVE = td.hermite(td.SplineState(), td.SplineState(p=[1, 0, 0]), 6, 1.0)
 # Makes an object with something in it; each is made anew for each call.
@@ -130,23 +132,19 @@ def test_no_argument_crashes_the_interpreter():
     assert functions > 40 and members > 120
 
 
-@pytest.mark.parametrize("dead", ["__new__", "half made"])
-def test_an_object_that_was_not_made_is_refused(dead):
-    script = f"""
+def test_an_object_whose_constructor_was_left_out_is_refused():
+    script = """
 import touchdown as td
 from touchdown import _touchdown
 import inspect
 for name, cls in vars(_touchdown).items():
     if not inspect.isclass(cls) or issubclass(cls, BaseException):
         continue
-    if {dead!r} == "__new__":
-        made = cls.__new__(cls)
-    else:
-        made = type("Sub", (cls,), {{"__init__": lambda self: None}})
-        try:
-            made = made()
-        except TypeError:
-            continue
+    made = type("Half", (cls,), {"__init__": lambda self: None})
+    try:
+        made = made()
+    except TypeError:
+        continue
     for member in dir(cls):
         if member.startswith("__") and member != "__repr__":
             continue

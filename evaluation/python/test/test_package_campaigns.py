@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Comparisons, studies and result files in frames."""
 import json
+import shutil
 import sqlite3
 import subprocess
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -59,6 +61,7 @@ def test_the_problems_of_a_file_are_compared(record_path):
         source=record_path, problems=2, every=20, backends=["banded"], repeats=1, progress=False
     )
     assert json.loads(done.manifest["from"]) == record_path and len(done.problems) == 2 and done.db is None
+    assert done.manifest["every"] == "20"
 
 
 def test_a_set_of_known_problems_has_a_row_for_each_problem_and_backend():
@@ -161,6 +164,20 @@ def test_columns_without_a_number_are_numbers(tmp_path):
     assert part["d"][0] == b"\x01\x02"
 
 
+def test_what_a_killed_writer_left_is_taken_in(tmp_path):
+    path, left = tmp_path / "a.db", tmp_path / "left"
+    left.mkdir()
+    with closing(sqlite3.connect(path)) as db:
+        db.execute("PRAGMA journal_mode=WAL")
+        db.execute("CREATE TABLE manifest(key TEXT, value TEXT)")
+        db.execute("INSERT INTO manifest VALUES('format', 'touchdown trials')")
+        db.commit()
+        for file in (path, tmp_path / "a.db-wal"):
+            shutil.copy(file, left)
+    assert list(touchdown.read(left / "a.db")["manifest"]["value"]) == ["touchdown trials"]
+    assert [file.name for file in left.iterdir()] == ["a.db"]
+
+
 def test_a_file_that_grows_can_be_read(program, tmp_path):
     path = tmp_path / "a b?.db"
     sweep = [program, *"sweep open --set timeout=2 --trials 500 --jobs 1 --db".split(), str(path)]
@@ -199,6 +216,7 @@ def test_values_of_keys_have_the_type_that_all_of_them_have(texts, kind):
     assert [str(value).lower() for value in typed] == [str(float(t)) if kind is float else t for t in texts]
 
 
+@pytest.mark.skipif(shutil.which("mypy") is None, reason="there is no mypy")
 def test_the_package_is_typed():
     """What is written by hand here, by mypy."""
     package = Path(_results.__file__).parent
@@ -206,6 +224,6 @@ def test_the_package_is_typed():
     options = ["--strict", "--allow-untyped-calls", "--ignore-missing-imports", "--follow-imports=silent"]
     options += ["--cache-dir=/dev/null"]
     done = subprocess.run(
-        ["/usr/bin/mypy", *options, *files], capture_output=True, text=True, check=False, cwd=package.parent
+        ["mypy", *options, *files], capture_output=True, text=True, check=False, cwd=package.parent
     )
     assert done.returncode == 0, done.stdout

@@ -6,7 +6,9 @@ import gc
 import numpy as np
 import pytest
 
-td = pytest.importorskip("touchdown")
+import the_package
+
+td = the_package.touchdown
 
 START = [-4.0, 0.0, 1.5]
 
@@ -31,7 +33,9 @@ def test_plain_data_takes_its_attributes_by_name_and_tells_them():
     limits = td.Limits(speed=2.0, pull_W=[0.0, 1.0, 0.0])
     assert limits.speed == 2.0 and limits.acceleration == 6.0
     assert "speed=2.0" in repr(limits)
-    limits.pull_W[0] = 3.0  # a view
+    with pytest.raises(ValueError, match="read-only"):  # a view
+        limits.pull_W[0] = 3.0
+    limits.pull_W = [3.0, 1.0, 0.0]
     assert limits.pull_W.tolist() == [3.0, 1.0, 0.0]
     twin = copy.deepcopy(limits)
     twin.speed = 5.0
@@ -118,7 +122,7 @@ def test_a_map_from_points_blocks_around_them():
     assert place.blocked([[0.0, 0.0, 1.5], [-3.0, 0.0, 1.5], [500.0, 0.0, 0.0]]).tolist() == [True, False, False]
     states = place.states()
     assert states.shape == tuple(place.size[::-1]) and set(np.unique(states)) == {1, 2}
-    assert (states == 2).sum() >= 21 * 29
+    assert (states == 2).sum() >= 0.95 * 21 * 29
     through = td.hermite(td.SplineState(p=START), td.SplineState(p=[4, 0, 1.5]), 10, 4.0)
     assert 0.0 < place.first_blocked(through) < 4.0
     twin = td.OccupancyMap(centre=START)
@@ -206,7 +210,7 @@ def test_a_term_sees_the_pad_during_the_call_alone():
         def value(self, w):
             pad = self.context.pad.positions(w.t)
             kept.append(self.context.pad)
-            return w.position[:, 2:] - pad[:, 2:] - 2.0
+            return w.position[:, 2:] - pad[:, 2:] - 1.0
 
         def loss(self):
             return td.HingeLoss(self.weight, 0.5)
@@ -226,7 +230,7 @@ def test_wrong_slopes_are_found_when_a_term_is_entered():
         window = 3
 
         def value(self, w):
-            return (w.position**2)[:, 2:]
+            return np.sin(w.position)[:, 2:]
 
         def jacobian(self, w):
             return np.ones((len(w.t), 1, 3, 3))

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from the_package import assert_equal, descendants, rows, touchdown, wait_for
+from touchdown import _program
 
 SET = {"timeout": 1.5, "start.position_spread": [1, 1, 0]}
 VARY = {"controller": ["geometric", "paper"], "gps.sigma": (0.1, 0.5)}
@@ -169,6 +170,7 @@ def test_a_page_with_flights_and_a_picture_are_written(tmp_path):
         ({"vary": {"gps.sigmo": [1]}}, "gps.sigmo is no key that can be varied"),
         ({"trials": "x"}, "--trials: x is no whole number"),
         ({"record": "all"}, "it needs html"),
+        ({"retry": True}, "nothing to fly again without db"),
         ({"planner": "lan"}, "planner must be"),
     ],
 )
@@ -186,12 +188,19 @@ def test_the_file_is_whole_when_the_call_returns(tmp_path):
 # Progress
 
 
-def test_a_bar_follows_the_growing_file(bars):
+def test_a_bar_follows_the_growing_file(bars, monkeypatch):
+    monkeypatch.setattr(_program, "_WATCH_S", 0.02)
     touchdown.sweep("straight_turn", trials=6, set={"timeout": 6})
     (bar,) = bars
     assert (bar.total, bar.unit, bar.n, bar.closed) == (6, "trial", 6, True)
     assert bar.shown == sorted(bar.shown) and len(set(bar.shown)) > 2  # it was looked at on the way
     assert bar.text == "0 succeeded"
+
+
+def test_a_bar_is_full_after_a_sweep_that_was_faster_than_a_look(bars, monkeypatch):
+    monkeypatch.setattr(_program, "_WATCH_S", 100.0)
+    touchdown.sweep("open", trials=2, set={"timeout": 1})
+    assert (bars[0].total, bars[0].shown, bars[0].closed) == (2, [2], True)
 
 
 def test_no_bar_is_shown_where_none_is_wanted_or_possible(bars, monkeypatch, capfd):
@@ -245,7 +254,7 @@ def test_parts_of_python_fly_one_by_one(in_process):
 
 
 @pytest.mark.parametrize(
-    "more", [{"html": "a.html"}, {"picture": "a.png"}, {"trial_limit": 3.0}, {"retry": True}]
+    "more", [{"html": "a.html"}, {"picture": "a.png"}, {"trial_limit": 3.0}, {"retry": True, "db": "a.db"}]
 )
 def test_what_does_not_go_with_parts_of_python_is_refused(in_process, more):
     with pytest.raises(ValueError, match="does not go with registries"):

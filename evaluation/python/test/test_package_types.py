@@ -6,10 +6,13 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal, get_origin
 
 import pytest
 
-td = pytest.importorskip("touchdown")
+import the_package
+
+td = the_package.touchdown
 
 ROOT = Path(__file__).resolve().parents[3]
 PACKAGE = Path(td.__file__).parent
@@ -69,9 +72,12 @@ limits = td.Limits(speed=2.0)
 
 def test_the_stub_holds_against_the_module(tmp_path):
     pytest.importorskip("mypy")
+    # Classes have pybind11's metaclass. What a constructor takes by name it looks at by itself.
+    allowed = tmp_path / "allowed"
+    allowed.write_text("touchdown\\._touchdown\\.[A-Z]\\w+(\\.__init__)?\n", encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-m", "mypy.stubtest", "touchdown._touchdown", "--ignore-missing-stub",
-         "--ignore-positional-only"],
+        [sys.executable, "-m", "mypy.stubtest", "touchdown._touchdown", "--ignore-positional-only",
+         "--allowlist", str(allowed), "--ignore-unused-allowlist"],
         capture_output=True, text=True, cwd=tmp_path, check=False,
         env={**os.environ, "MYPYPATH": str(PACKAGE.parent), "PYTHONPATH": str(PACKAGE.parent)},
     )
@@ -81,7 +87,7 @@ def test_the_stub_holds_against_the_module(tmp_path):
 @pytest.mark.parametrize("name", sorted(public()))
 def test_everything_public_is_told(name):
     thing = public()[name]
-    if not callable(thing):
+    if not callable(thing) or get_origin(thing) is Literal:
         return
     text = re.sub(r"^\w+\(.*\) -> .*$", "", inspect.getdoc(thing) or "", flags=re.M).strip()
     assert text, f"{name} has no docstring"

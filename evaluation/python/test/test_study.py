@@ -281,16 +281,6 @@ def test_what_is_no_study_is_refused_in_a_sentence(flown, run, tmp_path):
     assert done.returncode == 2 and "nothing/study.db is missing" in done.stderr
 
 
-def test_missing_packages_are_named(monkeypatch, capsys):
-    from touchdown_report.study import __main__ as program
-
-    assert program.main(["--check"]) == 0
-    monkeypatch.setitem(program.NEEDED, "no_such_module", "python3-none-such")
-    for asked in ("folder", "--check"):
-        assert program.main([asked]) == 2
-        assert "install python3-none-such for this report" in capsys.readouterr().err
-
-
 def test_mistakes_in_a_study_file_are_named(run, tmp_path):
     path = tmp_path / "mine.yaml"
     for written, sentence in (

@@ -2,6 +2,7 @@
 """The package as it was built: tests that import this are skipped where it was not. CTest tells of a module that it built.
 And what tests of it share."""
 import contextlib
+import ctypes
 import os
 import sqlite3
 import time
@@ -15,6 +16,16 @@ except ImportError as missing:
     if os.environ.get("TOUCHDOWN_PYTHON_MODULE"):
         raise
     pytest.skip(f"the Python module was not built ({missing})", allow_module_level=True)
+
+
+# Memory
+
+
+def resident_kb():
+    """What this process holds, without what its allocator has not given back."""
+    ctypes.CDLL("libc.so.6").malloc_trim(0)
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") // 1024
 
 
 # Processes

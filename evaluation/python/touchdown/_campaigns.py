@@ -9,7 +9,7 @@ import shlex
 import sys
 import tempfile
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -17,7 +17,7 @@ from touchdown import _touchdown
 from touchdown._program import ProgramFailed, Word, check, is_progress, run_words, share_path
 from touchdown._progress import Bar
 from touchdown._results import PathLike, numbers, open_result, read, typed, types_of
-from touchdown._scenarios import Scenario, Variation, overrides, scenario_word, variation_text
+from touchdown._scenarios import ScenarioLike, Variation, overrides, scenario_word, variation_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 _LOST = ("error", "crashed", "hung")
 
 
-@dataclass(repr=False)
+@dataclass(repr=False, eq=False)
 class SweepResult:
     """What `sweep` flew.
 
     trials    a row a trial: columns of the tables trial and timing (docs/record.md), one for each varied key, and
-              `command`, which flies it alone
+              `command`, which flies it alone; with a scenario that was a dictionary it names a file that is gone
     cells     a row for each combination of listed values: these, planned and flown trials, succeeded, `rate` and its
               95 % interval `rate_lo`, `rate_hi`, medians of the landed
     manifest  {key: value}: build, machine, `scenario_yaml` of the first trial
@@ -54,7 +54,7 @@ class SweepResult:
         return f"<sweep of {self.manifest['scenario']}: {succeeded} of {trials} trials succeeded>"
 
 
-@dataclass(repr=False)
+@dataclass(repr=False, eq=False)
 class CompareResult:
     """What `compare` measured.
 
@@ -63,7 +63,7 @@ class CompareResult:
     problems  table problem
     refusals  who did not run all, and why: table refusal
     manifest  {key: value}: settings, build, machine
-    command   what was run, without what was temporary
+    command   what was run, without what was temporary; None: solved in this process
     db        the file; None: it is not kept
     """
 
@@ -72,14 +72,14 @@ class CompareResult:
     problems: pd.DataFrame
     refusals: pd.DataFrame
     manifest: Dict[str, str]
-    command: str
+    command: Optional[str]
     db: Optional[Path]
 
     def __repr__(self) -> str:
         return f"<comparison: {len(self.problems)} problems, {len(self.solves)} solves>"
 
 
-@dataclass(repr=False)
+@dataclass(repr=False, eq=False)
 class StudyResult:
     """What `study` flew.
 
@@ -96,9 +96,9 @@ class StudyResult:
     rates: pd.DataFrame
     trials: pd.DataFrame
     replans: pd.DataFrame
-    plan: Dict[str, Any] = field(default_factory=dict)
-    report: Optional[Path] = None
-    command: str = ""
+    plan: Dict[str, Any]
+    report: Optional[Path]
+    command: str
 
     def __repr__(self) -> str:
         return f"<study {self.plan['study']}: {len(self.trials)} trials in {self.folder}>"
@@ -188,7 +188,7 @@ def _check_in_process(jobs: int, **options: Any) -> None:
 
 
 def sweep(
-    scenario: Scenario,
+    scenario: ScenarioLike,
     *,
     trials: int = 20,
     seed: int = 1,
@@ -226,6 +226,8 @@ def sweep(
     """
     if record is not None and html is None:
         raise ValueError(f"record is {record!r}: the flights stand beside the report, so it needs html")
+    if retry and db is None:
+        raise ValueError("retry is True: there is nothing to fly again without db")
     settings = overrides(set)
     settings += [f"planner={planner}"] if planner is not None else []
     settings += [f"solver.backend={backend}"] if backend is not None else []
@@ -252,7 +254,7 @@ def sweep(
             for text in texts:
                 words += [option, text]
         words += _options(trial_limit=trial_limit, retry=retry, picture=picture, html=html, record=record)
-        told = Path(word).name if isinstance(scenario, Mapping) else word
+        told = word if isinstance(scenario, (str, os.PathLike)) else Path(word).name
         done = _fly(["sweep", word, *words, "--db", file], file, bar)
         if done[0] not in (0, 1) or not file.is_file():
             check(*done)
@@ -288,6 +290,7 @@ def compare(
     picture: Optional[PathLike] = None,
     allow_debug: bool = False,
     progress: bool = True,
+    registries: Optional[_touchdown.Registries] = None,
 ) -> CompareResult:
     """Compares solver backends on what flights ask for, or on a set of known problems (docs/compare.md).
 
@@ -298,12 +301,11 @@ def compare(
     deadline_ms  solves are also stopped after this wall time
     pin          runs on this CPU only
     db           keeps every solve in a new SQLite file
+    registries   with terms that are written in Python: the flights are then flown, and solved, in this process
 
     The others are the options of the same names; None leaves the program's default. Raises BadInput for what the
     program refuses, ProgramFailed otherwise.
     """
-    import pandas as pd
-
     words: List[Word] = ["compare", *_options(problem_set=problem_set, **{"from": source})]
     for text in overrides(set):
         words += ["--set", text]
@@ -315,6 +317,21 @@ def compare(
     with tempfile.TemporaryDirectory(prefix="touchdown-") as temporary, Bar("problem", progress) as bar:
         file = Path(temporary) / "compare.db" if db is None else Path(db)
 
+        if registries is not None:
+            _check_in_process(
+                1, pin=pin, picture=picture, starts=starts, problem_set=None if problem_set == "landing" else problem_set
+            )
+            short = {"solver.arrival": arrival, "solver.limits": limits, "solver.endpoint": endpoint}
+            given = {
+                "source": None if source is None else os.fspath(source),
+                "set": overrides({**(set or {}), **{key: word for key, word in short.items() if word is not None}}),
+                "seed": seed, "problems": problems, "every": every, "gap": gap, "repeats": repeats,
+                "backends": None if backends is None else list(backends),
+                "deadline_ms": deadline_ms, "backend_seconds": backend_seconds,
+            }  # fmt: skip
+            _touchdown._compare(given, str(file), registries, lambda done, all: bar.show(done, all))
+            return _compared(read(file), None, None, db)
+
         def watch(said: str) -> None:
             told = re.findall(r"(\d+) of (\d+) problems, ", said)
             if told:
@@ -324,14 +341,24 @@ def compare(
         check(status, out, lines)
         watch("\n".join(lines))
         frames = read(file)
+    return _compared(frames, out, _command(words if db is None else [*words, "--db", file]), db)
+
+
+def _compared(
+    frames: Dict[str, Any], document: Optional[str], command: Optional[str], db: Optional[PathLike]
+) -> CompareResult:
+    import pandas as pd
+
+    if document is not None and "summary" not in frames:  # of a set of known problems
+        frames["summary"] = pd.DataFrame(json.loads(document)["cells"])
     return CompareResult(
-        summary=frames["summary"] if "summary" in frames else pd.DataFrame(json.loads(out)["cells"]),
+        summary=frames["summary"],
         solves=frames["solve"],
         problems=frames["problem"],
         refusals=frames["refusal"],
         manifest=dict(frames["manifest"].to_numpy()),
-        command=_command(words if db is None else [*words, "--db", file]),
-        db=None if db is None else file,
+        command=command,
+        db=None if db is None else Path(db),
     )
 
 

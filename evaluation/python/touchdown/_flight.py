@@ -7,12 +7,12 @@ import tempfile
 from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
+from urllib.parse import quote
 
 import numpy as np
 
 from touchdown import _touchdown
-
-ScenarioLike = Union[str, "os.PathLike[str]", Mapping[str, Any], _touchdown.Scenario]
+from touchdown._scenarios import ScenarioLike, overrides, scenario_text
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,17 @@ class Record:
     pandas frame. The file is read once, when the record is made."""
 
     def __init__(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        self.path = os.fspath(path)
-        if not os.path.isfile(self.path):
-            raise FileNotFoundError(f"{self.path}: there is no such record.")
+        if not os.path.isfile(path):
+            raise FileNotFoundError(f"{os.fspath(path)}: there is no such record.")
         self._db = sqlite3.connect(":memory:", check_same_thread=False)
-        with closing(sqlite3.connect(f"file:{self.path}?mode=ro", uri=True)) as file:
+        with closing(sqlite3.connect(f"file:{quote(os.fspath(path))}?mode=ro", uri=True)) as file:
             file.backup(self._db)
         self.meta = dict(self._db.execute("SELECT key, value FROM meta"))
+
+    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Writes it to a file, as `touchdown replay`, `plan` and `profile` read it."""
+        with closing(sqlite3.connect(os.fspath(path))) as file:
+            self._db.backup(file)
 
     @property
     def tables(self) -> List[str]:
@@ -126,21 +130,6 @@ class TrialResult:
         )
 
 
-def overrides(changes: Optional[Mapping[str, Any]]) -> List[str]:
-    """KEY=VALUE texts of a dictionary {"pad.speed": 1.2, "start.position_spread": [1, 1, 0]}."""
-    return [f"{key}={_text(value)}" for key, value in (changes or {}).items()]
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(_text(item) for item in value) + "]"
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
-    return str(value)
-
-
 def load_scenario(
     scenario: ScenarioLike = "straight_turn",
     *,
@@ -151,21 +140,12 @@ def load_scenario(
 
     `set` changes keys: {"pad.speed": 1.2}. Raises BadInput with one sentence."""
     if isinstance(scenario, _touchdown.Scenario):
-        return _touchdown.Scenario.parse(scenario.yaml, overrides(set), registries) if set else scenario
+        if not set:
+            return scenario
+        return _touchdown.Scenario.parse(scenario_text(scenario), overrides(set), registries)
     if isinstance(scenario, Mapping):
-        # JSON is YAML.
-        return _touchdown.Scenario.parse(json.dumps(_plain(scenario)), overrides(set), registries)
+        return _touchdown.Scenario.parse(scenario_text(scenario), overrides(set), registries)
     return _touchdown.Scenario.load(os.fspath(scenario), overrides(set), registries)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return value.item()
-    return value
 
 
 def run_trial(
@@ -217,5 +197,8 @@ def explain_step(
 
     `set` changes keys solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start. Raises BadInput, and
     IndexError for a step that is not there."""
-    path = record.path if isinstance(record, Record) else os.fspath(record)
-    return json.loads(_touchdown._explain(path, int(step), overrides(set), registries))
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "record.db") if isinstance(record, Record) else os.fspath(record)
+        if isinstance(record, Record):
+            record.save(path)
+        return json.loads(_touchdown._explain(path, int(step), overrides(set), registries))

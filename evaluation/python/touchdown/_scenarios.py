@@ -6,8 +6,10 @@ import re
 from pathlib import Path
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, Union
 
-Scenario = Union[str, "os.PathLike[str]", Mapping[str, Any]]
-"""A shipped one by its name, a file by its path, or its keys (docs/scenario.md), nested or dotted."""
+from touchdown._touchdown import Scenario
+
+ScenarioLike = Union[str, "os.PathLike[str]", Mapping[str, Any], Scenario]
+"""A shipped one by its name, a file by its path, its keys (docs/scenario.md), nested or dotted, or a loaded one."""
 
 Variation = Union[Sequence[Any], Tuple[float, float]]
 """Of a varied key: a list of values that are taken in turn, or a tuple (lo, hi), a range that is drawn from."""
@@ -55,12 +57,17 @@ def variation_text(key: str, values: Variation) -> str:
     return f"{key}={','.join(texts)}"
 
 
-def scenario_word(scenario: Scenario, folder: Path) -> str:
-    """The scenario's name or path; a dictionary becomes a file in `folder`."""
-    if not isinstance(scenario, Mapping):
+def scenario_text(scenario: Union[Mapping[str, Any], Scenario]) -> str:
+    """The text of its file. YAML reads what JSON writes."""
+    if isinstance(scenario, Scenario):
+        return scenario.yaml
+    return json.dumps(dict(scenario), default=_plain, ensure_ascii=False, indent=1) + "\n"
+
+
+def scenario_word(scenario: ScenarioLike, folder: Path) -> str:
+    """The scenario's name or path; what is in no file becomes one in `folder`."""
+    if not isinstance(scenario, (Mapping, Scenario)):
         return os.fspath(scenario)
     path = folder / "scenario.yaml"
-    path.write_text(
-        json.dumps(dict(scenario), default=_plain, ensure_ascii=False, indent=1) + "\n", encoding="utf-8"
-    )
+    path.write_text(scenario_text(scenario), encoding="utf-8")
     return str(path)

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace touchdown::evaluation {
+
+/// A Python that reports may run with.
+struct Interpreter {
+  std::string path;
+  std::string named_by;  ///< a variable of the environment, or "the build's default"
+};
+
+/// The interpreters that the user may mean, first the one that is meant most: what TOUCHDOWN_PYTHON says, which then is alone; the
+/// active environment's (VIRTUAL_ENV, CONDA_PREFIX); python3 on PATH; the build's default. None twice.
+std::vector<Interpreter> InterpretersToAsk();
+
+/// The first that has all packages. Each is asked in turn. @throws std::runtime_error, half a sentence: what each of them lacks, and
+/// how that is installed. @param patience_s how long one has to answer [s]
+Interpreter FirstWith(const std::vector<std::string>& packages,
+                      const std::vector<Interpreter>& interpreters, double patience_s);
+
+/// The path of the first of InterpretersToAsk with these packages, which is kept for the run. One that is not the build's default is
+/// told to the log. @throws as FirstWith; the next call asks again
+std::string InterpreterWith(const std::vector<std::string>& packages);
+
+}  // namespace touchdown::evaluation
