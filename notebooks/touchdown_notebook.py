@@ -17,7 +17,9 @@ import pandas as pd
 from IPython.display import Image, Pretty, display
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "evaluation" / "python"))
+# After what is installed: the package touchdown of a build in this clone, and touchdown_report.
+sys.path += [str(ROOT / "build" / preset / "python") for preset in ("release", "native")]
+sys.path.append(str(ROOT / "evaluation" / "python"))
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
