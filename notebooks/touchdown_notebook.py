@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the notebooks share: running the program, reading its result files, and pictures that hold
-several of them together. Pictures of one result file are touchdown_report's."""
+"""What the notebooks share: running the program, reading its result files without the package touchdown, and
+pictures that hold several of them together. Pictures of one result file are touchdown_report's."""
 import io
 import json
 import os
@@ -10,7 +10,6 @@ import sqlite3
 import subprocess
 import sys
 import threading
-import time
 from contextlib import closing
 from pathlib import Path
 
@@ -18,7 +17,9 @@ import pandas as pd
 from IPython.display import Image, Pretty, display
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "evaluation" / "python"))
+# After what is installed: the package touchdown of a build in this clone, and touchdown_report.
+sys.path += [str(ROOT / "build" / preset / "python") for preset in ("release", "native")]
+sys.path.append(str(ROOT / "evaluation" / "python"))
 
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
@@ -64,7 +65,6 @@ def start(name):
     for result in folder.rglob("*.db"):
         result.unlink()
     os.chdir(folder)
-    print(f"program {program()}\nfiles   {folder}")
 
 
 def run(command, allowed=(0,), quiet=False):
@@ -75,7 +75,7 @@ def run(command, allowed=(0,), quiet=False):
     if words[0] == "touchdown":
         words[0] = str(program())
     line = display(Pretty(f"$ {command}"), display_id=True)
-    begin, errors = time.monotonic(), []
+    errors = []
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         # stdout in a thread of its own: a full pipe there would stop the program.
         printed = []
@@ -85,7 +85,7 @@ def run(command, allowed=(0,), quiet=False):
             errors.append(error.rstrip())
             show_line(line, f"$ {command}\n{errors[-1]}")
         reader.join()
-    show_line(line, f"$ {command}    ({time.monotonic() - begin:.1f} s)")
+    show_line(line, f"$ {command}")
     if process.returncode not in allowed:
         why = errors[-1] if errors else printed[0].strip()
         raise CommandFailed(f"`{command}` ended with status {process.returncode}: {why}")
@@ -100,16 +100,6 @@ def show_line(line, text):
     """Replaces what is shown; outside of a notebook there is no such place."""
     if line is not None:
         line.update(Pretty(text))
-
-
-def prefix():
-    """A prefix with touchdown installed, for CMAKE_PREFIX_PATH: where the program was installed to,
-    or, if it stands in a build tree, that build installed into the present folder."""
-    above = program().parent.parent
-    if not (above / "CMakeCache.txt").is_file():
-        return above
-    run(f"cmake --install {shlex.quote(str(above))} --prefix prefix", quiet=True)
-    return Path("prefix").resolve()
 
 
 # Reading result files
@@ -132,34 +122,12 @@ def flight(path):
     return way.assign(to_pad=np.hypot(offset[:, 0], offset[:, 1]), above_pad=offset[:, 2])
 
 
-def stage_times(path):
-    """CPU time [ms] of every stage of every replanning step of a profile, the median of its passes:
+def stage_times(profile):
+    """CPU time [ms] of every stage of every replanning step of a profile (`touchdown.read`), the median of its passes:
     one row a step, with t_now [s], one column a stage, total, and of that what no stage had: other."""
-    rows = table(
-        path,
-        "SELECT s.replan, r.t_now, s.stage, s.cpu_ms FROM stage s JOIN replan r USING(run, replan)",
-    )
+    rows = profile["stage"].merge(profile["replan"][["run", "replan", "t_now"]], on=["run", "replan"])
     times = rows.pivot_table("cpu_ms", ["replan", "t_now"], "stage", "median").reset_index("t_now")
     return times.assign(other=times.total - times[STAGES[:-1]].sum(axis=1))
-
-
-def spans(path):
-    """The planning spans of a trace as they began: name, run, replan, start [ms], cpu_ms and status,
-    which only the span of a whole step has; the others are its stages."""
-    with open(path, encoding="utf-8") as file:
-        events = [e for e in json.load(file)["traceEvents"] if e.get("cat") == "planning"]
-    rows = pd.DataFrame(
-        {
-            "name": e["name"],
-            "run": e["args"]["run"],
-            "replan": e["args"]["replan"],
-            "start": e["ts"] / 1000.0,
-            "cpu_ms": e["args"]["cpu_us"] / 1000.0,
-            "status": e["args"].get("status"),
-        }
-        for e in events
-    )
-    return rows.sort_values("start", kind="stable", ignore_index=True)
 
 
 def rate(successes, trials):
@@ -235,20 +203,6 @@ def stages_figure(times, deadline_ms):
         spread.set(xscale="log", xlabel="thread CPU time [ms], less than 1 µs drawn at 1 µs")
         spread.set_title("quantiles by stage")
         spread.legend(frameon=False, fontsize=8)
-        return figure
-
-
-def spans_figure(step):
-    """The stages of one step, as rows of spans(), one after the other in CPU time."""
-    stages = step[step.status.isna()]
-    with plt.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(11.0, 2.8), layout="constrained")
-        begin = (stages.cpu_ms.cumsum() - stages.cpu_ms).to_numpy()
-        for stage, colour in zip(STAGES, COLOURS):
-            here = (stages["name"] == stage).to_numpy()
-            axes.barh([stage] * here.sum(), stages.cpu_ms[here], left=begin[here], color=colour)
-        axes.invert_yaxis()
-        axes.set(xlabel="thread CPU time since the step began [ms]", title=step["name"].iloc[0])
         return figure
 
 

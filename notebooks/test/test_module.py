@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: BSD-3-Clause
-import json
 import os
 import sqlite3
 import sys
@@ -9,7 +8,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-import touchdown_notebook as td  # noqa: E402
+import touchdown_notebook as nb  # noqa: E402
 
 
 @pytest.fixture()
@@ -17,41 +16,46 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("TOUCHDOWN_PROGRAM", os.environ["TOUCHDOWN_PROGRAM"])  # as it was, afterwards
     monkeypatch.setenv("TOUCHDOWN_NOTEBOOK_OUT", str(tmp_path))
     monkeypatch.chdir(tmp_path)
-    td.start("here")
+    nb.start("here")
     return tmp_path / "here"
 
 
 @pytest.fixture(scope="module")
 def flown(tmp_path_factory):
-    """A folder with the record of a short flight, its profile and a trace."""
+    """A folder with the record of a short flight, and its profile."""
     path = tmp_path_factory.mktemp("flown")
     before = os.getcwd()
     os.chdir(path)
     try:
-        td.run("touchdown land open --set timeout=2 --record a.db", allowed=(1,), quiet=True)
-        td.run("touchdown profile --from a.db --repeats 2 --db p.db --trace t.json", quiet=True)
+        nb.run("touchdown land open --set timeout=2 --record a.db", allowed=(1,), quiet=True)
+        nb.run("touchdown profile --from a.db --repeats 2 --db p.db", quiet=True)
     finally:
         os.chdir(before)
     return path
 
 
+def profile_of(flown):
+    """The tables that stage_times takes, as touchdown.read gives them."""
+    return {name: nb.table(flown / "p.db", f"SELECT * FROM {name}") for name in ("stage", "replan")}
+
+
 def test_the_program_is_the_one_that_is_named(monkeypatch, tmp_path):
-    assert td.program() == Path(os.environ["TOUCHDOWN_PROGRAM"]).resolve()
+    assert nb.program() == Path(os.environ["TOUCHDOWN_PROGRAM"]).resolve()
     monkeypatch.setenv("TOUCHDOWN_PROGRAM", str(tmp_path / "none"))
     with pytest.raises(FileNotFoundError, match="none, the value of TOUCHDOWN_PROGRAM, is no program"):
-        td.program()
+        nb.program()
 
 
 def test_without_a_program_the_way_to_one_is_said(monkeypatch, tmp_path):
     monkeypatch.delenv("TOUCHDOWN_PROGRAM")
     monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(td, "ROOT", tmp_path)
+    monkeypatch.setattr(nb, "ROOT", tmp_path)
     with pytest.raises(FileNotFoundError, match="run ./demo.sh"):
-        td.program()
+        nb.program()
     built = tmp_path / "build" / "native" / "bin" / "touchdown"
     built.parent.mkdir(parents=True)
     built.touch(mode=0o755)
-    assert td.program() == built
+    assert nb.program() == built
 
 
 def test_a_folder_of_its_own_without_old_results(tmp_path, monkeypatch):
@@ -61,55 +65,49 @@ def test_a_folder_of_its_own_without_old_results(tmp_path, monkeypatch):
     for name in ("old.db", "study/old.db", "main.cc"):
         (tmp_path / "again" / name).touch()
     (tmp_path / "elsewhere.db").touch()
-    td.start("again")
+    nb.start("again")
     assert Path.cwd() == tmp_path / "again"
     assert sorted(p.name for p in tmp_path.rglob("*.*")) == ["elsewhere.db", "main.cc"]
 
 
 def test_a_command_prints_what_it_prints(folder, capfd):
-    assert td.run("touchdown list scenarios") is None
+    assert nb.run("touchdown list scenarios") is None
     assert "straight_turn" in capfd.readouterr().out
-    td.run("touchdown list scenarios", quiet=True)
+    nb.run("touchdown list scenarios", quiet=True)
     assert "straight_turn" not in capfd.readouterr().out
-    scenarios = td.run("touchdown list scenarios --json")
+    scenarios = nb.run("touchdown list scenarios --json")
     assert "open" in [scenario["name"] for scenario in scenarios]
-    td.run("cmake -E echo 'two words'")
+    nb.run("cmake -E echo 'two words'")
     assert "two words\n" in capfd.readouterr().out
 
 
 def test_a_failure_is_said_in_a_sentence(folder):
-    with pytest.raises(td.CommandFailed, match="status 2: .*no_such_key"):
-        td.run("touchdown land open --set no_such_key=1")
-    with pytest.raises(td.CommandFailed, match="status 1: .*timeout"):
-        td.run("touchdown land open --set timeout=1")
-    td.run("touchdown land open --set timeout=1", allowed=(0, 1), quiet=True)
+    with pytest.raises(nb.CommandFailed, match="status 2: .*no_such_key"):
+        nb.run("touchdown land open --set no_such_key=1")
+    with pytest.raises(nb.CommandFailed, match="status 1: .*timeout"):
+        nb.run("touchdown land open --set timeout=1")
+    nb.run("touchdown land open --set timeout=1", allowed=(0, 1), quiet=True)
 
 
 def test_more_output_than_a_pipe_holds(folder, capfd):
     script = "import sys; [print('x' * 99, file=f) for _ in range(9999) for f in (sys.stderr, sys.stdout)]"
-    td.run(f'{sys.executable} -c "{script}"')
+    nb.run(f'{sys.executable} -c "{script}"')
     assert capfd.readouterr().out.count("x" * 99) >= 9999
-
-
-def test_a_prefix_is_where_the_package_is(folder):
-    prefix = td.prefix()
-    assert list(prefix.glob("**/touchdownConfig.cmake"))
-    assert (prefix / "bin" / "touchdown").is_file()
 
 
 def test_tables_are_read_only(folder):
     with pytest.raises(FileNotFoundError, match="none.db"):
-        td.table("none.db", "SELECT 1")
+        nb.table("none.db", "SELECT 1")
     with sqlite3.connect("some.db") as db:
         db.execute("CREATE TABLE t(x)")
         db.execute("INSERT INTO t VALUES (3)")
-    assert td.table("some.db", "SELECT x FROM t").x.tolist() == [3]
+    assert nb.table("some.db", "SELECT x FROM t").x.tolist() == [3]
     with pytest.raises(Exception, match="readonly"):
-        td.table("some.db", "DELETE FROM t")
+        nb.table("some.db", "DELETE FROM t")
 
 
 def test_a_flight_is_measured_from_the_pad(flown):
-    way = td.flight(flown / "a.db")
+    way = nb.flight(flown / "a.db")
     assert way.t.iloc[0] == pytest.approx(0.0) and way.t.iloc[-1] == pytest.approx(2.0, abs=0.1)
     # open: from (0, 0, 2.5) to a pad at (7, 6.5), whose deck is 0.5 m high.
     assert way.to_pad.iloc[0] == pytest.approx((7.0**2 + 6.5**2) ** 0.5, abs=1e-3)
@@ -118,42 +116,29 @@ def test_a_flight_is_measured_from_the_pad(flown):
 
 
 def test_stage_times_add_up_and_are_the_median_of_the_passes(flown):
-    times = td.stage_times(flown / "p.db")
-    steps = td.table(flown / "p.db", "SELECT COUNT(*) n, COUNT(DISTINCT replan) steps FROM replan")
+    times = nb.stage_times(profile_of(flown))
+    steps = nb.table(flown / "p.db", "SELECT COUNT(*) n, COUNT(DISTINCT replan) steps FROM replan")
     assert len(times) == steps.steps[0] == steps.n[0] / 2
     assert times.t_now.is_monotonic_increasing
-    assert times[td.STAGES].sum(axis=1).to_numpy() == pytest.approx(times.total.to_numpy())
-    samples = td.table(flown / "p.db", "SELECT cpu_ms FROM stage WHERE replan = 3 AND stage = 'solve'")
+    assert times[nb.STAGES].sum(axis=1).to_numpy() == pytest.approx(times.total.to_numpy())
+    samples = nb.table(flown / "p.db", "SELECT cpu_ms FROM stage WHERE replan = 3 AND stage = 'solve'")
     assert times.solve[3] == pytest.approx(samples.cpu_ms.median())
 
 
-def test_spans_of_a_trace(flown):
-    spans = td.spans(flown / "t.json")
-    steps, stages = spans[spans.status.notna()], spans[spans.status.isna()]
-    assert len(steps) == 2 * len(td.stage_times(flown / "p.db"))
-    assert set(stages["name"]) <= set(td.STAGES) and spans.start.is_monotonic_increasing
-    of_steps = steps.set_index(["run", "replan"]).cpu_ms
-    assert (stages.groupby(["run", "replan"]).cpu_ms.sum() <= of_steps + 1e-3).all()
-    with open(flown / "t.json", encoding="utf-8") as file:
-        assert len(spans) < len(json.load(file)["traceEvents"])
-
-
 def test_a_rate_has_its_interval():
-    assert td.rate(10, 10) == "10 of 10, 95 % [69, 100] %"
-    assert td.rate(0, 4) == "0 of 4, 95 % [0, 60] %"
+    assert nb.rate(10, 10) == "10 of 10, 95 % [69, 100] %"
+    assert nb.rate(0, 4) == "0 of 4, 95 % [0, 60] %"
 
 
 def test_pictures_are_made(flown, tmp_path):
-    times = td.stage_times(flown / "p.db")
-    spans = td.spans(flown / "t.json")
+    times = nb.stage_times(profile_of(flown))
     figures = [
-        td.flights_figure({"one": flown / "a.db", "two": flown / "a.db"}, zones=[(1.0, 2.0, 0.5)]),
-        td.stages_figure(times, 20.0),
-        td.spans_figure(spans[(spans.run == 0) & (spans.replan == 2)]),
-        td.distributions_figure({"banded": times.total}, "ms"),
+        nb.flights_figure({"one": flown / "a.db", "two": flown / "a.db"}, zones=[(1.0, 2.0, 0.5)]),
+        nb.stages_figure(times, 20.0),
+        nb.distributions_figure({"banded": times.total}, "ms"),
     ]
     for figure in figures:
-        image = td.show(figure)
+        image = nb.show(figure)
         assert image.data[:4] == b"\x89PNG"
         (tmp_path / "picture.png").write_bytes(image.data)
-    assert td.picture(tmp_path / "picture.png").data[:4] == b"\x89PNG"
+    assert nb.picture(tmp_path / "picture.png").data[:4] == b"\x89PNG"

@@ -43,7 +43,7 @@ def test_it_tells_a_story_and_checks_it(notebook):
     assert last.source.startswith("## What to try next")
     code = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "code")
     assert re.search(r"^assert ", code, re.MULTILINE)
-    assert re.search(r"td\.(picture|show)\(", code)
+    assert re.search(r"nb\.(picture|show)\(", code)
 
 
 def test_links_between_the_notebooks_lead_somewhere(notebook):

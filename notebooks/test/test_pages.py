@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+FOLDER = Path(__file__).resolve().parent.parent
 PAGES = Path(os.environ["TOUCHDOWN_NOTEBOOK_PAGES"])
-NAMES = sorted(path.stem for path in Path(__file__).resolve().parent.parent.glob("*.ipynb"))
+NAMES = os.environ["TOUCHDOWN_NOTEBOOKS"].split(",")
 
 
 @pytest.fixture(params=NAMES)
@@ -30,4 +31,4 @@ def test_nothing_is_fetched(page):
 def test_links_lead_to_the_other_pages(page):
     assert '.ipynb"' not in page
     for name in re.findall(r'href="(\w+)\.html"', page):
-        assert name in NAMES
+        assert (FOLDER / f"{name}.ipynb").is_file()
