@@ -244,11 +244,14 @@ def test_values_of_keys_have_the_type_that_all_of_them_have(texts, kind):
     assert [str(value).lower() for value in typed] == [str(float(t)) if kind is float else t for t in texts]
 
 
+TYPED = ("program", "scenarios", "results", "progress", "ranges", "tunable", "campaigns")
+
+
 @pytest.mark.skipif(shutil.which("mypy") is None, reason="there is no mypy")
 def test_the_package_is_typed():
     """What is written by hand here, by mypy."""
     package = Path(_results.__file__).parent
-    files = [str(package / f"_{name}.py") for name in ("program", "scenarios", "results", "progress", "campaigns")]
+    files = [str(package / f"_{name}.py") for name in TYPED]
     options = ["--strict", "--allow-untyped-calls", "--ignore-missing-imports", "--follow-imports=silent"]
     options += ["--cache-dir=/dev/null"]
     done = subprocess.run(

@@ -219,11 +219,11 @@ def test_settings_of_a_term_are_checked():
         parameters = {"height": td.Parameter(2.0, 0.5, 10.0)}
 
     assert Low().height == 2.0 and Low(height=3, weight=4).weight == 4.0
-    with pytest.raises(TypeError, match="has no hight, it has weight, height"):
+    with pytest.raises(TypeError, match="Low has no hight, it has weight, height"):
         Low(hight=3.0)
-    with pytest.raises(ValueError, match=r"height is 11.0, it must be in \[0.5, 10.0\]"):
+    with pytest.raises(ValueError, match=r"Low.height is 11.0, it must be a number in \[0.5, 10\]"):
         Low(height=11.0)
-    with pytest.raises(ValueError, match="weight is -1.0"):
+    with pytest.raises(ValueError, match="Low.weight is -1.0"):
         Low(weight=-1.0)
 
 

@@ -8,6 +8,7 @@ from touchdown._parts import KEEP, Controller, PadPredictor, Planner, PlanReques
 from touchdown._program import ProgramFailed, program_path, run_program, use_share as _use_share  # noqa: F401
 from touchdown._results import read  # noqa: F401
 from touchdown._solve import solve  # noqa: F401
-from touchdown._terms import Parameter, Term, Windows  # noqa: F401
+from touchdown._terms import Term, Windows  # noqa: F401
+from touchdown._tunable import Parameter  # noqa: F401
 
 _use_share()

@@ -10,7 +10,6 @@ import sys
 import tempfile
 import warnings
 from dataclasses import dataclass
-from numbers import Integral, Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
@@ -18,6 +17,7 @@ from touchdown import _touchdown
 from touchdown._touchdown import BadInput
 from touchdown._program import ProgramFailed, Word, check, is_progress, run_words, share_path
 from touchdown._progress import Bar
+from touchdown._ranges import Range, number_in, within
 from touchdown._results import PathLike, check_folder, numbers, open_result, read, typed, types_of
 from touchdown._scenarios import ScenarioLike, Variation, overrides, scenario_word, variation_text
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 _LOST = ("error", "crashed", "hung")
 
-# The program's own ranges, of whole numbers where the ends are: what flies in this process is held to them, too.
-_RANGES: Dict[str, Tuple[float, float]] = {
+# The program's own ranges: what flies in this process is held to them, too.
+_RANGES: Dict[str, Range] = {
     "trials": (1, 10**6), "seed": (0, 2**53), "jobs": (1, 1024), "trial_limit": (0.1, 1e6),
     "problems": (1, 10**5), "every": (1, 10**5), "starts": (1, 1000), "repeats": (1, 1000), "gap": (1e-9, 1.0),
     "deadline_ms": (1e-3, 1e5), "backend_seconds": (0.1, 1e6), "pin": (0, 1023),
@@ -190,13 +190,9 @@ def _judged(done: Tuple[int, str, List[str]], lost: bool) -> Tuple[int, str, Lis
 def _check_ranges(**options: Any) -> None:
     """Raises BadInput, in the program's words, before anything is flown."""
     for name, value in options.items():
-        lo, hi = _RANGES[name]
-        if value is None:
-            continue
-        kind: Any = Integral if isinstance(lo, int) else Real
-        if isinstance(value, bool) or not isinstance(value, kind) or not lo <= value <= hi:
-            option, word = name.replace("_", "-"), "whole number" if kind is Integral else "number"
-            raise BadInput(f"--{option}: {value} is no {word} in [{lo:.16g}, {hi:.16g}]")
+        if value is not None and not within(value, _RANGES[name]):
+            option = name.replace("_", "-")
+            raise BadInput(f"--{option}: {value} is no {number_in(_RANGES[name])}")
 
 
 def _check_in_process(jobs: int, db: Optional[PathLike], **options: Any) -> None:
