@@ -248,8 +248,26 @@ def test_mistakes_are_value_errors_with_a_sentence(call, error):
 
 
 def test_unknown_arguments_are_type_errors():
-    with pytest.raises(TypeError, match="has no argument max_iteration;"):
-        td.solve(valley(5), np.zeros(5), max_iteration=3)
+    for solve in (td.solve, lambda *given, **named: td.Solver().solve(*given, **named)):
+        with pytest.raises(TypeError, match="argument '?max_iteration\\b"):
+            solve(valley(5), np.zeros(5), max_iteration=3)
+
+
+def test_solve_has_the_defaults_of_a_solver():
+    given = {**td.solve.__kwdefaults__, "options": None}
+    assert given["max_evaluations"] > 10**9 and given["wall_limit_s"] == np.inf and given["callback"] is None
+    told = td.Solver.solve.__doc__
+    for name in ("max_iterations", "gap", "confirm", "trace", "shares"):
+        assert f"{name}={given[name]}" in told
+    assert all(name in told for name in given if name != "options")
+
+
+def test_a_solve_begins_with_the_multipliers_of_another():
+    problem = valley(50)
+    problem.add(Product(), "rows")
+    first = td.solve(problem, np.full(50, -1.0))
+    again = td.solve(problem, first.x, multipliers=first.multipliers)
+    assert again.status == "converged" and again.iterations < td.solve(problem, first.x).iterations
 
 
 def test_a_problem_is_solved_by_one_call_at_a_time():
