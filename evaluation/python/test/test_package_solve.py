@@ -214,6 +214,23 @@ def test_attributes_that_do_not_fit_are_named(attributes, error):
         td.Problem(9).add(term)
 
 
+def test_weight_and_loss_are_read_when_a_term_is_added_and_parameters_are_live():
+    class Low(td.Term):
+        parameters = {"height": td.Parameter(2.0, 0.5, 10.0)}
+
+        def value(self, w):
+            return w.q[:, 0, 0] - self.height
+
+    term, problem = Low(), td.Problem(1)
+    problem.add(term)
+    assert problem.evaluate([0.0])["cost"] == pytest.approx(2.0)
+    term.weight = 10.0
+    term.loss = lambda: td.SquareLoss(7.0)
+    assert problem.evaluate([0.0])["cost"] == pytest.approx(2.0)
+    term.height = 4.0
+    assert problem.evaluate([0.0])["cost"] == pytest.approx(8.0)
+
+
 def test_settings_of_a_term_are_checked():
     class Low(td.Term):
         parameters = {"height": td.Parameter(2.0, 0.5, 10.0)}

@@ -15,8 +15,11 @@ class Windows:
 
     q      control points, or blocks, of each window: shape (n, window, block_size)
     h      knot interval [s], the same for all
-    t      time of the first block of each window [s], shape (n,)
+    t      time of each window [s], shape (n,): of the knot at which position, velocity and acceleration are; t0 + k h of
+           a window that begins with block k
     index  which window of the term each is, from 0: shape (n,)
+
+    The way from a pad that moves: `w.position - self.context.pad.positions(w.t)`, with uses_interval = True.
     """
 
     __slots__ = ("q", "h", "t", "index")
@@ -49,12 +52,18 @@ class Term(Tunable):
     window, outputs               blocks that it sees at once, 1 to 6; numbers in its u
     uses_interval                 u depends on h or t
     linear                        u is affine in the blocks at a fixed h
+    scale                         change of the blocks over which u is smooth, > 0: steps of the differences are shares
+                                  of it. Make it smaller where u changes on a shorter length
     convex                        the cost is convex in the blocks at a fixed h: `check_term` looks
     weight                        of the loss; of a class that is registered the weight in a flight, 0: off
     parameters                    {name: Parameter}: attributes of an instance, and keys terms.NAME.* of a scenario; a
                                   number of that name in the body of a subclass is the default there
     first_block, windows          the first block that it sees, and how many windows; None: as many as there are
     can_be_hard, is_limit, is_clearance   what a landing may do with it (docs/adding_a_term.md)
+
+    These attributes, the weight among them, and what loss() gives are read once: when the term is added. A later change
+    of them does nothing; of first_block and windows it counts from the next `update` on. All else that `value` looks at,
+    as parameters, is live: a change counts at once.
     """
 
     formula: str = ""
@@ -86,7 +95,8 @@ class Term(Tunable):
 
         Where a term also has `jacobian(w)`, du by the blocks of shape (n, outputs, window, block_size), that is taken.
         With `jacobian_has_interval = True` it gives (du, du_dh), the second of shape (n, outputs), with what
-        t = t0 + k h adds. Else both are found by central differences.
+        t = t0 + k h adds. Else both are found by central differences, and from one side where u is not
+        finite on the other.
         """
         raise NotImplementedError(f"term {self.name} has no value(self, w)")
 
