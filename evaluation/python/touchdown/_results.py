@@ -20,12 +20,14 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 def check_folder(path: PathLike) -> None:
-    """Raises FileNotFoundError or IsADirectoryError where no file can be written at `path`."""
+    """Raises an OSError where no file can be written at `path`."""
     place = Path(path)
     if not place.parent.is_dir():
         raise FileNotFoundError(f"{place}: there is no directory {place.parent}.")
     if place.is_dir():
         raise IsADirectoryError(f"{place}: a file must be named, and this is a directory.")
+    if not os.access(place.parent, os.W_OK):
+        raise PermissionError(f"{place}: nothing can be written to {place.parent}.")
 
 
 def open_result(path: PathLike) -> closing[sqlite3.Connection]:
