@@ -65,6 +65,7 @@ def test_what_was_compared_is_told(compared):
         ({"problems": 2.5}, "--problems: 2.5 is no whole number"),
         ({"deadline_ms": -1}, r"--deadline-ms: -1 is no number in \[0.001, 100000\]"),
         ({"backends": []}, "--backends: none is named"),
+        ({"backends": "banded,no_such"}, "--backends:? no_such"),
         ({"db": "no_such/a.db"}, "--db no_such/a.db: there is no directory no_such"),
     ],
 )

@@ -53,7 +53,7 @@ def test_the_default_of_a_subclass_is_the_registrys():
     [
         ({"a": td.Parameter(3.0, 0.0, 2.0)}, ValueError, r"Mine.a is 3.0, it must be a number in \[0, 2\]"),
         ({"a": td.Parameter(np.nan, 0.0, 2.0)}, ValueError, "Mine.a is nan, it must be a number"),
-        ({"a": td.Parameter(np.inf, 0.0, np.inf)}, ValueError, "Mine.a is inf, it must be a number"),
+        ({"a": td.Parameter(np.inf, 0.0, np.inf)}, ValueError, r"Mine.a is inf, it must be a number in \[0, inf\)"),
         ({"a": td.Parameter("1", 0.0, 2.0)}, TypeError, "Mine.a is '1', it must be a number"),
         ({"a": 1.0}, TypeError, "Mine.parameters has 1.0 as a, it must be a Parameter"),
         ({"name": td.Parameter(1.0, 0.0, 2.0)}, ValueError, "Mine.parameters has name, which .* has already"),

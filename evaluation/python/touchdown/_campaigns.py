@@ -333,6 +333,8 @@ def compare(
         problems=problems, every=every, starts=starts, seed=seed, gap=gap, repeats=repeats, deadline_ms=deadline_ms,
         backend_seconds=backend_seconds, pin=pin,
     )  # fmt: skip
+    if isinstance(backends, str):
+        backends = backends.split(",")
     if backends is not None and len(backends) == 0:
         raise BadInput("--backends: none is named")
     words: List[Word] = ["compare", *_options(problem_set=problem_set, **{"from": source})]

@@ -17,4 +17,5 @@ def within(value: Any, allowed: Range) -> bool:
 def number_in(allowed: Range) -> str:
     """What a number must be: `number in [0.1, 20]`."""
     lo, hi = allowed
-    return f"{'whole ' if isinstance(lo, int) else ''}number in [{lo:.16g}, {hi:.16g}]"
+    ends = "(" if lo == -inf else "[", ")" if hi == inf else "]"
+    return f"{'whole ' if isinstance(lo, int) else ''}number in {ends[0]}{lo:.16g}, {hi:.16g}{ends[1]}"
