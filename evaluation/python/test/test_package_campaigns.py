@@ -56,6 +56,35 @@ def test_what_was_compared_is_told(compared):
         touchdown.compare(**COMPARE, db=compared.db)
 
 
+@pytest.mark.parametrize("registries", [None, touchdown.Registries()])
+@pytest.mark.parametrize(
+    "wrong, why",
+    [
+        ({"gap": float("nan")}, r"--gap: nan is no number in \[1e-09, 1\]"),
+        ({"repeats": 0}, r"--repeats: 0 is no whole number in \[1, 1000\]"),
+        ({"problems": 2.5}, "--problems: 2.5 is no whole number"),
+        ({"deadline_ms": -1}, r"--deadline-ms: -1 is no number in \[0.001, 100000\]"),
+        ({"backends": []}, "--backends: none is named"),
+        ({"backends": "banded,no_such"}, "--backends:? no_such"),
+        ({"db": "no_such/a.db"}, "--db no_such/a.db: there is no directory no_such"),
+    ],
+)
+def test_both_ways_refuse_the_same(wrong, why, registries, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(touchdown.BadInput, match=why):
+        touchdown.compare(**{**COMPARE, **wrong}, registries=registries, progress=False)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_is_there_is_kept(tmp_path):
+    kept = tmp_path / "notes.txt"
+    kept.write_text("mine")
+    for registries in (None, touchdown.Registries()):
+        with pytest.raises(touchdown.BadInput, match="the file exists"):
+            touchdown.compare(**COMPARE, db=kept, registries=registries, progress=False)
+    assert kept.read_text() == "mine"
+
+
 def test_the_problems_of_a_file_are_compared(record_path):
     done = touchdown.compare(
         source=record_path, problems=2, every=20, backends=["banded"], repeats=1, progress=False
@@ -216,11 +245,14 @@ def test_values_of_keys_have_the_type_that_all_of_them_have(texts, kind):
     assert [str(value).lower() for value in typed] == [str(float(t)) if kind is float else t for t in texts]
 
 
+TYPED = ("program", "scenarios", "results", "progress", "ranges", "tunable", "campaigns")
+
+
 @pytest.mark.skipif(shutil.which("mypy") is None, reason="there is no mypy")
 def test_the_package_is_typed():
     """What is written by hand here, by mypy."""
     package = Path(_results.__file__).parent
-    files = [str(package / f"_{name}.py") for name in ("program", "scenarios", "results", "progress", "campaigns")]
+    files = [str(package / f"_{name}.py") for name in TYPED]
     options = ["--strict", "--allow-untyped-calls", "--ignore-missing-imports", "--follow-imports=silent"]
     options += ["--cache-dir=/dev/null"]
     done = subprocess.run(

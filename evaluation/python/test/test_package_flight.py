@@ -64,6 +64,53 @@ def test_the_record_has_arrays_and_frames(tmp_path):
         td.Record(tmp_path / "nowhere.db")
 
 
+def test_a_record_takes_no_other_files_place(tmp_path):
+    text, trials, kept = tmp_path / "notes.txt", tmp_path / "trials.db", tmp_path / "kept.db"
+    text.write_text("mine " * 100)
+    td.sweep("open", trials=1, set={"timeout": 1}, db=trials, progress=False)
+    before = [text.read_bytes(), trials.read_bytes()]
+    record = td.run_trial("open", set={"timeout": 1}, record=kept).record
+
+    class Never(td.Planner):
+        def plan(self, request):
+            raise AssertionError("it flies")
+
+    parts = td.Registries()
+    parts.add(Never)
+    for path, error, why in [
+        (text, FileExistsError, "notes.txt: a file that is no record of a flight is in its place"),
+        (trials, FileExistsError, "trials.db: a file that is no record"),
+        (tmp_path / "none" / "a.db", FileNotFoundError, "a.db: there is no directory .*none"),
+        (tmp_path, IsADirectoryError, "a file must be named"),
+    ]:
+        with pytest.raises(error, match=why):
+            td.run_trial("open", planner="never", registries=parts, record=path)
+        with pytest.raises(error, match=why):
+            record.save(path)
+    assert [text.read_bytes(), trials.read_bytes()] == before
+    record.save(kept)
+    assert td.run_trial("open", set={"timeout": 2}, record=kept).simulated_s > 1.5
+    assert td.Record(kept)["vehicle"]["t"].max() > 1.5
+    (tmp_path / "empty.db").touch()
+    record.save(tmp_path / "empty.db")
+    assert sorted(os.listdir(tmp_path)) == ["empty.db", "kept.db", "notes.txt", "trials.db"]
+
+
+def test_a_folder_that_cannot_be_written_to_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda path, mode: str(path) != str(tmp_path))
+    with pytest.raises(PermissionError, match="a.db: nothing can be written to"):
+        td.run_trial("open", set={"timeout": 1}, record=tmp_path / "a.db")
+
+
+def test_what_is_no_record_is_told(tmp_path):
+    text, trials = tmp_path / "notes.txt", tmp_path / "trials.db"
+    text.write_text("mine " * 100)
+    td.sweep("open", trials=1, set={"timeout": 1}, db=trials, progress=False)
+    for path in (text, trials):
+        with pytest.raises(td.BadInput, match=f"{path.name}: it is no record of a flight"):
+            td.Record(path)
+
+
 def test_a_scenario_is_a_dictionary_a_file_or_a_name(tmp_path):
     (tmp_path / "mine.yaml").write_text("pad: {speed: 0.4}\n", encoding="utf-8")
     assert "speed: 0.4" in td.load_scenario(tmp_path / "mine.yaml").yaml

@@ -272,6 +272,29 @@ def test_a_term_sees_the_pad_during_the_call_alone():
         kept[-1].at(0.0)
 
 
+def test_the_time_of_a_window_is_that_of_its_position():
+    seen = []
+
+    class Looks(td.Term):
+        window, uses_interval = 3, True
+
+        def value(self, w):
+            seen.append((w.t, w.position, w.velocity, w.acceleration))
+            return 0.0 * w.position[:, 2]
+
+    parts = td.Registries()
+    parts.add(Looks, check=False)
+    problem = landing(registries=parts)
+    guess = problem.guess()
+    problem.evaluate(guess, gradient=False)
+    curve = problem.curve(guess)
+    t, *states = seen[-1]
+    assert len(t) > 3 and t[0] == curve.t0
+    for k in range(len(t)):
+        at = curve.at(t[k])
+        np.testing.assert_allclose([s[k] for s in states], [at.p_WB, at.v_WB, at.a_WB], atol=1e-9)
+
+
 def test_wrong_slopes_are_found_when_a_term_is_entered():
     class Wrong(td.Term):
         window = 3

@@ -214,16 +214,33 @@ def test_attributes_that_do_not_fit_are_named(attributes, error):
         td.Problem(9).add(term)
 
 
+def test_weight_and_loss_are_read_when_a_term_is_added_and_parameters_are_live():
+    class Low(td.Term):
+        parameters = {"height": td.Parameter(2.0, 0.5, 10.0)}
+
+        def value(self, w):
+            return w.q[:, 0, 0] - self.height
+
+    term, problem = Low(), td.Problem(1)
+    problem.add(term)
+    assert problem.evaluate([0.0])["cost"] == pytest.approx(2.0)
+    term.weight = 10.0
+    term.loss = lambda: td.SquareLoss(7.0)
+    assert problem.evaluate([0.0])["cost"] == pytest.approx(2.0)
+    term.height = 4.0
+    assert problem.evaluate([0.0])["cost"] == pytest.approx(8.0)
+
+
 def test_settings_of_a_term_are_checked():
     class Low(td.Term):
         parameters = {"height": td.Parameter(2.0, 0.5, 10.0)}
 
     assert Low().height == 2.0 and Low(height=3, weight=4).weight == 4.0
-    with pytest.raises(TypeError, match="has no hight, it has weight, height"):
+    with pytest.raises(TypeError, match="Low has no hight, it has weight, height"):
         Low(hight=3.0)
-    with pytest.raises(ValueError, match=r"height is 11.0, it must be in \[0.5, 10.0\]"):
+    with pytest.raises(ValueError, match=r"Low.height is 11.0, it must be a number in \[0.5, 10\]"):
         Low(height=11.0)
-    with pytest.raises(ValueError, match="weight is -1.0"):
+    with pytest.raises(ValueError, match="Low.weight is -1.0"):
         Low(weight=-1.0)
 
 
@@ -248,8 +265,26 @@ def test_mistakes_are_value_errors_with_a_sentence(call, error):
 
 
 def test_unknown_arguments_are_type_errors():
-    with pytest.raises(TypeError, match="has no argument max_iteration;"):
-        td.solve(valley(5), np.zeros(5), max_iteration=3)
+    for solve in (td.solve, lambda *given, **named: td.Solver().solve(*given, **named)):
+        with pytest.raises(TypeError, match="argument '?max_iteration\\b"):
+            solve(valley(5), np.zeros(5), max_iteration=3)
+
+
+def test_solve_has_the_defaults_of_a_solver():
+    given = {**td.solve.__kwdefaults__, "options": None}
+    assert given["max_evaluations"] > 10**9 and given["wall_limit_s"] == np.inf and given["callback"] is None
+    told = td.Solver.solve.__doc__
+    for name in ("max_iterations", "gap", "confirm", "trace", "shares"):
+        assert f"{name}={given[name]}" in told
+    assert all(name in told for name in given if name != "options")
+
+
+def test_a_solve_begins_with_the_multipliers_of_another():
+    problem = valley(50)
+    problem.add(Product(), "rows")
+    first = td.solve(problem, np.full(50, -1.0))
+    again = td.solve(problem, first.x, multipliers=first.multipliers)
+    assert again.status == "converged" and again.iterations < td.solve(problem, first.x).iterations
 
 
 def test_a_problem_is_solved_by_one_call_at_a_time():

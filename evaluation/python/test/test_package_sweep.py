@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from the_package import assert_equal, descendants, rows, touchdown, wait_for
-from touchdown import _program
+from touchdown import _campaigns, _program
 
 SET = {"timeout": 1.5, "start.position_spread": [1, 1, 0]}
 VARY = {"controller": ["geometric", "paper"], "gps.sigma": (0.1, 0.5)}
@@ -251,6 +251,41 @@ def test_parts_of_python_fly_one_by_one(in_process):
     assert told[0].filename == __file__
     assert len(done.trials) == 1 and Path(in_process[0][0]).name == "scenario.yaml"
     assert not Path(in_process[0][5]).exists()
+
+
+@pytest.mark.parametrize("registries", [None, touchdown.Registries()])
+@pytest.mark.parametrize(
+    "wrong, why",
+    [
+        ({"trials": 0}, r"--trials: 0 is no whole number in \[1, 1000000\]"),
+        ({"trials": 1.5}, "--trials: 1.5 is no whole number"),
+        ({"trials": True}, "--trials: True is no whole number"),
+        ({"trials": 10**12}, "--trials: 1000000000000 is no whole number"),
+        ({"seed": -1}, r"--seed: -1 is no whole number in \[0, 9007199254740992\]"),
+        ({"jobs": 0}, "--jobs: 0 is no whole number"),
+        ({"db": "no_such/a.db"}, "--db no_such/a.db: there is no directory no_such"),
+        ({"db": "."}, "--db .: a file must be named, and this is a directory"),
+    ],
+)
+def test_both_ways_refuse_the_same(wrong, why, registries, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(touchdown.BadInput, match=why):
+        touchdown.sweep("open", set={"timeout": 1}, registries=registries, progress=False, **wrong)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "command, options",
+    [
+        (["sweep", "open"], ["trials", "seed", "jobs", "trial_limit"]),
+        (["compare"], ["problems", "every", "starts", "repeats", "seed", "gap", "deadline_ms", "backend_seconds", "pin"]),
+    ],
+)
+def test_ranges_are_the_programs(run, command, options):
+    for option in options:
+        lo, hi = _campaigns._RANGES[option]
+        done = run(*command, f"--{option.replace('_', '-')}=-1")
+        assert f"-1 is not in [{lo:.16g}, {hi:.16g}]" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,10 @@ def public():
     return {name: value for name, value in vars(td).items() if not name.startswith("_") and not inspect.ismodule(value)}
 
 
+def test_all_that_is_public_is_named():
+    assert sorted(td.__all__) == sorted(public()), "the list in __init__.py is to be made longer"
+
+
 def test_the_stub_is_the_modules():
     made = subprocess.run(
         [sys.executable, str(ROOT / "evaluation" / "binding" / "stubs.py")],
@@ -38,13 +42,14 @@ def test_the_types_hold(tmp_path):
     user.write_text(
         """
 import numpy as np
+from numpy.typing import NDArray
 import touchdown as td
 
 
 class Low(td.Term):
     window = 3
 
-    def value(self, w: td.Windows) -> np.ndarray:
+    def value(self, w: td.Windows) -> NDArray[np.float64]:
         return w.position[:, 2:] - 1.0
 
     def loss(self) -> td.HingeLoss:
@@ -56,18 +61,27 @@ parts.add(Low)
 result: td.TrialResult = td.run_trial("open", registries=parts, record=True)
 height: float = result.max_speed_mps
 problem = td.Problem(blocks=3)
-solved: td.SolverResult = td.solve(problem, [0.0, 1.0, 2.0], max_iterations=3)
+
+
+def stops(y: NDArray[np.float64], cost: float, max_violation: float, evaluations: int) -> bool:
+    return evaluations > 3
+
+
+solved: td.SolverResult = td.solve(problem, [0.0, 1.0, 2.0], max_iterations=3, callback=stops)
+again = td.solve(problem, solved.x, "ipopt", multipliers=solved.multipliers, gap=0.1, trace=True)
 word: str = solved.status
 limits = td.Limits(speed=2.0)
 """
     )
     environment = {**os.environ, "MYPYPATH": str(PACKAGE.parent), "PYTHONPATH": str(PACKAGE.parent)}
     mypy = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path / "cache"), "--ignore-missing-imports"]
+    mypy += ["--strict", "--follow-imports=silent"]
     good = subprocess.run([*mypy, str(user)], capture_output=True, text=True, env=environment, check=False)
     assert good.returncode == 0, good.stdout
-    user.write_text(user.read_text() + "wrong: int = solved.status\nlimits.sped = 3.0\ntd.Problem('three')\n")
+    user.write_text(user.read_text() + "wrong: int = solved.status\nlimits.sped = 3.0\ntd.Problem('three')\n"
+                    "td.solve(problem, max_iteration=3)\ntd.solve(problem, gap='x')\ntd.solve(problem, callback=3)\n")
     bad = subprocess.run([*mypy, str(user)], capture_output=True, text=True, env=environment, check=False)
-    assert bad.stdout.count("error:") == 3, bad.stdout
+    assert bad.stdout.count("error:") == 6, bad.stdout
 
 
 def test_the_stub_holds_against_the_module(tmp_path):

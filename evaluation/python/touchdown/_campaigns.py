@@ -14,15 +14,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from touchdown import _touchdown
+from touchdown._touchdown import BadInput
 from touchdown._program import ProgramFailed, Word, check, is_progress, run_words, share_path
 from touchdown._progress import Bar
-from touchdown._results import PathLike, numbers, open_result, read, typed, types_of
+from touchdown._ranges import Range, number_in, within
+from touchdown._results import PathLike, check_folder, numbers, open_result, read, typed, types_of
 from touchdown._scenarios import ScenarioLike, Variation, overrides, scenario_word, variation_text
 
 if TYPE_CHECKING:
     import pandas as pd
 
 _LOST = ("error", "crashed", "hung")
+
+# The program's own ranges: what flies in this process is held to them, too.
+_RANGES: Dict[str, Range] = {
+    "trials": (1, 10**6), "seed": (0, 2**53), "jobs": (1, 1024), "trial_limit": (0.1, 1e6),
+    "problems": (1, 10**5), "every": (1, 10**5), "starts": (1, 1000), "repeats": (1, 1000), "gap": (1e-9, 1.0),
+    "deadline_ms": (1e-3, 1e5), "backend_seconds": (0.1, 1e6), "pin": (0, 1023),
+}  # fmt: skip
 
 
 @dataclass(repr=False, eq=False)
@@ -178,8 +187,21 @@ def _judged(done: Tuple[int, str, List[str]], lost: bool) -> Tuple[int, str, Lis
     return status, out, lines
 
 
-def _check_in_process(jobs: int, **options: Any) -> None:
-    """What a sweep with parts of Python's cannot do. Raises ValueError."""
+def _check_ranges(**options: Any) -> None:
+    """Raises BadInput, in the program's words, before anything is flown."""
+    for name, value in options.items():
+        if value is not None and not within(value, _RANGES[name]):
+            option = name.replace("_", "-")
+            raise BadInput(f"--{option}: {value} is no {number_in(_RANGES[name])}")
+
+
+def _check_in_process(jobs: int, db: Optional[PathLike], **options: Any) -> None:
+    """What cannot be done with parts of Python's. Raises ValueError."""
+    if db is not None:
+        try:
+            check_folder(db)
+        except OSError as problem:
+            raise BadInput(f"--db {problem}") from None
     for name, value in options.items():
         if value is not None:
             raise ValueError(f"{name} is {value!r}: it does not go with registries, it must be left out")
@@ -226,6 +248,7 @@ def sweep(
     """
     if record is not None and html is None:
         raise ValueError(f"record is {record!r}: the flights stand beside the report, so it needs html")
+    _check_ranges(trials=trials, seed=seed, jobs=jobs, trial_limit=trial_limit)
     if retry and db is None:
         raise ValueError("retry is True: there is nothing to fly again without db")
     settings = overrides(set)
@@ -237,7 +260,7 @@ def sweep(
         kept = None if db is None else Path(db)
         file = kept or Path(temporary) / "trials.db"
         if registries is not None:
-            _check_in_process(jobs, html=html, picture=picture, trial_limit=trial_limit, retry=retry or None)
+            _check_in_process(jobs, db, html=html, picture=picture, trial_limit=trial_limit, retry=retry or None)
             _touchdown._sweep(
                 word,
                 settings,
@@ -306,6 +329,14 @@ def compare(
     The others are the options of the same names; None leaves the program's default. Raises BadInput for what the
     program refuses, ProgramFailed otherwise.
     """
+    _check_ranges(
+        problems=problems, every=every, starts=starts, seed=seed, gap=gap, repeats=repeats, deadline_ms=deadline_ms,
+        backend_seconds=backend_seconds, pin=pin,
+    )  # fmt: skip
+    if isinstance(backends, str):
+        backends = backends.split(",")
+    if backends is not None and len(backends) == 0:
+        raise BadInput("--backends: none is named")
     words: List[Word] = ["compare", *_options(problem_set=problem_set, **{"from": source})]
     for text in overrides(set):
         words += ["--set", text]
@@ -319,8 +350,10 @@ def compare(
 
         if registries is not None:
             _check_in_process(
-                1, pin=pin, picture=picture, starts=starts, problem_set=None if problem_set == "landing" else problem_set
+                1, db, pin=pin, picture=picture, starts=starts, problem_set=None if problem_set == "landing" else problem_set
             )
+            if file.exists():
+                raise BadInput(f"--db {file}: the file exists; a study is never overwritten.")
             short = {"solver.arrival": arrival, "solver.limits": limits, "solver.endpoint": endpoint}
             given = {
                 "source": None if source is None else os.fspath(source),

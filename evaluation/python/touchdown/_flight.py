@@ -12,6 +12,8 @@ from urllib.parse import quote
 import numpy as np
 
 from touchdown import _touchdown
+from touchdown._touchdown import BadInput
+from touchdown._results import PathLike, check_folder
 from touchdown._scenarios import ScenarioLike, overrides, scenario_text
 
 
@@ -25,20 +27,41 @@ class Touchdown:
     tilt_over_equilibrium_deg: float
 
 
+def _is_record(path: PathLike) -> bool:
+    try:
+        with closing(sqlite3.connect(f"file:{quote(os.fspath(path))}?mode=ro", uri=True)) as file:
+            told = file.execute("SELECT value FROM meta WHERE key = 'format'").fetchone()
+    except sqlite3.DatabaseError:
+        return False
+    return told == ("touchdown record",)
+
+
+def _check_record_path(path: PathLike) -> None:
+    """Raises OSError where no record can be written, or would take the place of another file."""
+    check_folder(path)
+    if os.path.exists(path) and os.path.getsize(path) > 0 and not _is_record(path):
+        raise FileExistsError(f"{os.fspath(path)}: a file that is no record of a flight is in its place.")
+
+
 class Record:
     """The tables of a recorded flight (docs/record.md): record["vehicle"]["px"] is an array, record.frame("vehicle") a
-    pandas frame. The file is read once, when the record is made."""
+    pandas frame. The file is read once, when the record is made. Raises FileNotFoundError; BadInput where it is no
+    record."""
 
-    def __init__(self, path: Union[str, "os.PathLike[str]"]) -> None:
+    def __init__(self, path: PathLike) -> None:
         if not os.path.isfile(path):
             raise FileNotFoundError(f"{os.fspath(path)}: there is no such record.")
+        if not _is_record(path):
+            raise BadInput(f"{os.fspath(path)}: it is no record of a flight.")
         self._db = sqlite3.connect(":memory:", check_same_thread=False)
         with closing(sqlite3.connect(f"file:{quote(os.fspath(path))}?mode=ro", uri=True)) as file:
             file.backup(self._db)
         self.meta = dict(self._db.execute("SELECT key, value FROM meta"))
 
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Writes it to a file, as `touchdown replay`, `plan` and `profile` read it."""
+    def save(self, path: PathLike) -> None:
+        """Writes it to a file, as `touchdown replay`, `plan` and `profile` read it. Raises OSError where it cannot, also in
+        place of a file that is no record."""
+        _check_record_path(path)
         with closing(sqlite3.connect(os.fspath(path))) as file:
             self._db.backup(file)
 
@@ -156,7 +179,7 @@ def run_trial(
     planner: Optional[str] = None,
     backend: Optional[str] = None,
     registries: Optional[_touchdown.Registries] = None,
-    record: Union[bool, str, "os.PathLike[str]"] = False,
+    record: Union[bool, PathLike] = False,
 ) -> TrialResult:
     """Flies one trial: a pure function of scenario and seed, but for its times.
 
@@ -165,10 +188,11 @@ def run_trial(
     set         keys of the scenario to change: {"pad.speed": 1.2}
     planner, backend   short for the keys planner and solver.backend
     registries  Registries, where parts of Python take part
-    record      True: the result has a `record`; a path: the file is kept there
+    record      True: the result has a `record`; a path: the file is kept there, in place of a record
+                that is there
 
-    Gives a TrialResult. Raises BadInput where the scenario cannot be flown; what a part of Python raises in flight is
-    raised here.
+    Gives a TrialResult. Raises BadInput where the scenario cannot be flown, OSError where the record cannot be written;
+    what a part of Python raises in flight is raised here.
     """
     changes = dict(set or {})
     if planner is not None:
@@ -177,6 +201,8 @@ def run_trial(
         changes["solver.backend"] = backend
     if seed is not None:
         changes["seed"] = int(seed)
+    if record and record is not True:
+        _check_record_path(record)
     flown = load_scenario(scenario, set=changes, registries=registries)
     if not record:
         return TrialResult._of(json.loads(_touchdown._run(flown, registries, "")), None)
@@ -187,7 +213,7 @@ def run_trial(
 
 
 def explain_step(
-    record: Union[Record, str, "os.PathLike[str]"],
+    record: Union[Record, PathLike],
     step: int,
     *,
     set: Optional[Mapping[str, Any]] = None,

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Dict, Union
 
 from touchdown import _touchdown
-from touchdown._terms import Parameter, snake
+from touchdown._ranges import Range
+from touchdown._tunable import Tunable
 
 
 class _Keep:
@@ -42,33 +43,21 @@ class PlanRequest:
     limits: _touchdown.Limits
 
 
-class _Part:
+class _Part(Tunable):
     """What parts of a scenario have in common.
 
     name        the word in a scenario; by default the class's in snake case
     summary     one line; by default the first of the docstring
-    parameters  {name: Parameter}: attributes of an instance, and keys NAME.PARAMETER of a scenario
+    parameters  {name: Parameter}: attributes of an instance, and keys NAME.PARAMETER of a scenario; a number of that
+                name in the body of a subclass is the default there
     """
 
-    name: str = ""
     summary: str = ""
-    parameters: ClassVar[Dict[str, Parameter]] = {}
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
-        if not cls.__dict__.get("name"):
-            cls.name = snake(cls.__name__)
         if not cls.__dict__.get("summary"):
-            cls.summary = (cls.__doc__ or "written in Python").strip().splitlines()[0]
-        for name, parameter in cls.parameters.items():
-            setattr(cls, name, parameter.value)
-
-    def __init__(self, **settings: float) -> None:
-        """Takes parameters by name."""
-        for name, value in settings.items():
-            if name not in self.parameters:
-                raise TypeError(f"{self.name} has no {name}, it has {', '.join(self.parameters) or 'none'}")
-            setattr(self, name, value)
+            cls.summary = ((cls.__doc__ or "").strip() or "written in Python").splitlines()[0]
 
 
 class Planner(_Part):
@@ -88,6 +77,7 @@ class Planner(_Part):
     limits: _touchdown.Limits
     floor_height: float = 0.0
     ceiling_height: float = 0.0
+    _ranges: ClassVar[Dict[str, Range]] = {"rate": (0.0, 100.0)}
 
     def plan(self, request: PlanRequest) -> Union[_touchdown.UniformBspline, _Keep, str, None]:
         """The curve to be flown from request.t_start on, a UniformBspline whose t0 is that; KEEP: the committed one

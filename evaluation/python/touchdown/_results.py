@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Result files as frames (docs/record.md). pandas is imported where it is used: most of the package does without."""
+"""Result files: where they may be written, and as frames (docs/record.md).
+
+pandas is imported where it is used: most of the package does without."""
 from __future__ import annotations
 
 import json
@@ -15,6 +17,17 @@ if TYPE_CHECKING:
     import pandas as pd
 
 PathLike = Union[str, "os.PathLike[str]"]
+
+
+def check_folder(path: PathLike) -> None:
+    """Raises an OSError where no file can be written at `path`."""
+    place = Path(path)
+    if not place.parent.is_dir():
+        raise FileNotFoundError(f"{place}: there is no directory {place.parent}.")
+    if place.is_dir():
+        raise IsADirectoryError(f"{place}: a file must be named, and this is a directory.")
+    if not os.access(place.parent, os.W_OK):
+        raise PermissionError(f"{place}: nothing can be written to {place.parent}.")
 
 
 def open_result(path: PathLike) -> closing[sqlite3.Connection]:

@@ -1,26 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Terms that are written in Python."""
-from dataclasses import dataclass
+from math import inf
 from typing import Any, ClassVar, Dict, Optional, Tuple, Union
 
 import numpy as np
 
+from touchdown._ranges import Range
 from touchdown._touchdown import HingeLoss, LandingContext, LinearLoss, RangeLoss, SquareLoss, TermSetup
-
-
-def snake(name: str) -> str:
-    """The name of a class as scenarios have it."""
-    return "".join("_" + c.lower() if c.isupper() else c for c in name).lstrip("_")
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A number that a term can be tuned by: its default, the range in which it may be, and what it means."""
-
-    value: float
-    lo: float
-    hi: float
-    help: str = ""
+from touchdown._tunable import Tunable
 
 
 class Windows:
@@ -28,8 +15,11 @@ class Windows:
 
     q      control points, or blocks, of each window: shape (n, window, block_size)
     h      knot interval [s], the same for all
-    t      time of the first block of each window [s], shape (n,)
+    t      time of each window [s], shape (n,): of the knot at which position, velocity and acceleration are; t0 + k h of
+           a window that begins with block k
     index  which window of the term each is, from 0: shape (n,)
+
+    The way from a pad that moves: `w.position - self.context.pad.positions(w.t)`, with uses_interval = True.
     """
 
     __slots__ = ("q", "h", "t", "index")
@@ -53,7 +43,7 @@ class Windows:
         return (self.q[:, 0] - 2.0 * self.q[:, 1] + self.q[:, 2]) / self.h**2
 
 
-class Term:
+class Term(Tunable):
     """A term of an objective, or rows: the sum over windows of loss(u), where u is what `value` gives.
 
     A term of one's own derives from this and writes `value`. Everything else has a default:
@@ -62,14 +52,20 @@ class Term:
     window, outputs               blocks that it sees at once, 1 to 6; numbers in its u
     uses_interval                 u depends on h or t
     linear                        u is affine in the blocks at a fixed h
+    scale                         change of the blocks over which u is smooth, > 0: steps of the differences are shares
+                                  of it. Make it smaller where u changes on a shorter length
     convex                        the cost is convex in the blocks at a fixed h: `check_term` looks
     weight                        of the loss; of a class that is registered the weight in a flight, 0: off
-    parameters                    {name: Parameter}: attributes of an instance, and keys terms.NAME.* of a scenario
+    parameters                    {name: Parameter}: attributes of an instance, and keys terms.NAME.* of a scenario; a
+                                  number of that name in the body of a subclass is the default there
     first_block, windows          the first block that it sees, and how many windows; None: as many as there are
     can_be_hard, is_limit, is_clearance   what a landing may do with it (docs/adding_a_term.md)
+
+    These attributes, the weight among them, and what loss() gives are read once: when the term is added. A later change
+    of them does nothing; of first_block and windows it counts from the next `update` on. All else that `value` looks at,
+    as parameters, is live: a change counts at once.
     """
 
-    name: str = ""
     formula: str = ""
     unit: str = ""
     source: str = ""
@@ -80,40 +76,27 @@ class Term:
     linear: bool = False
     scale: float = 1.0
     weight: float = 1.0
-    parameters: ClassVar[Dict[str, Parameter]] = {}
     first_block: int = 0
     windows: Optional[int] = None
     can_be_hard: bool = True
     is_limit: bool = False
     is_clearance: bool = False
+    jacobian_has_interval: bool = False
     context: Optional[LandingContext] = None
     setup: Optional[TermSetup] = None
-
-    def __init_subclass__(cls, **kwargs: Any) -> None:
-        super().__init_subclass__(**kwargs)
-        if not cls.__dict__.get("name"):
-            cls.name = snake(cls.__name__)
-        for name, parameter in cls.parameters.items():
-            setattr(cls, name, parameter.value)
-
-    def __init__(self, **settings: float) -> None:
-        """Takes the weight and parameters by name."""
-        for name, value in settings.items():
-            if name != "weight" and name not in self.parameters:
-                known = ", ".join(["weight", *self.parameters])
-                raise TypeError(f"term {self.name} has no {name}, it has {known}")
-            value = float(value)
-            allowed = Parameter(1.0, 0.0, np.inf) if name == "weight" else self.parameters[name]
-            if not allowed.lo <= value <= allowed.hi:
-                raise ValueError(f"term {self.name}: {name} is {value}, it must be in [{allowed.lo}, {allowed.hi}]")
-            setattr(self, name, value)
+    _ranges: ClassVar[Dict[str, Range]] = {
+        "window": (1, 6), "outputs": (1, 65536), "first_block": (0, 2**31 - 1), "windows": (0, 2**31 - 1),
+        "weight": (0.0, inf), "scale": (1e-300, 1e300),
+    }  # fmt: skip
+    _settings = ("weight",)
 
     def value(self, w: Windows) -> Union[np.ndarray, Tuple[Any, ...]]:
         """u at the windows `w`: an array of shape (n, outputs), or a tuple with one array of shape (n,) for each output.
 
         Where a term also has `jacobian(w)`, du by the blocks of shape (n, outputs, window, block_size), that is taken.
         With `jacobian_has_interval = True` it gives (du, du_dh), the second of shape (n, outputs), with what
-        t = t0 + k h adds. Else both are found by central differences.
+        t = t0 + k h adds. Else both are found by central differences, and from one side where u is not
+        finite on the other.
         """
         raise NotImplementedError(f"term {self.name} has no value(self, w)")
 
