@@ -51,6 +51,7 @@ std::unique_ptr<OwnProblem> MakeProblem(int blocks, int block_size, bool free_in
 void Add(OwnProblem& self, const py::object& term, solvers::Role role) {
   const InUse::Claim claim(self.use);
   const solvers::ProblemShape& shape = self.problem().shape();
+  RequireTerm(term);
   const std::string name = py::str(term.attr("name"));
   for (int i = 0; i < self.problem().num_terms(); ++i) {
     if (self.problem().term(i).info().name != name) continue;

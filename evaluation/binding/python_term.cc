@@ -247,12 +247,15 @@ Kept::Kept(py::object object)
         delete held;
       }) {}
 
+void RequireTerm(const py::object& term) {
+  if (py::isinstance(term, py::module_::import("touchdown._terms").attr("Term"))) return;
+  throw py::type_error(std::string(py::repr(term)) +
+                       " is no instance of a class that derives from touchdown.Term");
+}
+
 std::shared_ptr<solvers::Term> MakePythonTerm(const py::object& term, int blocks, int block_size,
                                               std::shared_ptr<TermTime> time) {
-  if (!py::isinstance(term, py::module_::import("touchdown._terms").attr("Term"))) {
-    throw py::type_error(std::string(py::repr(term)) +
-                         " is no instance of a class that derives from touchdown.Term");
-  }
+  RequireTerm(term);
   const solvers::TermInfo info = InfoOf(term);
   solvers::BatchShape shape;
   shape.block_size = block_size;
@@ -300,6 +303,11 @@ planning::TermEntry PythonTermEntry(const py::object& type) {
 }
 
 planning::TermEntry PythonTermEntry(const py::object& type, std::shared_ptr<TermTime> time) {
+  const py::object base = py::module_::import("touchdown._terms").attr("Term");
+  if (!PyType_Check(type.ptr()) || PyObject_IsSubclass(type.ptr(), base.ptr()) != 1) {
+    throw py::type_error(std::string(py::repr(type)) +
+                         " is no class that derives from touchdown.Term");
+  }
   planning::TermEntry entry;
   entry.info = InfoOf(type);
   const std::string& name = entry.info.name;

@@ -22,6 +22,9 @@ struct TermTime {
   double wall_s = 0.0;
 };
 
+/// Raises TypeError where it is no instance of a touchdown.Term.
+void RequireTerm(const pybind11::object& term);
+
 /// The term of a Python object for a problem with so many blocks of this size. The object is asked for everything, and
 /// its functions only for arrays. Raises what is wrong with its attributes.
 std::shared_ptr<solvers::Term> MakePythonTerm(const pybind11::object& term, int blocks,

@@ -45,6 +45,7 @@ def split(text):
 def typed(text, given):
     """A type of pybind11 as Python has it; of what is `given` arrays may be anything that becomes one."""
     text = ARRAY.sub(lambda m: "ArrayLike" if given else f"NDArray[{KINDS[m[2]]}]", text)
+    text = re.sub(r"\bnumpy\.ndarray\b", "ArrayLike" if given else "NDArray[Any]", text)
     text = text.replace("touchdown._touchdown.", "")
     text = re.sub(r"\b(object|handle)\b", "Any", text)
     text = re.sub(r"\bdict\b", "Dict[str, Any]", text)

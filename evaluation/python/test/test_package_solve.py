@@ -429,6 +429,15 @@ def test_steps_are_shares_of_a_terms_scale():
     assert slope == pytest.approx(np.sin(1.0) * np.cos(1.0) * 1e6, rel=1e-6)
 
 
+@pytest.mark.parametrize("what", [3, Valley, td.Planner, None])
+def test_what_is_no_term_is_refused(what):
+    with pytest.raises(TypeError, match="derives from touchdown.Term"):
+        td.Problem(3).add(what)
+    if what is not Valley:
+        with pytest.raises(TypeError, match="derives from touchdown.Term"):
+            td.check_term(what)
+
+
 def test_a_second_term_of_one_name_is_refused():
     problem = valley(4)
     with pytest.raises(ValueError, match="there is a term valley already"):
