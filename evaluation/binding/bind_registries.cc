@@ -104,14 +104,35 @@ void BindPartTypes(py::module_& m) {
       .Field("tilt_limited", &ControlOutput::tilt_limited)
       .Field("thrust_limited", &ControlOutput::thrust_limited)
       .Done();
+  using estimation::Actuator;
+  Plain<Actuator>(m, "Actuator")
+      .Field("p_BR", &Actuator::p_BR)
+      .Field("thrust", &Actuator::thrust)
+      .Field("moment_B", &Actuator::moment_B)
+      .Field("min", &Actuator::min)
+      .Field("max", &Actuator::max)
+      .Done();
+  m.def("rotor_at", &estimation::RotorAt, "p_BR"_a, "torque_per_thrust"_a, "thrust_max"_a,
+        "thrust_min"_a = 0.0, Doc("RotorAt"));
   using estimation::VehicleModel;
-  py::class_<VehicleModel>(m, "VehicleModel", Doc("VehicleModel"))
-      .def_readonly("mass_kg", &VehicleModel::mass_kg, "[kg]")
-      .def_readonly("inertia", &VehicleModel::inertia, Doc("VehicleModel::inertia"))
-      .def_readonly("rotor_lag_s", &VehicleModel::rotor_lag_s, Doc("VehicleModel::rotor_lag_s"))
-      .def_readonly("hull_radius", &VehicleModel::hull_radius, Doc("VehicleModel::hull_radius"))
-      .def_readonly("foot_depth", &VehicleModel::foot_depth, Doc("VehicleModel::foot_depth"))
-      .def_property_readonly("hover_thrust", &VehicleModel::HoverThrust, "[N]");
+  Plain<VehicleModel>(m, "VehicleModel")
+      .Field("mass_kg", &VehicleModel::mass_kg)
+      .Field("inertia", &VehicleModel::inertia)
+      .Field("R_BI", &VehicleModel::R_BI)
+      .Field("actuators", &VehicleModel::actuators, "A list of Actuator, 4 to 8 of them.")
+      .Field("rotor_lag_s", &VehicleModel::rotor_lag_s)
+      .Field("rotor_radius", &VehicleModel::rotor_radius)
+      .Field("rotor_drag", &VehicleModel::rotor_drag)
+      .Field("body_drag_area", &VehicleModel::body_drag_area)
+      .Field("hull_radius", &VehicleModel::hull_radius)
+      .Field("hull_top", &VehicleModel::hull_top)
+      .Field("hull_bottom", &VehicleModel::hull_bottom)
+      .Field("foot_depth", &VehicleModel::foot_depth)
+      .Field("foot_radius", &VehicleModel::foot_radius)
+      .Field("foot_reach", &VehicleModel::foot_reach)
+      .Field("foot_azimuths", &VehicleModel::foot_azimuths)
+      .Look("hover_thrust", &VehicleModel::HoverThrust, "[N]")
+      .Done();
   using estimation::PadKnowledge;
   py::class_<PadKnowledge>(m, "PadKnowledge", Doc("PadKnowledge"))
       .def_property_readonly(

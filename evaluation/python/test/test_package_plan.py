@@ -422,6 +422,43 @@ def test_onboard_hovers_and_follows_what_it_is_told():
     assert onboard.take(td.FootForce(t=np.nan)) == "invalid"
 
 
+def test_a_vehicle_of_ones_own_lands_in_a_world_of_ones_own():
+    """docs/examples/onboard in Python, without its wall: an autopilot at the wanted attitude, feet on a spring."""
+    hubs = [(0.12, 0.12), (-0.12, 0.12), (-0.12, -0.12), (0.12, -0.12)]
+    rotors = [td.rotor_at([*hub, 0.04], 0.016 if i % 2 == 0 else -0.016, 7.0) for i, hub in enumerate(hubs)]
+    model = td.VehicleModel(actuators=rotors)
+    onboard = td.Onboard(model, deck_height=0.5, estimate_disturbance=False)
+    p, v, t, force, dt = np.array([0.0, 0.0, 2.0]), np.zeros(3), 0.0, 0.0, 0.002
+    frame = td.DepthImage(p_BC=[0.1, 0, 0], R_BC=[[0, 0, 1], [-1, 0, 0], [0, -1, 0]])
+    onboard.take(td.VehicleState(p_WB=p))
+    onboard.begin(0.0, np.full(4, 0.25 * model.hover_thrust))
+    for k in range(15000):
+        pad = np.array([3.0 + 0.3 * t, 0.5, 0.5])
+        onboard.take(td.VehicleState(t=t, p_WB=p, v_WB=v))
+        onboard.take(td.FootForce(t=t, force=force))
+        if k % 50 == 0:
+            onboard.take(td.PadGpsFix(t=t, p_WP=pad[:2], sigma=0.05))
+            rows = (np.arange(60) - 29.5) / 40.0  # of the image, down; what lies below is the ground
+            depth = np.where(rows > 0.0, p[2] / np.maximum(rows, 1e-9), np.inf)
+            far = depth * np.sqrt(1.0 + rows**2) > frame.max_range
+            frame.depth = np.repeat(np.where(far, np.inf, depth), 80)
+            frame.t = t
+            onboard.take(frame)
+        if k % 25 == 0 and np.linalg.norm((pad - p)[:2]) < 0.8 * (p - pad)[2]:
+            onboard.take(td.PadSighting(t=t, p_BP_B=pad - p, sigma_p=[0.005] * 3, sigma_yaw=0.01, tags_seen=5))
+        setpoint = onboard.step(t)
+        if not setpoint.armed:
+            break
+        a = setpoint.R_WB[:, 2] * setpoint.wrench.thrust / model.mass_kg - [0.0, 0.0, 9.81]
+        stands = (p - pad)[2] < model.foot_depth and np.abs((p - pad)[:2]).max() < 0.75
+        force = max(0.0, 2000.0 * (model.foot_depth - (p - pad)[2]) - 60.0 * v[2]) if stands else 0.0
+        a = a + [0.0, 0.0, force / model.mass_kg] - (20.0 / model.mass_kg * (v - [0.3, 0, 0]) * [1, 1, 0] if stands else 0.0)
+        v = v + dt * a
+        p = p + dt * v
+        t += dt
+    assert not setpoint.armed and np.linalg.norm((p - pad)[:2]) < 0.3, (onboard.status, p - pad)
+
+
 def test_onboard_refuses():
     model = td.load_scenario("open").vehicle_model()
     with pytest.raises(ValueError):

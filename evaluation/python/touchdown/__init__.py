@@ -12,7 +12,7 @@ from touchdown._terms import Term, Windows
 from touchdown._tunable import Parameter
 
 __all__ = [
-    "ArrivalMode", "BadInput", "CameraIntrinsics", "CellState", "Certificate", "CheckedPoint", "CheckedView",
+    "Actuator", "ArrivalMode", "BadInput", "CameraIntrinsics", "CellState", "Certificate", "CheckedPoint", "CheckedView",
     "CompareResult", "ControlOutput", "Controller", "DepthFrame", "DepthImage", "DerivativeErrors", "DescentHold",
     "DescentStyle", "Disturbance", "EndpointMode", "EndpointTarget", "Envelope", "FlatState", "FootForce", "Gate",
     "GoalAt", "HeadingSample", "HeightSample", "HingeLoss", "ImuSample", "KEEP", "LandingContext", "LandingProblem",
@@ -25,7 +25,7 @@ __all__ = [
     "Taken", "Taylor", "Term", "TermSetup", "Touchdown", "TransitionReason", "TrialResult", "UniformBspline",
     "VehicleFacts", "VehicleModel", "VehicleState", "Windows", "Wrench", "backends", "check_term", "compare",
     "explain_reason", "explain_step", "hermite", "load_scenario", "program_path", "read", "rest_trajectory",
-    "run_program", "run_trial", "scenarios", "solve", "study", "sweep",
+    "rotor_at", "run_program", "run_trial", "scenarios", "solve", "study", "sweep",
 ]  # fmt: skip
 
 _use_share()
