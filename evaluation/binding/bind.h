@@ -194,6 +194,17 @@ inline py::array_t<double> Array(const std::vector<double>& numbers) {
   return py::array_t<double>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
 
+/// A path or a name as text. Raises TypeError and ValueError for what cannot be one.
+inline std::string PathOf(const py::object& path) {
+  const py::object text = py::module_::import("os").attr("fspath")(path);
+  if (!py::isinstance<py::str>(text)) throw py::type_error("a path must be text");
+  auto plain = text.cast<std::string>();
+  if (plain.find('\0') != std::string::npos) {
+    throw py::value_error("a path holds a null character");
+  }
+  return plain;
+}
+
 void BindLosses(py::module_& m);
 void BindSolve(py::module_& m);
 void BindSpline(py::module_& m);

@@ -36,8 +36,9 @@ evaluation::Registries Of(const PartRegistries* registries) {
   return registries != nullptr ? registries->all : evaluation::StandardRegistries();
 }
 
-Scenario Load(const std::string& name_or_path, const std::vector<std::string>& overrides,
+Scenario Load(const py::object& given, const std::vector<std::string>& overrides,
               const PartRegistries* registries) {
+  const std::string name_or_path = PathOf(given);
   const evaluation::Registries parts = Of(registries);
   return WithoutLock([&] {
     return evaluation::LoadScenario(evaluation::FindScenario(name_or_path), overrides, parts);

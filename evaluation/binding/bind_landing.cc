@@ -119,8 +119,7 @@ py::list CheckTerm(const py::object& term, const PartRegistries* registries, int
   }
   const std::string complaint = planning::Complaint(rows);
   if (complaint.empty()) return told;
-  throw py::value_error(
-      WhatIsWrong(entry.info.name, complaint, rows, !named && !py::hasattr(term, "jacobian")));
+  throw py::value_error(WhatIsWrong(named ? py::none() : term, entry.info.name, complaint, rows));
 }
 
 }  // namespace

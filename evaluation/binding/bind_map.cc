@@ -148,7 +148,8 @@ void SetStates(OwnMap& self, const py::array& given) {
   });
 }
 
-void ReadOctomap(OwnMap& self, const std::string& path) {
+void ReadOctomap(OwnMap& self, const py::object& given) {
+  const std::string path = PathOf(given);
   Change(self, [&](OccupancyMap& map) {
     WithoutLock([&] {
       planning::PersistentMap memory(map.options());

@@ -26,7 +26,11 @@ void Enter(PartRegistries& self, std::vector<Entry> Registries::*registry, Entry
            bool replace) {
   Registries changed = self.all;
   const std::string name = NameOf(entry);
-  if (replace && self.own.count(name) > 0) {
+  const bool there = self.own.count(name) > 0;
+  if (there && !replace) {
+    throw py::value_error(name + " is registered already: with replace=True this takes its place");
+  }
+  if (there) {
     std::erase_if(changed.*registry, [&](const Entry& old) { return NameOf(old) == name; });
   }
   (changed.*registry).push_back(std::move(entry));
@@ -39,13 +43,13 @@ void EnterTerm(PartRegistries& self, const py::object& type, bool check, bool re
   auto time = std::make_shared<TermTime>();
   const planning::TermEntry entry = PythonTermEntry(type, time);
   const std::string name = entry.info.name;
-  if (check) {
+  if (check && (replace || self.own.count(name) == 0)) {
     planning::TermCheckOptions options;
     options.trials = 2;
     const auto rows = WithoutLock([&] { return planning::CheckTerm(entry, options); });
     const std::string complaint = planning::Complaint(rows);
     if (!complaint.empty()) {
-      throw py::value_error(WhatIsWrong(name, complaint, rows, !py::hasattr(type, "jacobian")));
+      throw py::value_error(WhatIsWrong(type, name, complaint, rows));
     }
   }
   Enter(self, &Registries::terms, entry, replace);

@@ -275,21 +275,24 @@ std::shared_ptr<solvers::Term> MakePythonTerm(const py::object& term, int blocks
   return std::make_shared<PythonTerm>(info, shape, loss, std::move(map));
 }
 
-std::string WhatIsWrong(const std::string& term, const std::string& complaint,
-                        const std::vector<planning::TermCheckRow>& rows, bool differenced) {
+std::string WhatIsWrong(const py::object& type, const std::string& term,
+                        const std::string& complaint,
+                        const std::vector<planning::TermCheckRow>& rows) {
+  const bool own_slopes = py::hasattr(type, "jacobian");
   const auto worst = std::max_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
     return a.errors.worst() < b.errors.worst();
   });
   std::ostringstream text;
   text << "term " << term << ": " << complaint;
-  if (std::isfinite(worst->errors.worst()) &&
-      worst->errors.worst() > planning::kTermCheckTolerance) {
+  if (!(worst->errors.worst() <= planning::kTermCheckTolerance)) {
     text << "; at worst, with "
          << (worst->arrival == planning::ArrivalMode::kFree ? "free" : "fixed")
          << " arrival, relative errors are " << worst->errors.gradient << " of the gradient, "
          << worst->errors.hessian << " of the Hessian, " << worst->errors.residual_jacobian
          << " of residuals, " << worst->errors.row_jacobian << " of rows";
-    if (differenced) {
+    if (own_slopes) {
+      text << py::module_::import("touchdown._terms").attr("worst_slope")(type).cast<std::string>();
+    } else if (!type.is_none()) {
       text << "; without a jacobian that says: u is not smooth over its `scale`, it depends on h "
               "or t without "
               "uses_interval, or it is not linear though it says so";

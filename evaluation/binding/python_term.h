@@ -37,9 +37,10 @@ planning::TermEntry PythonTermEntry(const pybind11::object& type);
 /// `time` gets what the entry's terms cost.
 planning::TermEntry PythonTermEntry(const pybind11::object& type, std::shared_ptr<TermTime> time);
 
-/// One sentence on a term whose check has a complaint; `differenced`: it has no slopes of its own.
-std::string WhatIsWrong(const std::string& term, const std::string& complaint,
-                        const std::vector<planning::TermCheckRow>& rows, bool differenced);
+/// One sentence on a term whose check has a complaint; `type`: its class, None for one of the library's.
+std::string WhatIsWrong(const pybind11::object& type, const std::string& term,
+                        const std::string& complaint,
+                        const std::vector<planning::TermCheckRow>& rows);
 
 /// What a solve is about, as its terms are told: touchdown's LandingContext without what ends with the call.
 struct TermContext {

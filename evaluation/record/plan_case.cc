@@ -89,7 +89,7 @@ RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registr
     const estimation::VehicleModel model = sim::LoadVehicleModel(VehicleMjcf(scenario));
     if (!PlannerOf(scenario, registries).solver.empty()) {
       throw BadInput(
-          fmt::format("{}: only plans of the planner landing are drawn, not those of {}.",
+          fmt::format("{}: only plans of the planner landing are explained, not those of {}.",
                       scenario.name, scenario.planner));
     }
     planning::Replanner replanner(PlannerOptions(scenario, model, registries.terms),
@@ -121,7 +121,7 @@ SolvedStep SolveSought(const RecordedFlight& flight, Replay* replay) {
   solved.step = replay->step();
   solved.recorded = replay->recorded();
   if (replay->replanner() == nullptr) {
-    throw BadInput(fmt::format("{}: only plans of the planner landing are drawn, not those of {}.",
+    throw BadInput(fmt::format("{}: only plans of the planner landing are explained, not those of {}.",
                                flight.path, flight.scenario.planner));
   }
   const planning::ReplannerOptions& options = replay->replanner()->options();

@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<double, 4> kSteps = {-2.0, -1.0, 1.0, 2.0};
 constexpr std::array<double, 4> kWeights = {1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0};
 
-constexpr double kSlopeError = 1e-12;
+constexpr double kSlopeError = 1e-11;  // of u whose fifth derivative is some hundred times u over scale^5
 
 // Where truncation and rounding are of one size: of the above, of a first difference of slopes, of a second difference.
 const double kFineStep = std::pow(std::numeric_limits<double>::epsilon(), 0.2);

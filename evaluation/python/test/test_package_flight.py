@@ -364,7 +364,7 @@ def test_a_part_may_be_entered_again_where_one_says_so(parts):
     class Again(Low):
         name = "low"
 
-    with pytest.raises(ValueError, match="low"):
+    with pytest.raises(ValueError, match="low is registered already: with replace=True"):
         parts.add(Again)
     parts.add(Again, replace=True)
     assert parts.terms.count("low") == 1

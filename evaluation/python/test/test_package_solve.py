@@ -438,6 +438,19 @@ def test_what_is_no_term_is_refused(what):
             td.check_term(what)
 
 
+def test_positions_need_three_control_points():
+    class Two(td.Term):
+        window = 2
+
+        def value(self, w):
+            return w.position[:, :1]
+
+    problem = td.Problem(4, block_size=3)
+    problem.add(Two())
+    with pytest.raises(ValueError, match="position needs a window of 3 control points, and this has 2"):
+        problem.evaluate(np.zeros(12))
+
+
 def test_a_second_term_of_one_name_is_refused():
     problem = valley(4)
     with pytest.raises(ValueError, match="there is a term valley already"):

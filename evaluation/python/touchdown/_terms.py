@@ -27,20 +27,28 @@ class Windows:
     def __init__(self, q: np.ndarray, h: float, t: np.ndarray, index: np.ndarray) -> None:
         self.q, self.h, self.t, self.index = q, h, t, index
 
+    def _knots(self, what: str) -> np.ndarray:
+        if self.q.shape[1] < 3:
+            raise ValueError(f"{what} needs a window of 3 control points, and this has {self.q.shape[1]}")
+        return self.q
+
     @property
     def position(self) -> np.ndarray:
         """p_WB at the knot in the middle of three control points [m], shape (n, block_size)."""
-        return (self.q[:, 0] + 4.0 * self.q[:, 1] + self.q[:, 2]) / 6.0
+        q = self._knots("position")
+        return (q[:, 0] + 4.0 * q[:, 1] + q[:, 2]) / 6.0
 
     @property
     def velocity(self) -> np.ndarray:
         """v_WB there [m/s], shape (n, block_size)."""
-        return (self.q[:, 2] - self.q[:, 0]) / (2.0 * self.h)
+        q = self._knots("velocity")
+        return (q[:, 2] - q[:, 0]) / (2.0 * self.h)
 
     @property
     def acceleration(self) -> np.ndarray:
         """a_WB there [m/s^2], shape (n, block_size)."""
-        return (self.q[:, 0] - 2.0 * self.q[:, 1] + self.q[:, 2]) / self.h**2
+        q = self._knots("acceleration")
+        return (q[:, 0] - 2.0 * q[:, 1] + q[:, 2]) / self.h**2
 
 
 class Term(Tunable):
@@ -107,3 +115,30 @@ class Term(Tunable):
     def update(self, context: LandingContext) -> None:
         """Told before every solve of a landing what it is about; keeps it as `context`."""
         self.context = context
+
+
+def worst_slope(cls: type) -> str:
+    """Where the jacobian of a term is farthest from differences, for a sentence; nothing where it cannot be asked alone."""
+    term = cls()
+    n, w = 6, term.window
+    q = np.random.default_rng(1).normal(scale=term.scale, size=(n, w, 3))
+
+    def at(moved: np.ndarray) -> Windows:
+        return Windows(moved, 0.3, 0.3 * np.arange(n), np.arange(n))
+
+    def value(moved: np.ndarray) -> np.ndarray:
+        u = term.value(at(moved))
+        return np.stack(np.broadcast_arrays(*u), axis=-1) if isinstance(u, tuple) else np.reshape(u, (n, term.outputs))
+
+    try:
+        du = term.jacobian(at(q))  # type: ignore[attr-defined]
+        du = np.reshape(du[0] if isinstance(du, tuple) else du, (n, term.outputs, w, 3))
+        differences = np.empty_like(du)
+        for b, i in np.ndindex(w, 3):
+            step = np.zeros_like(q)
+            step[:, b, i] = 1e-5 * term.scale
+            differences[:, :, b, i] = (value(q + step) - value(q - step)) / (2e-5 * term.scale)
+        k, c, b, i = np.unravel_index(np.abs(du - differences).argmax(), du.shape)
+    except Exception:  # it needs what a landing tells it
+        return ""
+    return f"; at a point jacobian gives du[{k}, {c}, {b}, {i}] = {du[k, c, b, i]:.4g}, differences {differences[k, c, b, i]:.4g}"

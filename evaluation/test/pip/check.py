@@ -29,4 +29,4 @@ assert len(studied.trials) == 1
 import touchdown_report  # noqa: E402  of the package, by now
 
 assert place in Path(touchdown_report.__file__).resolve().parents
-assert touchdown.solve.__module__ == "touchdown"
+assert touchdown.solve.__module__ == "touchdown._solve"
