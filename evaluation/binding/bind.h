@@ -100,8 +100,7 @@ class Lent {
 template <class T>
 class Plain {
  public:
-  Plain(py::module_& m, const char* name, const char* of = nullptr)
-      : class_(m, name, Doc(of ? of : name)), name_(of ? of : name) {}
+  Plain(py::module_& m, const char* name) : class_(m, name, Doc(name)), name_(name) {}
 
   template <class Owner, class Member>
   Plain& Field(const char* name, Member Owner::*member, const char* doc = nullptr) {
@@ -159,8 +158,6 @@ class Plain {
     class_.def("__deepcopy__", [](const T& self, const py::dict&) { return T(self); });
     return class_;
   }
-
-  py::class_<T>& cls() { return class_; }
 
  private:
   const char* DocOf(const char* name) const { return Doc(name_ + "::" + name); }

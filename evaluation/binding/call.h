@@ -68,11 +68,14 @@ bool MustEndWithIt();
 /// what C++ throws.
 template <class Work>
 auto WithoutLock(Work&& work) {
-  const UnderWay under_way;
-  Call call;
-  std::exception_ptr thrown;
-  using Result = std::invoke_result_t<Work>;
-  if constexpr (std::is_void_v<Result>) {
+  if constexpr (!std::is_void_v<std::invoke_result_t<Work>>) {
+    std::optional<std::invoke_result_t<Work>> result;
+    WithoutLock([&] { result.emplace(work()); });
+    return std::move(*result);
+  } else {
+    const UnderWay under_way;
+    Call call;
+    std::exception_ptr thrown;
     {
       const pybind11::gil_scoped_release release;
       try {
@@ -83,19 +86,6 @@ auto WithoutLock(Work&& work) {
     }
     call.Raise();
     if (thrown) std::rethrow_exception(thrown);
-  } else {
-    std::optional<Result> result;
-    {
-      const pybind11::gil_scoped_release release;
-      try {
-        result.emplace(work());
-      } catch (...) {
-        thrown = std::current_exception();
-      }
-    }
-    call.Raise();
-    if (thrown) std::rethrow_exception(thrown);
-    return std::move(*result);
   }
 }
 

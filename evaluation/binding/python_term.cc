@@ -117,9 +117,9 @@ class PythonMap : public solvers::BatchMap {
         windows_type_(Kept(py::module_::import("touchdown._terms").attr("Windows"))) {
     own_ = py::hasattr(term_.get(), "jacobian") ? solvers::OwnSlopes::kBlocks
                                                 : solvers::OwnSlopes::kNone;
-    const bool all = py::hasattr(term_.get(), "jacobian_has_interval") &&
-                     term_.get().attr("jacobian_has_interval").cast<bool>();
-    if (all) own_ = solvers::OwnSlopes::kAll;
+    if (Attribute<bool>(term_.get(), "jacobian_has_interval", name_)) {
+      own_ = solvers::OwnSlopes::kAll;
+    }
     Place();
   }
 
@@ -299,10 +299,6 @@ std::string WhatIsWrong(const py::object& type, const std::string& term,
     }
   }
   return text.str();
-}
-
-planning::TermEntry PythonTermEntry(const py::object& type) {
-  return PythonTermEntry(type, std::make_shared<TermTime>());
 }
 
 planning::TermEntry PythonTermEntry(const py::object& type, std::shared_ptr<TermTime> time) {

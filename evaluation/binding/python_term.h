@@ -31,11 +31,9 @@ std::shared_ptr<solvers::Term> MakePythonTerm(const pybind11::object& term, int 
                                               int block_size,
                                               std::shared_ptr<TermTime> time = nullptr);
 
-/// The entry of a class that derives from touchdown.Term.
-planning::TermEntry PythonTermEntry(const pybind11::object& type);
-
-/// `time` gets what the entry's terms cost.
-planning::TermEntry PythonTermEntry(const pybind11::object& type, std::shared_ptr<TermTime> time);
+/// The entry of a class that derives from touchdown.Term; `time` gets what the entry's terms cost.
+planning::TermEntry PythonTermEntry(const pybind11::object& type,
+                                    std::shared_ptr<TermTime> time = nullptr);
 
 /// One sentence on a term whose check has a complaint; `type`: its class, None for one of the library's.
 std::string WhatIsWrong(const pybind11::object& type, const std::string& term,

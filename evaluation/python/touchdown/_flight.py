@@ -7,13 +7,12 @@ import tempfile
 from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
-from urllib.parse import quote
 
 import numpy as np
 
 from touchdown import _touchdown
 from touchdown._touchdown import BadInput
-from touchdown._results import PathLike, check_folder
+from touchdown._results import PathLike, check_folder, open_result
 from touchdown._scenarios import ScenarioLike, overrides, scenario_text
 
 
@@ -29,7 +28,7 @@ class Touchdown:
 
 def _is_record(path: PathLike) -> bool:
     try:
-        with closing(sqlite3.connect(f"file:{quote(os.fspath(path))}?mode=ro", uri=True)) as file:
+        with open_result(path) as file:
             told = file.execute("SELECT value FROM meta WHERE key = 'format'").fetchone()
     except sqlite3.DatabaseError:
         return False
@@ -54,7 +53,7 @@ class Record:
         if not _is_record(path):
             raise BadInput(f"{os.fspath(path)}: it is no record of a flight.")
         self._db = sqlite3.connect(":memory:", check_same_thread=False)
-        with closing(sqlite3.connect(f"file:{quote(os.fspath(path))}?mode=ro", uri=True)) as file:
+        with open_result(path) as file:
             file.backup(self._db)
         self.meta = dict(self._db.execute("SELECT key, value FROM meta"))
 
