@@ -8,6 +8,13 @@
 #include "touchdown/control/onboard/envelope.h"
 
 namespace touchdown::evaluation {
+namespace {
+
+// As the program has them by default.
+constexpr double kPlanLatency = 0.02;   // planning.latency [s]
+constexpr double kPeriodSlack = 0.004;  // by which a step may come late [s]
+
+}  // namespace
 
 estimation::VehicleModel PlaygroundVehicle() {
   estimation::VehicleModel model;
@@ -38,6 +45,7 @@ control::OnboardOptions OnboardOptionsOf(const PlaygroundScene& scene) {
   control::OnboardOptions options =
       control::LandingOptions(PlaygroundVehicle(), scene.pad.p_start.z(), scene.limits);
   options.deck_size = 2.0 * PlaygroundPad().deck_half_size;
+  options.latency.time = kPlanLatency;
   options.estimate_disturbance = false;  // a point flies its reference exactly
   return options;
 }
@@ -55,8 +63,8 @@ planning::ReplannerOptions PlannerOf(const PlaygroundScene& scene) {
     settings.weight = weight;
     options.problem.settings.push_back(settings);
   }
-  control::SetVehicle(onboard.model, scene.limits, onboard.deck_size, 1.0 / onboard.replan_rate,
-                      0.0, &options);
+  control::SetVehicle(onboard.model, scene.limits, onboard.deck_size,
+                      kPeriodSlack + 1.0 / onboard.replan_rate, 0.0, &options);
   control::SetLanding(&options);
   return options;
 }

@@ -26,6 +26,7 @@ planning::ReplanInput QuestionOf(const PlaygroundScene& scene,
                                  const estimation::PadPrediction& pad) {
   const control::MissionParameters mission;
   planning::ReplanInput input;
+  input.t_start = OnboardOptionsOf(scene).latency.time;
   input.vehicle = StartOf(scene);
   input.pad = &pad;
   input.endpoint =
