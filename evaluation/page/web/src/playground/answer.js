@@ -43,8 +43,8 @@ class Pairs {
 export class Answer {
   constructor(hullRadius) {
     this.hullRadius = hullRadius;
-    this.committed = new Way(BLACK, 4.5);
-    this.rest = new Way(BLACK, 1.8);
+    this.committed = new Way(BLACK, 5.5);
+    this.rest = new Way(BLACK, 2.5);
     this.stop = new Way(VERMILLION, 3.5, DASH);
     this.guides = new Strokes(GREEN, 2.5, DOT);
     this.rounds = new Strokes(GREY, 2, DASH);
@@ -79,7 +79,7 @@ export class Answer {
     if (this.show.guides) for (const path of answer?.guide_paths ?? []) pieces(path.flat(), guides);
     this.guides.set(guides);
     const rounds = [];
-    if (this.show.rounds) for (const round of attempt?.rounds ?? []) pieces(sample(curveOf(round.curve)), rounds);
+    if (this.show.rounds) for (const round of attempt?.rounds ?? []) if (round !== attempt.rounds[attempt.best]) pieces(sample(curveOf(round.curve)), rounds);
     this.rounds.set(rounds);
     const shown = attempt ?? answer?.attempts?.at(-1);
     this.pairs.object.visible = this.show.pairs;

@@ -50,8 +50,11 @@ export class Craft {
     this.cone = frustumOf({
       name: "depth", slope: [slope, slope / camera.aspect], range: camera.range, p: [0, 0, 0], q: AHEAD.toArray(),
     });
+    // Its visibility is that of the layer; the group's is that of the moment.
+    this.sight = new Group();
+    this.sight.add(this.cone);
     this.object = new Group();
-    this.body.add(this.cone);
+    this.body.add(this.sight);
     this.object.add(this.body, this.hull);
   }
 
@@ -59,5 +62,10 @@ export class Craft {
   set(p, q = [1, 0, 0, 0]) {
     this.object.position.set(...p);
     this.body.quaternion.set(q[1], q[2], q[3], q[0]);
+  }
+
+  /** Whether what the camera sees matters now. */
+  looks(on) {
+    this.sight.visible = on;
   }
 }

@@ -52,7 +52,7 @@ export class Flight {
     this.events.push({ t: state.t, text: state.outcome.sentence });
     panel.flight(this);
     this.play(false);
-    this.playground.showOutcome(state.outcome);
+    this.playground.showOutcome();
   }
 
   /** The newest step once more, with its attempts. */

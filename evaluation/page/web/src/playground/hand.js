@@ -5,7 +5,7 @@ import { moveTo, placeOf, setHeight } from "./scene.js";
 const STILL = 5; // a press that moves less is a click [pixels]
 
 export class Hand {
-  /** `owner` has scene, mayMove (kinds), and is told: hovers(object), chooses(object), changed(object), done(), put(x, y). */
+  /** `owner` has scene, mayMove (kinds), and is told: hovers(object), chooses(object), changed(), done(), put(x, y). */
   constructor(stage, picture, owner) {
     Object.assign(this, { stage, picture, owner });
     this.held = null;
@@ -57,7 +57,7 @@ export class Hand {
       moveTo(this.owner.scene, held.object, point.x + held.from[0], point.y + held.from[1]);
     }
     held.moved = true;
-    this.owner.changed(held.object);
+    this.owner.changed();
   }
 
   release(event) {

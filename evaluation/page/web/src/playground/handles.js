@@ -36,9 +36,9 @@ export function handlesOf(scene, object, side) {
 }
 
 export class Handles {
-  /** `changed` is told after each step of a drag; `done` after its end. */
-  constructor(layer, picture, { changed, done }) {
-    Object.assign(this, { layer, picture, changed, done });
+  /** `owner` is told after each step of a drag, changed(), and after its end, done(). */
+  constructor(layer, picture, owner) {
+    Object.assign(this, { layer, picture, owner });
     this.buttons = new Map();
     this.dragged = null;
   }
@@ -98,12 +98,12 @@ export class Handles {
         const point = this.picture.onLevel(event, handle.place[2]);
         if (point) handle.level(point.x, point.y);
       }
-      this.changed(this.object);
+      this.owner.changed();
     });
     const end = () => {
       if (this.dragged !== name) return;
       this.dragged = null;
-      this.done();
+      this.owner.done();
     };
     for (const type of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(type, end);
     button.addEventListener("keydown", (event) => {
@@ -113,8 +113,8 @@ export class Handles {
       else handle.level(handle.place[0] + STEP * step[0], handle.place[1] + STEP * step[1]);
       event.preventDefault();
       event.stopPropagation();
-      this.changed(this.object);
-      this.done();
+      this.owner.changed();
+      this.owner.done();
     });
     this.layer.append(button);
     this.buttons.set(name, button);

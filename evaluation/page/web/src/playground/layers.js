@@ -8,14 +8,14 @@ export function fillLegend(root, picture, changed) {
   const part = (name) => ({ on: answer.show[name], set: (on) => (answer.show[name] = on) });
   const object = (shown) => ({ on: shown.visible, set: (on) => (shown.visible = on) });
   const rows = [
-    { name: "plan, until its stop begins", colour: BLACK },
+    { name: "plan, until its stop", colour: BLACK },
     { name: "the rest of it", colour: BLACK, mark: "thin" },
     { name: "stop", colour: VERMILLION, mark: "dash", help: "Proven and stored with the plan: flown if no newer plan comes in time" },
     { name: "pad, predicted", colour: PURPLE, mark: "dash", help: "A stroke every half second; the outline is where it is met" },
     { name: "trail", colour: BLUE },
     { name: "guide paths", colour: GREEN, mark: "dot", help: "Ways around obstacles that a search found; they say on which side pairs stand", ...part("guides") },
     { name: "pairs", colour: ORANGE, help: "Half-spaces {p, v}: a point on an obstacle and the direction away from it, each tied to one control point", ...part("pairs") },
-    { name: "rounds of the chosen attempt", colour: GREY, mark: "dash", ...part("rounds") },
+    { name: "rounds of an attempt", colour: GREY, mark: "dash", ...part("rounds") },
     { name: "hull along the plan", colour: SKY, mark: "box", help: "The ball that holds the vehicle at every tilt", ...part("tube") },
     { name: "seen obstacles", colour: "#A6652B", mark: "box", help: "Occupied cells of the map, as the camera saw them", ...object(cells) },
     { name: "depth camera", colour: SKY, ...object(craft.cone) },

@@ -4,6 +4,7 @@ import { Box3, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 const FOV = 40;
+const WIDE = 0.92, HIGH = 0.76, NEAREST = 4; // shares of the picture that are filled: buttons lie over some of it; distance [m]
 const LOOKS = { orbit: [-0.5, -1, 0.85], top: [0, -0.0005, 1] }; // from the middle to the eye
 
 export class Look {
@@ -16,13 +17,12 @@ export class Look {
     this.controls.maxDistance = 120;
     this.name = "orbit";
     this.last = new Vector3();
-    this.box = new Box3();
+    this.places = [new Vector3()];
   }
 
   /** All of these places are in the picture. */
   frame(places) {
-    this.box.makeEmpty();
-    for (const place of places) this.box.expandByPoint(new Vector3(...place));
+    this.places = places.map((place) => new Vector3(...place));
     this.choose(this.name === "follow" ? "orbit" : this.name, null);
   }
 
@@ -34,25 +34,26 @@ export class Look {
       this.controls.target.copy(body.position);
       this.camera.position.copy(body.position).addScaledVector(back, 4).add(new Vector3(0, 0, 1.7));
     } else {
-      const middle = this.box.getCenter(new Vector3()), along = new Vector3(...LOOKS[name]).normalize();
-      this.controls.target.copy(middle);
-      this.camera.position.copy(middle).add(along);
-      this.camera.lookAt(middle);
-      this.camera.position.addScaledVector(along, this.distance(middle));
+      this.controls.target.copy(new Box3().setFromPoints(this.places).getCenter(new Vector3()));
+      this.camera.position.copy(this.controls.target).addScaledVector(new Vector3(...LOOKS[name]).normalize(), 20);
+      this.camera.lookAt(this.controls.target);
+      for (let i = 0; i < 4; ++i) this.fit();
     }
     this.controls.update();
   }
 
-  /** At which every corner of the box is within the picture. */
-  distance(middle) {
-    const { min, max } = this.box, half = Math.tan((FOV * Math.PI) / 360) * 0.86, corner = new Vector3();
-    const turned = this.camera.quaternion.clone().invert();
-    let most = 3;
-    for (let i = 0; i < 8; ++i) {
-      corner.set(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).sub(middle).applyQuaternion(turned);
-      most = Math.max(most, corner.z + Math.abs(corner.y) / half, corner.z + Math.abs(corner.x) / (half * this.camera.aspect));
-    }
-    return most;
+  /** Moves the eye sideways until the places are in the middle of the picture, and on until they fill it. */
+  fit() {
+    const { camera, controls: { target } } = this;
+    camera.updateMatrixWorld();
+    const seen = new Box3().setFromPoints(this.places.map((place) => place.clone().project(camera)));
+    const middle = seen.getCenter(new Vector3()), half = seen.getSize(new Vector3()).multiplyScalar(0.5);
+    const distance = camera.position.distanceTo(target), high = distance * Math.tan((FOV * Math.PI) / 360);
+    const shift = new Vector3(middle.x * high * camera.aspect, middle.y * high, 0).applyQuaternion(camera.quaternion);
+    target.add(shift);
+    camera.position.add(shift);
+    const wanted = Math.max(distance * Math.max(half.x / WIDE, half.y / HIGH), NEAREST);
+    camera.position.copy(target).add(new Vector3(0, 0, wanted).applyQuaternion(camera.quaternion));
   }
 
   resize(aspect) {

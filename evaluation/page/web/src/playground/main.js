@@ -12,6 +12,7 @@ import { add, copy, heightOf, moveTo, nameOf, objectsOf, partOf, placeOf, remove
 import { SCENES, sceneOfMenu } from "./scenes.js";
 import { Settings } from "./settings.js";
 import { Stopwatch } from "./stopwatch.js";
+import { outcomeOf } from "./words.js";
 
 const VIEWS = [["orbit", "Around"], ["top", "From above"], ["follow", "Behind"]];
 const LINKED = 250; // the address follows so long after a change [ms]
@@ -43,7 +44,7 @@ class Playground {
     this.panel = new Panel((attempt) => this.chooseAttempt(attempt));
     this.settings = new Settings(at("settings"), this.about, (rests) => this.changedSetting(rests));
     this.stopwatch = new Stopwatch(ask, this.about.backends, (rows) => this.panel.times(rows));
-    fillLegend(at("legend").lastElementChild, this.picture, () => this.redraw());
+    fillLegend(at("legend"), this.picture, () => this.redraw());
     this.makeControls();
     this.picture.resize();
   }
@@ -57,7 +58,10 @@ class Playground {
       again: () => { this.land(); this.fly(); }, back: () => this.land(),
     };
     for (const [id, act] of Object.entries(acts)) at(id).addEventListener("click", act);
-    at("scenes").addEventListener("change", () => this.open(sceneOfMenu(Number(at("scenes").value), this.first)));
+    at("scenes").addEventListener("change", () => {
+      const number = Number(at("scenes").value);
+      this.open(sceneOfMenu(number, this.first), SCENES[number].shows);
+    });
     at("chosen").addEventListener("change", () => this.chooses(objectsOf(this.scene)[at("chosen").selectedIndex - 1] ?? null));
     at("knows").addEventListener("change", () => { this.scene.known = at("knows").value; this.changedSetting(true); });
     at("speed").addEventListener("change", () => this.flight && (this.flight.speed = Number(at("speed").value)));
@@ -98,6 +102,7 @@ class Playground {
   }
 
   changed() {
+    if (this.flight?.over) this.land();
     at("picture").classList.add("held");
     this.edited = true;
     this.redraw();
@@ -105,6 +110,7 @@ class Playground {
 
   /** A change is complete: it can be taken back, and linked to. */
   done() {
+    if (this.flight?.over) this.land();
     at("picture").classList.remove("held");
     this.edited = true;
     this.remember();
@@ -120,13 +126,19 @@ class Playground {
 
   // The scene.
 
-  /** Another scene as a whole, seen as a whole. */
-  open(scene) {
+  /** Another scene as a whole, seen as a whole. `attempt`: whose rounds are shown. */
+  open(scene, attempt = null) {
     this.land();
     this.scene = { ...copy(this.first), ...copy(scene) };
-    this.selected = this.hover = this.attempt = null;
+    this.selected = this.hover = null;
+    this.attempt = attempt;
     this.remember();
     this.plan();
+    this.frameScene();
+  }
+
+  /** All of it is in the picture. */
+  frameScene() {
     this.picture.frame(this.scene, this.answer);
     this.markView();
     this.redraw();
@@ -160,10 +172,9 @@ class Playground {
   }
 
   async link() {
-    const link = await linkOf(this.scene);
-    this.linked = link;
-    history.replaceState(null, "", `#${link}`);
-    return link;
+    this.linking = null;
+    this.linked = await linkOf(this.scene);
+    history.replaceState(null, "", `#${this.linked}`);
   }
 
   /** To the scene that the address holds, or, with a sentence, to the first one. */
@@ -189,13 +200,13 @@ class Playground {
     } catch {
       copied = false; // the browser does not let a page write there
     }
-    at("copy").textContent = copied ? "✓ Copied" : "See the address bar";
-    setTimeout(() => (at("copy").textContent = "🔗 Copy link"), 1800);
+    at("copy").textContent = copied ? "Copied" : "See the address bar";
+    setTimeout(() => (at("copy").textContent = "Copy link"), 1800);
   }
 
   listObjects() {
     const objects = objectsOf(this.scene);
-    at("chosen").replaceChildren(new Option("nothing chosen"), ...objects.map((object) => new Option(object.kind === "start" ? "quadrotor" : nameOf(object))));
+    at("chosen").replaceChildren(new Option("choose …"), ...objects.map((object) => new Option(object.kind === "start" ? "quadrotor" : nameOf(object))));
     at("chosen").selectedIndex = objects.findIndex((object) => same(object, this.selected)) + 1;
     at("delete").disabled = this.selected?.index === undefined;
   }
@@ -256,6 +267,7 @@ class Playground {
   chooseAttempt(attempt) {
     this.attempt = attempt;
     this.panel.show(this.shown, this.scene, attempt);
+    if (this.flight?.over) this.showOutcome();
     this.redraw();
   }
 
@@ -316,14 +328,16 @@ class Playground {
     const { flight } = this;
     at("fly").textContent = !flight ? "▶ Fly it" : flight.over ? "▶ Fly again" : flight.playing ? "⏸ Pause" : "▶ Go on";
     at("reset").disabled = !flight;
+    at("timing").hidden = Boolean(flight);
   }
 
-  showOutcome({ name, sentence }) {
-    const titles = { landed: "Landed", touched: "Touched an obstacle", timeout: "Not landed in time", infeasible: "No way to fly" };
+  showOutcome() {
+    const { tone, title, text } = outcomeOf(this.flight.state.outcome);
     at("banner").hidden = false;
-    at("banner").className = name === "landed" ? "good" : "bad";
-    at("banner").children[0].textContent = titles[name] ?? name;
-    at("banner").children[1].textContent = sentence;
+    at("banner").className = tone;
+    at("banner").children[0].textContent = title;
+    at("banner").children[1].textContent = text;
+    this.panel.headline({ tone, title, text });
     this.hint();
   }
 
@@ -354,7 +368,7 @@ class Playground {
     if (key === " " && ["BUTTON", "SUMMARY", "INPUT"].includes(target.tagName)) return;
     const acts = {
       " ": () => this.fly(), ".": () => this.one(), Escape: () => (at("help").hidden ? this.land() : this.help(false)), "?": () => this.help(), Delete: () => this.deleteChosen(), Backspace: () => this.deleteChosen(),
-      w: () => this.put("wall"), p: () => this.put("pillar"), r: () => this.random(), 0: () => { this.picture.frame(this.scene, this.answer); this.look(this.picture.look.name); },
+      w: () => this.put("wall"), p: () => this.put("pillar"), r: () => this.random(), 0: () => { this.frameScene(); this.redraw(); },
       ArrowLeft: () => this.nudge(-STEP, 0), ArrowRight: () => this.nudge(STEP, 0), ArrowUp: () => this.nudge(0, STEP), ArrowDown: () => this.nudge(0, -STEP),
       PageUp: () => this.lift(STEP), PageDown: () => this.lift(-STEP),
     };
@@ -401,10 +415,11 @@ class Playground {
       else this.plan();
       this.edited = false;
     }
-    const { picture, flight } = this, shown = this.shown;
+    const { picture, flight } = this, shown = flight?.state.outcome?.name === "landed" ? null : this.shown;
     picture.setObstacles(this.scene);
     if (flight) flight.place();
     else picture.setStart(this.scene);
+    picture.craft.looks(flight ? !flight.over : this.scene.known === "camera");
     picture.highlight(this.hover, this.selected);
     picture.answer.set(shown, this.attempt === null ? null : shown?.attempts?.[this.attempt]);
     picture.deck.predict(shown?.pad ?? [], Boolean(shown?.certificate?.endpoint_required && shown.passed));

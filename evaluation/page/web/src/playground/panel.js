@@ -9,10 +9,11 @@ const at = (id) => document.getElementById(id);
 const COLOURS = { banded: "#0072B2", lbfgs: "#E69F00" };
 const COLUMNS = [
   ["arrival", "arrival", "When this attempt wants to meet the pad"],
-  ["segments", "segments", "Pieces of the spline"],
+  ["end", "time is", "Free: the solver may move the time of arrival. Fixed: it may not"],
+  ["segments", "segm.", "Segments: pieces of the spline"],
   ["rounds", "rounds", "A round is one solve; where its curve hits an obstacle, pairs are added and it is solved again"],
   ["pairs", "pairs", "A pair is a half-space {p, v}: a point on an obstacle's surface and the direction away from it, tied to one control point"],
-  ["iterations", "iterations", "Of the solver, in all rounds"],
+  ["iterations", "iter.", "Iterations of the solver, in all rounds"],
   ["reason", "outcome", "Why the attempt was not taken"],
 ];
 
@@ -54,13 +55,14 @@ export class Panel {
     at("attempts").replaceChildren();
   }
 
+  /** `chosen`: the attempt whose rounds are told of, or null. */
   show(answer, scene, chosen) {
     this.headline(headlineOf(answer));
     const curve = answer.pair?.curve && curveOf(answer.pair.curve);
     const figures = [
       ["way", curve ? lengthOf(curve).toFixed(1) : "–", "m", "Length of the curve"],
       ["time", curve ? (endOf(curve) - curve.t0).toFixed(2) : "–", "s", "From now to the curve's end"],
-      ["pairs", answer.pairs ?? "–", "", COLUMNS[3][2]],
+      ["pairs", answer.pairs ?? "–", "", COLUMNS[4][2]],
       ["solves", answer.solves ?? "–", "", "How often the solver ran in this step"],
     ];
     at("figures").replaceChildren(
@@ -77,7 +79,7 @@ export class Panel {
     if (!attempts) return at("attempts").replaceChildren(element("p", { className: "about", textContent: "Pause the flight: its newest step is solved again and written down here." }));
     const body = element("tbody", {}, ...attempts.map((attempt, i) => {
       const row = rowOf(attempt);
-      const line = element("tr", { tabIndex: 0, ariaSelected: i === chosen, title: "Show its rounds in the picture" }, ...COLUMNS.map(([name]) => element("td", { textContent: name === "arrival" ? `${row.arrival} ${row.end}` : row[name] })));
+      const line = element("tr", { tabIndex: 0, ariaSelected: i === chosen, title: "Show its rounds in the picture" }, ...COLUMNS.map(([name]) => element("td", { textContent: row[name] })));
       const act = () => this.choose(i === chosen ? null : i);
       line.addEventListener("click", act);
       line.addEventListener("keydown", (event) => {
@@ -85,13 +87,21 @@ export class Panel {
         event.preventDefault();
         event.stopPropagation();
         act();
-        at("attempts").querySelectorAll("tbody tr")[i]?.focus();
+        at("attempts").querySelectorAll("tbody tr")[i].focus();
       });
       return line;
     }));
     const head = element("thead", {}, element("tr", {}, ...COLUMNS.map(([, textContent, title]) => element("th", { textContent, title }))));
-    const words = attempts.length === 0 ? "Nothing was solved: the question had its answer before." : "Click on a row: the curves of its rounds are drawn in grey.";
-    at("attempts").replaceChildren(...(attempts.length ? [element("table", {}, head, body)] : []), element("p", { className: "about why", textContent: words }));
+    const words = attempts.length === 0 ? "Nothing was solved: the question had its answer before." : chosen === null ? "Click on a row: its rounds, and their curves in grey." : "Its rounds, whose curves are drawn in grey:";
+    at("attempts").replaceChildren(...(attempts.length ? [element("table", {}, head, body)] : []), element("p", { className: "about why", textContent: words }), ...(attempts[chosen] ? [this.rounds(attempts[chosen])] : []));
+  }
+
+  rounds({ rounds, best }) {
+    const names = ["round", "way", "pairs", "iter.", "cost", "solver", ""];
+    const rows = rounds.map((round, i) => [i + 1, round.guide + 1, round.pairs.length, round.iterations, round.cost.toPrecision(5), plain(round.status), i === best ? "✓ taken" : ""]);
+    return element("table", { className: "rounds" },
+      element("thead", {}, element("tr", {}, ...names.map((textContent) => element("th", { textContent, title: textContent === "way" ? "Which of the ways around the first obstacle" : "" })))),
+      element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((textContent) => element("td", { textContent }))))));
   }
 
   /** `rows`: { backend, mean_ms, steps, of, iterations, cost } as far as they are known. */

@@ -9,7 +9,7 @@ import { Answer } from "./answer.js";
 import { Craft } from "./craft.js";
 import { Deck } from "./deck.js";
 import { Look } from "./look.js";
-import { heightOf, placeOf, same } from "./scene.js";
+import { heightOf, objectsOf, placeOf, same, wallEnds } from "./scene.js";
 import { Seen } from "./seen.js";
 
 const CELL = 0.1; // edge of the map's cells [m]
@@ -110,10 +110,12 @@ export class Picture {
   }
 
   frame(scene, answer) {
-    const places = [scene.start, placeOf(scene, { kind: "pad" }), ...(answer?.pad ?? []).map(({ p }) => p)];
-    for (const { object } of this.obstacles) {
-      const [x, y] = placeOf(scene, object);
-      places.push([x, y, 0], [x, y, Math.min(heightOf(scene, object), 4)]);
+    const half = this.deck.half, pads = [placeOf(scene, { kind: "pad" }), ...(answer?.pad ?? []).map(({ p }) => p)];
+    const around = ([x, y, z], by) => [[-by, -by], [-by, by], [by, -by], [by, by]].map(([dx, dy]) => [x + dx, y + dy, z]);
+    const places = [...around(scene.start, 0.5), ...pads.flatMap((p) => around(p, half)), ...(answer?.pair.curve.control_points ?? [])];
+    for (const object of objectsOf(scene).slice(2)) {
+      const top = heightOf(scene, object), feet = object.kind === "wall" ? wallEnds(scene.walls[object.index]) : [placeOf(scene, object)];
+      for (const [x, y] of feet) places.push([x, y, 0], [x, y, top]);
     }
     this.look.frame(places);
   }

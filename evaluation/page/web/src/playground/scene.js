@@ -2,7 +2,7 @@
 // The scene that is planned in, and what a hand can do to it. Plain data: the module reads it, a link holds it.
 // An object of it is named by { kind, index }: kind is start, pad, wall or pillar.
 
-const THICKNESS = 0.4, SHORTEST = 0.2, LOWEST = 0.2, HIGHEST = 8; // of walls and pillars [m]
+const THICKNESS = 0.4, SHORTEST = 0.05, LOWEST = 0.2, HIGHEST = 8; // of walls and pillars [m]; a wall is so much longer than thick
 const THIN = 0.1, THICK = 3; // radius of a pillar [m]
 /** What hands and sliders reach; the module allows more. */
 export const RANGES = {
@@ -70,20 +70,27 @@ export function heightOf(scene, object) {
   return object.kind === "start" ? part[2] : object.kind === "wall" ? part.center[2] + part.size[2] / 2 : part.height;
 }
 
+/** Which of its sides a wall is long along, 0 or 1, and the direction of that side [rad]. */
+function longSide({ size, yaw_deg }) {
+  const side = size[1] > size[0] ? 1 : 0;
+  return { side, angle: ((yaw_deg + 90 * side) * Math.PI) / 180 };
+}
+
 /** The middles of a wall's two short sides. */
-export function wallEnds({ center, size, yaw_deg }) {
-  const yaw = (yaw_deg * Math.PI) / 180, x = (Math.cos(yaw) * size[0]) / 2, y = (Math.sin(yaw) * size[0]) / 2;
+export function wallEnds(wall) {
+  const { side, angle } = longSide(wall), { center, size } = wall;
+  const x = (Math.cos(angle) * size[side]) / 2, y = (Math.sin(angle) * size[side]) / 2;
   return [[center[0] - x, center[1] - y], [center[0] + x, center[1] + y]];
 }
 
-/** The other end stays where it is. */
+/** The other end stays where it is. The long side stays the long one. */
 export function setWallEnd(scene, { index }, end, x, y) {
-  const wall = scene.walls[index], kept = wallEnds(wall)[1 - end];
+  const wall = scene.walls[index], kept = wallEnds(wall)[1 - end], { side } = longSide(wall);
   const sign = end === 1 ? 1 : -1, along = [sign * (x - kept[0]), sign * (y - kept[1])];
   const length = Math.hypot(...along);
-  if (length < SHORTEST) return;
-  wall.size[0] = rounded(length);
-  wall.yaw_deg = degrees(along[1], along[0]);
+  if (length <= wall.size[1 - side] + SHORTEST) return;
+  wall.size[side] = rounded(length);
+  wall.yaw_deg = rounded(degrees(along[1], along[0]) - 90 * side, 1);
   wall.center[0] = rounded((kept[0] + x) / 2, 3);
   wall.center[1] = rounded((kept[1] + y) / 2, 3);
 }

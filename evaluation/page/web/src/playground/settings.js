@@ -6,6 +6,22 @@ import { plain } from "./words.js";
 
 const OFFERED = 100; // weight of a term that is switched on and has none by default
 
+/** What a term asks of the curve, in words; the module has its formula. */
+const MEANINGS = {
+  smoothness: "little acceleration and jerk",
+  obstacle_pair: "control points stay on the free side of their pairs",
+  speed_limit: "not faster than the limit",
+  acceleration_limit: "no more acceleration than the limit",
+  arrival_time: "be there soon",
+  thrust_max: "no more thrust than the rotors have",
+  thrust_min: "no less thrust than the rotors need",
+  tilt_limit: "lean no more than the limit",
+  approach_corridor: "come from above, in a cone over the pad",
+  pad_visibility: "keep the pad in the downward camera's image",
+  consistency: "stay near the plan before",
+  keep_out: "stay out of a ball of 1 m around the origin",
+};
+
 const choice = (path, label, options, help) => ({ path, label, options, help });
 const figure = (path, label, unit, step, help) => ({ path, label, unit, step, help });
 
@@ -118,7 +134,7 @@ export class Settings {
     const byDefault = on ? weight : 0, offered = weight || OFFERED, id = `term-${name}`;
     const box = element("input", { type: "checkbox", id }), number = element("input", { type: "number", min: 0, step: "any", ariaLabel: `weight of ${plain(name)}` });
     const row = element("div", { className: "term" },
-      element("div", { className: "line" }, element("label", {}, box, plain(name)), number), element("p", { className: "about", textContent: help }));
+      element("div", { className: "line" }, element("label", {}, box, plain(name)), number), element("p", { className: "about" }, MEANINGS[name] ?? "", element("code", { textContent: help })));
     const now = () => this.scene.terms[name] ?? byDefault;
     const set = (value) => {
       if (value === byDefault) delete this.scene.terms[name];

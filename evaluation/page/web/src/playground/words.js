@@ -91,3 +91,10 @@ export function eventWords(text) {
   const [, mode, reason] = text.match(/^(\w+) \((\w+)\)$/) ?? [];
   return mode ? `${plain(mode)}: ${REASONS[reason] ?? plain(reason)}` : text;
 }
+
+const OUTCOMES = { landed: "Landed.", touched: "It touched something.", timeout: "It did not land in time." };
+
+/** The same of a flight that is over. */
+export function outcomeOf({ name, sentence }) {
+  return { tone: name === "landed" ? "good" : "bad", title: OUTCOMES[name] ?? plain(name), text: sentence };
+}
