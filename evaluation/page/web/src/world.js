@@ -61,19 +61,20 @@ export function makeGround(middle) {
   return ground;
 }
 
-const buildingMaterial = new MeshLambertMaterial({ color: BUILDING, transparent: true, opacity: 0.55 });
-const edgeMaterial = new LineBasicMaterial({ color: EDGE });
+export function obstacleMaterials() {
+  return { faces: new MeshLambertMaterial({ color: BUILDING, transparent: true, opacity: 0.55 }), edges: new LineBasicMaterial({ color: EDGE }) };
+}
 
 /** `drawsEdges`: of boxes. */
-export function makeObstacle(obstacle, drawsEdges) {
+export function makeObstacle(obstacle, { faces, edges }, drawsEdges) {
   const geometry = geometryOf(obstacle);
-  const mesh = new Mesh(geometry, buildingMaterial);
+  const mesh = new Mesh(geometry, faces);
   if (obstacle.kind !== "mesh") {
     mesh.position.set(...obstacle.centre);
     mesh.rotation.z = obstacle.yaw ?? 0;
   }
   mesh.castShadow = mesh.receiveShadow = true;
-  if (obstacle.kind === "box" && drawsEdges) mesh.add(new LineSegments(new EdgesGeometry(geometry), edgeMaterial));
+  if (obstacle.kind === "box" && drawsEdges) mesh.add(new LineSegments(new EdgesGeometry(geometry), edges));
   return mesh;
 }
 
@@ -81,7 +82,8 @@ export function makeObstacle(obstacle, drawsEdges) {
 export function makeWorld(obstacles, middle) {
   const group = new Group();
   group.add(makeGround(middle));
-  for (const obstacle of obstacles) group.add(makeObstacle(obstacle, obstacles.length <= MOST_EDGES));
+  const materials = obstacleMaterials();
+  for (const obstacle of obstacles) group.add(makeObstacle(obstacle, materials, obstacles.length <= MOST_EDGES));
   return group;
 }
 

@@ -410,6 +410,13 @@ describe("a flight", () => {
     assert.match(await page.$eval("#banner", (banner) => banner.className), /bad/);
   });
 
+  test("that cannot begin says why", async () => {
+    await choose("start in an obstacle");
+    await page.click("#fly");
+    assert.match(await text("#banner"), /^It touched something\./);
+    assert.equal(await page.evaluate(() => touchdown.flight.state.t), 0);
+  });
+
   test("a change of a setting ends it", async () => {
     await page.click("#one");
     await page.evaluate(() => { touchdown.scene.limits.speed = 2; touchdown.changedSetting(true); touchdown.draw(); });

@@ -6,10 +6,12 @@ const LONGEST = 0.1; // that one frame may move on: a slow browser flies slower,
 const at = (id) => document.getElementById(id);
 
 export class Flight {
-  /** @throws Error with the module's sentence. */
+  /** Takes the playground's scene, and is its flight from then on. @throws Error with the module's sentence. */
   constructor(playground, speed) {
     Object.assign(this, { playground, speed, playing: false, events: [], answer: null });
-    this.take(playground.ask({ do: "fly", scene: playground.scene }));
+    const state = playground.ask({ do: "fly", scene: playground.scene });
+    playground.flight = this;
+    this.take(state);
   }
 
   get over() {

@@ -44,7 +44,7 @@ class Playground {
     this.panel = new Panel((attempt) => this.chooseAttempt(attempt));
     this.settings = new Settings(at("settings"), this.about, (rests) => this.changedSetting(rests));
     this.stopwatch = new Stopwatch(ask, this.about.backends, (rows) => this.panel.times(rows));
-    fillLegend(at("legend"), this.picture, () => this.redraw());
+    fillLegend(at("legend"), this.picture, () => { this.picture.answered = undefined; this.redraw(); });
     this.makeControls();
     this.picture.resize();
   }
@@ -146,6 +146,7 @@ class Playground {
 
   random() {
     this.seed = (this.seed ?? Math.floor(Math.random() * 1e6)) + 1;
+    at("scenes").value = "";
     this.open(this.ask({ do: "random", seed: this.seed }));
   }
 
@@ -182,9 +183,8 @@ class Playground {
     const link = location.hash.slice(1);
     if (link === this.linked) return;
     try {
-      const scene = link === "" ? this.first : await sceneOf(link);
-      this.ask({ do: "plan", scene });
-      this.open(scene);
+      this.open(link === "" ? this.first : await sceneOf(link));
+      if (!this.answer) throw new Error(this.refused);
     } catch (error) {
       this.open(this.first);
       this.panel.headline({ tone: "bad", title: "This link cannot be opened.", text: error.message });
@@ -248,6 +248,7 @@ class Playground {
       this.answer = this.ask({ do: "plan", scene: this.scene });
     } catch (error) {
       this.answer = null;
+      this.refused = error.message;
       this.panel.refuse(error.message);
     }
     if (this.attempt !== null && !this.answer?.attempts[this.attempt]) this.attempt = null;
@@ -285,7 +286,7 @@ class Playground {
     if (this.selected?.index === undefined) this.selected = null;
     this.picture.beginTrail();
     try {
-      this.flight = new Flight(this, Number(at("speed").value));
+      new Flight(this, Number(at("speed").value));
     } catch (error) {
       return this.panel.refuse(error.message);
     }
@@ -421,8 +422,7 @@ class Playground {
     else picture.setStart(this.scene);
     picture.craft.looks(flight ? !flight.over : this.scene.known === "camera");
     picture.highlight(this.hover, this.selected);
-    picture.answer.set(shown, this.attempt === null ? null : shown?.attempts?.[this.attempt]);
-    picture.deck.predict(shown?.pad ?? [], Boolean(shown?.certificate?.endpoint_required && shown.passed));
+    picture.setAnswer(shown, this.attempt === null ? null : shown?.attempts?.[this.attempt]);
     picture.draw();
     const marked = this.hover ?? this.selected;
     this.handles.show(this.scene, marked && this.mayMove.includes(marked.kind) ? marked : null);

@@ -4,7 +4,7 @@ import { Group, MeshLambertMaterial, Plane, Raycaster, Vector2, Vector3 } from "
 import { BLUE, GREY } from "../colours.js";
 import { DASH, Way, resizeLines } from "../lines.js";
 import { makeStage, shineOn } from "../stage.js";
-import { makeGround, makeObstacle } from "../world.js";
+import { makeGround, makeObstacle, obstacleMaterials } from "../world.js";
 import { Answer } from "./answer.js";
 import { Craft } from "./craft.js";
 import { Deck } from "./deck.js";
@@ -39,6 +39,7 @@ export class Picture {
     this.trail = new Way(BLUE, 3.5);
     this.plumb = new Way(GREY, 1.5, DASH);
     this.obstacles = [];
+    this.materials = obstacleMaterials();
     this.scene.add(makeGround(new Vector3()));
     for (const part of [this.craft, this.deck, this.answer, this.trail, this.plumb]) this.scene.add(part.object);
     this.scene.add(this.cells);
@@ -58,9 +59,9 @@ export class Picture {
       const text = kind + JSON.stringify(part), old = this.obstacles[i];
       if (old?.text !== text) {
         if (old) this.dispose(old);
-        const mesh = makeObstacle(obstacleOf(kind, part), true);
+        const mesh = makeObstacle(obstacleOf(kind, part), this.materials, true);
         this.scene.add(mesh);
-        this.obstacles[i] = { text, mesh, plain: mesh.material };
+        this.obstacles[i] = { text, mesh };
       }
       this.obstacles[i].object = { kind, index };
     });
@@ -79,13 +80,21 @@ export class Picture {
     this.deck.set([x, y, z], (scene.pad.heading_deg * Math.PI) / 180);
   }
 
+  /** What is drawn of an answer, and of the attempt that is chosen; made anew only where either is another. */
+  setAnswer(answer, attempt) {
+    if (this.answered?.answer === answer && this.answered.attempt === attempt) return;
+    this.answered = { answer, attempt };
+    this.answer.set(answer, attempt);
+    this.deck.predict(answer?.pad ?? [], Boolean(answer?.certificate.endpoint_required && answer.passed));
+  }
+
   setCraft(p, q) {
     this.craft.set(p, q);
     this.plumb.set([p[0], p[1], p[2], p[0], p[1], 0.01]);
   }
 
   highlight(hover, selected) {
-    for (const { mesh, object, plain } of this.obstacles) mesh.material = same(object, selected) ? chosen : same(object, hover) ? hovered : plain;
+    for (const { mesh, object } of this.obstacles) mesh.material = same(object, selected) ? chosen : same(object, hover) ? hovered : this.materials.faces;
   }
 
   beginTrail() {
