@@ -25,6 +25,16 @@ async function open(link = "", size = { width: 1200, height: 800 }) {
   return opened;
 }
 
+/** Does something with another page, which is closed whatever comes of it: one that stays in front stops the first. */
+async function within(link, act, size) {
+  const other = await open(link, size);
+  try {
+    await act(other);
+  } finally {
+    await other.close();
+  }
+}
+
 const sceneNow = (on = page) => on.evaluate(() => JSON.parse(JSON.stringify(touchdown.scene)));
 const planNow = (on = page) => on.evaluate(() => touchdown.answer && JSON.stringify(touchdown.answer.pair.curve));
 const text = (selector, on = page) => on.$eval(selector, (element) => element.textContent);
@@ -76,12 +86,12 @@ test("is one file of at most 2 MB", () => assert.ok(statSync(file).size <= MOST_
 test("shows its first plan within 3 s, says nothing on the console and asks for nothing outside", async (t) => {
   const times = [];
   for (let i = 0; i < 3; ++i) {
-    const other = await open("", { width: 1400, height: 900 });
-    const [mark] = await other.evaluate(() => performance.getEntriesByName("first plan").map(({ startTime }) => startTime));
-    times.push(mark);
-    assert.deepEqual(other.said, []);
-    assert.match(await text("#headline h2", other), /^Planned: contact in \d\.\d\d s\.$/);
-    await other.close();
+    await within("", async (other) => {
+      const [mark] = await other.evaluate(() => performance.getEntriesByName("first plan").map(({ startTime }) => startTime));
+      times.push(mark);
+      assert.deepEqual(other.said, []);
+      assert.match(await text("#headline h2", other), /^Planned: contact in \d\.\d\d s\.$/);
+    }, { width: 1400, height: 900 });
   }
   times.sort((a, b) => a - b);
   t.diagnostic(`first plan after ${times.map((ms) => ms.toFixed(0))} ms, ${statSync(file).size} bytes`);
@@ -189,6 +199,14 @@ describe("a hand", () => {
     assert.notDeepEqual(await page.evaluate(() => touchdown.picture.camera.position.toArray()), eye);
   });
 
+  test("puts a pillar where the ground is clicked on twice", async () => {
+    const { pillars } = await sceneNow();
+    await page.mouse.click(...(await pixelOf([-2, -3, 0])), { count: 2 });
+    const added = (await sceneNow()).pillars;
+    assert.equal(added.length, pillars.length + 1);
+    assert.ok(Math.hypot(added.at(-1).p[0] + 2, added.at(-1).p[1] + 3) < 0.1, `${added.at(-1).p}`);
+  });
+
   test("drags by touch as well", async () => {
     const { start } = await sceneNow(), [x, y] = await pixelOf(start);
     await page.touchscreen.touchStart(x, y);
@@ -234,11 +252,12 @@ describe("a link", () => {
     await page.waitForFunction((scene) => touchdown.linked === location.hash.slice(1) && touchdown.past.at(-1) === scene && !touchdown.linking, { timeout: 5000 }, JSON.stringify(wanted));
     const link = (await page.evaluate(() => location.hash)).slice(1);
     assert.deepEqual(await sceneOf(link), wanted);
-    const other = await open(link);
-    assert.deepEqual(await sceneNow(other), wanted);
-    assert.equal(await planNow(other), await planNow());
-    assert.deepEqual(other.said, []);
-    await other.close();
+    const plan = await planNow();
+    await within(link, async (other) => {
+      assert.deepEqual(await sceneNow(other), wanted);
+      assert.equal(await planNow(other), plan);
+      assert.deepEqual(other.said, []);
+    });
   });
 
   test("that is put into the address of an open page is followed", async () => {
@@ -252,12 +271,12 @@ describe("a link", () => {
     const whole = await linkOf(await sceneNow());
     const refused = await linkOf({ ...(await sceneNow()), limits: { speed: 1e9 } });
     for (const [link, sentence] of [[whole.slice(0, -12), /damaged or holds no scene/], ["%E0%A4%A", /damaged or holds no scene/], [refused, /speed/]]) {
-      const other = await open(link);
-      assert.equal(await text("#headline h2", other), "This link cannot be opened.");
-      assert.match(await text("#headline p", other), sentence);
-      assert.deepEqual(await sceneNow(other), await other.evaluate(() => touchdown.first));
-      assert.deepEqual(other.said, []);
-      await other.close();
+      await within(link, async (other) => {
+        assert.equal(await text("#headline h2", other), "This link cannot be opened.");
+        assert.match(await text("#headline p", other), sentence);
+        assert.deepEqual(await sceneNow(other), await other.evaluate(() => touchdown.first));
+        assert.deepEqual(other.said, []);
+      });
     }
   });
 });
@@ -445,13 +464,13 @@ test("controls have names, and a narrow window shows them all", async () => {
     found.filter((control) => !(control.textContent.trim() || control.getAttribute("aria-label") || control.title || control.labels?.length)).map((control) => control.outerHTML));
   assert.deepEqual(unnamed, []);
   for (const size of [{ width: 390, height: 800 }, { width: 800, height: 1000 }]) {
-    const other = await open("", size);
-    const wide = await other.evaluate(() => document.documentElement.scrollWidth);
-    assert.ok(wide <= size.width, `${wide} pixels`);
-    const outside = await other.$$eval("header button, header select, #tools > *, #views > *, #flybar > *", (found) =>
-      found.filter((control) => { const box = control.getBoundingClientRect(); return box.width > 0 && (box.left < 0 || box.right > innerWidth); }).map(({ id }) => id));
-    assert.deepEqual(outside, [], JSON.stringify(size));
-    await other.close();
+    await within("", async (other) => {
+      const wide = await other.evaluate(() => document.documentElement.scrollWidth);
+      assert.ok(wide <= size.width, `${wide} pixels`);
+      const outside = await other.$$eval("header button, header select, #tools > *, #views > *, #flybar > *", (found) =>
+        found.filter((control) => { const box = control.getBoundingClientRect(); return box.width > 0 && (box.left < 0 || box.right > innerWidth); }).map(({ id }) => id));
+      assert.deepEqual(outside, [], JSON.stringify(size));
+    }, size);
   }
 });
 

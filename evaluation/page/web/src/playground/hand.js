@@ -5,7 +5,7 @@ import { moveTo, placeOf, setHeight } from "./scene.js";
 const STILL = 5; // a press that moves less is a click [pixels]
 
 export class Hand {
-  /** `owner` has scene, mayMove (kinds), and is told: hovers(object), chooses(object), changed(), done(), put(x, y). */
+  /** `owner` has scene, mayMove (kinds), and is told: hovers(object), chooses(object), changed(), done(), put(kind, x, y). */
   constructor(stage, picture, owner) {
     Object.assign(this, { stage, picture, owner });
     this.held = null;
@@ -18,7 +18,7 @@ export class Hand {
     canvas.addEventListener("dblclick", (event) => {
       if (picture.pick(event, owner.mayMove)) return;
       const point = picture.onLevel(event, 0);
-      if (point) owner.put(point.x, point.y);
+      if (point) owner.put("pillar", point.x, point.y);
     });
   }
 

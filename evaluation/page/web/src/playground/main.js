@@ -129,7 +129,9 @@ class Playground {
   /** Another scene as a whole, seen as a whole. `attempt`: whose rounds are shown. */
   open(scene, attempt = null) {
     this.land();
-    this.scene = { ...copy(this.first), ...copy(scene) };
+    // A link may leave out what is as at first.
+    const { pad, limits } = this.first;
+    this.scene = copy({ ...this.first, ...scene, pad: { ...pad, ...scene.pad }, limits: { ...limits, ...scene.limits } });
     this.selected = this.hover = null;
     this.attempt = attempt;
     this.remember();

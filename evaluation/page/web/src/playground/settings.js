@@ -113,7 +113,7 @@ export class Settings {
     number.addEventListener("change", () => set(number, true));
     this.updates.push(() => {
       slider.value = valueAt(this.scene, path);
-      if (document.activeElement !== number || number.validity.valid) number.value = valueAt(this.scene, path);
+      if (document.activeElement !== number || number.validity.valid) number.value = Number(valueAt(this.scene, path).toFixed(3));
     });
     return this.row(path, label, help, id, slider, element("span", { className: "number" }, number, element("small", { textContent: unit })));
   }
