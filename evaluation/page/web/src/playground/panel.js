@@ -117,7 +117,7 @@ export class Panel {
     if (done > 0) {
       const ratio = b.mean_ms / a.mean_ms;
       const said = Math.abs(ratio - 1) < 0.05 ? "Both take as long" : ratio > 1 ? `${a.backend} is ${ratio.toFixed(1)} times as fast` : `${b.backend} is ${(1 / ratio).toFixed(1)} times as fast`;
-      const solves = a.cost > 0 && b.cost > 0 ? `${a.iterations} and ${b.iterations} iterations; costs ${a.cost.toPrecision(5)} and ${b.cost.toPrecision(5)}` : "nothing had to be solved";
+      const solves = a.cost > 0 && b.cost > 0 ? `${a.iterations} and ${b.iterations} iterations in the last solve; costs ${a.cost.toPrecision(5)} and ${b.cost.toPrecision(5)}` : "nothing had to be solved";
       words = `${said}: means over ${done} equal steps, ${solves}.`;
     }
     at("times").replaceChildren(...lines, element("p", { className: "about", textContent: words }));
