@@ -110,6 +110,7 @@ void PointFlight::Move(const PlaygroundScene& scene) {
   field_ = FieldOf(scene_);
   depth_camera_ = DepthCameraIn(field_, scene_.seed);
   tag_sensor_ = sim::TagSensor({}, field_, scene_.seed);
+  Judge();
 }
 
 void PointFlight::Step() {

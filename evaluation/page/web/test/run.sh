@@ -19,4 +19,6 @@ for part in replay.js replay.css replay.html LICENCES.txt; do
     exit 1
   }
 done
-node --test test/parts.test.mjs test/playground_parts.test.mjs test/page.test.mjs
+TOUCHDOWN_SHIPPED=$(realpath "$web/../../../docs/playground.html")
+export TOUCHDOWN_SHIPPED
+node --test test/parts.test.mjs test/playground_parts.test.mjs test/page.test.mjs test/shipped.test.mjs

@@ -31,6 +31,7 @@ class Playground {
     this.ask = ask;
     this.about = ask({ do: "about" });
     this.first = this.about.scene;
+    at("version").textContent = this.about.version;
     this.scene = copy(this.first);
     this.answer = null;
     this.attempt = null;

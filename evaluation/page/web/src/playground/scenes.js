@@ -21,7 +21,7 @@ const still = { motion: "static", speed: 0, heading_deg: 0 };
 
 export const SCENES = [
   { name: "the first one", make: (scene) => scene },
-  { name: "both sides tried", shows: 0, make: (scene) => Object.assign(scene, { start: [0, 0, 1.5], ways: 2, walls: [wall(4, 0.2, 2, 90)], pillars: [], pad: { ...scene.pad, ...still, p: [8, 0] } }) },
+  { name: "both sides tried", shows: 0, make: (scene) => Object.assign(scene, { start: [0, 0, 1.5], ways: 2, walls: [wall(4, 0.1, 2, 90)], pillars: [], pad: { ...scene.pad, ...still, p: [8, 0] } }) },
   { name: "unknown until seen", make: (scene) => Object.assign(scene, { start: [0, 0, 1.5], known: "camera", walls: [wall(4.5, -0.6, 4, 90), wall(7.5, 1.6, 4, 90)], pillars: [], pad: { ...scene.pad, motion: "line", p: [9, 0], speed: 0.4, heading_deg: 0 } }) },
   { name: "dead end", make: (scene) => Object.assign(scene, { start: [0, 0, 1.5], known: "camera", walls: [wall(5, 0, 5, 90, 6), wall(3.2, 2.5, 3.6, 0, 6), wall(3.2, -2.5, 3.6, 0, 6)], pillars: [], pad: { ...scene.pad, motion: "line", speed: 0.3, heading_deg: 90, p: [9, -1] } }) },
   { name: "no way in: it stops", make: (scene) => Object.assign(scene, { start: [0, 0, 1.5], known: "camera", walls: [wall(6.5, 0, 4, 90, 2), wall(10.5, 0, 4, 90, 2), wall(8.5, 2, 4.4, 0, 2), wall(8.5, -2, 4.4, 0, 2), { center: [8.5, 0, 2.1], size: [4.4, 4.4, 0.2], yaw_deg: 0 }], pillars: [], pad: { ...scene.pad, ...still, p: [8.5, 0] } }) },
