@@ -14,7 +14,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/base/atomic_file.h"
@@ -25,6 +24,7 @@
 #include "evaluation/judge/landing_judge.h"
 #include "evaluation/mcap/flight_camera.h"
 #include "evaluation/mcap/flight_figures.h"
+#include "evaluation/mcap/flight_paths.h"
 #include "evaluation/mcap/flight_scene.h"
 #include "evaluation/mcap/mcap_writer.h"
 #include "evaluation/mcap/messages.h"
@@ -43,13 +43,8 @@ using Json = nlohmann::ordered_json;
 constexpr Color kFlownColor = {0.90, 0.62, 0.0, 1.0};
 constexpr Color kPlanColor = {0.0, 0.45, 0.70, 1.0};
 constexpr Color kBeliefColor = {0.80, 0.47, 0.65, 1.0};
-constexpr double kLine = 0.03;         // thickness [m]
-constexpr double kPlanSpacing = 0.1;   // of points along a plan [s]
-constexpr double kTrailSpacing = 0.1;  // of points along the way flown [s]
-constexpr double kTrail = 60.0;        // so much of it is shown [s]
-constexpr double kMapPeriod = 0.5;     // between messages of the map at least [s]
+constexpr double kMapPeriod = 0.5;  // between messages of the map at least [s]
 constexpr double kTrailPeriod = 0.5, kBeliefPeriod = 0.1;  // [s]
-constexpr double kSigmas = 3.0;                            // of the belief's ellipse
 
 // Every schema that a file can have.
 constexpr const char* kSchemas[] = {"foxglove.FrameTransforms",
@@ -81,56 +76,6 @@ Color ColorAt(double height) {
   constexpr double kLow = 0.0, kHigh = 4.0;  // [m]
   const double s = std::clamp((height - kLow) / (kHigh - kLow), 0.0, 1.0);
   return {0.45 + 0.50 * s, 0.22 + 0.62 * s, 0.10 + 0.35 * s, 1.0};
-}
-
-// The covariance's ellipse around the place that is believed.
-std::vector<Eigen::Vector3d> EllipseOf(const PadBeliefSample& belief) {
-  constexpr int kCorners = 36;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(belief.cov);
-  std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < kCorners; ++i) {
-    const double turn = 2.0 * M_PI * i / kCorners;
-    const Eigen::Vector2d along = axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseProduct(
-        Eigen::Vector2d(std::cos(turn), std::sin(turn)));
-    Eigen::Vector3d p = belief.p_WP;
-    p.head<2>() += kSigmas * axes.eigenvectors() * along;
-    points.push_back(p);
-  }
-  return points;
-}
-
-CloudPoints Painted(const std::vector<Eigen::Vector3d>& places, const Color& color) {
-  CloudPoints points;
-  for (const Eigen::Vector3d& p : places) points.push_back({p, color});
-  return points;
-}
-
-// The rest of a plan, each pose heading where it leads.
-std::vector<Eigen::Isometry3d> PosesOf(const RecordPlan& plan) {
-  constexpr double kStanding = 1e-3;  // [m/s]
-  const planning::UniformBspline& curve = plan.result.curve;
-  std::vector<double> times;
-  for (double t = std::max(plan.request.input.t_now, curve.t0()); t < curve.t_end();
-       t += kPlanSpacing) {
-    times.push_back(t);
-  }
-  if (!times.empty()) times.push_back(curve.t_end());
-  std::vector<Eigen::Isometry3d> poses;
-  Eigen::Quaterniond heading = Eigen::Quaterniond::Identity();
-  for (const double t : times) {
-    const planning::FlatState state = curve.Evaluate(t);
-    if (state.v_WB.norm() > kStanding) {
-      heading = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), state.v_WB);
-    }
-    poses.push_back(PoseOf(state.p_WB, heading));
-  }
-  return poses;
-}
-
-std::vector<Eigen::Vector3d> PlacesOf(const std::vector<Eigen::Isometry3d>& poses) {
-  std::vector<Eigen::Vector3d> places;
-  for (const Eigen::Isometry3d& pose : poses) places.emplace_back(pose.translation());
-  return places;
 }
 
 class FlightExport {
@@ -247,14 +192,14 @@ class FlightExport {
     } else {
       frames.push_back({kWorldFrame, kPadFrame, PadPose(now.pad.p_WP, now.pad.yaw)});
     }
-    if (const auto belief = figures_.PadBelief(i)) {
-      frames.push_back({kWorldFrame, kPadBeliefFrame, PadPose(belief->p_WP, belief->yaw)});
+    if (const TrackBelief* belief = figures_.PadBelief(i)) {
+      frames.push_back({kWorldFrame, kPadBeliefFrame, PadPose(belief->pad.p_WP, belief->pad.yaw)});
     }
     return frames;
   }
 
   void AddScene() {
-    constexpr double kSpacing = 0.2, kFineSpacing = 0.02, kPadSpacing = 0.06;  // [m]
+    constexpr double kSpacing = 0.25, kFineSpacing = 0.02, kPadSpacing = 0.06;  // [m]
     const Scenario& scenario = flight_.scenario;
     std::vector<Eigen::Vector3d> places;
     EachSample(kTrailPeriod, [&](int i) {
@@ -329,22 +274,13 @@ class FlightExport {
     for (std::size_t i = 0; i < flight_.plans.size(); ++i) {
       const RecordPlan& plan = flight_.plans[i];
       const double t = plan.request.input.t_now;
-      Add(poses, t, [&plan, t] { return PosesInFrame(t, kWorldFrame, PosesOf(plan)); });
-      Add(line, t,
-          [&plan, t] { return Line(t, "plan", PlacesOf(PosesOf(plan)), kPlanColor, false); });
-      Add(points, t, [&plan, t] {
-        return PointCloud(t, kWorldFrame, Painted(PlacesOf(PosesOf(plan)), kPlanColor));
+      Add(poses, t, [&plan, t] { return PosesInFrame(t, kWorldFrame, PlanPoses(plan)); });
+      Add(line, t, [&plan, t] {
+        return LineUpdate(t, "plan", PlacesOf(PlanPoses(plan)), kPlanColor, false);
       });
+      Add(points, t, [&plan, t] { return PointUpdate(t, PlacesOf(PlanPoses(plan)), kPlanColor); });
       Add(figures, t, [&plan, i] { return StepMessage(static_cast<int>(i), plan); });
     }
-  }
-
-  static std::string Line(double t, const std::string& name,
-                          const std::vector<Eigen::Vector3d>& places_W, const Color& color,
-                          bool closed) {
-    SceneEntity entity(t, kWorldFrame, name);
-    entity.AddLine(places_W, kLine, color, closed);
-    return SceneUpdate({entity});
   }
 
   void AddFlown() {
@@ -355,23 +291,13 @@ class FlightExport {
         Topic("/points/flown", "foxglove.PointCloud", "The same as points");
     EachSample(kTrailPeriod, [&](int i) {
       const double t = figures_.TimeOf(i);
-      Add(poses, t, [this, t] { return PosesInFrame(t, kWorldFrame, Trail(t)); });
-      Add(line, t, [this, t] { return Line(t, "flown", PlacesOf(Trail(t)), kFlownColor, false); });
-      Add(points, t, [this, t] {
-        return PointCloud(t, kWorldFrame, Painted(PlacesOf(Trail(t)), kFlownColor));
+      Add(poses, t, [this, t] { return PosesInFrame(t, kWorldFrame, FlownPoses(track_, t)); });
+      Add(line, t, [this, t] {
+        return LineUpdate(t, "flown", PlacesOf(FlownPoses(track_, t)), kFlownColor, false);
       });
+      Add(points, t,
+          [this, t] { return PointUpdate(t, PlacesOf(FlownPoses(track_, t)), kFlownColor); });
     });
-  }
-
-  std::vector<Eigen::Isometry3d> Trail(double t) const {
-    std::vector<Eigen::Isometry3d> poses;
-    const int last = static_cast<int>(std::floor(t / kTrailSpacing + 1e-6));
-    const int most = static_cast<int>(kTrail / kTrailSpacing);
-    for (int i = std::max(0, last - most); i <= last; ++i) {
-      const estimation::VehicleState vehicle = track_.At(i * kTrailSpacing).vehicle;
-      poses.push_back(PoseOf(vehicle.p_WB, vehicle.q_WB));
-    }
-    return poses;
   }
 
   void AddPadBelief() {
@@ -383,19 +309,20 @@ class FlightExport {
     const std::uint16_t points =
         Topic("/points/pad_belief", "foxglove.PointCloud", "The same as points");
     EachSample(0.0, [&](int i) {
-      const auto belief = figures_.PadBelief(i);
-      if (!belief) return;
-      Add(pose, belief->t,
-          [b = *belief] { return PoseInFrame(b.t, kWorldFrame, PadPose(b.p_WP, b.yaw)); });
+      const TrackBelief* const belief = figures_.PadBelief(i);
+      if (belief == nullptr) return;
+      Add(pose, belief->t, [belief] {
+        return PoseInFrame(belief->t, kWorldFrame, PadPose(belief->pad.p_WP, belief->pad.yaw));
+      });
     });
     EachSample(kBeliefPeriod, [&](int i) {
-      const auto belief = figures_.PadBelief(i);
-      if (!belief) return;
-      Add(line, belief->t,
-          [b = *belief] { return Line(b.t, "pad belief", EllipseOf(b), kBeliefColor, true); });
-      Add(points, belief->t, [b = *belief] {
-        return PointCloud(b.t, kWorldFrame, Painted(EllipseOf(b), kBeliefColor));
+      const TrackBelief* const belief = figures_.PadBelief(i);
+      if (belief == nullptr) return;
+      Add(line, belief->t, [belief] {
+        return LineUpdate(belief->t, "pad belief", BeliefEllipse(belief->pad), kBeliefColor, true);
       });
+      Add(points, belief->t,
+          [belief] { return PointUpdate(belief->t, BeliefEllipse(belief->pad), kBeliefColor); });
     });
   }
 
@@ -446,10 +373,10 @@ class FlightExport {
       const RecordPlan& plan = flight_.plans[i];
       if (plan.result.reason == planning::ReplanReason::kNone) continue;
       Add(log, plan.request.input.t_now, [i, &plan] {
-        return Log(
-            plan.request.input.t_now, LogLevel::kWarning, "plan",
-            fmt::format("step {}: no new plan: {}, {}", i, planning::ToString(plan.result.reason),
-                        planning::ToString(plan.result.status)));
+        return Log(plan.request.input.t_now, LogLevel::kWarning, "plan",
+                   fmt::format("plan: none new at step {}: {}, {}", i,
+                               planning::ToString(plan.result.reason),
+                               planning::ToString(plan.result.status)));
       });
     }
   }
@@ -466,10 +393,12 @@ class FlightExport {
     return trouble ? LogLevel::kWarning : LogLevel::kInfo;
   }
 
+  // With its kind before it: not every viewer shows a name.
   std::string WordsOf(const TrackEvent& event) const {
+    std::string words = fmt::format("{}: {}", event.kind, event.text);
     const std::string detail = tables_.at("result").at("detail").get<std::string>();
-    if (event.kind != "outcome" || detail.empty()) return event.text;
-    return fmt::format("{}: {}", event.text, detail);
+    if (event.kind == "outcome" && !detail.empty()) words.append(", ").append(detail);
+    return words;
   }
 
   const Registries& registries_;

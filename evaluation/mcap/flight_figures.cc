@@ -20,19 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<PadBeliefSample> BeliefsOf(const Json& columns) {
-  std::vector<PadBeliefSample> beliefs;
-  for (std::size_t i = 0; i < columns.at("t").size(); ++i) {
-    const auto number = [&](const char* column) { return columns.at(column).at(i).get<double>(); };
-    PadBeliefSample& belief = beliefs.emplace_back();
-    belief.t = number("t");
-    belief.p_WP = {number("px"), number("py"), number("pz")};
-    belief.yaw = number("yaw");
-    belief.cov << number("cov_xx"), number("cov_xy"), number("cov_xy"), number("cov_yy");
-  }
-  return beliefs;
-}
-
 std::optional<sim::TrueClearance> ClearanceIn(const Scenario& scenario) {
   std::vector<sim::Obstacle> obstacles;
   for (NamedObstacle& named : ObstaclesOf(scenario)) obstacles.push_back(named.obstacle);
@@ -74,19 +61,18 @@ FlightFigures::FlightFigures(const RecordedFlight& flight, const FlightTrack& tr
     : track_(track),
       samples_(std::move(samples)),
       times_(samples_.at("vehicle").at("t").get<std::vector<double>>()),
-      beliefs_(BeliefsOf(samples_.at("pad_believed"))),
       clearance_(ClearanceIn(flight.scenario)) {
   if (flight.scenario.task == TaskKind::kGoTo) goal_ = GoalOf(flight.scenario);
 }
 
-std::optional<PadBeliefSample> FlightFigures::PadBelief(int sample) const {
-  constexpr double kSame = 1e-6;  // [s]
+const TrackBelief* FlightFigures::PadBelief(int sample) const {
+  constexpr double kSame = 1e-3;  // [s]: that far a time is rounded
   const double t = TimeOf(sample);
+  const std::vector<TrackBelief>& beliefs = track_.beliefs();
   const auto belief =
-      std::lower_bound(beliefs_.begin(), beliefs_.end(), t - kSame,
-                       [](const PadBeliefSample& b, double time) { return b.t < time; });
-  if (belief == beliefs_.end() || belief->t > t + kSame) return std::nullopt;
-  return *belief;
+      std::lower_bound(beliefs.begin(), beliefs.end(), t - kSame,
+                       [](const TrackBelief& b, double time) { return b.t < time; });
+  return belief == beliefs.end() || belief->t > t + kSame ? nullptr : &*belief;
 }
 
 double FlightFigures::Number(const char* table, const char* column, int sample) const {
@@ -108,9 +94,10 @@ std::string FlightFigures::StateMessage(int sample) const {
   // Both as the table has them, to the millimetre: what is exactly known has no error.
   const double own_error = (place("believed") - place("vehicle")).norm();
   double pad_error = kNone, pad_sigma = kNone;
-  if (const auto belief = PadBelief(sample)) {
-    pad_error = (belief->p_WP - now.pad.p_WP).head<2>().norm();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(belief->cov, Eigen::EigenvaluesOnly);
+  if (const TrackBelief* belief = PadBelief(sample)) {
+    pad_error = (belief->pad.p_WP - now.pad.p_WP).head<2>().norm();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(belief->pad.cov_p,
+                                                              Eigen::EigenvaluesOnly);
     pad_sigma = std::sqrt(std::max(0.0, axes.eigenvalues().maxCoeff()));
   }
   const auto of_pad = [&](double figure) { return goal_ ? kNone : figure; };

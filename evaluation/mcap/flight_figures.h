@@ -16,14 +16,6 @@
 
 namespace touchdown::evaluation {
 
-/// The pad as it is believed to be at one time.
-struct PadBeliefSample {
-  double t = 0.0;                                  ///< [s]
-  Eigen::Vector3d p_WP = Eigen::Vector3d::Zero();  ///< [m]
-  double yaw = 0.0;                                ///< [rad]
-  Eigen::Matrix2d cov = Eigen::Matrix2d::Zero();   ///< of the horizontal position [m^2]
-};
-
 /// touchdown.Step. @param number of the step, from 0.
 std::string StepMessage(int number, const RecordPlan& plan);
 
@@ -38,8 +30,8 @@ class FlightFigures {
   double TimeOf(int sample) const { return times_[static_cast<std::size_t>(sample)]; }
   TrackSample At(int sample) const { return track_.At(TimeOf(sample)); }
 
-  /// None before anything was known of the pad.
-  std::optional<PadBeliefSample> PadBelief(int sample) const;
+  /// What was believed of the pad then; nullptr before anything was.
+  const TrackBelief* PadBelief(int sample) const;
 
   /// Where the flight leads in the task go_to.
   const std::optional<planning::MovingGoal>& goal() const { return goal_; }
@@ -55,7 +47,6 @@ class FlightFigures {
   const FlightTrack& track_;
   nlohmann::ordered_json samples_;
   std::vector<double> times_;
-  std::vector<PadBeliefSample> beliefs_;
   std::optional<sim::TrueClearance> clearance_;
   std::optional<planning::MovingGoal> goal_;
 };

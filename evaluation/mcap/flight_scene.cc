@@ -16,7 +16,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr Color kObstacleColor = {0.62, 0.62, 0.66, 0.6};
+constexpr Color kObstacleColor = {0.66, 0.67, 0.70, 0.6};
 constexpr Color kZoneColor = {0.0, 0.62, 0.45, 0.25};
 constexpr Color kGroundColor = {0.30, 0.33, 0.31, 1.0};
 constexpr Color kDeckColor = {0.92, 0.92, 0.90, 1.0};
@@ -106,7 +106,12 @@ std::vector<Solid> SolidsOf(const sim::VehicleShape& shape) {
 std::vector<NamedSolids> ObstacleSolids(const Scenario& scenario) {
   std::vector<NamedSolids> things;
   for (const NamedObstacle& named : ObstaclesOf(scenario)) {
-    things.push_back({kWorldFrame, named.key, SolidsOf(named.obstacle)});
+    // A wall is several boxes.
+    if (things.empty() || things.back().name != named.key) {
+      things.push_back({kWorldFrame, named.key, {}});
+    }
+    const std::vector<Solid> solids = SolidsOf(named.obstacle);
+    things.back().solids.insert(things.back().solids.end(), solids.begin(), solids.end());
   }
   return things;
 }
