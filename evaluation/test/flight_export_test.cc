@@ -180,7 +180,7 @@ TEST(Solids, AreCoveredByPoints) {
       for (const CloudPoint& point : points) {
         nearest = std::min(nearest, (point.p - solid.pose * corner).norm());
       }
-      EXPECT_LT(nearest, 1.5 * kSpacing);
+      EXPECT_LT(nearest, 2.0 * kSpacing);
     }
     // On the surface: none is farther from the middle than the corners, and none far within.
     for (const CloudPoint& point : points) {

@@ -88,10 +88,10 @@ TEST(McapWriter, PutsItsRecordsInTheFormatsOrder) {
                           0x08, 0x08, 0x0D, 0x0E, 0x0E, 0x0E, 0x0E, 0x0E, 0x02));
   EXPECT_EQ(records[0].content, std::string("\0\0\0\0\x09\0\0\0a library", 17));
   EXPECT_EQ(records[1].content,
-            std::string("\x05\0\0\0facts\x1F\0\0\0\x02\0\0\0of\x06\0\0\0a test\x04\0\0\0seed"
+            std::string("\x05\0\0\0facts\x1D\0\0\0\x02\0\0\0of\x06\0\0\0a test\x04\0\0\0seed"
                         "\x01\0\0\0"
                         "7",
-                        9 + 4 + 31 - 2));
+                        42));
 }
 
 TEST(McapWriter, HasTheFormatsChecksums) {
