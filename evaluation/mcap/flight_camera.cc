@@ -18,10 +18,11 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr double kMostPixels = 1.6e6;  // a second; with noise a grey pixel takes half a byte
+// A second. With noise a grey pixel takes half a byte as a PNG; one of depth takes two.
+constexpr double kMostPixels = 1.6e6, kMostDepths = 0.2e6;
 
-double RateOf(double camera_rate, int width, int height) {
-  return std::min(camera_rate, kMostPixels / (1.0 * width * height));
+double RateOf(double camera_rate, double most, int width, int height) {
+  return std::min(camera_rate, most / (1.0 * width * height));
 }
 
 sim::VisualScene WithoutPlate(sim::VisualScene scene) {
@@ -80,8 +81,10 @@ Eigen::Isometry3d DepthCameraPose(const Scenario& scenario) {
 FlightCameras::FlightCameras(const Scenario& scenario, const sim::VisualScene& scene)
     : down_(PadCameraOf(scenario), scene, scenario.seed),
       depth_(DepthCameraOf(scenario), WithoutPlate(scene), scenario.seed),
-      down_rate_(RateOf(scenario.tag_rate, scenario.camera.width, scenario.camera.height)),
-      depth_rate_(RateOf(scenario.depth_rate, scenario.depth.width, scenario.depth.height)) {}
+      down_rate_(
+          RateOf(scenario.tag_rate, kMostPixels, scenario.camera.width, scenario.camera.height)),
+      depth_rate_(
+          RateOf(scenario.depth_rate, kMostDepths, scenario.depth.width, scenario.depth.height)) {}
 
 std::string FlightCameras::DownImage(const TrackSample& now) {
   down_.Capture(now.vehicle, now.pad, &gray_);

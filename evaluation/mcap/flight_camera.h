@@ -24,8 +24,7 @@ class FlightCameras {
   /// @throws as sim::PadCamera and sim::RenderedDepthCamera do.
   FlightCameras(const Scenario& scenario, const sim::VisualScene& scene);
 
-  /// Images a second: the camera's rate, or less where its images are so large that files would grow by much more than 1 MB a
-  /// second.
+  /// Images a second: the camera's rate, or less where its images are so large that a file would be, too.
   double down_rate() const { return down_rate_; }
   double depth_rate() const { return depth_rate_; }
 

@@ -43,7 +43,8 @@ using Json = nlohmann::ordered_json;
 constexpr Color kFlownColor = {0.90, 0.62, 0.0, 1.0};
 constexpr Color kPlanColor = {0.0, 0.45, 0.70, 1.0};
 constexpr Color kBeliefColor = {0.80, 0.47, 0.65, 1.0};
-constexpr double kMapPeriod = 0.5;  // between messages of the map at least [s]
+constexpr double kMapPeriod = 0.5;       // between messages of the map at least [s]
+constexpr double kMostMapBytes = 0.5e6;  // a second, of whole maps: large ones come less often
 constexpr double kTrailPeriod = 0.5, kBeliefPeriod = 0.1;  // [s]
 
 // Every schema that a file can have.
@@ -235,22 +236,29 @@ class FlightExport {
     const std::uint16_t changes =
         Topic("/map/changes", "foxglove.PointCloud",
               "Middles of the cells that became occupied since the last message");
-    double next = 0.0;
+    OccupiedCells ahead(flight_.map_size);
+    double next = 0.0, next_whole = 0.0;
     int applied = 0;
     for (int i = 0; i < static_cast<int>(flight_.plans.size()); ++i) {
       const double t = flight_.plans[static_cast<std::size_t>(i)].request.input.t_now;
+      ahead.Apply(ChangeAt(i));
       if (t < next - 1e-6) continue;
       next = t + kMapPeriod;
       const int from = std::exchange(applied, i + 1);
-      // The two are made in this order: the first one brings the map to this step.
-      Add(occupied, t, [this, t, from, i] {
-        for (int step = from; step <= i; ++step) {
-          map_.Apply(flight_.plans[static_cast<std::size_t>(step)].map_change);
-        }
-        return Cells(t, map_.all());
+      // The first one brings the map to this step, for both.
+      Add(changes, t, [this, t, from, i] {
+        for (int step = from; step <= i; ++step) map_.Apply(ChangeAt(step));
+        return Cells(t, map_.TakeNew());
       });
-      Add(changes, t, [this, t] { return Cells(t, map_.TakeNew()); });
+      if (t < next_whole - 1e-6) continue;
+      const double bytes = static_cast<double>(kPointBytes * ahead.all().size());
+      next_whole = t + std::max(kMapPeriod, bytes / kMostMapBytes);
+      Add(occupied, t, [this, t] { return Cells(t, map_.all()); });
     }
+  }
+
+  const MapChange& ChangeAt(int step) const {
+    return flight_.plans[static_cast<std::size_t>(step)].map_change;
   }
 
   template <typename Range>

@@ -10,8 +10,6 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr std::uint32_t kStride = 16;  // of a point [byte]
-
 void AddField(protozero::pbf_writer* cloud, const char* name, std::uint32_t offset, int type) {
   protozero::pbf_writer field(*cloud, 5);
   field.add_string(1, name);
@@ -28,7 +26,7 @@ std::string PointCloud(double t, const std::string& frame, const CloudPoints& po
   AddTime(&cloud, 1, t);
   cloud.add_string(2, frame);
   AddPose(&cloud, 3, Eigen::Isometry3d::Identity());
-  cloud.add_fixed32(4, kStride);
+  cloud.add_fixed32(4, kPointBytes);
   std::uint32_t offset = 0;
   for (const char* axis : {"x", "y", "z"}) {
     AddField(&cloud, axis, offset, kFloat);
@@ -38,9 +36,9 @@ std::string PointCloud(double t, const std::string& frame, const CloudPoints& po
     AddField(&cloud, share, offset++, kByte);
   }
   std::string data;
-  data.reserve(kStride * points.size());
+  data.reserve(kPointBytes * points.size());
   for (const CloudPoint& point : points) {
-    std::array<char, kStride> packed;
+    std::array<char, kPointBytes> packed;
     const Eigen::Vector3f p = point.p.cast<float>();
     std::memcpy(packed.data(), p.data(), 3 * sizeof(float));
     const Color& color = point.color;

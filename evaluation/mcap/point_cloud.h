@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct CloudPoint {
   Color color;
 };
 using CloudPoints = std::vector<CloudPoint>;
+
+/// Of a point in a message.
+inline constexpr std::size_t kPointBytes = 16;
 
 /// foxglove.PointCloud, with x, y, z as 32-bit floats and red, green, blue, alpha as bytes.
 std::string PointCloud(double t, const std::string& frame, const CloudPoints& points);

@@ -339,13 +339,27 @@ describe("a flight with rendered images", () => {
   });
 });
 
+test("large images come less often", async () => {
+  const record = fly("large", "open", "--set", "sensing=rendered", "--set", "timeout=1", ...["camera.width=640", "camera.height=480", "depth.width=320", "depth.height=240"].flatMap((key) => ["--set", key]));
+  const bytes = exported(record, "large");
+  const found = await topics(bytes);
+  for (const [name, rate] of [["down", 1.6e6 / (640 * 480)], ["depth", 0.2e6 / (320 * 240)]]) {
+    const images = found.get(`/camera/${name}/image`);
+    assert.equal(images.length, Math.floor(rate) + 1);
+    images.forEach((image, i) => near(seconds(image.timestamp), i / rate, 1e-9, "time"));
+  }
+  assert.ok(bytes.length < 2e6, `${bytes.length} bytes for 1 s`);
+});
+
 test("a flight to a goal has the goal in the place of the pad", async () => {
   const record = fly("goal", "goal", "--set", "timeout=2");
   const found = await topics(exported(record, "goal"));
   assert.ok(!found.has("/pad/belief") && !found.has("/points/pad") && found.has("/points/goal"));
   const vehicle = rows(record, "SELECT px, py, pz FROM vehicle WHERE source = 'true' ORDER BY t");
   found.get("/state").forEach((message, i) => {
-    const goal = found.get("/tf")[i].transforms.find((one) => one.childFrameId === "goal").translation;
+    const frames = found.get("/tf")[i].transforms;
+    assert.deepEqual(frames.map((one) => one.childFrameId), ["vehicle", "goal"]);
+    const goal = frames[1].translation;
     near(message.goalDistanceM, Math.hypot(goal.x - vehicle[i].px, goal.y - vehicle[i].py, goal.z - vehicle[i].pz), 1e-6, "distance");
     assert.ok(Number.isNaN(message.padDistanceM));
   });
