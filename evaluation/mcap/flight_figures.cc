@@ -66,6 +66,7 @@ FlightFigures::FlightFigures(const RecordedFlight& flight, const FlightTrack& tr
 }
 
 const TrackBelief* FlightFigures::PadBelief(int sample) const {
+  if (goal_) return nullptr;      // what stands in its place is the goal, which is known
   constexpr double kSame = 1e-3;  // [s]: that far a time is rounded
   const double t = TimeOf(sample);
   const std::vector<TrackBelief>& beliefs = track_.beliefs();

@@ -30,7 +30,7 @@ class FlightFigures {
   double TimeOf(int sample) const { return times_[static_cast<std::size_t>(sample)]; }
   TrackSample At(int sample) const { return track_.At(TimeOf(sample)); }
 
-  /// What was believed of the pad then; nullptr before anything was.
+  /// What was believed of the pad then; nullptr before anything was, and in the task go_to.
   const TrackBelief* PadBelief(int sample) const;
 
   /// Where the flight leads in the task go_to.

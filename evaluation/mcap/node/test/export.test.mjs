@@ -361,7 +361,7 @@ test("a flight to a goal has the goal in the place of the pad", async () => {
     assert.deepEqual(frames.map((one) => one.childFrameId), ["vehicle", "goal"]);
     const goal = frames[1].translation;
     near(message.goalDistanceM, Math.hypot(goal.x - vehicle[i].px, goal.y - vehicle[i].py, goal.z - vehicle[i].pz), 1e-6, "distance");
-    assert.ok(Number.isNaN(message.padDistanceM));
+    for (const name of ["padDistanceM", "padHeightM", "padSpeedMps", "padErrorM", "padSigmaM"]) assert.ok(Number.isNaN(message[name]), name);
   });
   const outcome = found.get("/log").find((message) => message.message.startsWith("outcome: timeout"));
   assert.equal(outcome.level, "ERROR");
