@@ -281,6 +281,18 @@ describe("a link", () => {
   });
 });
 
+test("links that hold a very long text leave the planner whole", async () => {
+  const first = await sceneNow();
+  for (const large of [{ ...first, backend: "x".repeat(2e6) }, { ...first, pillars: Array(100000).fill({ p: [1.25, 2.5], radius: 0.4, height: 3 }) }]) {
+    await within(await linkOf(large), async (other) => {
+      assert.equal(await text("#headline h2", other), "This link cannot be opened.");
+      assert.match(await other.evaluate((scene) => { try { return touchdown.ask({ do: "plan", scene }).status; } catch (error) { return error.message; } }, large), /^The scene is too large/);
+      assert.equal(await other.evaluate(() => touchdown.ask({ do: "plan", scene: touchdown.first }).status), "planned");
+      assert.deepEqual(other.said, []);
+    });
+  }
+});
+
 describe("an impossible scene ends in its reason's sentence", () => {
   for (const [name, sentence] of [["pad in a wall", /^The end is inside an inflated obstacle/], ["start in an obstacle", /^The start is inside an inflated obstacle/]]) {
     test(name, async () => {

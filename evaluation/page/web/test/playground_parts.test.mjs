@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { curveOf, roundOf } from "../src/playground/answer.js";
 import { handlesOf } from "../src/playground/handles.js";
 import { linkOf, sceneOf } from "../src/playground/link.js";
+import { MOST_BYTES, plannerOf } from "../src/playground/module.js";
 import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, copy, heightOf, moveTo, objectsOf, placeOf, remove, setHeight, setRadius, setValue, setWallEnd, tipOf, valueAt, wallEnds } from "../src/playground/scene.js";
 import { SCENES, sceneOfMenu } from "../src/playground/scenes.js";
 import { CellList } from "../src/playground/seen.js";
@@ -39,6 +40,58 @@ test("a mangled link is told in a sentence", async () => {
   damages.push(await linkOf({ ...scene(), walls: [{ center: [0, 0, "1"], size: [1, 1, 1], yaw_deg: 0 }] }));
   damages.push(await linkOf({ ...scene(), pillars: [null] }));
   for (const damaged of damages) await assert.rejects(sceneOf(damaged), /^Error: The link is damaged or holds no scene\. This is the scene to begin with\.$/);
+});
+
+test("a link is not inflated beyond what a question may have", async () => {
+  for (const large of [{ ...scene(), backend: "x".repeat(2e6) }, { ...scene(), pillars: Array(100000).fill({ p: [1, 2], radius: 0.4, height: 3 }) }]) {
+    const link = await linkOf(large);
+    assert.ok(link.length < 20000, `${link.length} letters`);
+    await assert.rejects(sceneOf(link), /^Error: The link is damaged or holds no scene\./);
+  }
+});
+
+/** A module that answers as `act` does, and knows which of its places are taken. */
+function fakeModule(act) {
+  const heap = new Map();
+  let next = 8;
+  return {
+    heap,
+    lengthBytesUTF8: (text) => Buffer.byteLength(text),
+    _malloc: (size) => (heap.set(next, size), next++),
+    _free: (place) => assert.ok(heap.delete(place)),
+    stringToUTF8(text, place, size) {
+      assert.ok(size > Buffer.byteLength(text) && size <= heap.get(place));
+      this.text = text;
+    },
+    ccall(name, result, types, [place]) {
+      assert.ok(heap.has(place));
+      return JSON.stringify(act(JSON.parse(this.text)));
+    },
+  };
+}
+
+test("a question lies on the module's heap, and not after it; one of more than 1 MB is not asked", async () => {
+  const module = fakeModule(({ wrong }) => (wrong ? { error: "It is wrong." } : { right: true }));
+  const ask = await plannerOf(async () => module);
+  assert.deepEqual(ask({ text: "é" }), { right: true });
+  assert.throws(() => ask({ wrong: true }), /^Error: It is wrong\.$/);
+  module.text = null;
+  assert.throws(() => ask({ text: "é".repeat(MOST_BYTES / 2) }), /^Error: The scene is too large: its text is longer than 1 MB\.$/);
+  assert.equal(module.text, null);
+  assert.equal(module.heap.size, 0);
+});
+
+test("a module that breaks off is replaced by another", async () => {
+  for (const broken of [new WebAssembly.RuntimeError("unreachable"), new RangeError("Maximum call stack size exceeded")]) {
+    const made = [];
+    const ask = await plannerOf(async () => made[made.push(fakeModule(({ breaks }) => { if (breaks) throw broken; return { by: made.length }; })) - 1]);
+    assert.deepEqual(ask({}), { by: 1 });
+    assert.throws(() => ask({ breaks: true }), /^Error: The planner broke off and is started anew\./);
+    assert.throws(() => ask({}), /^Error: The planner broke off and is started anew\./);
+    await new Promise((done) => setTimeout(done));
+    assert.deepEqual(ask({}), { by: 2 });
+    assert.equal(made[0].heap.size, 0);
+  }
 });
 
 test("objects are moved, and nothing else is", () => {

@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A scene in an address, behind its #: JSON, deflated, in letters that addresses may hold.
 import { bytesOf, deflate, inflate } from "../packed.js";
+import { MOST_BYTES } from "./module.js";
 
 const DAMAGED = "The link is damaged or holds no scene. This is the scene to begin with.";
 
 export async function linkOf(scene) {
   const bytes = await deflate(JSON.stringify(scene));
   return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+/** No more of it than a question may have: a short link can hold a very long text. */
+async function textOf(bytes) {
+  const reader = inflate(bytes, "deflate").body.getReader(), decoder = new TextDecoder();
+  let text = "", size = 0;
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return text + decoder.decode();
+    size += value.length;
+    if (size > MOST_BYTES) {
+      reader.cancel();
+      throw new Error(DAMAGED);
+    }
+    text += decoder.decode(value, { stream: true });
+  }
 }
 
 const areNumbers = (list, count) => Array.isArray(list) && list.length === count && list.every(Number.isFinite);
@@ -23,7 +40,7 @@ function isScene(scene) {
 export async function sceneOf(link) {
   let scene;
   try {
-    scene = JSON.parse(await inflate(bytesOf(link.replaceAll("-", "+").replaceAll("_", "/")), "deflate").text());
+    scene = JSON.parse(await textOf(bytesOf(link.replaceAll("-", "+").replaceAll("_", "/"))));
   } catch {
     throw new Error(DAMAGED);
   }
