@@ -13,12 +13,12 @@
 namespace touchdown::evaluation {
 namespace {
 
-using Question = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kLongestAdvance = 10.0;  // of one question [s]
 constexpr double kMostSteps = 1000.0;     // of one question
 
-double NumberIn(const Question& question, const char* key, double lo, double hi) {
+double NumberIn(const Json& question, const char* key, double lo, double hi) {
   const auto found = question.find(key);
   if (found == question.end() || !found->is_number()) {
     throw std::invalid_argument(std::string(key) + " is missing, or no number");
@@ -28,24 +28,40 @@ double NumberIn(const Question& question, const char* key, double lo, double hi)
   return value;
 }
 
-PlaygroundScene SceneIn(const Question& question) {
+/// A question, of no more depth than a scene has: what reads a document calls itself.
+Json Parsed(std::string_view text) {
+  constexpr int kDeepest = 6;
+  return Json::parse(text, [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepest) throw std::invalid_argument("the question has too many levels");
+    return true;
+  });
+}
+
+std::string WordIn(const Json& question, const char* key) {
+  const auto found = question.is_object() ? question.find(key) : question.end();
+  return found != question.end() && found->is_string() ? found->get<std::string>().substr(0, 40)
+                                                       : "";
+}
+
+PlaygroundScene SceneIn(const Json& question) {
   const auto found = question.find("scene");
   if (found == question.end()) throw std::invalid_argument("scene is missing");
   return SceneFrom(*found);
 }
 
-Question About() {
+Json About() {
   const PlaygroundScene first = FirstScene();
   const planning::ReplannerOptions options = PlannerOf(first);
   const estimation::VehicleModel vehicle = PlaygroundVehicle();
   const sim::DepthCameraConfig camera;
-  Question json = {{"version", TOUCHDOWN_VERSION},
-                   {"scene", SceneJson(first)},
-                   {"backends", PlaygroundBackends()},
-                   {"hull_radius", control::HullAtEveryTilt(vehicle)},
-                   {"clearance", OnboardOptionsOf(first).map.inflation_radius},
-                   {"foot_depth", vehicle.foot_depth},
-                   {"deck_size", 2.0 * PlaygroundPad().deck_half_size}};
+  Json json = {{"version", TOUCHDOWN_VERSION},
+               {"scene", SceneJson(first)},
+               {"backends", PlaygroundBackends()},
+               {"hull_radius", control::HullAtEveryTilt(vehicle)},
+               {"clearance", OnboardOptionsOf(first).map.inflation_radius},
+               {"body_rate", options.limits.body_rate},
+               {"foot_depth", vehicle.foot_depth},
+               {"deck_size", 2.0 * PlaygroundPad().deck_half_size}};
   json["camera"] = {{"fov_x_deg", camera.fov_x_deg},
                     {"aspect", static_cast<double>(camera.width) / camera.height},
                     {"range", camera.max_range}};
@@ -72,14 +88,16 @@ Question About() {
 }  // namespace
 
 std::string Playground::Ask(std::string_view text) noexcept {
-  Question answer;
+  Json answer;
   try {
-    const Question question = Question::parse(text);
-    const std::string what = question.is_object() ? question.value("do", "") : "";
+    const Json question = Parsed(text);
+    const std::string what = WordIn(question, "do");
     if (what == "about") {
       answer = About();
     } else if (what == "plan") {
-      answer = SceneStep(SceneIn(question)).Explain();
+      const PlaygroundScene scene = SceneIn(question);
+      answer = RefusalOf(scene);
+      if (answer.is_null()) answer = SceneStep(scene).Explain();
     } else if (what == "time") {
       const PlaygroundScene scene = SceneIn(question);
       const int steps = static_cast<int>(NumberIn(question, "steps", 1.0, kMostSteps));
@@ -114,14 +132,16 @@ std::string Playground::Ask(std::string_view text) noexcept {
         answer = flight_->Report();
       }
     } else {
-      throw std::invalid_argument("do is " + Question(what).dump() +
-                                  "; it is one of about, plan, time, random, fly, step, why, move");
+      throw std::invalid_argument(
+          "do is \"" + what + "\"; it is one of about, plan, time, random, fly, step, why, move");
     }
+  } catch (const Json::parse_error&) {
+    answer = {{"error", "the question is no JSON text"}};
   } catch (const std::exception& error) {
     answer = {{"error", error.what()}};
   }
   // What is not finite has no JSON: it is null. A message may hold a mangled text.
-  return answer.dump(-1, ' ', false, Question::error_handler_t::replace);
+  return answer.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace touchdown::evaluation

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-using FlightReport = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kTick = 0.002;          // the rate of Onboard's laws [s]
 constexpr double kDepthRate = 10.0;      // [Hz]
@@ -43,9 +44,8 @@ sim::DepthCamera DepthCameraIn(const sim::ObstacleField& field, std::uint64_t se
   return sim::DepthCamera({}, field, PlaygroundPad(), seed);
 }
 
-FlightReport PointJson(const std::vector<planning::CellIndex>& cells,
-                       const planning::OccupancyMap& map) {
-  FlightReport flat = FlightReport::array();
+Json PointJson(const std::vector<planning::CellIndex>& cells, const planning::OccupancyMap& map) {
+  Json flat = Json::array();
   for (const planning::CellIndex& cell : cells) {
     for (const double x : map.CentreOf(cell)) flat.push_back(std::round(1e3 * x) / 1e3);
   }
@@ -96,6 +96,7 @@ PointFlight::PointFlight(const PlaygroundScene& scene)
                           static_cast<Eigen::Index>(model.actuators.size()),
                           model.HoverThrust() / static_cast<double>(model.actuators.size())));
   if (scene.all_known) FillMap(field_, onboard_.mutable_map());
+  above_deck_ = vehicle_.p_WB.z() - motion_.At(0.0).p_WP.z();
   Judge();
 }
 
@@ -105,6 +106,7 @@ void PointFlight::Advance(double seconds) {
 }
 
 void PointFlight::Move(const PlaygroundScene& scene) {
+  if (outcome_) return;
   scene_.walls = scene.walls;
   scene_.pillars = scene.pillars;
   field_ = FieldOf(scene_);
@@ -185,8 +187,9 @@ void PointFlight::MoveOn(const control::Setpoint& setpoint) {
   vehicle_.w_WB_B = inputs.w_WB_B;
   const Eigen::Vector3d p_PB = R_WP.inverse() * (vehicle_.p_WB - pad.p_WP);
   const double foot_depth = onboard_.options().model.foot_depth;
+  const bool from_above = std::exchange(above_deck_, p_PB.z()) >= foot_depth;
   const bool over_deck = p_PB.head<2>().cwiseAbs().maxCoeff() <= PlaygroundPad().deck_half_size;
-  if (over_deck && p_PB.z() <= foot_depth) {
+  if (from_above && over_deck && p_PB.z() <= foot_depth) {
     stands_P_ = Eigen::Vector3d(p_PB.x(), p_PB.y(), foot_depth);
     vehicle_.q_WB = Eigen::AngleAxisd(flat.yaw, Eigen::Vector3d::UnitZ());
     vehicle_.w_WB_B.setZero();
@@ -194,13 +197,31 @@ void PointFlight::MoveOn(const control::Setpoint& setpoint) {
   }
 }
 
+// The hull, taken as level, against the deck's board and the body below it.
+bool PointFlight::MeetsPad() const {
+  const estimation::VehicleModel& model = onboard_.options().model;
+  const estimation::PadState pad = motion_.At(vehicle_.t);
+  const auto meets = [&](const sim::Box& box) {
+    const Eigen::Vector3d d =
+        Eigen::AngleAxisd(-box.yaw, Eigen::Vector3d::UnitZ()) * (vehicle_.p_WB - box.center);
+    const Eigen::Array2d beside = d.head<2>().array().abs() - box.half_extents.head<2>().array();
+    return beside.max(0.0).matrix().norm() < model.hull_radius &&
+           d.z() - model.foot_depth < box.half_extents.z() &&
+           d.z() + model.hull_top > -box.half_extents.z();
+  };
+  return meets(sim::DeckBox(PlaygroundPad(), pad)) || meets(sim::PadBodyBox(PlaygroundPad(), pad));
+}
+
 void PointFlight::Judge() {
+  if (outcome_) return;
   clearance_ = HullClearance(field_, vehicle_.p_WB);
   least_clearance_ = std::min(least_clearance_, clearance_);
   const double foot_depth = onboard_.options().model.foot_depth;
   if (clearance_ < 0.0) {
     outcome_ = {"touched", "The hull, at some tilt, reaches an obstacle: the nearest is " +
                                std::to_string(std::lround(1e3 * -clearance_)) + " mm within it."};
+  } else if (!stands_P_ && MeetsPad()) {
+    outcome_ = {"touched", "The hull meets the pad from below or from a side."};
   } else if (!stands_P_ && vehicle_.p_WB.z() < foot_depth) {
     outcome_ = {"touched", "The feet touch the ground beside the pad."};
   } else if (vehicle_.t >= kLongestFlight) {
@@ -222,24 +243,22 @@ nlohmann::ordered_json PointFlight::MapReport() {
 nlohmann::ordered_json PointFlight::Report() {
   const estimation::PadState pad = motion_.At(vehicle_.t);
   const Eigen::Quaterniond& q = vehicle_.q_WB;
-  FlightReport json = {{"t", vehicle_.t},
-                       {"p", VectorJson(vehicle_.p_WB)},
-                       {"v", VectorJson(vehicle_.v_WB)},
-                       {"q", {q.w(), q.x(), q.y(), q.z()}}};
+  Json json = {{"t", vehicle_.t},
+               {"p", VectorJson(vehicle_.p_WB)},
+               {"v", VectorJson(vehicle_.v_WB)},
+               {"q", {q.w(), q.x(), q.y(), q.z()}}};
   json["pad"] = {{"p", VectorJson(pad.p_WP)}, {"yaw", pad.yaw}, {"v", VectorJson(pad.v_WP)}};
   json["mode"] = control::ToString(onboard_.status().mission.mode);
   json["gate"] = control::ToString(onboard_.status().mission.gate);
-  json["clearance"] = std::isfinite(clearance_) ? FlightReport(clearance_) : FlightReport();
-  json["least_clearance"] =
-      std::isfinite(least_clearance_) ? FlightReport(least_clearance_) : FlightReport();
-  json["events"] = FlightReport::array();
+  json["clearance"] = std::isfinite(clearance_) ? Json(clearance_) : Json();
+  json["least_clearance"] = std::isfinite(least_clearance_) ? Json(least_clearance_) : Json();
+  json["events"] = Json::array();
   for (const Event& event : events_)
     json["events"].push_back({{"t", event.t}, {"text", event.text}});
   events_.clear();
-  json["outcome"] = outcome_
-                        ? FlightReport{{"name", outcome_->name}, {"sentence", outcome_->sentence}}
-                        : FlightReport();
-  json["plan"] = FlightReport();
+  json["outcome"] =
+      outcome_ ? Json{{"name", outcome_->name}, {"sentence", outcome_->sentence}} : Json();
+  json["plan"] = Json();
   if (answer_is_new_) {
     estimation::BeliefPredictor predictor;
     const estimation::PadPrediction& predicted =
@@ -248,9 +267,9 @@ nlohmann::ordered_json PointFlight::Report() {
     json["map"] = MapReport();
     answer_is_new_ = false;
   } else {
-    json["map"] = {{"added", FlightReport::array()}, {"removed", FlightReport::array()}};
+    json["map"] = {{"added", Json::array()}, {"removed", Json::array()}};
   }
-  json["belief"] = FlightReport();
+  json["belief"] = Json();
   if (onboard_.pad().initialized()) {
     const estimation::PadState believed = onboard_.pad().Estimate(vehicle_.t);
     json["belief"] = {{"p", VectorJson(believed.p_WP)},
@@ -275,7 +294,7 @@ nlohmann::ordered_json PointFlight::Explain() const {
       asked_->request.rest_climb
           ? replanner.Rest(input, *asked_->request.rest_climb, onboard_.map())
           : replanner.Replan(input, onboard_.map());
-  FlightReport json = AnswerJson(result, pad, input.t_now);
+  Json json = AnswerJson(result, pad, input.t_now);
   json["attempts"] = AttemptsJson(log);
   return json;
 }

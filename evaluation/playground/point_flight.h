@@ -32,13 +32,9 @@ class PointFlight {
 
   /// Flies on for some time [s], at most to its end.
   void Advance(double seconds);
-  /// Walls and pillars stand elsewhere from now on. The map still has what it saw.
+  /// Walls and pillars stand elsewhere from now on; nothing else of `scene` counts. The map keeps what it saw until the
+  /// camera looks again. A flight that has ended stays as it is.
   void Move(const PlaygroundScene& scene);
-
-  double time() const { return vehicle_.t; }
-  const std::optional<PointOutcome>& outcome() const { return outcome_; }
-  /// The least distance from the hull to an obstacle so far [m].
-  double least_clearance() const { return least_clearance_; }
 
   /// How it stands, and what has happened since the last call: events, cells of the map, and the newest replanning step.
   nlohmann::ordered_json Report();
@@ -55,6 +51,7 @@ class PointFlight {
   void Sense();
   void Note();
   void MoveOn(const control::Setpoint& setpoint);
+  bool MeetsPad() const;
   void Judge();
   nlohmann::ordered_json MapReport();
 
@@ -70,6 +67,7 @@ class PointFlight {
 
   estimation::VehicleState vehicle_;
   long steps_ = 0;
+  double above_deck_ = 0.0;                  ///< origin above the deck's face at the last step [m]
   std::optional<Eigen::Vector3d> stands_P_;  ///< on the deck, there in P [m]
   std::optional<PointOutcome> outcome_;
   double clearance_ = 0.0;

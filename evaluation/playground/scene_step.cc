@@ -3,7 +3,7 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -19,7 +19,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-using AnswerDocument = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kPadStep = 0.1;  // of the pad's way that is shown [s]
 
@@ -35,14 +35,7 @@ planning::ReplanInput QuestionOf(const PlaygroundScene& scene,
   return input;
 }
 
-planning::OccupancyMap KnownMap(const PlaygroundScene& scene) {
-  planning::OccupancyMap map(OnboardOptionsOf(scene).map);
-  LearnScene(scene, &map);
-  return map;
-}
-
-}  // namespace
-
+/// Fills a map around the scene's start with what is known of the scene there.
 void LearnScene(const PlaygroundScene& scene, planning::OccupancyMap* map) {
   map->Recentre(scene.p_WB);
   const sim::ObstacleField field = FieldOf(scene);
@@ -57,9 +50,35 @@ void LearnScene(const PlaygroundScene& scene, planning::OccupancyMap* map) {
   map->Integrate(frame, planning::OutlineOf(pad, PlaygroundPad().deck_half_size));
 }
 
+planning::OccupancyMap KnownMap(const PlaygroundScene& scene) {
+  planning::OccupancyMap map(OnboardOptionsOf(scene).map);
+  LearnScene(scene, &map);
+  return map;
+}
+
+}  // namespace
+
+nlohmann::ordered_json RefusalOf(const PlaygroundScene& scene) {
+  const double clearance = HullClearance(FieldOf(scene), scene.p_WB);
+  if (!(clearance < 0.0)) return {};
+  const std::string sentence =
+      "The start is in an obstacle, or so near that a tilted hull reaches " +
+      std::to_string(std::lround(-1e3 * clearance)) + " mm into it.";
+  return {{"status", "refused"},
+          {"reason", "start_in_obstacle"},
+          {"sentences", Json::array({sentence})},
+          {"passed", false},
+          {"pair", Json()},
+          {"certificate", Json()},
+          {"guide_paths", Json::array()},
+          {"unseen_W", Json()},
+          {"pad", Json::array()},
+          {"attempts", Json::array()}};
+}
+
 nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
                                   const estimation::PadPrediction& pad, double t_now) {
-  AnswerDocument json;
+  Json json;
   json["status"] = planning::ToString(result.status);
   json["reason"] = planning::ToString(result.reason);
   json["sentences"] = {planning::Explain(result.status)};
@@ -70,13 +89,13 @@ nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
   json["passed"] = result.certificate.passed();
   const bool stops = std::isfinite(result.t_stop);
   json["pair"] = {{"curve", CurveJson(result.curve)},
-                  {"t_stop", stops ? AnswerDocument(result.t_stop) : AnswerDocument()},
-                  {"stop", stops ? CurveJson(result.stop) : AnswerDocument()}};
+                  {"t_stop", stops ? Json(result.t_stop) : Json()},
+                  {"stop", stops ? CurveJson(result.stop) : Json()}};
   json["certificate"] = CertificateJson(result.certificate);
-  AnswerDocument& guides = json["guide_paths"] = AnswerDocument::array();
+  Json& guides = json["guide_paths"] = Json::array();
   for (const auto& path : result.guide_paths) guides.push_back(PathJson(path));
-  json["unseen_W"] = result.unseen_W ? VectorJson(*result.unseen_W) : AnswerDocument();
-  AnswerDocument& way = json["pad"] = AnswerDocument::array();
+  json["unseen_W"] = result.unseen_W ? VectorJson(*result.unseen_W) : Json();
+  Json& way = json["pad"] = Json::array();
   for (double t = t_now; t <= result.curve.t_end(); t += kPadStep) {
     const estimation::PadState state = pad.At(t);
     way.push_back({{"t", t}, {"p", VectorJson(state.p_WP)}, {"yaw", state.yaw}});
@@ -87,7 +106,7 @@ nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
   json["pairs"] = result.pairs;
   json["iterations"] = result.solver.iterations;
   json["cost"] = result.solver.cost;
-  AnswerDocument& terms = json["terms"] = AnswerDocument::array();
+  Json& terms = json["terms"] = Json::array();
   for (const solvers::TermCost& term : result.solver.cost_by_term) terms.push_back(term.name);
   return json;
 }

@@ -2,10 +2,6 @@
 // One replanning step in a scene, from its start at rest.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include <nlohmann/json_fwd.hpp>
 
 #include "evaluation/playground/scene.h"
@@ -15,11 +11,14 @@
 
 namespace touchdown::evaluation {
 
+/// The answer where the truth forbids a plan, whatever the vehicle knows: it starts in an obstacle. Null: it does not.
+nlohmann::ordered_json RefusalOf(const PlaygroundScene& scene);
+
 /// A step as JSON, without its attempts. `pad`: what it planned to.
 nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
                                   const estimation::PadPrediction& pad, double t_now);
 
-/// Backend `solver` made its steps ready: a question that may be put again and again.
+/// The planner's question at the scene's start, ready to be asked again and again.
 class SceneStep {
  public:
   /// The map has what the scene's `known` says. @throws std::invalid_argument as SceneFrom and Replanner.
@@ -39,8 +38,5 @@ class SceneStep {
   planning::ReplannerState before_;
   planning::ReplanInput input_;
 };
-
-/// Fills a map around the scene's start with what is known of the scene there.
-void LearnScene(const PlaygroundScene& scene, planning::OccupancyMap* map);
 
 }  // namespace touchdown::evaluation

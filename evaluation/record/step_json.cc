@@ -80,6 +80,8 @@ StepJson CurveJson(const planning::UniformBspline& curve) {
 
 StepJson CertificateJson(const planning::Certificate& c) {
   return {{"passed", c.passed()},
+          {"start_met", c.start_met()},
+          {"endpoint_met", c.endpoint_met()},
           {"endpoint_required", c.endpoint_required},
           {"endpoint_position_residual_m", c.endpoint_position_residual},
           {"endpoint_velocity_residual_mps", c.endpoint_velocity_residual},

@@ -58,6 +58,11 @@ TEST(Playground, VehicleIsTheShippedOne) {
 }
 
 // The same scene as a scenario: `touchdown plan` solves the same step, bit for bit.
+TEST(Playground, PadIsThatOfScenarios) {
+  const Scenario scenario;
+  EXPECT_EQ(2.0 * PlaygroundPad().deck_half_size, scenario.pad.deck_size);
+}
+
 TEST(Playground, PlansAsTheProgramDoes) {
   for (const bool both_ways : {false, true}) {
     PlaygroundScene scene = FirstScene();
@@ -129,9 +134,13 @@ TEST(Playground, ImpossibleScenesAreToldInSentences) {
 
   PlaygroundScene inside = FirstScene();
   inside.walls = {{inside.p_WB, {0.5, 0.5, 0.5}, 0.0}};
-  const Json start = PlanOf(inside);
-  EXPECT_EQ(start["reason"], "start_blocked") << start["sentences"].dump();
-  EXPECT_EQ(FlyToTheEnd(inside)["outcome"]["name"], "touched");
+  for (const bool all_known : {true, false}) {
+    inside.all_known = all_known;
+    const Json start = PlanOf(inside);
+    EXPECT_EQ(start["reason"], "start_in_obstacle") << start.dump();
+    EXPECT_EQ(start["passed"], false);
+    EXPECT_EQ(FlyToTheEnd(inside)["outcome"]["name"], "touched");
+  }
 
   PlaygroundScene fast = FirstScene();
   fast.pad.speed = 9.0;
@@ -156,6 +165,7 @@ TEST(Playground, AnObstacleMayComeDuringAFlight) {
   double cells = 0.0;
   while (report["outcome"].is_null()) {
     report = Json::parse(playground.Ask(R"({"do": "step", "seconds": 0.1})"));
+    ASSERT_FALSE(report.contains("error")) << report.dump();
     cells += static_cast<double>(report["map"]["added"].size()) / 3.0;
   }
   EXPECT_EQ(report["outcome"]["name"], "landed") << report.dump();
@@ -163,6 +173,38 @@ TEST(Playground, AnObstacleMayComeDuringAFlight) {
   EXPECT_GT(report["least_clearance"], 0.0);
   const Json why = Json::parse(playground.Ask(R"({"do": "why"})"));
   EXPECT_TRUE(why.contains("attempts")) << why.dump();
+}
+
+// The deck is met from above by feet alone; a vehicle under it or beside it touches it with its hull.
+TEST(Playground, TheDeckIsNoDoor) {
+  PlaygroundScene scene = FirstScene();
+  scene.walls.clear();
+  scene.pillars.clear();
+  scene.pad.kind = sim::PadMotionConfig::Kind::kStatic;
+  scene.pad.p_start = {0.0, 0.0, 1.5};
+  scene.p_WB = {0.0, 0.0, 0.5};
+  const Json under = FlyToTheEnd(scene);
+  EXPECT_EQ(under["outcome"]["name"], "touched") << under.dump();
+  EXPECT_LT(under["p"][2], 1.5);
+  scene.p_WB = {0.9, 0.0, 1.5};
+  EXPECT_EQ(FlyToTheEnd(scene)["outcome"]["name"], "touched");
+  scene.p_WB = {0.0, 0.0, 2.2};
+  EXPECT_EQ(FlyToTheEnd(scene)["outcome"]["name"], "landed");
+}
+
+// What has ended stays ended, whatever is moved then.
+TEST(Playground, AnEndIsAnEnd) {
+  Playground playground;
+  PlaygroundScene scene = FirstScene();
+  Json report =
+      Json::parse(playground.Ask(Json({{"do", "fly"}, {"scene", SceneJson(scene)}}).dump()));
+  for (int i = 0; i < 100 && report["outcome"].is_null(); ++i) {
+    report = Json::parse(playground.Ask(R"({"do": "step", "seconds": 1})"));
+  }
+  ASSERT_EQ(report["outcome"]["name"], "landed") << report.dump();
+  scene.pillars = {{{report["p"][0], report["p"][1], 1.5}, 0.5, 3.0}};
+  report = Json::parse(playground.Ask(Json({{"do", "move"}, {"scene", SceneJson(scene)}}).dump()));
+  EXPECT_EQ(report["outcome"]["name"], "landed");
 }
 
 TEST(Playground, ScenesComeBackFromTheirText) {
@@ -182,7 +224,9 @@ TEST(Playground, MistakesAreAnsweredWithASentence) {
     const Json answer = Json::parse(Playground().Ask(question));
     return answer.value("error", "no error");
   };
-  EXPECT_THAT(sentence("{"), HasSubstr("parse error"));
+  EXPECT_THAT(sentence("{"), HasSubstr("no JSON"));
+  EXPECT_THAT(sentence(R"({"do": 5})"), HasSubstr("one of about"));
+  EXPECT_THAT(sentence(std::string(100000, '[')), HasSubstr("too many levels"));
   EXPECT_THAT(sentence("[]"), HasSubstr("one of about"));
   EXPECT_THAT(sentence(R"({"do": "dance"})"), HasSubstr("one of about"));
   EXPECT_THAT(sentence(R"({"do": "plan"})"), HasSubstr("scene is missing"));
@@ -200,6 +244,8 @@ TEST(Playground, MistakesAreAnsweredWithASentence) {
   EXPECT_THAT(in_scene(R"({"terms": {"smothness": 1}})"), HasSubstr("smoothness"));
   EXPECT_THAT(in_scene(R"({"terms": {"smoothness": -1}})"), HasSubstr("scene.terms.smoothness"));
   EXPECT_THAT(in_scene(R"({"backend": "ceres"})"), HasSubstr("banded, lbfgs"));
+  EXPECT_THAT(in_scene(R"({"pad": {"speed": 0}})"), HasSubstr("scene.pad.speed is 0"));
+  EXPECT_LT(in_scene(R"({"backend": ")" + std::string(1000000, 'x') + R"("})").size(), 200u);
 }
 
 // Not finite is no JSON, and a mangled text is no UTF-8: neither may end the page.

@@ -36,7 +36,7 @@ void PriorTree::Fill(const CellIndex&, CellBlock*) const {}
 std::optional<std::int8_t> PriorTree::LogOdds(const CellIndex&) const { return std::nullopt; }
 void PriorTree::ForEachObstacle(const std::function<void(const CellCube&)>&) const {}
 void PriorTree::Read(std::istream&) { RefuseFiles(); }
-void PriorTree::Put(const CellValue&) {}
+void PriorTree::Put(const CellValue&) { RefuseFiles(); }
 void PriorTree::Write(std::ostream&, MapFormat) { RefuseFiles(); }
 
 OccupiedCells ReadOccupiedCells(std::istream&) { RefuseFiles(); }

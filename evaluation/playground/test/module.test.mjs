@@ -43,6 +43,7 @@ test("plans are the program's", async () => {
       assert.equal(here.reason, there.reason, what);
       assert.equal(here.passed, there.passed, what);
       assert.equal(here.attempts.length, there.attempts.length, what);
+      if (here.status === "refused") continue;
       if (scene.backend === "lbfgs") {
         // Its way to the optimum is long and turns on last digits: another round's curve may come of it.
         assert.ok(Math.abs(here.cost / there.cost - 1) < 0.02, what);
@@ -58,7 +59,8 @@ test("a flight ends as the program's does", async () => {
     const scene = { ...ask({ do: "random", seed }), known: "camera" };
     const fly = async (put) => {
       let report = await put({ do: "fly", scene });
-      while (!report.outcome) report = await put({ do: "step", seconds: 1.0 });
+      while (!report.outcome && !report.error) report = await put({ do: "step", seconds: 1.0 });
+      assert.equal(report.error, undefined);
       return report;
     };
     const here = await fly(async (question) => ask(question));
