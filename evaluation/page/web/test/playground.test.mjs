@@ -294,11 +294,16 @@ test("links that hold a very long text leave the planner whole", async () => {
 });
 
 describe("an impossible scene ends in its reason's sentence", () => {
-  for (const [name, sentence] of [["pad in a wall", /^The end is inside an inflated obstacle/], ["start in an obstacle", /^The start is inside an inflated obstacle/]]) {
+  for (const [name, sentence, pair] of [["pad in a wall", /^The end is inside an inflated obstacle/, true], ["start in an obstacle", /^The start is in an obstacle/, false]]) {
     test(name, async () => {
       await choose(name);
       assert.match(await text("#headline h2"), sentence);
       assert.doesNotMatch(await page.$eval("#headline", (element) => element.className), /good/);
+      // Without a plan nothing is drawn, certified or timed.
+      assert.equal(await page.evaluate(() => Boolean(touchdown.answer.pair)), pair);
+      if (!pair) assert.deepEqual(await page.evaluate(() => ["committed", "rest", "stop"].map((name) => touchdown.picture.answer[name].object.visible)), [false, false, false]);
+      assert.equal((await page.$$("#checks li")).length > 0, pair);
+      assert.equal(await page.$eval("#timing", (section) => section.checkVisibility()), pair);
     });
   }
 });

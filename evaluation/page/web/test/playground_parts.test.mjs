@@ -216,7 +216,7 @@ test("cells come and go in any order", () => {
 
 const line = (t0, length) => ({ t0, h: 0.5, control_points: Array.from({ length: 7 }, (_, i) => [((i - 1) * length) / 4, 0, 1]) });
 const certificate = {
-  passed: true, endpoint_required: true, endpoint_position_residual_m: 2e-17, endpoint_velocity_residual_mps: 0, speed_bound_mps: 2.5, acceleration_bound_mps2: 4, body_rate_bound_radps: 1,
+  passed: true, start_met: true, endpoint_met: true, endpoint_required: true, endpoint_position_residual_m: 2e-17, endpoint_velocity_residual_mps: 0, speed_bound_mps: 2.5, acceleration_bound_mps2: 4, body_rate_bound_radps: 1,
   earlier: false, limits_kept: true, recovering: false, clear: true, clearance_m: 0.37, escaping: false, stops_in_observed_space: true,
 };
 
@@ -235,20 +235,36 @@ test("what came out is told in words", () => {
 });
 
 test("each check of a certificate is told by its own figure", () => {
-  const limits = { speed: 3, acceleration: 6 }, oks = (change) => checksOf({ ...certificate, ...change }, limits).map(({ ok }) => ok);
+  const limits = { speed: 3, acceleration: 6, body_rate: 5 }, oks = (change) => checksOf({ ...certificate, ...change }, limits).map(({ ok }) => ok);
   assert.deepEqual(oks({}), [true, true, true, true]);
-  assert.deepEqual(oks({ endpoint_position_residual_m: 0.1 }), [false, true, true, true]);
-  assert.deepEqual(oks({ endpoint_velocity_residual_mps: 0.1 }), [false, true, true, true]);
+  assert.deepEqual(oks({ endpoint_met: false }), [false, true, true, true]);
+  assert.deepEqual(oks({ start_met: false }), [false, true, true, true, true]);
   assert.deepEqual(oks({ endpoint_required: false }), [null, true, true, true]);
   assert.deepEqual(oks({ limits_kept: false }), [true, false, true, true]);
   assert.deepEqual(oks({ clear: false }), [true, true, false, true]);
   assert.deepEqual(oks({ clear: false, escaping: true }), [true, true, true, true]);
   assert.deepEqual(oks({ stops_in_observed_space: false }), [true, true, true, false]);
   const [, speeds, clearance] = checksOf(certificate, limits);
-  assert.match(speeds.figure, /2\.50 of 3 m\/s, 4\.00 of 6 m\/s²/);
+  assert.match(speeds.figure, /2\.50 of 3 m\/s, 4\.00 of 6 m\/s², turns at 1\.0 of 5 rad\/s/);
   assert.match(clearance.figure, /0\.37 m/);
   const words = checksOf({ ...certificate, earlier: true, speed_bound_mps: null, clearance_m: null }, limits).map(({ figure }) => figure).join();
   assert.doesNotMatch(words, /NaN|null|undefined/);
+});
+
+test("all ticks are there exactly where the certificate passed", () => {
+  const names = ["start_met", "endpoint_met", "endpoint_required", "limits_kept", "clear", "escaping", "stops_in_observed_space"];
+  for (let bits = 0; bits < 2 ** names.length; ++bits) {
+    const c = { ...certificate, ...Object.fromEntries(names.map((name, i) => [name, Boolean(bits & (1 << i))])) };
+    // What the module calls met where nothing is required, and passed.
+    c.endpoint_met ||= !c.endpoint_required;
+    c.passed = c.start_met && c.endpoint_met && c.limits_kept && (c.clear || c.escaping) && c.stops_in_observed_space;
+    assert.equal(checksOf(c, { speed: 3, acceleration: 6, body_rate: 4 }).every(({ ok }) => ok !== false), c.passed, JSON.stringify(c));
+  }
+});
+
+test("a scene that is refused has a headline and no curve", () => {
+  const refused = { status: "refused", reason: "start_in_obstacle", sentences: ["The start is in an obstacle."], passed: false, pair: null, certificate: null, attempts: [] };
+  assert.deepEqual(headlineOf(refused), { tone: "bad", title: "The start is in an obstacle.", text: "" });
 });
 
 test("an attempt is told by the round that it took", () => {

@@ -42,7 +42,7 @@ class Playground {
     this.picture.look.controls.addEventListener("change", () => (this.stale = true));
     this.handles = new Handles(at("handles"), this.picture, this);
     this.hand = new Hand(at("stage"), this.picture, this);
-    this.panel = new Panel((attempt) => this.chooseAttempt(attempt));
+    this.panel = new Panel(this.about, (attempt) => this.chooseAttempt(attempt));
     this.settings = new Settings(at("settings"), this.about, (rests) => this.changedSetting(rests));
     this.stopwatch = new Stopwatch(ask, this.about.backends, (rows) => this.panel.times(rows));
     fillLegend(at("legend"), this.picture, () => { this.picture.answered = undefined; this.redraw(); });
@@ -255,10 +255,9 @@ class Playground {
       this.panel.refuse(error.message);
     }
     if (this.attempt !== null && !this.answer?.attempts[this.attempt]) this.attempt = null;
-    if (this.answer) {
-      this.panel.show(this.answer, this.scene, this.attempt);
-      this.stopwatch.begin(this.scene);
-    }
+    if (this.answer) this.panel.show(this.answer, this.scene, this.attempt);
+    at("timing").hidden = !this.answer?.pair;
+    if (this.answer?.pair) this.stopwatch.begin(this.scene);
     this.settings.show(this.scene);
     at("knows").value = this.scene.known;
   }

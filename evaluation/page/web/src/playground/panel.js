@@ -19,8 +19,8 @@ const COLUMNS = [
 
 export class Panel {
   /** `choose(i)`: the attempt whose rounds are to be drawn, or null. */
-  constructor(choose) {
-    this.choose = choose;
+  constructor(about, choose) {
+    Object.assign(this, { about, choose });
     const tabs = [at("tab-plan"), at("tab-settings")];
     for (const tab of tabs) {
       tab.addEventListener("click", () => this.open(tab.id));
@@ -68,7 +68,7 @@ export class Panel {
     at("figures").replaceChildren(
       ...figures.map(([name, value, unit, title]) => element("div", { title }, element("dt", { textContent: name }), element("dd", {}, String(value), element("small", { textContent: unit && ` ${unit}` })))),
     );
-    at("checks").replaceChildren(...(answer.certificate ? checksOf(answer.certificate, scene.limits) : []).map((check) =>
+    at("checks").replaceChildren(...(answer.certificate ? checksOf(answer.certificate, { ...scene.limits, body_rate: this.about.body_rate }) : []).map((check) =>
       element("li", { title: check.help, className: check.ok === null ? "unasked" : check.ok ? "yes" : "no" },
         element("span", { className: "tick", textContent: check.ok === null ? "·" : check.ok ? "✓" : "✗", ariaLabel: check.ok === null ? "not asked" : check.ok ? "holds" : "does not hold" }),
         element("span", { textContent: check.name }), element("span", { className: "figure", textContent: check.figure }))));

@@ -85,7 +85,7 @@ export class Picture {
     if (this.answered?.answer === answer && this.answered.attempt === attempt) return;
     this.answered = { answer, attempt };
     this.answer.set(answer, attempt);
-    this.deck.predict(answer?.pad ?? [], Boolean(answer?.certificate.endpoint_required && answer.passed));
+    this.deck.predict(answer?.pad ?? [], Boolean(answer?.certificate?.endpoint_required && answer.passed));
   }
 
   setCraft(p, q) {
@@ -121,7 +121,7 @@ export class Picture {
   frame(scene, answer) {
     const half = this.deck.half, pads = [placeOf(scene, { kind: "pad" }), ...(answer?.pad ?? []).map(({ p }) => p)];
     const around = ([x, y, z], by) => [[-by, -by], [-by, by], [by, -by], [by, by]].map(([dx, dy]) => [x + dx, y + dy, z]);
-    const places = [...around(scene.start, 0.5), ...pads.flatMap((p) => around(p, half)), ...(answer?.pair.curve.control_points ?? [])];
+    const places = [...around(scene.start, 0.5), ...pads.flatMap((p) => around(p, half)), ...(answer?.pair?.curve.control_points ?? [])];
     for (const object of objectsOf(scene).slice(2)) {
       const top = heightOf(scene, object), feet = object.kind === "wall" ? wallEnds(scene.walls[object.index]) : [placeOf(scene, object)];
       for (const [x, y] of feet) places.push([x, y, 0], [x, y, top]);

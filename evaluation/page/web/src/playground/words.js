@@ -4,9 +4,6 @@ import { REASONS } from "../reasons.js";
 import { endOf, sample } from "../spline.js";
 import { curveOf, roundOf } from "./answer.js";
 
-const BODY_RATE = 4; // that plans keep [rad/s]
-const KEPT = 1e-9; // residual of an end that is met [m, m/s]
-
 const seconds = (t) => `${t.toFixed(2)} s`;
 export const plain = (name) => String(name ?? "").replaceAll("_", " ");
 /** A figure that the module may not have: it sends null for what was not measured. */
@@ -36,12 +33,12 @@ export function headlineOf(answer) {
   return { tone: safe ? "warn" : "bad", title: why, text: answer.sentences.length > 1 ? what : "" };
 }
 
-/** What was proven: { ok, name, figure, help }; `ok` is null where it was not asked. */
+/** What was proven: { ok, name, figure, help }; `ok` is null where it was not asked. `limits`: with body_rate. */
 export function checksOf(c, limits) {
   const measured = !c.earlier;
   const checks = [
     {
-      ok: c.endpoint_required ? c.endpoint_position_residual_m <= KEPT && c.endpoint_velocity_residual_mps <= KEPT : null,
+      ok: c.endpoint_required ? c.endpoint_met : null,
       name: c.endpoint_required ? "ends at the pad, as fast as the pad" : "ends at rest",
       figure: c.endpoint_required ? `off by ${small(c.endpoint_position_residual_m)} m and ${small(c.endpoint_velocity_residual_mps)} m/s` : "no contact is asked of it",
       help: "Where the curve ends, against where the pad is predicted to be at that time",
@@ -50,7 +47,7 @@ export function checksOf(c, limits) {
       ok: c.limits_kept,
       name: c.recovering ? "returns to within the limits" : "keeps the limits everywhere",
       figure: measured
-        ? `at most ${figure(c.speed_bound_mps)} of ${limits.speed} m/s, ${figure(c.acceleration_bound_mps2)} of ${limits.acceleration} m/s², turns at ${figure(c.body_rate_bound_radps, 1)} of ${BODY_RATE} rad/s`
+        ? `at most ${figure(c.speed_bound_mps)} of ${limits.speed} m/s, ${figure(c.acceleration_bound_mps2)} of ${limits.acceleration} m/s², turns at ${figure(c.body_rate_bound_radps, 1)} of ${limits.body_rate} rad/s`
         : "proven with an earlier step",
       help: "Bounds that hold for all of the curve, not only at sampled points",
     },
@@ -67,6 +64,8 @@ export function checksOf(c, limits) {
       help: "What is flown until a newer plan takes over, and the stop stored with it, stay in cells that were seen to be free",
     },
   ];
+  // Nearly always it does; only where it does not is there something to say.
+  if (!c.start_met) checks.unshift({ ok: false, name: "does not start as the vehicle flies", figure: "its place or its velocity is another", help: "Where the curve starts, against the vehicle's state at that time" });
   return checks;
 }
 
