@@ -281,6 +281,25 @@ describe("a link", () => {
   });
 });
 
+test("a link that is refused changes nothing, and undo does not bring it back", async () => {
+  await page.click("#add-pillar");
+  await drawn();
+  const scene = await sceneNow(), plan = await planNow(), past = await page.evaluate(() => touchdown.past.length);
+  const part = (name, value) => ({ ...scene, [name]: { ...scene[name], ...value } });
+  for (const wrong of [{ ...scene, seed: "a" }, part("limits", { speed: "3" }), part("pad", { turn_rate: [] }), { ...scene, terms: [1] }, { ...scene, pad: null }, { ...scene, walls: [null] }, { ...scene, start: [1, 2] }]) {
+    await page.evaluate((link) => { document.querySelector("#headline h2").textContent = ""; location.hash = link; }, await linkOf(wrong));
+    await page.waitForFunction(() => document.querySelector("#headline h2").textContent === "This link cannot be opened.", { timeout: 5000 });
+    assert.match(await text("#headline p"), /\S/);
+    assert.deepEqual([await sceneNow(), await planNow(), await page.evaluate(() => touchdown.past.length)], [scene, plan, past]);
+  }
+  // The address follows the scene that stands.
+  await page.waitForFunction(() => !touchdown.linking && touchdown.linked === location.hash.slice(1), { timeout: 5000 });
+  assert.deepEqual(await sceneOf((await page.evaluate(() => location.hash)).slice(1)), scene);
+  await page.click("#undo");
+  await drawn();
+  assert.match(await text("#headline h2"), /^Planned/);
+});
+
 test("links that hold a very long text leave the planner whole", async () => {
   const first = await sceneNow();
   for (const large of [{ ...first, backend: "x".repeat(2e6) }, { ...first, pillars: Array(100000).fill({ p: [1.25, 2.5], radius: 0.4, height: 3 }) }]) {

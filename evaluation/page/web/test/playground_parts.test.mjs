@@ -6,7 +6,7 @@ import { curveOf, roundOf } from "../src/playground/answer.js";
 import { handlesOf } from "../src/playground/handles.js";
 import { linkOf, sceneOf } from "../src/playground/link.js";
 import { MOST_BYTES, plannerOf } from "../src/playground/module.js";
-import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, copy, heightOf, moveTo, objectsOf, placeOf, remove, setHeight, setRadius, setValue, setWallEnd, tipOf, valueAt, wallEnds } from "../src/playground/scene.js";
+import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, completed, copy, heightOf, moveTo, objectsOf, placeOf, remove, setHeight, setRadius, setValue, setWallEnd, tipOf, valueAt, wallEnds } from "../src/playground/scene.js";
 import { SCENES, sceneOfMenu } from "../src/playground/scenes.js";
 import { CellList } from "../src/playground/seen.js";
 import { checksOf, eventWords, headlineOf, lengthOf, outcomeOf, rowOf } from "../src/playground/words.js";
@@ -35,11 +35,16 @@ test("a link gives back its scene exactly, in letters that addresses hold", asyn
 
 test("a mangled link is told in a sentence", async () => {
   const link = await linkOf(scene());
-  const damages = ["%%%", "x", link.slice(0, -9), `${link.slice(0, 20)}AAAA${link.slice(24)}`, await linkOf(null), await linkOf([]), await linkOf({ start: [0, 0, 1] })];
-  for (const part of ["start", "pad", "walls", "pillars", "limits", "terms"]) damages.push(await linkOf({ ...scene(), [part]: null }));
-  damages.push(await linkOf({ ...scene(), walls: [{ center: [0, 0, "1"], size: [1, 1, 1], yaw_deg: 0 }] }));
+  const damages = ["%%%", "x", link.slice(0, -9), `${link.slice(0, 20)}AAAA${link.slice(24)}`, await linkOf(null), await linkOf([]), await linkOf("scene"), await linkOf(7)];
+  damages.push(await linkOf({ ...scene(), walls: [{ center: [0, 0, 1], size: [1, 1, 1] }] }));
+  damages.push(await linkOf({ ...scene(), walls: "ab" }));
   damages.push(await linkOf({ ...scene(), pillars: [null] }));
-  for (const damaged of damages) await assert.rejects(sceneOf(damaged), /^Error: The link is damaged or holds no scene\. This is the scene to begin with\.$/);
+  for (const damaged of damages) await assert.rejects(sceneOf(damaged), /^Error: The link is damaged or holds no scene\.$/);
+});
+
+test("what a scene leaves out is as in the first one; what it has is as it stands, right or wrong", () => {
+  assert.deepEqual(completed({ start: [1, 2, 3], pad: { speed: 1 }, limits: { speed: 2 } }, scene()), { ...scene(), start: [1, 2, 3], pad: { ...scene().pad, speed: 1 }, limits: { ...scene().limits, speed: 2 } });
+  for (const wrong of [null, [], 5, "ab"]) assert.deepEqual(completed({ pad: wrong, terms: wrong }, scene()), { ...scene(), pad: wrong, terms: wrong });
 });
 
 test("a link is not inflated beyond what a question may have", async () => {

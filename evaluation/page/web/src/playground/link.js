@@ -3,7 +3,7 @@
 import { bytesOf, deflate, inflate } from "../packed.js";
 import { MOST_BYTES } from "./module.js";
 
-const DAMAGED = "The link is damaged or holds no scene. This is the scene to begin with.";
+const DAMAGED = "The link is damaged or holds no scene.";
 
 export async function linkOf(scene) {
   const bytes = await deflate(JSON.stringify(scene));
@@ -26,14 +26,12 @@ async function textOf(bytes) {
   }
 }
 
-const areNumbers = (list, count) => Array.isArray(list) && list.length === count && list.every(Number.isFinite);
+const has = (names) => (part) => names.every((name) => part?.[name] !== undefined);
 
-/** What this page draws without asking the module; the module looks at the rest, and at the ranges. */
+/** What may not be left out. The module looks at all the rest. */
 function isScene(scene) {
-  return areNumbers(scene?.start, 3) && areNumbers(scene.pad?.p, 2) && scene.limits && scene.terms &&
-    ["heading_deg", "speed", "height"].every((name) => Number.isFinite(scene.pad[name])) &&
-    Array.isArray(scene.walls) && scene.walls.every((wall) => areNumbers(wall?.center, 3) && areNumbers(wall.size, 3) && Number.isFinite(wall.yaw_deg)) &&
-    Array.isArray(scene.pillars) && scene.pillars.every((pillar) => areNumbers(pillar?.p, 2) && Number.isFinite(pillar.radius) && Number.isFinite(pillar.height));
+  return scene?.constructor === Object &&
+    [scene.walls ?? []].flat().every(has(["center", "size", "yaw_deg"])) && [scene.pillars ?? []].flat().every(has(["p", "radius", "height"]));
 }
 
 /** Of what stands behind the # of an address. */

@@ -8,7 +8,7 @@ import { linkOf, sceneOf } from "./link.js";
 import { loadPlanner } from "./module.js";
 import { Panel } from "./panel.js";
 import { Picture } from "./picture.js";
-import { add, copy, heightOf, moveTo, nameOf, objectsOf, partOf, placeOf, remove, same, setHeight } from "./scene.js";
+import { add, completed, copy, heightOf, moveTo, nameOf, objectsOf, partOf, placeOf, remove, same, setHeight } from "./scene.js";
 import { SCENES, sceneOfMenu } from "./scenes.js";
 import { Settings } from "./settings.js";
 import { Stopwatch } from "./stopwatch.js";
@@ -127,17 +127,29 @@ class Playground {
 
   // The scene.
 
-  /** Another scene as a whole, seen as a whole. `attempt`: whose rounds are shown. */
-  open(scene, attempt = null) {
+  /**
+   * Another scene as a whole, seen as a whole. One that the module refuses changes nothing.
+   * `attempt`: whose rounds are shown; `what` the sentence names.
+   */
+  open(scene, attempt = null, what = "scene") {
+    const whole = completed(scene, this.first);
+    let answer;
+    try {
+      answer = this.ask({ do: "plan", scene: whole });
+    } catch (error) {
+      return this.refuse(what, error.message);
+    }
     this.land();
-    // A link may leave out what is as at first.
-    const { pad, limits } = this.first;
-    this.scene = copy({ ...this.first, ...scene, pad: { ...pad, ...scene.pad }, limits: { ...limits, ...scene.limits } });
+    this.scene = whole;
     this.selected = this.hover = null;
     this.attempt = attempt;
     this.remember();
-    this.plan();
+    this.take(answer);
     this.frameScene();
+  }
+
+  refuse(what, sentence) {
+    this.panel.headline({ tone: "bad", title: `This ${what} cannot be opened.`, text: sentence });
   }
 
   /** All of it is in the picture. */
@@ -181,18 +193,20 @@ class Playground {
     history.replaceState(null, "", `#${this.linked}`);
   }
 
-  /** To the scene that the address holds, or, with a sentence, to the first one. */
+  /** To the scene that the address holds. Where it holds none, the scene stays, and the address gets it. */
   async follow() {
     const link = location.hash.slice(1);
     if (link === this.linked) return;
-    try {
-      this.open(link === "" ? this.first : await sceneOf(link));
-      if (!this.answer) throw new Error(this.refused);
-    } catch (error) {
-      this.open(this.first);
-      this.panel.headline({ tone: "bad", title: "This link cannot be opened.", text: error.message });
-    }
     this.linked = link;
+    let scene = this.first;
+    try {
+      if (link !== "") scene = await sceneOf(link);
+    } catch (error) {
+      this.refuse("link", error.message);
+      return this.remember();
+    }
+    this.open(scene, null, "link");
+    this.remember();
   }
 
   async copyLink() {
@@ -245,15 +259,20 @@ class Playground {
   // The plan.
 
   plan() {
-    this.edited = false;
-    this.stopwatch.stop();
+    let answer = null;
     try {
-      this.answer = this.ask({ do: "plan", scene: this.scene });
+      answer = this.ask({ do: "plan", scene: this.scene });
     } catch (error) {
-      this.answer = null;
-      this.refused = error.message;
       this.panel.refuse(error.message);
     }
+    this.take(answer);
+  }
+
+  /** The plan of the scene as it stands; null where the module refused. */
+  take(answer) {
+    this.edited = false;
+    this.stopwatch.stop();
+    this.answer = answer;
     if (this.attempt !== null && !this.answer?.attempts[this.attempt]) this.attempt = null;
     if (this.answer) this.panel.show(this.answer, this.scene, this.attempt);
     at("timing").hidden = !this.answer?.pair;
@@ -278,11 +297,11 @@ class Playground {
 
   fly() {
     if (this.flight && !this.flight.over) return this.flight.play(!this.flight.playing);
-    this.take(true);
+    this.depart(true);
   }
 
   /** From the start. */
-  take(playing) {
+  depart(playing) {
     this.stopwatch.stop();
     this.attempt = null;
     if (this.selected?.index === undefined) this.selected = null;
@@ -298,7 +317,7 @@ class Playground {
   }
 
   one() {
-    if (!this.flight || this.flight.over) this.take(false);
+    if (!this.flight || this.flight.over) this.depart(false);
     else this.flight.play(false);
     this.step(STEP);
     this.flight?.explain();
@@ -435,6 +454,9 @@ async function begin() {
   const ask = await loadPlanner();
   // For scripts and the browser's console: touchdown.open(scene), touchdown.fly(), touchdown.step(0.1), touchdown.look("top").
   const playground = (window.touchdown = new Playground(ask));
+  // Whatever the link holds, there is a scene.
+  playground.plan();
+  playground.frameScene();
   await playground.follow();
   playground.frame(performance.now());
   performance.mark("first plan");

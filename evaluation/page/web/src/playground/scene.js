@@ -129,6 +129,13 @@ export function remove(scene, object) {
   return true;
 }
 
+/** A scene as people write it: what it leaves out is as in the first one. */
+export function completed(scene, first) {
+  const whole = { ...first, ...scene };
+  for (const name of ["pad", "limits"]) if (whole[name]?.constructor === Object) whole[name] = { ...first[name], ...whole[name] };
+  return copy(whole);
+}
+
 export const copy = (scene) => JSON.parse(JSON.stringify(scene));
 
 /** The value at a path as "limits.speed", and another one put there. */
