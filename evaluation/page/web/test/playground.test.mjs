@@ -465,6 +465,17 @@ describe("a flight", () => {
     assert.match(await page.$eval("#banner", (banner) => banner.className), /bad/);
   });
 
+  test("in which the planner refuses a change waits and says why, and the page goes on", async () => {
+    await page.evaluate(() => { touchdown.fly(); touchdown.step(0.5); touchdown.scene.pillars[0].p = [101, 0]; touchdown.changed(); });
+    await page.waitForFunction(() => /scene\.pillars\[0\]\.p/.test(document.querySelector("#headline h2").textContent), { timeout: 5000 });
+    assert.equal(await page.evaluate(() => touchdown.flight.playing), false);
+    assert.ok(await page.$eval("#message", (message) => message.hidden));
+    await page.evaluate(() => { touchdown.scene.pillars[0].p = [100, 0]; touchdown.done(); touchdown.draw(); });
+    const t = await page.evaluate(() => touchdown.flight.state.t);
+    await page.evaluate(() => touchdown.step(0.1));
+    assert.ok((await page.evaluate(() => touchdown.flight.state.t)) > t);
+  });
+
   test("that cannot begin says why", async () => {
     await choose("start in an obstacle");
     await page.click("#fly");

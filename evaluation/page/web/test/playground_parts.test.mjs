@@ -111,6 +111,24 @@ test("objects are moved, and nothing else is", () => {
   }
 });
 
+test("nothing is moved farther away, and no wall made longer, than the module takes", () => {
+  for (const object of objectsOf(scene())) {
+    const moved = scene();
+    moveTo(moved, object, 101, -1e9);
+    assert.deepEqual(placeOf(moved, object).slice(0, 2), [100, -100]);
+  }
+  const { walls, walls: [wall] } = scene(), kept = wallEnds(wall)[0];
+  setWallEnd({ walls }, { index: 0 }, 1, kept[0] + 300, kept[1] + 400);
+  assert.equal(wall.size[0], 30);
+  near(wallEnds(wall)[0][0], kept[0], 0.03);
+  near(wallEnds(wall)[0][1], kept[1], 0.03);
+  Object.assign(wall, { center: [100, 0, 1.5], yaw_deg: 0 });
+  setWallEnd({ walls }, { index: 0 }, 0, 90, 0);
+  near(wall.center[0], 100);
+  setWallEnd({ walls }, { index: 0 }, 1, 1e6, 0);
+  assert.ok(wall.center[0] <= 100 && wallEnds(wall)[1][0] <= 115);
+});
+
 test("heights stay within their range; a wall stands on the ground", () => {
   const changed = scene();
   setHeight(changed, { kind: "wall", index: 0 }, 2);
@@ -169,8 +187,11 @@ test("walls and pillars are added and go; start and pad stay; there is an end to
   assert.ok(remove(changed, { kind: "pillar", index: 0 }));
   assert.deepEqual(changed.pillars[0].p, [5, 6]);
   for (const object of [null, { kind: "start" }, { kind: "pad" }, { kind: "wall", index: 7 }]) assert.equal(remove(changed, object), false);
-  for (let i = 0; i < 2 * MOST; ++i) add(changed, "pillar", i, 0);
-  assert.equal(changed.walls.length + changed.pillars.length, MOST);
+  for (let i = 0; i < 2 * MOST; ++i) for (const kind of ["wall", "pillar"]) add(changed, kind, i, 0);
+  assert.deepEqual([changed.walls.length, changed.pillars.length], [80, 80]);
+  changed.pillars.pop();
+  add(changed, "pillar", 1e4, -1e4);
+  assert.deepEqual(changed.pillars.at(-1).p, [100, -100]);
 });
 
 test("every object has handles whose places are what they set", () => {

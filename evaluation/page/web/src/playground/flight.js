@@ -31,13 +31,27 @@ export class Flight {
     this.before = now;
   }
 
+  /** The answer; null where the module refused: the flight waits where it is, and the sentence is shown. */
+  ask(question) {
+    try {
+      return this.playground.ask(question);
+    } catch (error) {
+      this.playing = false;
+      this.playground.showPlaying();
+      this.playground.panel.refuse(error.message);
+      return null;
+    }
+  }
+
   step(seconds) {
-    if (!this.over) this.take(this.playground.ask({ do: "step", seconds }));
+    const state = this.over ? null : this.ask({ do: "step", seconds });
+    if (state) this.take(state);
   }
 
   /** Walls and pillars as they stand in the scene now. */
   move() {
-    if (!this.over) this.take(this.playground.ask({ do: "move", scene: this.playground.scene }));
+    const state = this.over ? null : this.ask({ do: "move", scene: this.playground.scene });
+    if (state) this.take(state);
   }
 
   take(state) {
@@ -59,8 +73,9 @@ export class Flight {
 
   /** The newest step once more, with its attempts. */
   explain() {
-    if (!this.answer) return;
-    this.answer = this.playground.ask({ do: "why" }) ?? this.answer;
+    const answer = this.answer && this.ask({ do: "why" });
+    if (!answer) return;
+    this.answer = answer;
     this.playground.panel.show(this.answer, this.playground.scene, this.playground.attempt);
     this.playground.redraw();
   }

@@ -3,18 +3,21 @@
 // An object of it is named by { kind, index }: kind is start, pad, wall or pillar.
 
 const THICKNESS = 0.4, SHORTEST = 0.05, LOWEST = 0.2, HIGHEST = 8; // of walls and pillars [m]; a wall is so much longer than thick
+const LONGEST = 30; // a wall that the module takes [m]
 const THIN = 0.1, THICK = 3; // radius of a pillar [m]
+const PLACES = [-100, 100]; // of a coordinate that the module takes [m]
 /** What hands and sliders reach; the module allows more. */
 export const RANGES = {
   "start.z": [0.5, 8], "pad.speed": [0, 3], "pad.heading_deg": [-180, 180], "pad.turn_rate": [-1, 1], "pad.height": [0.1, 1.5], "pad.seed": [0, 99],
   "limits.speed": [0.5, 8], "limits.acceleration": [1, 15], "limits.tilt_deg": [5, 60], seed: [0, 99],
 };
-export const MOST = 80; // walls and pillars in one scene
+export const MOST = 80; // walls, and as many pillars, that the module takes
 /** From the middle of the deck to the tip of the pad's arrow: this, and so many metres for each m/s. */
 export const ARROW = 1.1, ARROW_SPEED = 1.5;
 
 const clamp = (x, [low, high]) => Math.min(Math.max(x, low), high);
 const rounded = (x, digits = 2) => Number(x.toFixed(digits));
+const within = (x, digits) => rounded(clamp(x, PLACES), digits);
 const degrees = (y, x) => rounded((Math.atan2(y, x) * 180) / Math.PI, 1);
 const listOf = { wall: "walls", pillar: "pillars" };
 
@@ -51,8 +54,8 @@ export function placeOf(scene, object) {
 export function moveTo(scene, object, x, y) {
   const part = partOf(scene, object);
   const place = object.kind === "start" ? part : object.kind === "wall" ? part.center : part.p;
-  place[0] = rounded(x);
-  place[1] = rounded(y);
+  place[0] = within(x);
+  place[1] = within(y);
 }
 
 export function setHeight(scene, object, z) {
@@ -86,13 +89,13 @@ export function wallEnds(wall) {
 /** The other end stays where it is. The long side stays the long one. */
 export function setWallEnd(scene, { index }, end, x, y) {
   const wall = scene.walls[index], kept = wallEnds(wall)[1 - end], { side } = longSide(wall);
-  const sign = end === 1 ? 1 : -1, along = [sign * (x - kept[0]), sign * (y - kept[1])];
-  const length = Math.hypot(...along);
+  const sign = end === 1 ? 1 : -1, along = [sign * (clamp(x, PLACES) - kept[0]), sign * (clamp(y, PLACES) - kept[1])];
+  const drawn = Math.hypot(...along), length = Math.min(drawn, LONGEST);
   if (length <= wall.size[1 - side] + SHORTEST) return;
   wall.size[side] = rounded(length);
   wall.yaw_deg = rounded(degrees(along[1], along[0]) - 90 * side, 1);
-  wall.center[0] = rounded((kept[0] + x) / 2, 3);
-  wall.center[1] = rounded((kept[1] + y) / 2, 3);
+  wall.center[0] = within(kept[0] + (sign * length * along[0]) / drawn / 2, 3);
+  wall.center[1] = within(kept[1] + (sign * length * along[1]) / drawn / 2, 3);
 }
 
 export function setRadius(scene, { index }, radius) {
@@ -115,8 +118,8 @@ export function tipOf(pad) {
 
 /** The new object; null where there are as many as may be. */
 export function add(scene, kind, x, y, yaw_deg = 0) {
-  if (scene.walls.length + scene.pillars.length >= MOST) return null;
-  const place = [rounded(x), rounded(y)];
+  if (scene[listOf[kind]].length >= MOST) return null;
+  const place = [within(x), within(y)];
   if (kind === "wall") scene.walls.push({ center: [...place, 1.5], size: [3, THICKNESS, 3], yaw_deg });
   else scene.pillars.push({ p: place, radius: 0.4, height: 3 });
   return { kind, index: scene[listOf[kind]].length - 1 };
