@@ -397,6 +397,11 @@ test("the time of a step is measured over 100 equal steps of both solvers", asyn
   for (const { mean_ms, cost } of rows) assert.ok(mean_ms > 0 && mean_ms < 100 && cost > 0);
 });
 
+test("where the stopwatch gives up, that is said", async () => {
+  await page.evaluate(() => touchdown.stopwatch.show(touchdown.stopwatch.rows, true));
+  assert.match(await text("#times"), /Given up: /);
+});
+
 describe("a flight", () => {
   test("lands, and says so", async () => {
     await page.click("#one");

@@ -9,6 +9,7 @@ import { MOST_BYTES, plannerOf } from "../src/playground/module.js";
 import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, completed, copy, heightOf, moveTo, objectsOf, placeOf, remove, setHeight, setRadius, setValue, setWallEnd, tipOf, valueAt, wallEnds } from "../src/playground/scene.js";
 import { SCENES, sceneOfMenu } from "../src/playground/scenes.js";
 import { CellList } from "../src/playground/seen.js";
+import { Stopwatch } from "../src/playground/stopwatch.js";
 import { checksOf, eventWords, headlineOf, lengthOf, outcomeOf, rowOf } from "../src/playground/words.js";
 
 const near = (a, b, error = 1e-9) => assert.ok(Math.abs(a - b) <= error, `${a} is not ${b}`);
@@ -217,6 +218,34 @@ test("scenes of the menu leave the first one as it was, and differ", () => {
   const first = scene(), texts = SCENES.map((_, i) => JSON.stringify(sceneOfMenu(i, first)));
   assert.deepEqual(first, scene());
   assert.equal(new Set(texts).size, SCENES.length);
+});
+
+/** Measures with steps of so many milliseconds, on a clock that only they move. */
+async function measure(t, step_ms) {
+  let now = 0, slow = null;
+  const asked = [];
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  t.mock.method(performance, "now", () => now);
+  const ask = ({ scene: { backend }, steps }) => {
+    asked.push({ backend, steps });
+    now += steps * step_ms;
+    return { steps, mean_ms: step_ms, iterations: 1, cost: 1 };
+  };
+  const stopwatch = new Stopwatch(ask, ["banded", "lbfgs"], (rows, given_up) => (slow = given_up));
+  stopwatch.begin(scene());
+  for (let i = 0; i < 500; ++i) t.mock.timers.tick(500);
+  return { asked, slow, steps: stopwatch.rows.map(({ steps }) => steps) };
+}
+
+test("the stopwatch measures one backend after the other", async (t) => {
+  const { asked, slow, steps } = await measure(t, 1);
+  assert.deepEqual(asked.map(({ backend }) => backend), [...Array(11).fill("banded"), ...Array(11).fill("lbfgs")]);
+  assert.deepEqual([slow, steps], [false, [100, 100]]);
+});
+
+test("the stopwatch gives up where a block takes more than a second, and says so", async (t) => {
+  const { asked, slow } = await measure(t, 400);
+  assert.deepEqual([asked, slow], [[{ backend: "banded", steps: 3 }], true]);
 });
 
 test("cells come and go in any order", () => {

@@ -44,7 +44,7 @@ class Playground {
     this.hand = new Hand(at("stage"), this.picture, this);
     this.panel = new Panel(this.about, (attempt) => this.chooseAttempt(attempt));
     this.settings = new Settings(at("settings"), this.about, (rests) => this.changedSetting(rests));
-    this.stopwatch = new Stopwatch(ask, this.about.backends, (rows) => this.panel.times(rows));
+    this.stopwatch = new Stopwatch(ask, this.about.backends, (...measured) => this.panel.times(...measured));
     fillLegend(at("legend"), this.picture, () => { this.picture.answered = undefined; this.redraw(); });
     this.makeControls();
     this.picture.resize();

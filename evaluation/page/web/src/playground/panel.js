@@ -104,17 +104,17 @@ export class Panel {
       element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((textContent) => element("td", { textContent }))))));
   }
 
-  /** `rows`: { backend, mean_ms, steps, of, iterations, cost } as far as they are known. */
-  times(rows) {
+  /** `rows`: { backend, mean_ms, steps, iterations, cost } as far as they are known; `slow`: no more will come. */
+  times(rows, slow) {
     const known = rows.filter(({ steps }) => steps > 0), most = Math.max(...known.map(({ mean_ms }) => mean_ms), 1e-9);
     const lines = rows.map(({ backend, mean_ms, steps }) => {
       const bar = element("i");
       bar.style.cssText = `--colour: ${COLOURS[backend]}; width: ${steps > 0 ? (100 * mean_ms) / most : 0}%`;
-      return element("div", { className: "row" }, element("code", { textContent: backend }), element("div", { className: "bar" }, bar), element("b", { textContent: steps > 0 ? `${mean_ms.toFixed(mean_ms < 10 ? 2 : 1)} ms` : "…" }));
+      return element("div", { className: "row" }, element("code", { textContent: backend }), element("div", { className: "bar" }, bar), element("b", { textContent: steps > 0 ? `${mean_ms.toFixed(mean_ms < 10 ? 2 : 1)} ms` : slow ? "–" : "…" }));
     });
     const [a, b] = rows, done = Math.min(a.steps, b.steps);
-    let words = "Measured as soon as the scene rests.";
-    if (done > 0) {
+    let words = slow ? "Given up: this scene's steps take too long to be measured beside all else." : "Measured as soon as the scene rests.";
+    if (!slow && done > 0) {
       const ratio = b.mean_ms / a.mean_ms;
       const said = Math.abs(ratio - 1) < 0.05 ? "Both take as long" : ratio > 1 ? `${a.backend} is ${ratio.toFixed(1)} times as fast` : `${b.backend} is ${(1 / ratio).toFixed(1)} times as fast`;
       const solves = a.cost > 0 && b.cost > 0 ? `${a.iterations} and ${b.iterations} iterations in the last solve; costs ${a.cost.toPrecision(5)} and ${b.cost.toPrecision(5)}` : "nothing had to be solved";

@@ -5,8 +5,10 @@ import { copy } from "./scene.js";
 const STEPS = 100, BLOCK = 10, WARM = 3;
 const PATIENCE = 60; // a block takes no longer than about this [ms]
 const REST = 500; // the scene has to rest so long before [ms]
+const TOO_LONG = 1000; // a block that takes longer is the last one: nothing else can be done meanwhile [ms]
 
 export class Stopwatch {
+  /** `show(rows, slow)`: what is known of each backend; whether it was given up. */
   constructor(ask, backends, show) {
     Object.assign(this, { ask, backends, show });
     this.stop();
@@ -20,17 +22,18 @@ export class Stopwatch {
   begin(scene) {
     this.stop();
     this.rows = this.backends.map((backend) => ({ backend, expected_ms: 0, mean_ms: 0, steps: 0 }));
-    this.show(this.rows);
+    this.show(this.rows, false);
     const run = (this.run = { scene: copy(scene) });
     this.waiting = setTimeout(() => this.next(run), REST);
   }
 
   next(run) {
     if (run !== this.run) return;
-    // In turns: what slows the machine down slows both.
-    const row = this.rows.reduce((a, b) => (b.expected_ms === 0 || b.steps < a.steps ? b : a));
-    if (row.steps >= STEPS) return;
+    // One after the other: the module keeps what it has prepared of the newest scene and backend only.
+    const row = this.rows.find(({ steps }) => steps < STEPS);
+    if (!row) return;
     const block = row.expected_ms === 0 ? WARM : Math.min(BLOCK, STEPS - row.steps, Math.max(1, Math.floor(PATIENCE / row.expected_ms)));
+    const begun = performance.now();
     let answer;
     try {
       answer = this.ask({ do: "time", scene: { ...run.scene, backend: row.backend }, steps: block });
@@ -43,8 +46,10 @@ export class Stopwatch {
       row.steps += answer.steps;
     }
     Object.assign(row, { expected_ms: Math.max(answer.mean_ms, 0.01), iterations: answer.iterations, cost: answer.cost });
-    this.show(this.rows);
-    const later = window.requestIdleCallback ?? ((act) => setTimeout(act, 1));
+    const slow = performance.now() - begun > TOO_LONG;
+    this.show(this.rows, slow);
+    if (slow) return;
+    const later = globalThis.requestIdleCallback ?? ((act) => setTimeout(act, 1));
     later(() => this.next(run), { timeout: 200 });
   }
 }
