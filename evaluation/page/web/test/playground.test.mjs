@@ -372,6 +372,23 @@ test("settings reach the planner", async () => {
   await page.click("#tab-plan");
 });
 
+test("no motion of the pad is refused for the speed and the turn rate that sliders offer", async () => {
+  const set = (path, value) => page.$eval(`#set-${path}`, (field, to) => {
+    field[field.tagName === "SELECT" ? "selectedIndex" : "value"] = to;
+    field.dispatchEvent(new Event("change"));
+    touchdown.draw();
+  }, value);
+  for (let motion = 0; motion < (await page.evaluate(() => touchdown.about.motions.length)); ++motion) {
+    await set("pad\\.motion", motion);
+    for (const path of ["speed", "turn_rate"]) {
+      for (const end of ["min", "max"]) {
+        await set(`pad\\.${path}`, await page.$eval(`#set-pad\\.${path}`, (field, name) => field[name], end));
+        assert.ok(await page.evaluate(() => touchdown.answer !== null), `${motion} ${path} ${end}: ${await text("#headline h2")}`);
+      }
+    }
+  }
+});
+
 test("attempts show their rounds, pairs can be seen", async () => {
   await choose("both sides tried");
   const rounds = () => page.evaluate(() => touchdown.picture.answer.rounds.object.visible);

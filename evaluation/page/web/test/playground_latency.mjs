@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a step costs in the page and in the program, as a table: node playground_latency.mjs PAGE.html FROM TO PROGRAM...
+// What a step costs in the page and in the program, as a table: node playground_latency.mjs PAGE.html ASK.mjs FROM TO PROGRAM...
+// ASK.mjs: evaluation/playground/test/module.mjs, which starts programs.
 // The scenes are the random ones with the seeds FROM to TO. Each is asked 100 times a go, by turns, three goes: the least counts.
-import { spawn } from "node:child_process";
-import { createInterface } from "node:readline";
+import { resolve } from "node:path";
 import { launch } from "./chromium.mjs";
 
-const [file, from, to, ...programs] = process.argv.slice(2);
+const [file, asker, from, to, ...programs] = process.argv.slice(2);
 const STEPS = 100, GOES = 3;
 
-function startProgram(path) {
-  const child = spawn(path, { stdio: ["pipe", "pipe", "inherit"] });
-  const waiting = [];
-  createInterface({ input: child.stdout }).on("line", (line) => waiting.shift()(JSON.parse(line)));
-  const ask = (question) => new Promise((done) => (waiting.push(done), child.stdin.write(`${JSON.stringify(question)}\n`)));
-  return { name: path, ask, end: () => child.stdin.end() };
-}
-
+const { startProgram } = await import(resolve(asker));
 const browser = await launch();
 const page = await browser.newPage();
 await page.goto(`file://${file}`);
 await page.waitForSelector("body.ready", { timeout: 60000 });
 const inPage = { name: "page", ask: (question) => page.evaluate((q) => touchdown.ask(q), question), end: () => browser.close() };
-const who = [inPage, ...programs.map(startProgram)];
+const who = [inPage, ...programs.map((path) => ({ name: path, ...startProgram(path) }))];
 
 const quantile = (values, q) => values[Math.min(values.length - 1, Math.floor(q * values.length))];
 console.log("| backend | where | median [ms] | p95 [ms] | largest [ms] | over the first program: median | largest |");

@@ -6,7 +6,7 @@ import { curveOf, roundOf } from "../src/playground/answer.js";
 import { handlesOf } from "../src/playground/handles.js";
 import { linkOf, sceneOf } from "../src/playground/link.js";
 import { MOST_BYTES, plannerOf } from "../src/playground/module.js";
-import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, completed, copy, heightOf, moveTo, objectsOf, placeOf, remove, setHeight, setRadius, setValue, setWallEnd, tipOf, valueAt, wallEnds } from "../src/playground/scene.js";
+import { ARROW, ARROW_SPEED, MOST, RANGES, add, aimPad, completed, copy, heightOf, moveTo, objectsOf, placeOf, rangeOf, remove, setHeight, setRadius, setValue, setWallEnd, tipOf, valueAt, wallEnds } from "../src/playground/scene.js";
 import { SCENES, sceneOfMenu } from "../src/playground/scenes.js";
 import { CellList } from "../src/playground/seen.js";
 import { Stopwatch } from "../src/playground/stopwatch.js";
@@ -169,7 +169,7 @@ test("the pad's arrow is its heading and its speed, and a pad that stands has no
   aimPad(changed, 8, 99);
   assert.equal(changed.pad.speed, RANGES["pad.speed"][1]);
   aimPad(changed, 8.1, 1);
-  assert.equal(changed.pad.speed, 0);
+  assert.equal(changed.pad.speed, 0.05);
   changed.pad.motion = "static";
   changed.pad.speed = 0.7;
   aimPad(changed, 8, -9);
@@ -204,6 +204,26 @@ test("every object has handles whose places are what they set", () => {
       else handle.level(handle.place[0], handle.place[1]);
       assert.deepEqual(unchanged, scene(), `${object.kind}: ${handle.name}`);
     }
+  }
+});
+
+test("a pad is set to nothing that its motion refuses", () => {
+  const rates = { static: [0, 0.5], line: [0, 0.5], circle: [-0.05, -0.5, 0.5], straight_turn: [0.05, 0.5], figure_eight: [-0.05, -0.5, 0.5], stop_and_go: [0, 0.5], reversing: [0, 0.5], random: [0.05, 0.5] };
+  for (const [motion, wanted] of Object.entries(rates)) {
+    const changed = scene(), left = motion === "circle" || motion === "figure_eight";
+    Object.assign(changed.pad, { speed: 0, turn_rate: -0.01 });
+    setValue(changed, "pad.motion", motion);
+    const found = [changed.pad.turn_rate];
+    for (const rate of left ? [-0.5, 0.5] : [0.5]) {
+      setValue(changed, "pad.turn_rate", rate);
+      found.push(changed.pad.turn_rate);
+    }
+    assert.deepEqual(found, wanted, motion);
+    assert.equal(changed.pad.speed, motion === "static" ? 0 : 0.05);
+    setValue(changed, "pad.turn_rate", 0);
+    assert.equal(changed.pad.turn_rate, left ? 0.05 : wanted[0], motion);
+    assert.deepEqual(rangeOf("pad.turn_rate", changed), [left ? -1 : wanted[0], 1]);
+    assert.deepEqual(rangeOf("pad.speed", changed), [motion === "static" ? 0 : 0.05, 3]);
   }
 });
 

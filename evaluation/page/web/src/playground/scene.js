@@ -11,6 +11,9 @@ export const RANGES = {
   "start.z": [0.5, 8], "pad.speed": [0, 3], "pad.heading_deg": [-180, 180], "pad.turn_rate": [-1, 1], "pad.height": [0.1, 1.5], "pad.seed": [0, 99],
   "limits.speed": [0.5, 8], "limits.acceleration": [1, 15], "limits.tilt_deg": [5, 60], seed: [0, 99],
 };
+/** A pad that drives is not slower [m/s], one that turns does not turn less [rad/s]. */
+export const LEAST = 0.05;
+const TURNING = ["circle", "straight_turn", "figure_eight", "random"], EITHER_WAY = ["circle", "figure_eight"];
 export const MOST = 80; // walls, and as many pillars, that the module takes
 /** From the middle of the deck to the tip of the pad's arrow: this, and so many metres for each m/s. */
 export const ARROW = 1.1, ARROW_SPEED = 1.5;
@@ -106,10 +109,26 @@ export function setRadius(scene, { index }, radius) {
 export function aimPad(scene, x, y) {
   const { pad } = scene, along = [x - pad.p[0], y - pad.p[1]];
   pad.heading_deg = degrees(along[1], along[0]);
-  if (moves(pad)) pad.speed = rounded(clamp((Math.hypot(...along) - ARROW) / ARROW_SPEED, RANGES["pad.speed"]));
+  if (moves(pad)) pad.speed = rounded(clamp((Math.hypot(...along) - ARROW) / ARROW_SPEED, rangeOf("pad.speed", scene)));
 }
 
 export const moves = (pad) => pad.motion !== "static";
+
+/** What a slider of a scene reaches. */
+export function rangeOf(path, { pad }) {
+  const [low, high] = RANGES[path];
+  if (path === "pad.speed" && moves(pad)) return [LEAST, high];
+  if (path === "pad.turn_rate" && !EITHER_WAY.includes(pad.motion)) return [TURNING.includes(pad.motion) ? LEAST : 0, high];
+  return [low, high];
+}
+
+/** Speed and turn rate as its motion needs them. */
+function fitPad(scene) {
+  const { pad } = scene;
+  for (const name of ["speed", "turn_rate"]) pad[name] = clamp(pad[name], rangeOf(`pad.${name}`, scene));
+  // A motion that turns either way has a gap between the two.
+  if (TURNING.includes(pad.motion) && Math.abs(pad.turn_rate) < LEAST) pad.turn_rate = pad.turn_rate < 0 ? -LEAST : LEAST;
+}
 
 export function tipOf(pad) {
   const length = ARROW + (moves(pad) ? ARROW_SPEED * pad.speed : 0), heading = (pad.heading_deg * Math.PI) / 180;
@@ -147,4 +166,5 @@ export const valueAt = (scene, path) => path.split(".").reduce((part, name) => p
 export function setValue(scene, path, value) {
   const names = path.split("."), last = names.pop();
   names.reduce((part, name) => part[name], scene)[last] = value;
+  if (names[0] === "pad") fitPad(scene);
 }

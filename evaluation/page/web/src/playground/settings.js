@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What can be set beside what can be dragged.
 import { element } from "../dom.js";
-import { RANGES, setValue, valueAt } from "./scene.js";
+import { rangeOf, setValue, valueAt } from "./scene.js";
 import { plain } from "./words.js";
 
 const OFFERED = 100; // weight of a term that is switched on and has none by default
@@ -96,10 +96,10 @@ export class Settings {
   }
 
   figure({ path, label, unit, step, help }) {
-    const [min, max] = RANGES[path], id = `set-${path}`;
-    const slider = element("input", { type: "range", min, max, step, ariaLabel: label }), number = element("input", { type: "number", id, min, max, step: "any" });
+    const id = `set-${path}`;
+    const slider = element("input", { type: "range", step, ariaLabel: label }), number = element("input", { type: "number", id, step: "any" });
     const set = (input, rests) => {
-      const value = Number(input.value);
+      const [min, max] = rangeOf(path, this.scene), value = Number(input.value);
       // While a figure is typed it may be none, or out of its range.
       const bad = input.value === "" || !Number.isFinite(value) || value < min || value > max;
       number.setCustomValidity(bad ? `${label}: ${min} to ${max} ${unit}` : "");
@@ -112,6 +112,8 @@ export class Settings {
     slider.addEventListener("change", () => set(slider, true));
     number.addEventListener("change", () => set(number, true));
     this.updates.push(() => {
+      const [min, max] = rangeOf(path, this.scene);
+      for (const input of [slider, number]) Object.assign(input, { min, max });
       slider.value = valueAt(this.scene, path);
       if (document.activeElement !== number || number.validity.valid) number.value = Number(valueAt(this.scene, path).toFixed(3));
     });
