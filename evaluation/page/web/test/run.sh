@@ -6,7 +6,7 @@ set -eu
 web=$(cd "$(dirname "$0")/.." && pwd)
 rm -rf "$1/src" "$1/test" "$1/built"
 mkdir -p "$1"
-cp -r "$web/package.json" "$web/package-lock.json" "$web/bundle.mjs" "$web/build.mjs" "$web/src" "$web/test" "$1"
+cp -r "$web/package.json" "$web/package-lock.json" "$web/bundle.mjs" "$web/build.mjs" "$web/playground.mjs" "$web/src" "$web/test" "$1"
 cd "$1"
 if ! cmp -s package-lock.json installed.json; then
   npm ci --ignore-scripts --no-audit --no-fund

@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page that is shipped, docs/playground.html: TOUCHDOWN_SHIPPED names it. What it can do is tested where it is made
-// (playground.test.mjs); here, that it opens and plans.
+// (playground.test.mjs); here, that it is made of these web sources, opens and plans.
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { readFileSync, statSync } from "node:fs";
 import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { launch } from "./chromium.mjs";
 
 const file = process.env.TOUCHDOWN_SHIPPED;
 let browser;
 before(async () => (browser = await launch()));
 after(() => browser?.close());
+
+test("the shipped planner page is made of these web sources", () => {
+  const mark = execFileSync(process.execPath, [fileURLToPath(new URL("../playground.mjs", import.meta.url))], { encoding: "utf8" }).trim();
+  assert.match(mark, /^<!--web sources [0-9a-f]{64}-->$/);
+  assert.ok(readFileSync(file, "utf8").includes(mark), "docs/playground.html is older than evaluation/page/web: make it with ./test.sh wasm, and copy build/wasm/playground.html there");
+});
 
 test("the shipped planner page opens from the disk and plans", async () => {
   assert.ok(statSync(file).size <= 2e6);
