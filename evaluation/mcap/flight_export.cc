@@ -86,7 +86,7 @@ class FlightExport {
         flight_(ReadRecord(record_path, {}, registries)),
         track_(record_path),
         tables_(TablesOf(record_path)),
-        figures_(flight_, track_, tables_.at("samples")),
+        figures_(flight_, track_),
         map_(flight_.map_size) {
     if (flight_.scenario.sensing == SensingKind::kRendered) {
       RequireRendering(fmt::format("{}, whose images are rendered,", record_path), "");
@@ -126,7 +126,9 @@ class FlightExport {
 
   static Json TablesOf(const std::string& record_path) {
     SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
-    return FlightTables(db);
+    Json tables = FlightTables(db);
+    tables.erase("samples");  // rounded for pages: here the track tells them
+    return tables;
   }
 
   std::uint16_t Topic(const std::string& topic, const std::string& schema,

@@ -74,6 +74,44 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
   return samples;
 }
 
+// A table with a source, the true states aside, and one row a sample.
+template <typename Read>
+void ReadEachSample(TableRows rows, const std::vector<TrackSample>& samples,
+                    std::vector<TrackFigures>* figures, const Read& read) {
+  std::size_t i = 0;
+  while (rows.Next()) {
+    if (rows.Text() == kTrue) continue;
+    if (i == samples.size() || rows.Number() != samples[i].vehicle.t) {
+      rows.Refuse("does not agree with the true states");
+    }
+    read(&rows, &(*figures)[i++]);
+  }
+  if (i != samples.size()) rows.Refuse("does not agree with the true states");
+}
+
+std::vector<TrackFigures> ReadFigures(SqliteDb& db, const std::vector<TrackSample>& samples) {
+  std::vector<TrackFigures> figures(samples.size());
+  const auto each = [&](const char* table, const char* columns, const auto& read) {
+    ReadEachSample(TableRows(db, table, columns, "t"), samples, &figures, read);
+  };
+  each("vehicle", "source, t, px, py, pz",
+       [](TableRows* rows, TrackFigures* f) { f->p_believed_WB = Place(rows); });
+  each("reference", "'', t, px, py, pz",
+       [](TableRows* rows, TrackFigures* f) { f->p_reference_WB = Place(rows); });
+  each("air", "'', t, vx, vy, vz",
+       [](TableRows* rows, TrackFigures* f) { f->v_air_W = rows->Vector3(); });
+  each("mode", "'', t, mode", [](TableRows* rows, TrackFigures* f) { f->mode = rows->Text(); });
+  each("rotor", "'', t, thrust0, thrust1, thrust2, thrust3, thrust4, thrust5, thrust6, thrust7",
+       [](TableRows* rows, TrackFigures* f) {
+         constexpr int kMostRotors = 8;
+         for (int rotor = 0; rotor < kMostRotors; ++rotor) {
+           // Those that the vehicle does not have are empty.
+           if (const std::optional<double> thrust = rows->Optional()) f->thrusts.push_back(*thrust);
+         }
+       });
+  return figures;
+}
+
 std::vector<TrackBelief> ReadBeliefs(SqliteDb& db) {
   std::vector<TrackBelief> beliefs;
   TableRows pad(db, "pad",
@@ -125,6 +163,7 @@ FlightTrack::FlightTrack(const std::string& record_path) {
   try {
     SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
     samples_ = ReadSamples(db);
+    figures_ = ReadFigures(db, samples_);
     beliefs_ = ReadBeliefs(db);
     events_ = ReadEvents(db);
     touchdown_ = ReadTouchdown(db);

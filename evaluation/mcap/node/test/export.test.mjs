@@ -11,6 +11,27 @@ after(() => rmSync(FOLDER, { recursive: true }));
 const near = (a, b, within, what) => assert.ok(Math.abs(a - b) <= within, `${what}: ${a} where ${b} stands`);
 const vector = (v) => [v.x, v.y, v.z];
 
+// Of flights that know their own state.
+function statesAgree(record, found, rotors) {
+  const states = rows(record, "SELECT v.*, mode.mode, pad.px AS x, pad.py AS y, pad.pz AS z, air.vx AS ax, air.vy AS ay, air.vz AS az, r.px AS rx, r.py AS ry, r.pz AS rz, rotor.* FROM rotor JOIN vehicle v USING (t) JOIN mode USING (t) JOIN pad USING (t) JOIN air USING (t) JOIN reference r USING (t) WHERE v.source = 'true' AND pad.source = 'true' ORDER BY v.t");
+  assert.equal(states.length, found.get("/state").length);
+  found.get("/state").forEach((message, i) => {
+    const s = states[i];
+    assert.equal(message.mode, s.mode);
+    near(seconds(message.timestamp), s.t, 1e-9, "time");
+    near(message.speedMps, Math.hypot(s.vx, s.vy, s.vz), 1e-9, "speed");
+    near(message.climbRateMps, s.vz, 1e-9, "climb rate");
+    near(message.padDistanceM, Math.hypot(s.px - s.x, s.py - s.y), 1e-9, "distance");
+    near(message.padHeightM, s.pz - s.z, 1e-9, "height");
+    near(message.airSpeedMps, Math.hypot(s.ax, s.ay, s.az), 1e-9, "air");
+    near(message.trackingErrorM, Math.hypot(s.rx - s.px, s.ry - s.py, s.rz - s.pz), 1e-9, "tracking");
+    assert.equal(message.thrusts.length, rotors);
+    message.thrusts.forEach((thrust, rotor) => near(thrust, s[`thrust${rotor}`], 1e-9, "thrust"));
+    near(message.ownErrorM, 0, 0, "own error: the state is known");
+    assert.ok(Number.isNaN(message.goalDistanceM));
+  });
+}
+
 describe("a landing", () => {
   let record, bytes, found;
   before(async () => {
@@ -178,25 +199,9 @@ describe("a landing", () => {
   });
 
   test("has the states with their figures", () => {
-    const states = rows(record, "SELECT v.*, mode.mode, pad.px AS x, pad.py AS y, pad.pz AS z, air.vx AS ax, air.vy AS ay, air.vz AS az, thrust0, thrust3 FROM vehicle v JOIN mode USING (t) JOIN pad USING (t) JOIN air USING (t) JOIN rotor USING (t) WHERE v.source = 'true' AND pad.source = 'true' ORDER BY t");
-    assert.equal(states.length, found.get("/state").length);
+    statesAgree(record, found, 4);
     const [{ value }] = rows(record, "SELECT value FROM meta WHERE key = 'result_json'");
-    let least = Infinity;
-    found.get("/state").forEach((message, i) => {
-      const s = states[i];
-      assert.equal(message.mode, s.mode);
-      near(message.speedMps, Math.hypot(s.vx, s.vy, s.vz), 1e-6, "speed");
-      near(message.climbRateMps, s.vz, 1e-6, "climb rate");
-      near(message.padDistanceM, Math.hypot(s.px - s.x, s.py - s.y), 1e-6, "distance");
-      near(message.padHeightM, s.pz - s.z, 1e-6, "height");
-      near(message.airSpeedMps, Math.hypot(s.ax, s.ay, s.az), 2e-3, "air");
-      assert.equal(message.thrusts.length, 4);
-      near(message.thrusts[0], s.thrust0, 6e-3, "thrust");
-      near(message.thrusts[3], s.thrust3, 6e-3, "thrust");
-      near(message.ownErrorM, 0, 0, "own error: the state is known");
-      assert.ok(Number.isNaN(message.goalDistanceM));
-      least = Math.min(least, message.clearanceM);
-    });
+    const least = Math.min(...found.get("/state").map((message) => message.clearanceM));
     near(least, JSON.parse(value).min_clearance_m, 0.02, "least clearance, by samples");
   });
 
@@ -260,6 +265,13 @@ describe("a landing", () => {
     const { scenario, seed, scenario_yaml, revision, touchdown_version } = meta;
     assert.deepEqual(facts, { scenario, seed, scenario_yaml, revision, touchdown_version, planner: "landing", solver: "banded", outcome: "landed" });
   });
+});
+
+test("a vehicle of 27 g has its thrusts", async () => {
+  const record = fly("nano", "open", "--set", "vehicle=docs/examples/vehicles/nano.xml", "--set", "timeout=1");
+  const found = await topics(exported(record, "nano"));
+  statesAgree(record, found, 4);
+  assert.ok(found.get("/state").some(({ thrusts }) => thrusts.every((thrust) => thrust > 0 && thrust < 0.3)));
 });
 
 test("every kind of obstacle is there as it is", async () => {
