@@ -5,6 +5,7 @@
 #include <cmath>
 #include <variant>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/scenario/scenario_world.h"
@@ -123,11 +124,10 @@ std::vector<NamedSolids> ZoneSolids(const nlohmann::ordered_json& zones) {
     const auto kind = shape == "box"      ? Solid::Kind::kBox
                       : shape == "sphere" ? Solid::Kind::kEllipsoid
                                           : Solid::Kind::kCylinder;
-    std::string name = "zone of ";
-    name.append(zone.at("term").get<std::string>());
     things.push_back(
         {kWorldFrame,
-         name,
+         // Several may be of one term.
+         fmt::format("zone {} of {}", things.size() + 1, zone.at("term").get<std::string>()),
          {{kind, At(VectorOf(zone.at("centre"))), VectorOf(zone.at("size")), kZoneColor, {}}}});
   }
   return things;

@@ -11,10 +11,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/flight/closed_loop.h"
+#include "evaluation/mcap/flight_scene.h"
 #include "evaluation/mcap/occupied_cells.h"
 #include "evaluation/mcap/point_cloud.h"
 #include "evaluation/mcap/solid.h"
@@ -121,6 +123,21 @@ TEST_F(FlightExports, NeedAPlaceAndItsName) {
             "--mcap f.bag: the name must end in .mcap.");
   EXPECT_THAT(SentenceOf([&] { CheckMcap("--mcap", folder_ + "/no/f.mcap"); }),
               HasSubstr("no directory"));
+}
+
+TEST(Zones, OfOneTermHaveTheirOwnNames) {
+  nlohmann::ordered_json zones = nlohmann::ordered_json::array();
+  for (const double x : {1.0, 2.0}) {
+    zones.push_back({{"term", "keep_out"},
+                     {"shape", "sphere"},
+                     {"centre", {x, 0.0, 0.0}},
+                     {"size", {1.0, 1.0, 1.0}}});
+  }
+  const std::vector<NamedSolids> things = ZoneSolids(zones);
+  ASSERT_EQ(things.size(), 2U);
+  EXPECT_EQ(things[0].name, "zone 1 of keep_out");
+  EXPECT_EQ(things[1].name, "zone 2 of keep_out");
+  EXPECT_EQ(things[1].solids.at(0).pose.translation().x(), 2.0);
 }
 
 MapChange ChangeOf(const planning::CellIndex& origin, std::vector<MapRun> runs) {
