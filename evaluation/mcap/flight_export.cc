@@ -202,7 +202,9 @@ class FlightExport {
   }
 
   void AddScene() {
-    constexpr double kSpacing = 0.25, kFineSpacing = 0.02, kPadSpacing = 0.06;  // [m]
+    constexpr double kSpacing = 0.25, kFineSpacing = 0.03, kPadSpacing = 0.1;  // [m]
+    constexpr int kMostPoints = 40000, kMostMovingPoints = 500;  // by areas and spacings
+    constexpr double kMovingPeriod = 0.1;                        // [s]
     const Scenario& scenario = flight_.scenario;
     std::vector<Eigen::Vector3d> places;
     EachSample(kTrailPeriod, [&](int i) {
@@ -223,13 +225,24 @@ class FlightExport {
                            double spacing, const std::string& about) {
       if (things.empty()) return;
       Add(Topic(topic, "foxglove.PointCloud", about), 0.0, [things, spacing] {
-        return PointCloud(0.0, things.front().frame, PointsOf(things, spacing));
+        return PointCloud(0.0, things.front().frame, PointsOf(things, spacing, kMostPoints));
       });
     };
     cloud("/points/obstacles", obstacles, kSpacing, "Surfaces of the obstacles as they truly are");
-    cloud("/points/vehicle", {vehicle}, kFineSpacing, "Surface of the vehicle");
-    cloud(has_pad() ? "/points/pad" : "/points/goal", {target}, kPadSpacing,
-          has_pad() ? "Surface of the pad" : "Surface of the goal");
+    // Foxglove leaves a cloud where its frame was at the message's time: these are told again as they move.
+    const auto moving_cloud = [&](const std::string& topic, const NamedSolids& thing,
+                                  double spacing, const std::string& about) {
+      const std::uint16_t channel = Topic(topic, "foxglove.PointCloud", about);
+      const auto points =
+          std::make_shared<const CloudPoints>(PointsOf({thing}, spacing, kMostMovingPoints));
+      EachSample(kMovingPeriod, [&](int i) {
+        const double t = figures_.TimeOf(i);
+        Add(channel, t, [t, frame = thing.frame, points] { return PointCloud(t, frame, *points); });
+      });
+    };
+    moving_cloud("/points/vehicle", vehicle, kFineSpacing, "Surface of the vehicle");
+    moving_cloud(has_pad() ? "/points/pad" : "/points/goal", target, kPadSpacing,
+                 has_pad() ? "Surface of the pad" : "Surface of the goal");
   }
 
   void AddMap() {

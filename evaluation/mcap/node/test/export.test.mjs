@@ -98,8 +98,6 @@ describe("a landing", () => {
       "/tf_static": 1,
       "/scene": 1,
       "/points/obstacles": 1,
-      "/points/vehicle": 1,
-      "/points/pad": 1,
       "/state": count("mode"),
       "/step": plans,
       "/plan": plans,
@@ -111,6 +109,21 @@ describe("a landing", () => {
     for (const [topic, number] of Object.entries(expected)) assert.equal(found.get(topic)?.length, number, topic);
     for (const part of ["", "/scene", "/points"]) assert.equal(found.get(`${part}/flown`).length, found.get("/flown").length);
     assert.ok(!found.has("/camera/down/image") && !found.has("/points/goal"));
+  });
+
+  // Foxglove leaves a cloud where its frame was at the message's time.
+  test("has the clouds of what moves ten times a second", () => {
+    for (const [topic, frame] of [["/points/vehicle", "vehicle"], ["/points/pad", "pad"]]) {
+      const clouds = found.get(topic);
+      assert.equal(clouds.length, Math.ceil(found.get("/tf").length / 5));
+      clouds.forEach((cloud, i) => {
+        near(seconds(cloud.timestamp), i / 10, 1e-6, topic);
+        assert.equal(cloud.frameId, frame);
+        assert.deepEqual(points(cloud), points(clouds[0]));
+      });
+      const bytes = clouds[0].data.length;
+      assert.ok(bytes > 16 * 100 && bytes < 16 * 3000, `${topic}: ${bytes} bytes`);
+    }
   });
 
   test("has the frames where they truly were", () => {
