@@ -11,7 +11,8 @@
 namespace touchdown::evaluation {
 
 /// Writes an MCAP file, version 0 of the format, to a stream: chunks without compression, with message indices, a summary and
-/// all of the format's checksums. A stream that fails is a std::runtime_error of the call that finds it. Nothing but what it is given is in the file: no time of day, no name of a machine.
+/// all of the format's checksums. Nothing but what it is given is in the file: no time of day, no name of a machine. A stream
+/// that fails is a std::runtime_error of the call that finds it.
 class McapWriter {
  public:
   using Words = std::map<std::string, std::string>;
