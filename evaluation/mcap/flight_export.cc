@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each topic holds, and when: docs/mcap.md. A message is made when its time has come, so that a long flight needs no more
-// memory than a short one.
+// What each topic holds, and when: docs/mcap.md. A message is made when its time has come, so that memory holds the record, and
+// of the file no more than a part.
 #include "evaluation/mcap/flight_export.h"
 
 #include <algorithm>
@@ -47,18 +47,30 @@ constexpr double kMapPeriod = 0.5;       // between messages of the map at least
 constexpr double kMostMapBytes = 0.5e6;  // a second, of whole maps: large ones come less often
 constexpr double kTrailPeriod = 0.5, kBeliefPeriod = 0.1;  // [s]
 
+constexpr char kSchemaFrameTransforms[] = "foxglove.FrameTransforms";
+constexpr char kSchemaSceneUpdate[] = "foxglove.SceneUpdate";
+constexpr char kSchemaPointCloud[] = "foxglove.PointCloud";
+constexpr char kSchemaPoseInFrame[] = "foxglove.PoseInFrame";
+constexpr char kSchemaPosesInFrame[] = "foxglove.PosesInFrame";
+constexpr char kSchemaCompressedImage[] = "foxglove.CompressedImage";
+constexpr char kSchemaRawImage[] = "foxglove.RawImage";
+constexpr char kSchemaCameraCalibration[] = "foxglove.CameraCalibration";
+constexpr char kSchemaLog[] = "foxglove.Log";
+constexpr char kSchemaState[] = "touchdown.State";
+constexpr char kSchemaStep[] = "touchdown.Step";
+
 // Every schema that a file can have.
-constexpr const char* kSchemas[] = {"foxglove.FrameTransforms",
-                                    "foxglove.SceneUpdate",
-                                    "foxglove.PointCloud",
-                                    "foxglove.PoseInFrame",
-                                    "foxglove.PosesInFrame",
-                                    "foxglove.CompressedImage",
-                                    "foxglove.RawImage",
-                                    "foxglove.CameraCalibration",
-                                    "foxglove.Log",
-                                    "touchdown.State",
-                                    "touchdown.Step"};
+constexpr const char* kSchemas[] = {kSchemaFrameTransforms,
+                                    kSchemaSceneUpdate,
+                                    kSchemaPointCloud,
+                                    kSchemaPoseInFrame,
+                                    kSchemaPosesInFrame,
+                                    kSchemaCompressedImage,
+                                    kSchemaRawImage,
+                                    kSchemaCameraCalibration,
+                                    kSchemaLog,
+                                    kSchemaState,
+                                    kSchemaStep};
 
 std::string DescriptorsOf(const std::string& schema) {
   const std::string path = DataPath(fmt::format("mcap/{}.binpb", schema));
@@ -86,7 +98,7 @@ class FlightExport {
         flight_(ReadRecord(record_path, {}, registries)),
         track_(record_path),
         tables_(TablesOf(record_path)),
-        figures_(flight_, track_, tables_.at("samples")),
+        figures_(flight_, track_),
         map_(flight_.map_size) {
     if (flight_.scenario.sensing == SensingKind::kRendered) {
       RequireRendering(fmt::format("{}, whose images are rendered,", record_path), "");
@@ -126,7 +138,16 @@ class FlightExport {
 
   static Json TablesOf(const std::string& record_path) {
     SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
-    return FlightTables(db);
+    Json tables = FlightTables(db);
+    // Samples are rounded for pages: here the track tells them. Of the modes the words are looked at.
+    tables["samples"] = std::move(tables["samples"]["mode"]["names"]);
+    try {
+      tables.dump();  // which looks at all text
+    } catch (const Json::type_error&) {
+      throw std::invalid_argument("it holds text that is not UTF-8");
+    }
+    tables.erase("samples");
+    return tables;
   }
 
   std::uint16_t Topic(const std::string& topic, const std::string& schema,
@@ -168,14 +189,14 @@ class FlightExport {
 
   void AddFrames() {
     const std::uint16_t still =
-        Topic("/tf_static", "foxglove.FrameTransforms", "Where the cameras are on the vehicle");
+        Topic("/tf_static", kSchemaFrameTransforms, "Where the cameras are on the vehicle");
     Add(still, 0.0, [this] {
       return FrameTransforms(0.0,
                              {{kVehicleFrame, kDownFrame, DownCameraPose(flight_.scenario)},
                               {kVehicleFrame, kDepthFrame, DepthCameraPose(flight_.scenario)}});
     });
     const std::uint16_t moving =
-        Topic("/tf", "foxglove.FrameTransforms",
+        Topic("/tf", kSchemaFrameTransforms,
               "Vehicle and pad as they truly are, the pad as it is believed to be");
     EachSample(0.0, [&](int i) {
       Add(moving, figures_.TimeOf(i),
@@ -200,7 +221,9 @@ class FlightExport {
   }
 
   void AddScene() {
-    constexpr double kSpacing = 0.25, kFineSpacing = 0.02, kPadSpacing = 0.06;  // [m]
+    constexpr double kSpacing = 0.25, kFineSpacing = 0.03, kPadSpacing = 0.1;  // [m]
+    constexpr int kMostPoints = 40000, kMostMovingPoints = 500;  // by areas and spacings
+    constexpr double kMovingPeriod = 0.1;                        // [s]
     const Scenario& scenario = flight_.scenario;
     std::vector<Eigen::Vector3d> places;
     EachSample(kTrailPeriod, [&](int i) {
@@ -213,28 +236,38 @@ class FlightExport {
     std::vector<NamedSolids> all = {GroundSolids(obstacles, places), vehicle, target};
     all.insert(all.end(), obstacles.begin(), obstacles.end());
     for (NamedSolids& zone : ZoneSolids(tables_.at("zones"))) all.push_back(std::move(zone));
-    Add(Topic("/scene", "foxglove.SceneUpdate",
-              "The world as it truly is, the vehicle and the pad"),
+    Add(Topic("/scene", kSchemaSceneUpdate, "The world as it truly is, the vehicle and the pad"),
         0.0, [all] { return SceneUpdate(EntitiesOf(all)); });
 
     const auto cloud = [&](const std::string& topic, const std::vector<NamedSolids>& things,
                            double spacing, const std::string& about) {
       if (things.empty()) return;
-      Add(Topic(topic, "foxglove.PointCloud", about), 0.0, [things, spacing] {
-        return PointCloud(0.0, things.front().frame, PointsOf(things, spacing));
+      Add(Topic(topic, kSchemaPointCloud, about), 0.0, [things, spacing] {
+        return PointCloud(0.0, things.front().frame, PointsOf(things, spacing, kMostPoints));
       });
     };
     cloud("/points/obstacles", obstacles, kSpacing, "Surfaces of the obstacles as they truly are");
-    cloud("/points/vehicle", {vehicle}, kFineSpacing, "Surface of the vehicle");
-    cloud(has_pad() ? "/points/pad" : "/points/goal", {target}, kPadSpacing,
-          has_pad() ? "Surface of the pad" : "Surface of the goal");
+    // Foxglove leaves a cloud where its frame was at the message's time: these are told again as they move.
+    const auto moving_cloud = [&](const std::string& topic, const NamedSolids& thing,
+                                  double spacing, const std::string& about) {
+      const std::uint16_t channel = Topic(topic, kSchemaPointCloud, about);
+      const auto points =
+          std::make_shared<const CloudPoints>(PointsOf({thing}, spacing, kMostMovingPoints));
+      EachSample(kMovingPeriod, [&](int i) {
+        const double t = figures_.TimeOf(i);
+        Add(channel, t, [t, frame = thing.frame, points] { return PointCloud(t, frame, *points); });
+      });
+    };
+    moving_cloud("/points/vehicle", vehicle, kFineSpacing, "Surface of the vehicle");
+    moving_cloud(has_pad() ? "/points/pad" : "/points/goal", target, kPadSpacing,
+                 has_pad() ? "Surface of the pad" : "Surface of the goal");
   }
 
   void AddMap() {
-    const std::uint16_t occupied = Topic("/map/occupied", "foxglove.PointCloud",
+    const std::uint16_t occupied = Topic("/map/occupied", kSchemaPointCloud,
                                          "Middles of all cells that the vehicle holds occupied");
     const std::uint16_t changes =
-        Topic("/map/changes", "foxglove.PointCloud",
+        Topic("/map/changes", kSchemaPointCloud,
               "Middles of the cells that became occupied since the last message");
     OccupiedCells ahead(flight_.map_size);
     double next = 0.0, next_whole = 0.0;
@@ -274,48 +307,52 @@ class FlightExport {
 
   void AddPlans() {
     const std::uint16_t poses =
-        Topic("/plan", "foxglove.PosesInFrame", "The committed curve from now to its end");
-    const std::uint16_t line = Topic("/scene/plan", "foxglove.SceneUpdate", "The same as a line");
-    const std::uint16_t points = Topic("/points/plan", "foxglove.PointCloud", "The same as points");
+        Topic("/plan", kSchemaPosesInFrame, "The committed curve from now to its end");
+    const std::uint16_t line = Topic("/scene/plan", kSchemaSceneUpdate, "The same as a line");
+    const std::uint16_t points = Topic("/points/plan", kSchemaPointCloud, "The same as points");
     const std::uint16_t figures =
-        Topic("/step", "touchdown.Step", "How each replanning step went, and what it took");
+        Topic("/step", kSchemaStep, "How each replanning step went, and what it took");
     for (std::size_t i = 0; i < flight_.plans.size(); ++i) {
       const RecordPlan& plan = flight_.plans[i];
       const double t = plan.request.input.t_now;
-      Add(poses, t, [&plan, t] { return PosesInFrame(t, kWorldFrame, PlanPoses(plan)); });
-      Add(line, t, [&plan, t] {
-        return LineUpdate(t, "plan", PlacesOf(PlanPoses(plan)), kPlanColor, false);
+      // The first one makes the curve, for all three.
+      Add(poses, t, [this, &plan, t] {
+        plan_poses_ = PlanPoses(plan);
+        return PosesInFrame(t, kWorldFrame, plan_poses_);
       });
-      Add(points, t, [&plan, t] { return PointUpdate(t, PlacesOf(PlanPoses(plan)), kPlanColor); });
+      Add(line, t,
+          [this, t] { return LineUpdate(t, "plan", PlacesOf(plan_poses_), kPlanColor, false); });
+      Add(points, t, [this, t] { return PointUpdate(t, PlacesOf(plan_poses_), kPlanColor); });
       Add(figures, t, [&plan, i] { return StepMessage(static_cast<int>(i), plan); });
     }
   }
 
   void AddFlown() {
     const std::uint16_t poses =
-        Topic("/flown", "foxglove.PosesInFrame", "Where the vehicle truly was in the last minute");
-    const std::uint16_t line = Topic("/scene/flown", "foxglove.SceneUpdate", "The same as a line");
-    const std::uint16_t points =
-        Topic("/points/flown", "foxglove.PointCloud", "The same as points");
+        Topic("/flown", kSchemaPosesInFrame, "Where the vehicle truly was in the last minute");
+    const std::uint16_t line = Topic("/scene/flown", kSchemaSceneUpdate, "The same as a line");
+    const std::uint16_t points = Topic("/points/flown", kSchemaPointCloud, "The same as points");
     EachSample(kTrailPeriod, [&](int i) {
       const double t = figures_.TimeOf(i);
-      Add(poses, t, [this, t] { return PosesInFrame(t, kWorldFrame, FlownPoses(track_, t)); });
-      Add(line, t, [this, t] {
-        return LineUpdate(t, "flown", PlacesOf(FlownPoses(track_, t)), kFlownColor, false);
+      Add(poses, t, [this, t] {
+        flown_poses_ = FlownPoses(track_, t);
+        return PosesInFrame(t, kWorldFrame, flown_poses_);
       });
-      Add(points, t,
-          [this, t] { return PointUpdate(t, PlacesOf(FlownPoses(track_, t)), kFlownColor); });
+      Add(points, t, [this, t] { return PointUpdate(t, PlacesOf(flown_poses_), kFlownColor); });
+      if (i == 0) return;  // a line has two ends
+      Add(line, t,
+          [this, t] { return LineUpdate(t, "flown", PlacesOf(flown_poses_), kFlownColor, false); });
     });
   }
 
   void AddPadBelief() {
     if (!has_pad()) return;
     const std::uint16_t pose =
-        Topic("/pad/belief", "foxglove.PoseInFrame", "The pad as it is believed to be");
-    const std::uint16_t line = Topic("/scene/pad_belief", "foxglove.SceneUpdate",
-                                     "Three standard deviations of its place");
+        Topic("/pad/belief", kSchemaPoseInFrame, "The pad as it is believed to be");
+    const std::uint16_t line =
+        Topic("/scene/pad_belief", kSchemaSceneUpdate, "Three standard deviations of its place");
     const std::uint16_t points =
-        Topic("/points/pad_belief", "foxglove.PointCloud", "The same as points");
+        Topic("/points/pad_belief", kSchemaPointCloud, "The same as points");
     EachSample(0.0, [&](int i) {
       const TrackBelief* const belief = figures_.PadBelief(i);
       if (belief == nullptr) return;
@@ -346,7 +383,7 @@ class FlightExport {
       const std::uint16_t images =
           Topic("/camera/" + name + "/image", schema, "Rendered again from the true states");
       const std::uint16_t calibrations =
-          Topic("/camera/" + name + "/calibration", "foxglove.CameraCalibration",
+          Topic("/camera/" + name + "/calibration", kSchemaCameraCalibration,
                 "Of these images, which have no distortion");
       for (int i = 0; i / rate <= track_.t_end() + 1e-9; ++i) {
         const double t = i / rate;
@@ -355,16 +392,16 @@ class FlightExport {
       }
     };
     if (has_pad()) {
-      camera("down", "foxglove.CompressedImage", cameras_->down_rate(), &FlightCameras::DownImage,
+      camera("down", kSchemaCompressedImage, cameras_->down_rate(), &FlightCameras::DownImage,
              &FlightCameras::DownCalibration);
     }
-    camera("depth", "foxglove.RawImage", cameras_->depth_rate(), &FlightCameras::DepthImage,
+    camera("depth", kSchemaRawImage, cameras_->depth_rate(), &FlightCameras::DepthImage,
            &FlightCameras::DepthCalibration);
   }
 
   void AddStates() {
     const std::uint16_t states =
-        Topic("/state", "touchdown.State", "Mode, speeds, distances and errors");
+        Topic("/state", kSchemaState, "Mode, speeds, distances and errors");
     EachSample(0.0, [&](int i) {
       Add(states, figures_.TimeOf(i), [this, i] { return figures_.StateMessage(i); });
     });
@@ -372,7 +409,7 @@ class FlightExport {
 
   void AddLog() {
     const std::uint16_t log =
-        Topic("/log", "foxglove.Log", "Modes, events, steps without a new plan, the outcome");
+        Topic("/log", kSchemaLog, "Modes, events, steps without a new plan, the outcome");
     for (const TrackEvent& event : track_.events()) {
       Add(log, event.t,
           [this, &event] { return Log(event.t, LevelOf(event), event.kind, WordsOf(event)); });
@@ -418,11 +455,15 @@ class FlightExport {
   std::unique_ptr<FlightCameras> cameras_;
   McapWriter* writer_ = nullptr;
   std::vector<Message> due_;
+  Poses plan_poses_, flown_poses_;  // of the last messages
 };
 
 }  // namespace
 
 void CheckMcap(const std::string& option, const std::string& path) {
+  if (std::filesystem::path(path).filename() == ".mcap") {
+    throw BadInput(fmt::format("{} {}: a name must stand before .mcap.", option, path));
+  }
   if (std::filesystem::path(path).extension() != ".mcap") {
     throw BadInput(fmt::format("{} {}: the name must end in .mcap.", option, path));
   }
@@ -436,8 +477,12 @@ void WriteMcap(const std::string& record_path, const std::string& mcap_path,
     FlightExport flight(record_path, registries);
     AtomicFile file(mcap_path);
     std::ofstream out(file.working_path(), std::ios::binary);
-    flight.Write(&out, progress);
-    out.close();
+    try {
+      flight.Write(&out, progress);
+      out.close();
+    } catch (const std::runtime_error&) {
+      if (out) throw;  // nothing is wrong with the file
+    }
     if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", mcap_path));
     file.Commit();
   } catch (const SqliteError& error) {

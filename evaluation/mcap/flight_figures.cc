@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
 #include "estimation/base/degrees.h"
@@ -15,8 +14,6 @@
 
 namespace touchdown::evaluation {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -57,43 +54,26 @@ std::string StepMessage(int number, const RecordPlan& plan) {
   return bytes;
 }
 
-FlightFigures::FlightFigures(const RecordedFlight& flight, const FlightTrack& track, Json samples)
-    : track_(track),
-      samples_(std::move(samples)),
-      times_(samples_.at("vehicle").at("t").get<std::vector<double>>()),
-      clearance_(ClearanceIn(flight.scenario)) {
+FlightFigures::FlightFigures(const RecordedFlight& flight, const FlightTrack& track)
+    : track_(track), clearance_(ClearanceIn(flight.scenario)) {
   if (flight.scenario.task == TaskKind::kGoTo) goal_ = GoalOf(flight.scenario);
 }
 
 const TrackBelief* FlightFigures::PadBelief(int sample) const {
-  if (goal_) return nullptr;      // what stands in its place is the goal, which is known
-  constexpr double kSame = 1e-3;  // [s]: that far a time is rounded
+  if (goal_) return nullptr;  // what stands in its place is the goal, which is known
   const double t = TimeOf(sample);
   const std::vector<TrackBelief>& beliefs = track_.beliefs();
   const auto belief =
-      std::lower_bound(beliefs.begin(), beliefs.end(), t - kSame,
+      std::lower_bound(beliefs.begin(), beliefs.end(), t,
                        [](const TrackBelief& b, double time) { return b.t < time; });
-  return belief == beliefs.end() || belief->t > t + kSame ? nullptr : &*belief;
-}
-
-double FlightFigures::Number(const char* table, const char* column, int sample) const {
-  const Json& value = samples_.at(table).at(column).at(static_cast<std::size_t>(sample));
-  return value.is_null() ? kNone : value.get<double>();
-}
-
-Eigen::Vector3d FlightFigures::Vector(const char* table, const char* x, const char* y,
-                                      const char* z, int sample) const {
-  return {Number(table, x, sample), Number(table, y, sample), Number(table, z, sample)};
+  return belief == beliefs.end() || belief->t != t ? nullptr : &*belief;
 }
 
 std::string FlightFigures::StateMessage(int sample) const {
-  const TrackSample now = At(sample);
+  const TrackSample& now = At(sample);
+  const TrackFigures& figures = track_.figures()[static_cast<std::size_t>(sample)];
   const estimation::VehicleState& vehicle = now.vehicle;
   const Eigen::Vector3d to_pad = now.pad.p_WP - vehicle.p_WB;
-  const Json& mode = samples_.at("mode");
-  const auto place = [&](const char* table) { return Vector(table, "px", "py", "pz", sample); };
-  // Both as the table has them, to the millimetre: what is exactly known has no error.
-  const double own_error = (place("believed") - place("vehicle")).norm();
   double pad_error = kNone, pad_sigma = kNone;
   if (const TrackBelief* belief = PadBelief(sample)) {
     pad_error = (belief->pad.p_WP - now.pad.p_WP).head<2>().norm();
@@ -106,27 +86,20 @@ std::string FlightFigures::StateMessage(int sample) const {
   std::string bytes;
   protozero::pbf_writer state(bytes);
   AddTime(&state, 1, TimeOf(sample));
-  state.add_string(2, mode.at("names")
-                          .at(mode.at("of").at(static_cast<std::size_t>(sample)).get<std::size_t>())
-                          .get<std::string>());
+  state.add_string(2, figures.mode);
   unsigned field = 3;
   for (const double figure :
        {vehicle.v_WB.norm(), vehicle.v_WB.z(),
         estimation::Tilt(vehicle.q_WB) * estimation::kDegPerRad,
         estimation::Yaw(vehicle.q_WB) * estimation::kDegPerRad, of_pad(to_pad.head<2>().norm()),
         of_pad(-to_pad.z()), of_pad((now.pad.v_WP - vehicle.v_WB).norm()),
-        of_pad(now.pad.v_WP.norm()), pad_error, pad_sigma, own_error,
-        (place("reference") - place("believed")).norm(),
-        clearance_ ? clearance_->Distance(vehicle) : kNone,
-        Vector("air", "vx", "vy", "vz", sample).norm()}) {
+        of_pad(now.pad.v_WP.norm()), pad_error, pad_sigma,
+        (figures.p_believed_WB - vehicle.p_WB).norm(),
+        (figures.p_reference_WB - figures.p_believed_WB).norm(),
+        clearance_ ? clearance_->Distance(vehicle) : kNone, figures.v_air_W.norm()}) {
     state.add_double(field++, figure);
   }
-  std::vector<double> thrusts;
-  for (int rotor = 0; rotor < 8; ++rotor) {
-    const double thrust = Number("rotor", fmt::format("thrust{}", rotor).c_str(), sample);
-    if (!std::isnan(thrust)) thrusts.push_back(thrust);
-  }
-  state.add_packed_double(17, thrusts.begin(), thrusts.end());
+  state.add_packed_double(17, figures.thrusts.begin(), figures.thrusts.end());
   state.add_double(18, goal_ ? (goal_->At(TimeOf(sample)).p_WP - vehicle.p_WB).norm() : kNone);
   return bytes;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <variant>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/scenario/scenario_world.h"
@@ -24,7 +25,6 @@ constexpr Color kMiddleColor = {0.84, 0.37, 0.0, 1.0};  // of the deck
 constexpr Color kPadBodyColor = {0.35, 0.40, 0.48, 1.0};
 constexpr Color kRotorColor = {0.34, 0.71, 0.91, 0.5};
 constexpr Color kGoalColor = {0.80, 0.47, 0.65, 1.0};
-constexpr double kMostPoints = 40000.0;  // of a cloud of surfaces
 
 Eigen::Isometry3d At(const Eigen::Vector3d& p, double yaw = 0.0) {
   return PoseOf(p, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())));
@@ -123,11 +123,10 @@ std::vector<NamedSolids> ZoneSolids(const nlohmann::ordered_json& zones) {
     const auto kind = shape == "box"      ? Solid::Kind::kBox
                       : shape == "sphere" ? Solid::Kind::kEllipsoid
                                           : Solid::Kind::kCylinder;
-    std::string name = "zone of ";
-    name.append(zone.at("term").get<std::string>());
     things.push_back(
         {kWorldFrame,
-         name,
+         // Several may be of one term.
+         fmt::format("zone {} of {}", things.size() + 1, zone.at("term").get<std::string>()),
          {{kind, At(VectorOf(zone.at("centre"))), VectorOf(zone.at("size")), kZoneColor, {}}}});
   }
   return things;
@@ -208,12 +207,12 @@ std::vector<SceneEntity> EntitiesOf(const std::vector<NamedSolids>& things) {
   return entities;
 }
 
-CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing) {
+CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing, int most) {
   double area = 0.0;
   for (const NamedSolids& thing : things) {
     for (const Solid& solid : thing.solids) area += AreaOf(SurfaceOf(solid));
   }
-  const double fitting = std::max(spacing, std::sqrt(area / kMostPoints));
+  const double fitting = std::max(spacing, std::sqrt(area / most));
   CloudPoints points;
   for (const NamedSolids& thing : things) {
     for (const Solid& solid : thing.solids) AddSurface(solid, fitting, &points);

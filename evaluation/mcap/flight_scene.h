@@ -41,7 +41,8 @@ NamedSolids GroundSolids(const std::vector<NamedSolids>& world,
                          const std::vector<Eigen::Vector3d>& places_W);
 
 std::vector<SceneEntity> EntitiesOf(const std::vector<NamedSolids>& things);
-/// Points all over their surfaces, nearer to each other than `spacing` [m], or farther where there would be too many.
-CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing);
+/// Points all over their surfaces, nearer to each other than `spacing` [m], or farther where there would be far more
+/// than `most`.
+CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing, int most);
 
 }  // namespace touchdown::evaluation

@@ -3,6 +3,9 @@
 // evaluation/mcap/node.
 #include "evaluation/mcap/flight_export.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,10 +14,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/flight/closed_loop.h"
+#include "evaluation/mcap/flight_scene.h"
 #include "evaluation/mcap/occupied_cells.h"
 #include "evaluation/mcap/point_cloud.h"
 #include "evaluation/mcap/solid.h"
@@ -96,6 +101,41 @@ TEST_F(FlightExports, LeaveNothingWhereTheyAreEnded) {
   EXPECT_THAT(Files(), ElementsAre("f.db"));
 }
 
+// As on a disk that is full.
+class FileSizeScope {
+ public:
+  explicit FileSizeScope(rlim_t most) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {most, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeScope() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  void (*signal_)(int);
+  rlimit before_;
+};
+
+TEST_F(FlightExports, SayThatTheDiskIsFullAndStop) {
+  int told = 0, all = 0;
+  std::string said;
+  try {
+    const FileSizeScope scope(1000);
+    WriteMcap(record_, file_, registries_, [&](int done, int of_all) {
+      told = done;
+      all = of_all;
+    });
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  EXPECT_EQ(said, file_ + ": cannot be written");
+  EXPECT_LT(told, all);
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
 TEST_F(FlightExports, SayWhatIsNoRecord) {
   record_ = folder_ + "/none.db";
   EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("there is no such record"));
@@ -106,6 +146,37 @@ TEST_F(FlightExports, SayWhatIsNoRecord) {
   Execute("UPDATE pad SET cov_xx = NULL WHERE source = 'estimate'");
   EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("f.db: its table pad lacks a number"));
   EXPECT_THAT(Files(), ElementsAre("f.db", "f.txt"));
+}
+
+TEST_F(FlightExports, SayThatAStepIsAtNoTimeOfAFlight) {
+  Execute("UPDATE replan_input SET t_now = 1e300 WHERE plan = 1");
+  EXPECT_EQ(SentenceOf([&] { Export(); }),
+            record_ + ": its table replan_input holds the time 1e+300 s where 0 to 601 may stand.");
+  Execute("UPDATE replan_input SET t_now = 0.9 - 0.1 * plan WHERE plan < 3");
+  EXPECT_EQ(SentenceOf([&] { Export(); }),
+            record_ + ": its table replan_input holds times that fall.");
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
+TEST_F(FlightExports, SayThatACurveIsLongerThanAFlight) {
+  for (const char* change : {"UPDATE plan SET h = 1e300", "UPDATE plan SET t0 = 1e17"}) {
+    SetUp();
+    Execute(change);
+    EXPECT_EQ(SentenceOf([&] { Export(); }),
+              record_ + ": it holds a curve that is no part of a flight.")
+        << change;
+  }
+}
+
+TEST_F(FlightExports, SayThatTextIsNotUtf8) {
+  for (const char* change : {"UPDATE event SET text = CAST(x'ff41' AS TEXT)",
+                             "UPDATE mode SET mode = CAST(x'ff41' AS TEXT) WHERE t > 0.5"}) {
+    SetUp();
+    Execute(change);
+    EXPECT_EQ(SentenceOf([&] { Export(); }), record_ + ": it holds text that is not UTF-8.")
+        << change;
+  }
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
 }
 
 TEST_F(FlightExports, SayThatAMapLeavesItsWindow) {
@@ -119,8 +190,25 @@ TEST_F(FlightExports, NeedAPlaceAndItsName) {
   EXPECT_THAT(Files(), ElementsAre("f.db"));
   EXPECT_EQ(SentenceOf([] { CheckMcap("--mcap", "f.bag"); }),
             "--mcap f.bag: the name must end in .mcap.");
+  EXPECT_EQ(SentenceOf([&] { CheckMcap("--mcap", folder_ + "/.mcap"); }),
+            "--mcap " + folder_ + "/.mcap: a name must stand before .mcap.");
   EXPECT_THAT(SentenceOf([&] { CheckMcap("--mcap", folder_ + "/no/f.mcap"); }),
               HasSubstr("no directory"));
+}
+
+TEST(Zones, OfOneTermHaveTheirOwnNames) {
+  nlohmann::ordered_json zones = nlohmann::ordered_json::array();
+  for (const double x : {1.0, 2.0}) {
+    zones.push_back({{"term", "keep_out"},
+                     {"shape", "sphere"},
+                     {"centre", {x, 0.0, 0.0}},
+                     {"size", {1.0, 1.0, 1.0}}});
+  }
+  const std::vector<NamedSolids> things = ZoneSolids(zones);
+  ASSERT_EQ(things.size(), 2U);
+  EXPECT_EQ(things[0].name, "zone 1 of keep_out");
+  EXPECT_EQ(things[1].name, "zone 2 of keep_out");
+  EXPECT_EQ(things[1].solids.at(0).pose.translation().x(), 2.0);
 }
 
 MapChange ChangeOf(const planning::CellIndex& origin, std::vector<MapRun> runs) {

@@ -112,12 +112,33 @@ TEST(FlightTrack, IsInterpolatedBetweenSamples) {
   EXPECT_FALSE(track.touchdown().has_value());
 }
 
+TEST(FlightTrack, HasTheFiguresOfItsSamplesUnrounded) {
+  const FlightTrack track(ShortRecord());
+  ASSERT_EQ(track.figures().size(), track.samples().size());
+  SqliteDb db(ShortRecord(), SqliteDb::Mode::kReadOnly);
+  SqliteStatement rows = db.Prepare(
+      "SELECT thrust3, air.vx, reference.px, vehicle.px, mode FROM rotor JOIN air USING (t) JOIN "
+      "reference USING (t) JOIN mode USING (t) JOIN vehicle USING (t) WHERE source = 'estimate' "
+      "ORDER BY t");
+  for (const TrackFigures& figures : track.figures()) {
+    ASSERT_TRUE(rows.Step());
+    ASSERT_EQ(figures.thrusts.size(), 4U);
+    EXPECT_EQ(figures.thrusts[3], rows.Real(0));
+    EXPECT_EQ(figures.v_air_W.x(), rows.Real(1));
+    EXPECT_EQ(figures.p_reference_WB.x(), rows.Real(2));
+    EXPECT_EQ(figures.p_believed_WB.x(), rows.Real(3));
+    EXPECT_EQ(figures.mode, rows.Text(4));
+  }
+}
+
 TEST(FlightTrack, RefusesWhatCannotBe) {
   const std::string path = ::testing::TempDir() + "touchdown_flight_video_cut.db";
   const std::string last = " WHERE source = 'true' AND t = (SELECT MAX(t) FROM vehicle)";
   const std::string number = "its table vehicle holds what is no finite number";
   const std::vector<std::pair<std::string, std::string>> damages = {
       {"DELETE FROM pad WHERE t > 0.5", "its table pad does not agree with the table vehicle"},
+      {"DELETE FROM rotor WHERE t > 0.5", "its table rotor does not agree with the true states"},
+      {"UPDATE air SET t = t + 0.01", "its table air does not agree with the true states"},
       {"DELETE FROM vehicle", "its table vehicle holds no true state"},
       {"UPDATE vehicle SET t = 9e999" + last, number},
       {"UPDATE vehicle SET px = 9e999" + last, number},
@@ -129,6 +150,10 @@ TEST(FlightTrack, RefusesWhatCannotBe) {
        "its table vehicle holds the time 1e+06 s where 0 to 601 may stand"},
       {"UPDATE vehicle SET t = -1" + last,
        "its table vehicle holds the time -1 s where 0 to 601 may stand"},
+      {"UPDATE event SET t = 1e12",
+       "its table event holds the time 1e+12 s where 0 to 601 may stand"},
+      {"UPDATE pad SET t = 602 WHERE source = 'estimate'",
+       "its table pad holds the time 602 s where 0 to 601 may stand"},
       {"UPDATE vehicle SET t = 0" + last, "its table vehicle holds the time 0 s twice"},
       {"UPDATE vehicle SET qw = 0, qx = 0, qy = 0, qz = 0" + last,
        "its table vehicle holds a quaternion that is no unit one"}};

@@ -14,14 +14,10 @@
 namespace touchdown::evaluation {
 namespace {
 
-constexpr char kTrue[] = "true";          // source of a state, beside the estimates
-constexpr double kLongestFlight = 601.0;  // flight: the schema's time-out, and its last step [s]
-constexpr double kFarthest = 1e5;         // that anything is from the origin [m]
+constexpr char kTrue[] = "true";   // source of a state, beside the estimates
+constexpr double kFarthest = 1e5;  // that anything is from the origin [m]
 
 void CheckTime(const TableRows& rows, double t, const std::vector<TrackSample>& before) {
-  if (t < 0.0 || t > kLongestFlight) {
-    rows.Refuse(fmt::format("holds the time {:g} s where 0 to {:g} may stand", t, kLongestFlight));
-  }
   if (!before.empty() && t <= before.back().vehicle.t) {
     rows.Refuse(fmt::format("holds the time {:g} s twice", t));
   }
@@ -47,7 +43,7 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
                     "t");
   while (vehicle.Next()) {
     if (vehicle.Text() != kTrue) continue;
-    const double t = vehicle.Number();
+    const double t = vehicle.Time();
     CheckTime(vehicle, t, samples);
     estimation::VehicleState& s = samples.emplace_back().vehicle;
     s.t = t;
@@ -74,6 +70,44 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
   return samples;
 }
 
+// A table with a source, the true states aside, and one row a sample.
+template <typename Read>
+void ReadEachSample(TableRows rows, const std::vector<TrackSample>& samples,
+                    std::vector<TrackFigures>* figures, const Read& read) {
+  std::size_t i = 0;
+  while (rows.Next()) {
+    if (rows.Text() == kTrue) continue;
+    if (i == samples.size() || rows.Number() != samples[i].vehicle.t) {
+      rows.Refuse("does not agree with the true states");
+    }
+    read(&rows, &(*figures)[i++]);
+  }
+  if (i != samples.size()) rows.Refuse("does not agree with the true states");
+}
+
+std::vector<TrackFigures> ReadFigures(SqliteDb& db, const std::vector<TrackSample>& samples) {
+  std::vector<TrackFigures> figures(samples.size());
+  const auto each = [&](const char* table, const char* columns, const auto& read) {
+    ReadEachSample(TableRows(db, table, columns, "t"), samples, &figures, read);
+  };
+  each("vehicle", "source, t, px, py, pz",
+       [](TableRows* rows, TrackFigures* f) { f->p_believed_WB = Place(rows); });
+  each("reference", "'', t, px, py, pz",
+       [](TableRows* rows, TrackFigures* f) { f->p_reference_WB = Place(rows); });
+  each("air", "'', t, vx, vy, vz",
+       [](TableRows* rows, TrackFigures* f) { f->v_air_W = rows->Vector3(); });
+  each("mode", "'', t, mode", [](TableRows* rows, TrackFigures* f) { f->mode = rows->Text(); });
+  each("rotor", "'', t, thrust0, thrust1, thrust2, thrust3, thrust4, thrust5, thrust6, thrust7",
+       [](TableRows* rows, TrackFigures* f) {
+         constexpr int kMostRotors = 8;
+         for (int rotor = 0; rotor < kMostRotors; ++rotor) {
+           // Those that the vehicle does not have are empty.
+           if (const std::optional<double> thrust = rows->Optional()) f->thrusts.push_back(*thrust);
+         }
+       });
+  return figures;
+}
+
 std::vector<TrackBelief> ReadBeliefs(SqliteDb& db) {
   std::vector<TrackBelief> beliefs;
   TableRows pad(db, "pad",
@@ -81,7 +115,7 @@ std::vector<TrackBelief> ReadBeliefs(SqliteDb& db) {
   while (pad.Next()) {
     if (pad.Text() == kTrue) continue;
     TrackBelief& belief = beliefs.emplace_back();
-    belief.t = pad.Number();
+    belief.t = pad.Time();
     belief.pad.p_WP = Place(&pad);
     belief.pad.v_WP = pad.Vector3();
     belief.pad.yaw = pad.Number();
@@ -96,13 +130,13 @@ std::vector<TrackEvent> ReadEvents(SqliteDb& db) {
   std::vector<TrackEvent> events;
   TableRows mode(db, "mode", "t, mode", "t LIMIT 1");  // the first one is no event
   while (mode.Next()) {
-    const double t = mode.Number();
+    const double t = mode.Time();
     events.push_back({t, "mode", mode.Text()});
   }
   TableRows rows(db, "event", "t, kind, text", "rowid");
   while (rows.Next()) {
     TrackEvent& event = events.emplace_back();
-    event.t = rows.Number();
+    event.t = rows.Time();
     event.kind = rows.Text();
     event.text = rows.Text();
   }
@@ -125,6 +159,7 @@ FlightTrack::FlightTrack(const std::string& record_path) {
   try {
     SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
     samples_ = ReadSamples(db);
+    figures_ = ReadFigures(db, samples_);
     beliefs_ = ReadBeliefs(db);
     events_ = ReadEvents(db);
     touchdown_ = ReadTouchdown(db);

@@ -23,6 +23,16 @@ struct TrackBelief {
   estimation::PadState pad;
 };
 
+/// What the record has of a sample beside the true states.
+struct TrackFigures {
+  Eigen::Vector3d p_believed_WB =
+      Eigen::Vector3d::Zero();  ///< where the vehicle believed to be [m]
+  Eigen::Vector3d p_reference_WB = Eigen::Vector3d::Zero();  ///< what it tracked [m]
+  Eigen::Vector3d v_air_W = Eigen::Vector3d::Zero();         ///< at the vehicle [m/s]
+  std::vector<double> thrusts;                               ///< of the rotors [N]
+  std::string mode;
+};
+
 struct TrackEvent {
   double t = 0.0;    ///< [s]
   std::string kind;  ///< as in the record
@@ -45,6 +55,9 @@ class FlightTrack {
   /// Between samples, states are interpolated. @param t is clamped to [0, t_end()] [s].
   TrackSample At(double t) const;
 
+  /// The samples themselves, and what else the record has of each.
+  const std::vector<TrackSample>& samples() const { return samples_; }
+  const std::vector<TrackFigures>& figures() const { return figures_; }
   /// What was believed of the pad, from when on anything was; at times of samples.
   const std::vector<TrackBelief>& beliefs() const { return beliefs_; }
   /// All that happened, in order.
@@ -54,6 +67,7 @@ class FlightTrack {
 
  private:
   std::vector<TrackSample> samples_;
+  std::vector<TrackFigures> figures_;
   std::vector<TrackBelief> beliefs_;
   std::vector<TrackEvent> events_;
   std::optional<TrackTouchdown> touchdown_;
