@@ -84,7 +84,10 @@ function(touchdown_add_library folder)
   add_library(${target} STATIC ${sources})
   touchdown_compile_by_room(${target} ${sources})
   add_library(touchdown::${folder} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
+  if(NOT EMSCRIPTEN)  # nothing is loaded at run time in a browser
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
   target_include_directories(${target} PUBLIC
     "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>"
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")

@@ -11,7 +11,7 @@
 #include "evaluation/binding/part_registries.h"
 #include "evaluation/binding/predictions.h"
 #include "evaluation/binding/replanned.h"
-#include "evaluation/record/plan_report.h"
+#include "evaluation/record/step_json.h"
 #include "touchdown/planning/replan/replanner.h"
 
 namespace touchdown::binding {

@@ -12,10 +12,6 @@ namespace touchdown::evaluation {
 /// A solved step in words: question, attempts with their rounds and costs, certificate, answer.
 std::string PlanText(const SolvedStep& solved);
 
-/// What a step tried, as that document has it under `attempts`.
-nlohmann::ordered_json AttemptsJson(const planning::ReplanLog& log);
-nlohmann::ordered_json CertificateJson(const planning::Certificate& certificate);
-
 /// The document of `touchdown plan --json` (docs/profile.md). `drawn`: with the occupied cells of
 /// the map, for the picture.
 nlohmann::ordered_json PlanJson(const SolvedStep& solved, bool drawn);

@@ -13,11 +13,14 @@ namespace {
 constexpr int kAxisBits = 16 - CellBlock::kSideLog2;  // of a block's place along an axis
 static_assert(2 * CellBlocks::kReach >> CellBlock::kSideLog2 == 1 << kAxisBits);
 
+#ifdef __cpp_lib_memory_resource
 // Of a node of the table: a block with its key and what links it.
 constexpr std::size_t kNodeBytes = sizeof(CellBlock) + 4 * sizeof(void*);
+#endif
 
 }  // namespace
 
+#ifdef __cpp_lib_memory_resource
 CellBlocks::CellBlocks(Fill fill)
     : fill_(std::move(fill)),
       room_(std::make_unique_for_overwrite<std::byte[]>(kReserved * (kNodeBytes + sizeof(void*)))),
@@ -25,6 +28,9 @@ CellBlocks::CellBlocks(Fill fill)
       blocks_(&memory_) {
   blocks_.reserve(kReserved);
 }
+#else
+CellBlocks::CellBlocks(Fill fill) : fill_(std::move(fill)) { blocks_.reserve(kReserved); }
+#endif
 
 CellBlocks::Key CellBlocks::KeyOf(const CellIndex& cell) {
   const auto along = [](int c) { return static_cast<Key>(c + kReach) >> CellBlock::kSideLog2; };

@@ -317,13 +317,17 @@ void OccupancyMap::MarkFree(const Eigen::Vector3d& p_W, double radius) {
 }
 
 void OccupancyMap::MarkRestFree() {
-  ForEachCell({origin_, origin_ + size_}, [&](const CellIndex& cell) {
-    Cell value = cells_[Address(cell)];
-    if (Blocks(value)) return;
-    value.log_odds = min_;
-    value.doubtful = false;
-    Set(cell, value);
-    SetBit(cell, true, &free_);
+  ForEachStretch(window(), [&](const Stretch& s) {
+    const std::uint64_t rest = s.mask() & ~obstacles_[s.word];
+    known_[s.word] |= rest;
+    free_[s.word] |= rest;
+    settled_[s.word] &= ~rest;
+    for (Cell* cell = &cells_[s.address]; cell != &cells_[s.address] + s.count; ++cell) {
+      if (Blocks(*cell)) continue;
+      cell->log_odds = min_;
+      cell->doubtful = false;
+      cell->changed = true;
+    }
   });
 }
 

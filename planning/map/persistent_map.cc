@@ -1,160 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cell (x, y, z) of the rolling map's lattice is OctoMap's key (x + 32768, ...). Log-odds are stored
-// as floats that are whole steps of the rolling map, so that they come back exactly. A block is
-// filled from the octree when it is first touched and knows better from then on; Write brings the blocks back.
+// A block is filled from the octree when it is first touched and knows better from then on; Write brings the blocks
+// back.
 
 #include "touchdown/planning/map/persistent_map.h"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
-#include <stdexcept>
-#include <string>
+#include <vector>
 
-#include <octomap/octomap.h>
-
-#include "planning/map/octomap_tree.h"
+#include "planning/map/prior_tree.h"
 
 namespace touchdown::planning {
 
-namespace {
-
-constexpr int kKeyOffset = CellBlocks::kReach;
-constexpr double kSameSize = 1e-6;  // within it a file's cells are the map's
-constexpr unsigned kLeafDepth = 16;
-constexpr unsigned kBlockDepth = kLeafDepth - CellBlock::kSideLog2;  // in the octree
-
-bool InTree(const CellIndex& cell) {
-  return (cell.array() >= -kKeyOffset).all() && (cell.array() < kKeyOffset).all();
-}
-
-octomap::OcTreeKey KeyOf(const CellIndex& cell) {
-  const auto key = [](int c) { return static_cast<octomap::key_type>(c + kKeyOffset); };
-  return {key(cell.x()), key(cell.y()), key(cell.z())};
-}
-
-/// Gives the cells of a node, which are [low, low + side), what the octree knows of them.
-void CopyCells(const octomap::OcTree& tree, const octomap::OcTreeNode* node, const CellIndex& low,
-               int side, CellBlock* block) {
-  if (!tree.nodeHasChildren(node)) {
-    const std::int8_t log_odds = StepsOf(node->getLogOdds());
-    ForEachCell({low, low.array() + side},
-                [&](const CellIndex& cell) { (*block)[cell] = log_odds; });
-    return;
-  }
-  const int half = side / 2;
-  for (int i = 0; i < 8; ++i) {
-    const auto child = static_cast<unsigned>(i);
-    if (!tree.nodeChildExists(node, child)) continue;
-    const CellIndex at = low + half * CellIndex(i & 1, i >> 1 & 1, i >> 2 & 1);
-    CopyCells(tree, tree.getNodeChild(node, child), at, half, block);
-  }
-}
-
-// As OctoMap's own write and writeBinary, which talk on stderr while they write.
-void WriteHead(MapFormat format, const octomap::OcTree& tree, std::ostream* out) {
-  *out << (format == MapFormat::kBinary ? kOctomapBinaryHead : kOctomapLogOddsHead)
-       << "\nid OcTree\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
-}
-
-/// The leaves of a tree that are free or occupied. OctoMap's binary format calls every cell free
-/// that is not occupied; one that was hit, and then passed, is neither, and must not come back as
-/// observed free space. The leaves are copied, as OctoMap aborts when a node's last child is deleted.
-class SureTree : public octomap::OcTree {
- public:
-  explicit SureTree(const octomap::OcTree& from) : OcTree(from.getResolution()), from_(from) {
-    if (from.getRoot() == nullptr) return;
-    root = new octomap::OcTreeNode;
-    ++tree_size;
-    Copy(from.getRoot(), root);
-    prune();
-  }
-
- private:
-  bool IsSure(const octomap::OcTreeNode* node) const {
-    if (!from_.nodeHasChildren(node)) {
-      return node->getLogOdds() < 0.0f || from_.isNodeOccupied(node);
-    }
-    for (unsigned i = 0; i < 8; ++i) {
-      if (from_.nodeChildExists(node, i) && IsSure(from_.getNodeChild(node, i))) return true;
-    }
-    return false;
-  }
-  void Copy(const octomap::OcTreeNode* node, octomap::OcTreeNode* to) {
-    if (!from_.nodeHasChildren(node)) {
-      to->setLogOdds(from_.isNodeOccupied(node) ? from_.getClampingThresMaxLog()
-                                                : from_.getClampingThresMinLog());
-      return;
-    }
-    for (unsigned i = 0; i < 8; ++i) {
-      if (!from_.nodeChildExists(node, i)) continue;
-      const octomap::OcTreeNode* child = from_.getNodeChild(node, i);
-      if (IsSure(child)) Copy(child, createNodeChild(to, i));
-    }
-  }
-
-  const octomap::OcTree& from_;
-};
-
-}  // namespace
-
 struct PersistentMap::Impl {
-  explicit Impl(const OccupancyMapOptions& o) : options(o), tree(NewTree()) {}
+  explicit Impl(const OccupancyMapOptions& o) : options(o), prior(o) {}
 
-  std::unique_ptr<octomap::OcTree> NewTree() const {
-    auto fresh = std::make_unique<octomap::OcTree>(options.resolution);
-    SetProbabilities(fresh.get());
-    return fresh;
-  }
-  void SetProbabilities(octomap::OcTree* of) const {
-    of->setProbHit(options.probability_hit);
-    of->setProbMiss(options.probability_miss);
-    of->setClampingThresMin(options.probability_min);
-    of->setClampingThresMax(options.probability_max);
-    of->setOccupancyThres(options.probability_occupied);
-  }
-
-  /// Least log-odds of what is occupied [steps].
-  int occupied() const { return StepsOf(tree->getOccupancyThresLog()); }
-
-  /// The octree's node of a block, or the leaf above that stands for it; nullptr: nothing is known.
-  const octomap::OcTreeNode* NodeOf(const CellIndex& low) const {
-    return tree->search(KeyOf(low), kBlockDepth);
-  }
   std::unique_ptr<CellBlocks> NewBlocks() {
-    return std::make_unique<CellBlocks>([this](const CellIndex& low, CellBlock* block) {
-      const octomap::OcTreeNode* node = NodeOf(low);
-      if (node != nullptr) CopyCells(*tree, node, low, CellBlock::kSide, block);
-    });
-  }
-
-  /// What the octree says of a cell.
-  std::optional<std::int8_t> ReadLogOdds(const CellIndex& cell) const {
-    const octomap::OcTreeNode* node = InTree(cell) ? tree->search(KeyOf(cell)) : nullptr;
-    if (node == nullptr) return std::nullopt;
-    return StepsOf(node->getLogOdds());
+    return std::make_unique<CellBlocks>(
+        [this](const CellIndex& corner, CellBlock* block) { prior.Fill(corner, block); });
   }
   /// The octree holds all of its 26 neighbours free, or they are ground.
   bool IsAmidFree(const CellIndex& cell) const {
     bool amid = true;
     ForEachCell({cell.array() - 1, cell.array() + 2}, [&](const CellIndex& near) {
-      amid &= IsGround(near, options) || ReadLogOdds(near).value_or(0) < 0;
+      amid &= IsGround(near, options) || prior.LogOdds(near).value_or(0) < 0;
     });
     return amid;
   }
-  /// Calls visit(cube) for every leaf of the octree that is occupied.
-  template <class Visit>
-  void ForEachObstacle(Visit&& visit) const {
-    for (auto leaf = tree->begin_leafs(); leaf != tree->end_leafs(); ++leaf) {
-      if (StepsOf(leaf->getLogOdds()) < occupied()) continue;
-      const octomap::OcTreeKey low = leaf.getIndexKey();
-      visit(CellCube{CellIndex(low[0], low[1], low[2]).array() - kKeyOffset,
-                     1 << (kLeafDepth - leaf.getDepth())});
-    }
-  }
 
   OccupancyMapOptions options;
-  std::unique_ptr<octomap::OcTree> tree;
+  PriorTree prior;
   std::unique_ptr<CellBlocks> blocks = NewBlocks();
   std::vector<CellValue> changes;  // of the window that is flushed
 };
@@ -187,11 +61,10 @@ void PersistentMap::Refill(const CellBox& box, OccupancyMap* map) const {
   const auto block_of = [](int c) { return c >> CellBlock::kSideLog2; };
   const CellBox blocks = {low.unaryExpr(block_of),
                           (high.array() - 1).matrix().unaryExpr(block_of).array() + 1};
-  const bool in_tree = impl_->tree->size() > 0;
   ForEachCell(blocks, [&](const CellIndex& at) {
     const CellIndex corner = at * CellBlock::kSide;
     const CellBlock* block = impl_->blocks->Find(corner);
-    if (block == nullptr && in_tree && impl_->NodeOf(corner) != nullptr) {
+    if (block == nullptr && impl_->prior.Knows(corner)) {
       block = impl_->blocks->Make(corner);
     }
     if (block == nullptr) return;
@@ -209,44 +82,36 @@ std::optional<std::int8_t> PersistentMap::LogOdds(const CellIndex& cell) const {
     if ((*block)[cell] == kUnknownLogOdds) return std::nullopt;
     return (*block)[cell];
   }
-  return impl_->ReadLogOdds(cell);
+  return impl_->prior.LogOdds(cell);
 }
 
 bool PersistentMap::IsOccupied(const CellIndex& cell) const {
   const auto log_odds = LogOdds(cell);
-  return log_odds && *log_odds >= impl_->occupied();
+  return log_odds && *log_odds >= impl_->prior.occupied();
 }
 
 std::size_t PersistentMap::size() const {
-  std::size_t size = impl_->tree->size();
+  std::size_t size = impl_->prior.size();
   impl_->blocks->ForEach([&](const CellValue&) { ++size; });
   return size;
 }
 
 void PersistentMap::Read(std::istream& in) {
-  std::ostringstream text;
-  text << in.rdbuf();
-  const std::string bytes = text.str();
-  const OctomapFile file = CheckOctomapFile(bytes);
-  std::unique_ptr<octomap::OcTree> tree = impl_->NewTree();
-  ReadNodes(file, tree.get());
-  const double scale = file.resolution / impl_->options.resolution;
-  if (!(std::abs(scale - 1.0) < kSameSize)) tree = Resampled(*tree, scale, impl_->occupied());
-  impl_->tree = std::move(tree);
+  impl_->prior.Read(in);
   impl_->blocks = impl_->NewBlocks();
 }
 
 PriorCheck PersistentMap::CheckPrior() const {
   PriorCheck check;
-  const int occupied = impl_->occupied();
-  impl_->ForEachObstacle([&](const CellCube& cube) {
+  const int occupied = impl_->prior.occupied();
+  impl_->prior.ForEachObstacle([&](const CellCube& cube) {
     for (int z = cube.low.z(); z < cube.low.z() + cube.side; ++z) {
       if (!IsGround({0, 0, z}, impl_->options))
         check.occupied += std::int64_t{cube.side} * cube.side;
     }
   });
   impl_->blocks->ForEachPut([&](const CellValue& sensed) {
-    const auto said = impl_->ReadLogOdds(sensed.cell);
+    const auto said = impl_->prior.LogOdds(sensed.cell);
     if (!said || IsGround(sensed.cell, impl_->options)) return;
     if (*said >= occupied) {
       ++check.looked_at;
@@ -265,7 +130,7 @@ PriorCheck PersistentMap::CheckPrior() const {
 
 std::vector<CellCube> PersistentMap::PriorObstacles(const CellBox& within) const {
   std::vector<CellCube> obstacles;
-  impl_->ForEachObstacle([&](const CellCube& cube) {
+  impl_->prior.ForEachObstacle([&](const CellCube& cube) {
     const bool outside = ((cube.low.array() + cube.side <= within.low.array()) ||
                           (cube.low.array() >= within.high.array()))
                              .any();
@@ -276,22 +141,9 @@ std::vector<CellCube> PersistentMap::PriorObstacles(const CellBox& within) const
 }
 
 void PersistentMap::Write(std::ostream& out, MapFormat format) {
-  octomap::OcTree& tree = *impl_->tree;
-  impl_->blocks->ForEach([&](const CellValue& value) {
-    const auto log_odds = static_cast<float>(value.log_odds * OccupancyMap::kLogOddsStep);
-    tree.setNodeValue(KeyOf(value.cell), log_odds, true);
-  });
+  impl_->blocks->ForEach([&](const CellValue& value) { impl_->prior.Put(value); });
   impl_->blocks = impl_->NewBlocks();
-  tree.updateInnerOccupancy();
-  tree.prune();
-  if (format == MapFormat::kLogOdds) {
-    WriteHead(format, tree, &out);
-    tree.writeData(out);
-    return;
-  }
-  const SureTree sure(tree);
-  WriteHead(format, sure, &out);
-  if (sure.size() > 0) sure.writeBinaryData(out);
+  impl_->prior.Write(out, format);
 }
 
 }  // namespace touchdown::planning

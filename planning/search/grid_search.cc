@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -52,8 +53,10 @@ class GridSearch::Queue {
   bool empty() const { return nodes_.empty(); }
   void Push(float f, std::uint32_t address) {
     // The bits of positive floats are ordered as they are.
-    const auto upper = static_cast<std::uint64_t>(std::bit_cast<std::uint32_t>(f)) << 32;
-    nodes_.push({upper | order_++, address});
+    std::uint32_t bits;
+    static_assert(sizeof(bits) == sizeof(f));
+    std::memcpy(&bits, &f, sizeof(bits));  // std::bit_cast is not in every library yet
+    nodes_.push({static_cast<std::uint64_t>(bits) << 32 | order_++, address});
   }
   std::uint32_t Pop() {
     const std::uint32_t address = nodes_.top().address;

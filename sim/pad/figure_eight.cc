@@ -11,12 +11,24 @@
 
 #include <cmath>
 #include <numbers>
+#include <version>
+#ifndef __cpp_lib_math_special_functions  // the library of the browsers' compiler
+#include <boost/math/special_functions/bessel.hpp>
+#endif
 
 namespace touchdown::sim {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kSwing = 2.404825557695772768621631879326;  // first zero of J0
+
+double BesselJ(double order, double x) {
+#ifdef __cpp_lib_math_special_functions
+  return std::cyl_bessel_j(order, x);
+#else
+  return boost::math::cyl_bessel_j(order, x);
+#endif
+}
 
 }  // namespace
 
@@ -28,8 +40,8 @@ FigureEight::FigureEight(const Eigen::Vector2d& start, double heading, double cu
   const double scale = length_ / kTwoPi;
   for (int k = 0; k < kTerms; ++k) {
     const double even = 2.0 * (k + 1), odd = 2.0 * k + 1.0;
-    along_[k] = scale * 2.0 * std::cyl_bessel_j(even, kSwing) / even;
-    across_[k] = scale * 2.0 * std::cyl_bessel_j(odd, kSwing) / odd;
+    along_[k] = scale * 2.0 * BesselJ(even, kSwing) / even;
+    across_[k] = scale * 2.0 * BesselJ(odd, kSwing) / odd;
   }
 }
 

@@ -41,8 +41,6 @@ CameraPose PoseAt(double dt, const estimation::VehicleState& vehicle, const Eige
 
 }  // namespace
 
-Eigen::Matrix3d DownwardCameraAxes() { return Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal(); }
-
 PadCamera::PadCamera(const PadCameraConfig& config, const VisualScene& scene, std::uint64_t seed)
     : config_(config), renderer_(scene, ViewOf(config)), noise_(seed, "pad camera") {}
 

@@ -8,6 +8,7 @@
 
 #include "sim/base/random_stream.h"
 #include "sim/rendering/scene_renderer.h"
+#include "sim/sensors/downward_camera.h"
 #include "touchdown/estimation/base/gray_image.h"
 #include "touchdown/estimation/base/measurements.h"
 #include "touchdown/estimation/base/vehicle_state.h"
@@ -15,7 +16,7 @@
 
 namespace touchdown::sim {
 
-/// Downward camera. C: x right (x_B), y down (-y_B), z down.
+/// Downward camera, with the axes of DownwardCameraAxes.
 struct PadCameraConfig {
   int width = 320;                           ///< [pixel], in [8, 4096]
   int height = 240;                          ///< [pixel], in [8, 4096]
@@ -25,9 +26,6 @@ struct PadCameraConfig {
   double exposure_ms = 0.0;                  ///< in [0, 100]; 0: nothing is blurred
   int max_subframes = 8;                     ///< rendered for one exposure at most, in [1, 64]
 };
-
-/// The camera's axes in B: rotation C to B.
-Eigen::Matrix3d DownwardCameraAxes();
 
 /// Grey images of the pad camera, rendered. Belongs to the thread that made it.
 class PadCamera {

@@ -15,7 +15,7 @@
 #include "estimation/base/degrees.h"
 #include "estimation/tags/pad_sheet.h"
 #include "sim/pad/pad_geometry.h"
-#include "sim/sensors/pad_camera.h"
+#include "sim/sensors/downward_camera.h"
 #include "touchdown/estimation/tags/pad_alignment.h"
 
 namespace touchdown::sim {

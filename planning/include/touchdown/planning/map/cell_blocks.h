@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <memory_resource>
 #include <unordered_map>
+#include <version>
+#ifdef __cpp_lib_memory_resource
+#include <memory_resource>
+#endif
 
 #include "touchdown/planning/map/cell_box.h"
 
@@ -91,9 +94,13 @@ class CellBlocks {
 
   Fill fill_;
   std::array<Latest, 64> latest_;
+#ifdef __cpp_lib_memory_resource
   std::unique_ptr<std::byte[]> room_;
   std::pmr::monotonic_buffer_resource memory_;
   std::pmr::unordered_map<Key, CellBlock> blocks_;
+#else  // the library of the browsers' compiler: each block is an allocation
+  std::unordered_map<Key, CellBlock> blocks_;
+#endif
 };
 
 template <class Visit>

@@ -1,0 +1,16 @@
+# For a browser: Emscripten must not see the system's own headers, so those of the libraries that are headers alone are
+# linked to from a folder of their own.
+set(TOUCHDOWN_WASM_HEADERS "${PROJECT_BINARY_DIR}/headers")
+file(MAKE_DIRECTORY "${TOUCHDOWN_WASM_HEADERS}")
+foreach(library boost nlohmann)
+  if(NOT EXISTS "/usr/include/${library}")
+    message(FATAL_ERROR "/usr/include/${library} is missing: see packages.txt")
+  endif()
+  file(CREATE_LINK "/usr/include/${library}" "${TOUCHDOWN_WASM_HEADERS}/${library}" SYMBOLIC)
+endforeach()
+set(Boost_INCLUDE_DIR "${TOUCHDOWN_WASM_HEADERS}")
+set(Eigen3_DIR "/usr/share/eigen3/cmake" CACHE PATH "")
+
+# Exceptions as the browsers have them; two numbers at a time.
+add_compile_options(-fwasm-exceptions -msimd128)
+add_link_options(-fwasm-exceptions)
