@@ -87,7 +87,7 @@ struct BenchResult {
   std::vector<ProblemRow> problems;
   std::vector<SolveRow> solves;
   std::vector<Refusal> refusals;
-  int refused = 0;  ///< problems that nobody compared could take
+  int refused = 0;  ///< problems that no compared backend could take
 };
 
 /// All backends of a registry, which solve the problems that they are shown, in place. Backends take turns
@@ -106,21 +106,21 @@ class SolverBench {
   const BenchResult& result() const { return result_; }
 
  private:
-  struct Contestant;
+  struct BenchBackend;
   struct Field;
   struct Merit;
 
   Field& FieldFor(const solvers::AskedSolve& asked);
   void Enter(const solvers::BackendEntry& entry, const solvers::View& view, Field* field);
   Merit Judge(const Eigen::VectorXd& y);
-  SolveRow Solve(Contestant* who, SolvePhase phase, const solvers::Stop& stop);
+  SolveRow Solve(BenchBackend* backend, SolvePhase phase, const solvers::Stop& stop);
   ProblemRow Facts(const solvers::View& view);
   void FindReference(ProblemRow* row);
-  void SolveToGap(Contestant* who, const ProblemRow& row, int repeat, bool shares);
-  void SolveUnderDeadline(Contestant* who, const ProblemRow& row, int repeat);
+  void SolveToGap(BenchBackend* backend, const ProblemRow& row, int repeat, bool shares);
+  void SolveUnderDeadline(BenchBackend* backend, const ProblemRow& row, int repeat);
   void Rate(const ProblemRow& row, SolveRow* solve) const;
   void EndTurns();
-  std::vector<Contestant*> Shuffled(SolvePhase phase, int repeat);
+  std::vector<BenchBackend*> Shuffled(SolvePhase phase, int repeat);
   bool Compares(const std::string& name) const;
   int index() const { return static_cast<int>(result_.problems.size()); }
 
