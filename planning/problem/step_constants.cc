@@ -12,18 +12,18 @@ namespace touchdown::planning {
 std::span<const StepConstant> StepConstantTable() {
   using C = StepConstants;
   static constexpr std::array kTable = {
-      StepConstant{"way_greed", &C::way_greed, "", "weight of the estimate in the search for a way",
-                   1.0},
+      StepConstant{"heuristic_weight", &C::heuristic_weight, "",
+                   "weight of the estimate in the search for a way", 1.0},
       StepConstant{"way_tight_cost", &C::way_tight_cost, "m/m",
                    "cost of a metre beside an obstacle", 1.0},
       StepConstant{
           "detour_longer", &C::detour_longer, "m",
           "a detour of the committed curve is longer than the straight line by this at most"},
-      StepConstant{"beside_time", &C::beside_time, "s",
+      StepConstant{"hold_beside_time", &C::hold_beside_time, "s",
                    "a curve that has come to a way's side stays there for so long"},
-      StepConstant{"way_dearer", &C::way_dearer, "m/m",
+      StepConstant{"path_cost_ratio", &C::path_cost_ratio, "m/m",
                    "cost over the first way's, up to which another is looked for", 1.0},
-      StepConstant{"side_cheaper", &C::side_cheaper, "",
+      StepConstant{"side_change_ratio", &C::side_change_ratio, "",
                    "share of the cost that makes a change of side worth while"},
       StepConstant{"near_obstacle", &C::near_obstacle, "segments",
                    "until an obstacle that needs fine segments at once"},
@@ -33,7 +33,7 @@ std::span<const StepConstant> StepConstantTable() {
       StepConstant{"stand_off", &C::stand_off, "m", "of a reference point from what is in the way"},
       StepConstant{"pair_growth", &C::pair_growth, "", "of the pairs' weight from round to round",
                    1.0},
-      StepConstant{"blocked_left", &C::blocked_left, "",
+      StepConstant{"blocked_share_left", &C::blocked_share_left, "",
                    "share of the blocked time that a round leaves at most"},
       StepConstant{"limit_growth", &C::limit_growth, "",
                    "of the weight of soft limits that are exceeded", 1.0},
