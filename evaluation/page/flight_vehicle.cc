@@ -7,8 +7,8 @@
 
 #include "estimation/base/degrees.h"
 #include "estimation/tags/pad_sheet.h"
-#include "evaluation/flight/depth_eye.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/depth_sensor.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "evaluation/page/rounded.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/vehicle/vehicle_file.h"

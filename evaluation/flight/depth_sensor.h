@@ -20,47 +20,47 @@
 
 namespace touchdown::evaluation {
 
-/// A depth image, and what it took to make it.
-struct DepthGlimpse {
+/// A depth image, and the time that it took to make it.
+struct TimedDepthImage {
   estimation::DepthImage image;
   planning::StageTimes::Span sense{"sense"};
 };
 
 /// The depth camera at the nose. Images come at the camera's rate; some are dropped, and they arrive
 /// late, as the scenario says. Belongs to the thread that made it.
-class DepthEye {
+class DepthSensor {
  public:
-  virtual ~DepthEye() = default;
-  DepthEye(const DepthEye&) = delete;
-  DepthEye& operator=(const DepthEye&) = delete;
+  virtual ~DepthSensor() = default;
+  DepthSensor(const DepthSensor&) = delete;
+  DepthSensor& operator=(const DepthSensor&) = delete;
 
   /// Takes an image if one is due at the vehicle's time. Call once per physics step.
   void Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
             SensingTimes* times);
 
   /// The oldest image that has arrived by the time t [s]; call until there is none.
-  std::optional<DepthGlimpse> Poll(double t) { return delivery_.Poll(t); }
+  std::optional<TimedDepthImage> Poll(double t) { return delivery_.Poll(t); }
 
   /// Takes the memory of an image that is done with, for one to come.
-  void Recycle(DepthGlimpse glimpse) { spare_ = std::move(glimpse); }
+  void Recycle(TimedDepthImage timed) { spare_ = std::move(timed); }
 
  protected:
-  DepthEye(const Scenario& scenario, std::uint64_t seed);
+  DepthSensor(const Scenario& scenario, std::uint64_t seed);
 
  private:
   virtual void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
                        estimation::DepthImage* image) = 0;
 
   estimation::SampleClock clock_;
-  sim::FrameDelivery<DepthGlimpse> delivery_;
-  DepthGlimpse spare_;
+  sim::FrameDelivery<TimedDepthImage> delivery_;
+  TimedDepthImage spare_;
 };
 
 /// The depth camera of the scenario.
 sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario);
 
-/// The eye of the scenario's `sensing`; as MakePadEye.
-std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,
-                                       std::uint64_t seed);
+/// The sensor of the scenario's `sensing`; as MakePadSensor.
+std::unique_ptr<DepthSensor> MakeDepthSensor(const Scenario& scenario,
+                                             const sim::WorldConfig& world, std::uint64_t seed);
 
 }  // namespace touchdown::evaluation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/pad_sensor.h"
 
 #include <utility>
 
@@ -9,10 +9,10 @@
 namespace touchdown::evaluation {
 namespace {
 
-class FastPadEye final : public PadEye {
+class FastPadSensor final : public PadSensor {
  public:
-  FastPadEye(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
-      : PadEye(scenario, seed), tags_(ConfigOf(scenario), world.obstacles, seed) {}
+  FastPadSensor(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
+      : PadSensor(scenario, seed), tags_(ConfigOf(scenario), world.obstacles, seed) {}
 
  private:
   static sim::TagSensorConfig ConfigOf(const Scenario& scenario) {
@@ -38,10 +38,10 @@ class FastPadEye final : public PadEye {
   sim::TagSensor tags_;
 };
 
-class RenderedPadEye final : public PadEye {
+class RenderedPadSensor final : public PadSensor {
  public:
-  RenderedPadEye(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
-      : PadEye(scenario, seed),
+  RenderedPadSensor(const Scenario& scenario, const sim::WorldConfig& world, std::uint64_t seed)
+      : PadSensor(scenario, seed),
         camera_(PadCameraOf(scenario), VisualSceneOf(scenario, world), seed) {}
 
  private:
@@ -81,24 +81,25 @@ sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig&
   return scene;
 }
 
-PadEye::PadEye(const Scenario& scenario, std::uint64_t seed)
+PadSensor::PadSensor(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.tag_rate),
       delivery_({scenario.camera.latency_ms, scenario.camera.drop}, seed, "pad camera delivery") {}
 
-void PadEye::Look(const estimation::VehicleState& vehicle, const estimation::VehicleState& believed,
-                  const estimation::PadState& pad, SensingTimes* times) {
+void PadSensor::Look(const estimation::VehicleState& vehicle,
+                     const estimation::VehicleState& believed, const estimation::PadState& pad,
+                     SensingTimes* times) {
   if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
   if (auto seen = See(vehicle, believed, pad, times)) {
     delivery_.Hold(vehicle.t, std::move(*seen));
   }
 }
 
-std::unique_ptr<PadEye> MakePadEye(const Scenario& scenario, const sim::WorldConfig& world,
-                                   std::uint64_t seed) {
+std::unique_ptr<PadSensor> MakePadSensor(const Scenario& scenario, const sim::WorldConfig& world,
+                                         std::uint64_t seed) {
   if (scenario.sensing == SensingKind::kFast) {
-    return std::make_unique<FastPadEye>(scenario, world, seed);
+    return std::make_unique<FastPadSensor>(scenario, world, seed);
   }
-  return std::make_unique<RenderedPadEye>(scenario, world, seed);
+  return std::make_unique<RenderedPadSensor>(scenario, world, seed);
 }
 
 }  // namespace touchdown::evaluation

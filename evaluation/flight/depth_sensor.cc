@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/flight/depth_eye.h"
+#include "evaluation/flight/depth_sensor.h"
 
 #include "sim/sensors/rendered_depth_camera.h"
 #include "touchdown/planning/replan/stage_timer.h"
@@ -9,10 +9,10 @@ namespace {
 
 /// Of sim::DepthCamera or sim::RenderedDepthCamera.
 template <typename Camera>
-class CameraDepthEye final : public DepthEye {
+class CameraDepthSensor final : public DepthSensor {
  public:
-  CameraDepthEye(const Scenario& scenario, std::uint64_t seed, Camera camera)
-      : DepthEye(scenario, seed), camera_(std::move(camera)) {}
+  CameraDepthSensor(const Scenario& scenario, std::uint64_t seed, Camera camera)
+      : DepthSensor(scenario, seed), camera_(std::move(camera)) {}
 
  private:
   void Capture(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
@@ -42,35 +42,35 @@ sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario) {
   return config;
 }
 
-DepthEye::DepthEye(const Scenario& scenario, std::uint64_t seed)
+DepthSensor::DepthSensor(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.depth_rate),
       delivery_({scenario.depth.latency_ms, scenario.depth.drop}, seed, "depth camera delivery") {}
 
-void DepthEye::Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
-                    SensingTimes* times) {
+void DepthSensor::Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
+                       SensingTimes* times) {
   if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
-  DepthGlimpse glimpse = std::move(spare_);
-  glimpse.sense = planning::StageTimes::Span{"sense"};
+  TimedDepthImage timed = std::move(spare_);
+  timed.sense = planning::StageTimes::Span{"sense"};
   {
-    const planning::StageTimer timer(&glimpse.sense);
-    Capture(vehicle, pad, &glimpse.image);
+    const planning::StageTimer timer(&timed.sense);
+    Capture(vehicle, pad, &timed.image);
   }
-  times->depth_image += glimpse.sense.cpu;
-  delivery_.Hold(vehicle.t, std::move(glimpse));
+  times->depth_image += timed.sense.cpu;
+  delivery_.Hold(vehicle.t, std::move(timed));
 }
 
-std::unique_ptr<DepthEye> MakeDepthEye(const Scenario& scenario, const sim::WorldConfig& world,
-                                       std::uint64_t seed) {
+std::unique_ptr<DepthSensor> MakeDepthSensor(const Scenario& scenario,
+                                             const sim::WorldConfig& world, std::uint64_t seed) {
   const sim::DepthCameraConfig config = DepthCameraOf(scenario);
   if (scenario.sensing == SensingKind::kFast) {
-    return std::make_unique<CameraDepthEye<sim::DepthCamera>>(
+    return std::make_unique<CameraDepthSensor<sim::DepthCamera>>(
         scenario, seed, sim::DepthCamera(config, world.obstacles, world.pad, seed));
   }
   sim::VisualScene scene;
   scene.obstacles = world.obstacles;
   scene.pad = world.pad;
   scene.deck_height = scenario.pad.deck_height;
-  return std::make_unique<CameraDepthEye<sim::RenderedDepthCamera>>(
+  return std::make_unique<CameraDepthSensor<sim::RenderedDepthCamera>>(
       scenario, seed, sim::RenderedDepthCamera(config, scene, seed));
 }
 

@@ -26,11 +26,11 @@ struct PadSeen {
 
 /// The downward camera. Images come at its rate; some are dropped, and they arrive late, as the scenario says. Belongs to
 /// the thread that made it.
-class PadEye {
+class PadSensor {
  public:
-  virtual ~PadEye() = default;
-  PadEye(const PadEye&) = delete;
-  PadEye& operator=(const PadEye&) = delete;
+  virtual ~PadSensor() = default;
+  PadSensor(const PadSensor&) = delete;
+  PadSensor& operator=(const PadSensor&) = delete;
 
   /// Takes an image if one is due at the vehicle's time. Call once per physics step.
   /// @param vehicle true state, from where the image is taken.
@@ -44,7 +44,7 @@ class PadEye {
   std::optional<PadSeen> Poll(double t) { return delivery_.Poll(t); }
 
  protected:
-  PadEye(const Scenario& scenario, std::uint64_t seed);
+  PadSensor(const Scenario& scenario, std::uint64_t seed);
 
  private:
   virtual std::optional<PadSeen> See(const estimation::VehicleState& vehicle,
@@ -59,10 +59,10 @@ class PadEye {
 sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
 sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world);
 
-/// The eye of the scenario's `sensing`. `world` only gives the configuration; `seed` feeds its own
+/// The sensor of the scenario's `sensing`. `world` only gives the configuration; `seed` feeds its own
 /// streams. @throws std::invalid_argument naming key, value and range, std::runtime_error if there
 /// is no off-screen rendering.
-std::unique_ptr<PadEye> MakePadEye(const Scenario& scenario, const sim::WorldConfig& world,
-                                   std::uint64_t seed);
+std::unique_ptr<PadSensor> MakePadSensor(const Scenario& scenario, const sim::WorldConfig& world,
+                                         std::uint64_t seed);
 
 }  // namespace touchdown::evaluation

@@ -13,11 +13,11 @@
 namespace touchdown::control {
 
 /// Finds the pad in the images of the camera that looks for it. Belongs to one thread.
-class PadLook {
+class PadSearch {
  public:
   /// @param thrifty do not search images in which the expected pad cannot be; this saves time and
   /// changes nothing as long as the expectation is not off by more than it says it may be.
-  explicit PadLook(bool thrifty = true) : thrifty_(thrifty) {}
+  explicit PadSearch(bool thrifty = true) : thrifty_(thrifty) {}
 
   /// The sighting that the image shows, if any. `believed` is the own state at the image's time, `expected` knows where
   /// the pad should be. The image is possible (estimation::IsPossible). Allocates.

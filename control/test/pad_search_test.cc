@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "control/onboard/pad_look.h"
+#include "control/onboard/pad_search.h"
 
 #include <functional>
 #include <limits>
@@ -15,7 +15,7 @@
 namespace touchdown::control {
 namespace {
 
-TEST(PadLook, WhereThePadMayShow) {
+TEST(PadSearch, WhereThePadMayShow) {
   estimation::CameraIntrinsics camera{320, 240, 120.0, 160.0, 120.0};
   EXPECT_TRUE(MayShowPad({0, 0, 2}, 0.1, camera));
   EXPECT_TRUE(MayShowPad({0, 0, -0.05}, 0.1, camera));
@@ -38,7 +38,7 @@ estimation::PadImage Below(double t) {
   return image;
 }
 
-TEST(PadLook, AnImageIsAMeasurement) {
+TEST(PadSearch, AnImageIsAMeasurement) {
   const OnboardOptions options = LandingOptions(ToyQuadrotor(), ToyWorld::kDeck);
   Onboard onboard(options, LandingParts(options));
   EXPECT_EQ(onboard.Take(Below(0.0)), Taken::kUnasked);
@@ -55,7 +55,7 @@ TEST(PadLook, AnImageIsAMeasurement) {
   EXPECT_EQ(onboard.Take(image), Taken::kEmpty);
 }
 
-TEST(PadLook, AnImageThatCannotBeIsRefused) {
+TEST(PadSearch, AnImageThatCannotBeIsRefused) {
   const OnboardOptions options = LandingOptions(ToyQuadrotor(), ToyWorld::kDeck);
   Onboard onboard(options, LandingParts(options));
   onboard.Take(estimation::VehicleState{});

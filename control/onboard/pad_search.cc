@@ -4,7 +4,7 @@
 // standard deviations of the expectation and half a metre, reaches into the camera's pyramid of
 // view, and is not so far away that no tag can be read. Against an expectation that is wrong and does
 // not know it, every tenth image is searched all the same.
-#include "control/onboard/pad_look.h"
+#include "control/onboard/pad_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,9 +24,9 @@ constexpr double kLeastTagPixels = 4;  // half a pixel to a cell: far below what
 
 }  // namespace
 
-std::optional<estimation::PadSighting> PadLook::Find(const estimation::PadImage& image,
-                                                     const estimation::VehicleState& believed,
-                                                     const estimation::PadFilter& expected) {
+std::optional<estimation::PadSighting> PadSearch::Find(const estimation::PadImage& image,
+                                                       const estimation::VehicleState& believed,
+                                                       const estimation::PadFilter& expected) {
   const bool search = !thrifty_ || passed_over_ == kMostPassedOver || !expected.initialized() ||
                       MayShow(image, believed, expected);
   passed_over_ = search ? 0 : passed_over_ + 1;
@@ -42,8 +42,8 @@ std::optional<estimation::PadSighting> PadLook::Find(const estimation::PadImage&
   return sighting;
 }
 
-bool PadLook::MayShow(const estimation::PadImage& image, const estimation::VehicleState& believed,
-                      const estimation::PadFilter& expected) const {
+bool PadSearch::MayShow(const estimation::PadImage& image, const estimation::VehicleState& believed,
+                        const estimation::PadFilter& expected) const {
   const Eigen::Vector3d p_BP =
       believed.q_WB.conjugate() * (expected.Estimate(believed.t).p_WP - believed.p_WB);
   const Eigen::Vector3d p_C = image.R_BC.transpose() * (p_BP - image.p_BC);
