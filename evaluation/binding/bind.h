@@ -72,7 +72,7 @@ class InUse {
 
 /// Something of C++ that Python may use during one call, in the thread that was called.
 template <class T>
-class Lent {
+class Borrowed {
  public:
   void Lend(const T* it) {
     it_ = it;

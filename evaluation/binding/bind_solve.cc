@@ -165,7 +165,7 @@ class Solver {
     }
   }
   ~Solver() {
-    const UnderWay under_way;
+    const CallGuard under_way;
     const py::gil_scoped_release release;  // a backend may wait for another one's solve
     backend_.reset();
   }

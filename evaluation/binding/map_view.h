@@ -7,22 +7,22 @@
 namespace touchdown::binding {
 
 /// A map that may be looked at: one's own, or one that is lent for a call.
-class MapLook {
+class MapView {
  public:
-  MapLook() = default;
-  MapLook(const MapLook&) = delete;
-  MapLook& operator=(const MapLook&) = delete;
-  virtual ~MapLook() = default;
+  MapView() = default;
+  MapView(const MapView&) = delete;
+  MapView& operator=(const MapView&) = delete;
+  virtual ~MapView() = default;
 
   /// Raises RuntimeError for one that is lent no more.
   virtual const planning::OccupancyMap& get() const { return lent.get("this map"); }
 
-  Lent<planning::OccupancyMap> lent;
+  Borrowed<planning::OccupancyMap> lent;
   mutable InUse use{"map"};
 };
 
 /// A map that Python owns.
-class OwnMap : public MapLook {
+class OwnMap : public MapView {
  public:
   explicit OwnMap(const planning::OccupancyMapOptions& options) : map_(options) {}
   const planning::OccupancyMap& get() const override { return map_; }
