@@ -20,7 +20,7 @@
 #include "evaluation/report/report_program.h"
 #include "evaluation/studies/fidelity/ego_fidelity.h"
 #include "evaluation/studies/replan/forest_flight_report.h"
-#include "evaluation/studies/replan/oracle_book.h"
+#include "evaluation/studies/replan/oracle_verdicts.h"
 #include "evaluation/studies/replan/replan_growth.h"
 #include "evaluation/studies/replan/replan_report.h"
 #include "evaluation/studies/replan/replan_study.h"
@@ -263,7 +263,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
   const auto write = [&](const std::string& path) { WriteReplanStudy(path, parts, machine); };
   if (!arguments.db.empty()) write(arguments.db);
   if (!arguments.verdicts.empty()) {
-    OracleBook book;
+    OracleVerdicts book;
     for (const ReplanStudyPart& part : parts) {
       if (part.varied.empty()) book.Add(part.options.scenes, part.rows);
     }

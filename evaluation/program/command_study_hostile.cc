@@ -127,7 +127,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
   }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
                                 [](const SweepRow& row) { return IsLost(row.result.outcome); });
-  return lost || BreaksThePromise(result.rows) ? kFellShort : kDone;
+  return lost || ViolatesGuarantee(result.rows) ? kFellShort : kDone;
 }
 
 int Run(HostileArguments arguments, const Registries& registries, const Command& command) {

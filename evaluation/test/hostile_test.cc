@@ -346,7 +346,7 @@ TEST(HostileReport, WhatStoodIsListed) {
     EXPECT_THAT(report, HasSubstr("--show 3"));
     EXPECT_THAT(report, HasSubstr("steps without a proven pair"));
   }
-  EXPECT_TRUE(BreaksThePromise({row}));
+  EXPECT_TRUE(ViolatesGuarantee({row}));
   row.result.outcome = Outcome::kDisarmedInAir;
   EXPECT_THAT(HostileText(options, {row}), HasSubstr("Ended otherwise: 1"));
 }

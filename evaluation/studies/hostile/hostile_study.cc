@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A flight is drawn in this order: family, conditions, what goes beyond, then --set, then the world, which
-// may ask for the conditions, then --set again, for keys of the world. A world in which the start is not
+// may request for the conditions, then --set again, for keys of the world. A world in which the start is not
 // free or the pad's lane is blocked is thrown away, and the next one is drawn from a stream of its own.
 #include "evaluation/studies/hostile/hostile_study.h"
 
@@ -74,12 +74,12 @@ void DrawWorld(const HostileFamily& family, const std::vector<std::string>& beyo
   const auto holds = [&](const char* name) {
     return std::find(beyond.begin(), beyond.end(), name) != beyond.end();
   };
-  HostileAsk ask;
-  ask.thin_poles = holds(kThinPoles);
+  WorldRequest request;
+  request.thin_poles = holds(kThinPoles);
   for (int i = 0; i < kWorlds; ++i) {
     Scenario world = *scenario;
     sim::RandomStream draw(seed, fmt::format("hostile world {}", i));
-    family.make(ask, draw, &world);
+    family.make(request, draw, &world);
     const bool free = StartRoom(world) >= kTakeOffRoom - 1e-9;
     if (holds(kNearObstacle)) AddNearPost(draw, &world);
     TurnWorld(draw, &world);

@@ -91,9 +91,9 @@ const char* ToString(SceneStep step) {
 namespace {
 
 /// The steps of one scene after another.
-class SceneAsker {
+class SceneRunner {
  public:
-  SceneAsker(const ReplanStudyOptions& options, const solvers::BackendRegistry& backends)
+  SceneRunner(const ReplanStudyOptions& options, const solvers::BackendRegistry& backends)
       : options_(options),
         replanner_(SceneReplannerOptions(options.scenes, options.replanner), backends) {
     if (options.oracle) {
@@ -239,7 +239,7 @@ StageShares SharesOf(const std::vector<const ReplanRow*>& rows) {
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
                                       const std::function<void(int done, int all)>& report) {
-  SceneAsker asker(options, backends);
+  SceneRunner asker(options, backends);
   std::vector<ReplanRow> rows;
   for (int index = 0; index < options.count; ++index) {
     asker.AskAll(DrawReplanScene(options.scenes, index), index, &rows);
@@ -251,7 +251,7 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const std::vector<ReplanScene>& scenes,
                                       const solvers::BackendRegistry& backends) {
-  SceneAsker asker(options, backends);
+  SceneRunner asker(options, backends);
   std::vector<ReplanRow> rows;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     asker.AskAll(scenes[i], static_cast<int>(i), &rows);

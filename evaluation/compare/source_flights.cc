@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/compare/posing_flights.h"
+#include "evaluation/compare/source_flights.h"
 
 #include <filesystem>
 #include <memory>
@@ -30,7 +30,7 @@ constexpr const char* kForest = "forest";
 constexpr const char* kHostile = "study hostile";  // as its files say
 
 // Who listens takes time in a step: where the clock decides the flight it would be another one.
-PosingFlight Flown(SweepTrial trial, std::string command,
+SourceFlight Flown(SweepTrial trial, std::string command,
                    std::function<std::string(const TrialResult&)> judge) {
   if (trial.FliesAlone()) {
     throw BadInput(fmt::format(
@@ -46,13 +46,13 @@ using Judge = std::function<std::string(const TrialResult&)>;
 
 std::string NothingKnown(const TrialResult&) { return ""; }
 
-PosingFlight HostileFlightOf(const HostileOptions& options, int index, const Registries& registries,
+SourceFlight HostileFlightOf(const HostileOptions& options, int index, const Registries& registries,
                              const Judge& judge = NothingKnown) {
   return Flown(DrawHostileFlight(options, index, registries).trial,
                fmt::format("{} --only {}", HostileCommand(options), index), judge);
 }
 
-PosingFlight LandingOf(const std::string& scenario, const std::vector<std::string>& overrides,
+SourceFlight LandingOf(const std::string& scenario, const std::vector<std::string>& overrides,
                        std::uint64_t seed, const Registries& registries,
                        const Judge& judge = NothingKnown) {
   SweepTrial trial = MakeTrial(FindScenario(scenario), overrides, registries);
@@ -109,7 +109,7 @@ std::vector<FlownTrial> FlownTrials(SqliteDb& db) {
 }
 
 // "touchdown land SCENARIO --set A=B ... --seed N", as MakeTrial writes it.
-PosingFlight Again(const FlownTrial& trial, const std::vector<std::string>& overrides,
+SourceFlight Again(const FlownTrial& trial, const std::vector<std::string>& overrides,
                    const std::string& path, const Registries& registries) {
   const std::vector<std::string> words = Words(trial.replay);
   if (words.size() < 3 || (words[1] != "land" && words[1] != "fly")) {
@@ -173,7 +173,7 @@ FlightSource RecordOf(const std::string& path, const std::vector<std::string>& o
     return std::string();
   };
   return {1, [=](int) {
-            return PosingFlight{fmt::format("the replanning steps of {}", flight->path), ask_again};
+            return SourceFlight{fmt::format("the replanning steps of {}", flight->path), ask_again};
           }};
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A line of the file: set, kind, seed, and a letter for each scene from 0 on: p, w, m a plan was found along a path, a
 // wide path or a motion; e the end is blocked; s the start leaves no time to stop; x none was found.
-#include "evaluation/studies/replan/oracle_book.h"
+#include "evaluation/studies/replan/oracle_verdicts.h"
 
 #include <charconv>
 #include <fstream>
@@ -50,7 +50,7 @@ bool IsUsual(const SceneOptions& scenes) {
 
 }  // namespace
 
-OracleBook::OracleBook(const std::string& path) {
+OracleVerdicts::OracleVerdicts(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw BadInput(fmt::format("{}: cannot be read.", path));
   int number = 0;
@@ -74,7 +74,7 @@ OracleBook::OracleBook(const std::string& path) {
   }
 }
 
-std::optional<OracleVerdict> OracleBook::Find(const SceneOptions& scenes, int index) const {
+std::optional<OracleVerdict> OracleVerdicts::Find(const SceneOptions& scenes, int index) const {
   if (!IsUsual(scenes)) return std::nullopt;
   const auto found = verdicts_.find({scenes.set, scenes.kind.name, scenes.seed});
   if (found == verdicts_.end()) return std::nullopt;
@@ -82,7 +82,7 @@ std::optional<OracleVerdict> OracleBook::Find(const SceneOptions& scenes, int in
   return at < found->second.size() ? VerdictOf(found->second[at]) : std::nullopt;
 }
 
-void OracleBook::Add(const SceneOptions& scenes, const std::vector<ReplanRow>& rows) {
+void OracleVerdicts::Add(const SceneOptions& scenes, const std::vector<ReplanRow>& rows) {
   if (!IsUsual(scenes)) {
     throw BadInput("--verdicts: a file of them is of the usual horizon, resolution and density.");
   }
@@ -93,7 +93,7 @@ void OracleBook::Add(const SceneOptions& scenes, const std::vector<ReplanRow>& r
   }
 }
 
-void OracleBook::Write(const std::string& path) const {
+void OracleVerdicts::Write(const std::string& path) const {
   AtomicFile file(path);
   std::ofstream out(file.working_path());
   out << "# Is there a plan? Verdicts of the oracle on the scenes of touchdown study replan "
@@ -108,6 +108,6 @@ void OracleBook::Write(const std::string& path) const {
   file.Commit();
 }
 
-OracleBook StandardOracleBook() { return OracleBook(DataPath("replan_oracle.csv")); }
+OracleVerdicts StandardOracleBook() { return OracleVerdicts(DataPath("replan_oracle.csv")); }
 
 }  // namespace touchdown::evaluation

@@ -13,12 +13,12 @@
 namespace touchdown::evaluation {
 
 /// Verdicts by set, kind, seed and scene, of scenes with the usual horizon, resolution and density.
-class OracleBook {
+class OracleVerdicts {
  public:
-  OracleBook() = default;
+  OracleVerdicts() = default;
 
   /// Reads a CSV file. @throws BadInput with file and line.
-  explicit OracleBook(const std::string& path);
+  explicit OracleVerdicts(const std::string& path);
 
   /// None: nothing is known of such a scene.
   std::optional<OracleVerdict> Find(const SceneOptions& scenes, int index) const;
@@ -35,6 +35,6 @@ class OracleBook {
 };
 
 /// The book that was installed, or stands in the source tree. @throws BadInput if it does neither.
-OracleBook StandardOracleBook();
+OracleVerdicts StandardOracleBook();
 
 }  // namespace touchdown::evaluation

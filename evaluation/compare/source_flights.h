@@ -13,7 +13,7 @@
 namespace touchdown::evaluation {
 
 /// A flight that can be flown with any registries: those it is given decide who hears of its solves.
-struct PosingFlight {
+struct SourceFlight {
   std::string command;  ///< that flies it alone
   /// Says in a sentence where it was another flight than the file holds; empty: it was the same, or nothing is
   /// known. Throws what RunTrial or a replay throws.
@@ -22,7 +22,7 @@ struct PosingFlight {
 
 struct FlightSource {
   std::optional<int> flights;  ///< how many there are; none: without end
-  std::function<PosingFlight(int index)> flight;
+  std::function<SourceFlight(int index)> flight;
 };
 
 /// Landings without end: even ones through the scenario `forest`, odd ones in worlds of the hostile study,
