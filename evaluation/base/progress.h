@@ -39,9 +39,9 @@ double SteadySeconds();
 
 /// Tells how far a long run is: on a terminal in one line that is written over, else in the log. Copies share it. Not to be
 /// used from two threads at a time.
-class ProgressTeller {
+class ProgressPrinter {
  public:
-  explicit ProgressTeller(SecondsClock clock = SteadySeconds);
+  explicit ProgressPrinter(SecondsClock clock = SteadySeconds);
   /// The last line is told whenever it comes, and stays.
   void operator()(const std::string& line, bool last);
   double elapsed_s() const;  ///< since construction [s]
@@ -60,7 +60,7 @@ class Progress {
 
  private:
   ProgressText text_;
-  ProgressTeller tell_;
+  ProgressPrinter tell_;
 };
 
 }  // namespace touchdown::evaluation

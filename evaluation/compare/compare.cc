@@ -43,7 +43,7 @@ CompareResult RunCompare(const CompareOptions& options, const Registries& regist
   int solve = 0;  // of the flight
   Registries overheard = registries;
   overheard.backends =
-      solvers::Overheard(registries.backends, [&](const solvers::AskedSolve& asked) {
+      solvers::Overheard(registries.backends, [&](const solvers::SolveRequest& asked) {
         const int flight = static_cast<int>(result.flights.size()) - 1;
         const int number = solve++;
         if (done() == most || result.asked++ % result.every != 0) return;

@@ -184,7 +184,7 @@ void SolverBench::Enter(const solvers::BackendEntry& entry, const solvers::View&
 }
 
 // First solves pay for pages, caches and lazy set-up; they are not timed.
-SolverBench::Field& SolverBench::FieldFor(const solvers::AskedSolve& asked) {
+SolverBench::Field& SolverBench::FieldFor(const solvers::SolveRequest& asked) {
   for (Field& field : fields_) {
     if (field.structure.IsOf(asked.view)) return field;
   }
@@ -339,7 +339,7 @@ void SolverBench::EndTurns() {
   }
 }
 
-void SolverBench::Run(const solvers::AskedSolve& asked, int flight, int solve) {
+void SolverBench::Run(const solvers::SolveRequest& asked, int flight, int solve) {
   asked_ = &asked;
   field_ = &FieldFor(asked);
   const bool compares =

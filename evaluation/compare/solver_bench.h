@@ -101,7 +101,7 @@ class SolverBench {
   ~SolverBench();
 
   /// Solves the asked problem with every backend. `flight` and `solve` say where it comes from.
-  void Run(const solvers::AskedSolve& asked, int flight, int solve);
+  void Run(const solvers::SolveRequest& asked, int flight, int solve);
 
   const BenchResult& result() const { return result_; }
 
@@ -110,7 +110,7 @@ class SolverBench {
   struct Field;
   struct Merit;
 
-  Field& FieldFor(const solvers::AskedSolve& asked);
+  Field& FieldFor(const solvers::SolveRequest& asked);
   void Enter(const solvers::BackendEntry& entry, const solvers::View& view, Field* field);
   Merit Judge(const Eigen::VectorXd& y);
   SolveRow Solve(BenchBackend* backend, SolvePhase phase, const solvers::Stop& stop);
@@ -133,7 +133,7 @@ class SolverBench {
   BenchResult result_;
 
   // The problem at hand.
-  const solvers::AskedSolve* asked_ = nullptr;
+  const solvers::SolveRequest* asked_ = nullptr;
   Field* field_ = nullptr;
   solvers::SolverResult solver_;
 };

@@ -65,14 +65,14 @@ std::optional<SafetyWatch> SafetyWatchOf(const PlannerEntry& planner, const sim:
   return SafetyWatch(world.config().obstacles);
 }
 
-std::optional<StayTask> StayOf(const Scenario& scenario) {
+std::optional<HoldTask> StayOf(const Scenario& scenario) {
   switch (scenario.task) {
     case TaskKind::kLand:
       break;
     case TaskKind::kFollow:
-      return StayTask{Outcome::kFollowed, scenario.follow.distance, scenario.follow.time};
+      return HoldTask{Outcome::kFollowed, scenario.follow.distance, scenario.follow.time};
     case TaskKind::kGoTo:
-      return StayTask{Outcome::kArrived, scenario.go_to.distance, scenario.go_to.time};
+      return HoldTask{Outcome::kArrived, scenario.go_to.distance, scenario.go_to.time};
   }
   return std::nullopt;
 }
@@ -418,7 +418,7 @@ class Trial {
   sim::LeastClearance clearance_;
   bool has_prior_;
   TaskKind task_;
-  std::optional<StayTask> stay_;
+  std::optional<HoldTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
   LandingTimeTask landing_time_;  ///< at the start

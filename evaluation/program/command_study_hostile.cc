@@ -113,7 +113,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
                                      flight, registries);
     WriteHtml("--html", arguments.html,
               HostilePage(arguments.options, result.rows, flights, registries));
-    if (!arguments.json) TellPage(arguments.html);
+    if (!arguments.json) PrintPagePath(arguments.html);
   }
   if (arguments.json) {
     std::cout << HostileJson(arguments.options, result.rows).dump(2) << std::endl;

@@ -35,7 +35,7 @@ class Flights : public ::testing::Test {
     Registries overheard = registries_;
     overheard.backends = solvers::Overheard(
         registries_.backends,
-        [&](const solvers::AskedSolve& asked) { starts.push_back(asked.start.y); });
+        [&](const solvers::SolveRequest& asked) { starts.push_back(asked.start.y); });
     flight.fly(overheard);
     return starts;
   }
@@ -175,7 +175,7 @@ TEST_F(Flights, AFlightDoesNotKnowWhoListens) {
   Registries overheard = registries_;
   int solve = 0;
   overheard.backends =
-      solvers::Overheard(registries_.backends, [&](const solvers::AskedSolve& asked) {
+      solvers::Overheard(registries_.backends, [&](const solvers::SolveRequest& asked) {
         if (solve++ % 5 == 0) bench.Run(asked, 0, solve);
       });
   RunTrial(scenario, 5, overheard, &heard);
