@@ -30,7 +30,7 @@ constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within th
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
-constexpr double kFarAside =
+constexpr double kMaxHeadingChange =
     70.0 * estimation::kRadPerDeg;  // of the way: half a foot's sector and more
 constexpr double kUpright = 0.07;   // ... until it is less than that
 constexpr double kFlareMargin = 5.0 * estimation::kRadPerDeg;
@@ -418,7 +418,7 @@ double Pilot::DesiredHeading() {
   if (!leans_) return heading_ = heading_ahead_;
   heading_ = HeadingIntoWind(model_, force_W, heading_);
   const bool aside = foot_height_ > parameters_.gate_height &&
-                     std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kFarAside;
+                     std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kMaxHeadingChange;
   return heading_ = aside ? HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 

@@ -16,8 +16,8 @@
 namespace touchdown::control {
 namespace {
 
-constexpr double kTagsGuide = 0.5;     // GPS is left out while tags are younger than this [s]
-constexpr double kAheadOfTime = 0.05;  // of the newest own state: no measurement is [s]
+constexpr double kTagsGuide = 0.5;      // GPS is left out while tags are younger than this [s]
+constexpr double kMaxClockLead = 0.05;  // of the newest own state: no measurement is [s]
 // From a start that is given free no farther than the hull, no stop is in free cells: a vehicle whose hull reaches 0.52 m
 // never left 0.8 m in wind, and always left 0.9 m.
 constexpr double kAroundHull = 0.45;  // [m]
@@ -57,7 +57,7 @@ void Senses::Begin() {
 }
 
 bool Senses::IsAhead(double t) const {
-  return !IsTime(t) || (own_.known() && t > own_.now().t + kAheadOfTime);
+  return !IsTime(t) || (own_.known() && t > own_.now().t + kMaxClockLead);
 }
 
 std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {

@@ -28,8 +28,8 @@ std::string Try() {
 // Empty: nothing stands against it. Tried in a process of its own: the rasteriser starts threads that stay, and a
 // process with threads is not to be forked, as a sweep forks for its trials.
 std::optional<std::string> WhyNotRender() {
-  constexpr double kPatience = 60.0;  // [s]
-  WorkerProcess process([](int) { return Try(); }, kPatience);
+  constexpr double kTimeout = 60.0;  // [s]
+  WorkerProcess process([](int) { return Try(); }, kTimeout);
   process.Start(0);
   const WorkerReply reply = process.Receive();
   if (reply.end == WorkerReply::End::kTimedOut) return "it does not come to an end";

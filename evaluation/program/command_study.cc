@@ -165,14 +165,14 @@ int RunSensitivity(const StudyArguments& arguments, const Registries& registries
   return kDone;
 }
 
-/// A part that stands alone, and the options that go with it.
-struct LonePart {
+/// A part that excludes all others, and the options that it takes.
+struct ExclusivePart {
   const char* name;
   std::vector<const char*> options;
 };
 
-const std::vector<LonePart>& LoneParts() {
-  static const std::vector<LonePart> parts = {
+const std::vector<ExclusivePart>& ExclusiveParts() {
+  static const std::vector<ExclusivePart> parts = {
       {"fidelity", {"--parts", "--scenes", "--kinds", "--seed", "--json"}},
       {"flights",
        {"--parts", "--flights", "--planners", "--kinds", "--seed", "--backend", "--guides", "--db",
@@ -183,7 +183,8 @@ const std::vector<LonePart>& LoneParts() {
   return parts;
 }
 
-void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const Command& command) {
+void CheckExclusive(const ExclusivePart& part, const StudyArguments& arguments,
+                    const Command& command) {
   if (arguments.parts.size() > 1)
     throw BadInput(fmt::format("--parts: {} stands alone.", part.name));
   for (const std::string& name : command.Given()) {
@@ -221,8 +222,8 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   if (only_growth && command.Given("--kinds") && arguments.kinds.size() != 1) {
     throw BadInput("--kinds: the part growth is of one kind.");
   }
-  for (const LonePart& part : LoneParts()) {
-    if (Named(arguments.parts, part.name)) CheckLonePart(part, arguments, command);
+  for (const ExclusivePart& part : ExclusiveParts()) {
+    if (Named(arguments.parts, part.name)) CheckExclusive(part, arguments, command);
   }
 }
 

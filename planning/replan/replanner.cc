@@ -27,12 +27,12 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kLongAgo = -std::numeric_limits<double>::infinity();
+constexpr double kNeverTime = -std::numeric_limits<double>::infinity();
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
-constexpr double kNewBeginning = 2.0;    // who asks later than this begins anew [s]
+constexpr double kRestartAfter = 2.0;    // who asks later than this begins anew [s]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -141,7 +141,7 @@ class Replanner::Impl {
   std::optional<Attempt> unfinished_;  // at which this step will have run out of its budget, ...
   std::optional<Attempt> resumes_;     // ... and the last one did
   FreeSpace strip_;                    // over the last known pad ...
-  double strip_t_ = kLongAgo;          // ... at this time
+  double strip_t_ = kNeverTime;        // ... at this time
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -205,7 +205,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   asked_t_ = state.asked_t;
   unfinished_ = state.unfinished;
   fallback_.Restore({state.looks_at_W, state.climb});
-  strip_t_ = state.strip_t.value_or(kLongAgo);
+  strip_t_ = state.strip_t.value_or(kNeverTime);
   strip_.floor = options_.floor_height;
   strip_.ceiling = options_.ceiling_height;
   strip_.pad_from = state.strip_from;
@@ -250,7 +250,7 @@ const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const
 /// into its stop.
 void Replanner::Impl::NoteAsked(double t_start) {
   const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
-  if (since <= kNewBeginning) reaction_ = std::max(reaction_, since);
+  if (since <= kRestartAfter) reaction_ = std::max(reaction_, since);
   asked_t_ = t_start;
 }
 

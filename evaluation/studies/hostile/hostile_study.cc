@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A flight is drawn in this order: family, conditions, what goes beyond, then --set, then the world, which
-// may request for the conditions, then --set again, for keys of the world. A world in which the start is not
+// may ask for the conditions, then --set again, for keys of the world. A world in which the start is not
 // free or the pad's lane is blocked is thrown away, and the next one is drawn from a stream of its own.
 #include "evaluation/studies/hostile/hostile_study.h"
 

@@ -24,7 +24,7 @@ constexpr double kTrialSigma = 0.1;  // [pixel]
 constexpr int kRounds = 3;
 constexpr int kRepeats = 10;
 constexpr double kLapse = 0.005;  // of tags, whatever their size: a stray one must not rule the fit
-constexpr int kFewRows = 25;      // a class with fewer takes its neighbour's noise
+constexpr int kMinRows = 25;      // a class with fewer takes its neighbour's noise
 
 double Probability(double x) { return 0.5 * std::erfc(-x * std::sqrt(0.5)); }
 
@@ -116,7 +116,7 @@ void FitSigma(const TagStudyOptions& options, const std::vector<TagStudyRow>& ro
   Table& table = aligned ? model->sheet_sigma : model->corner_sigma;
   std::array<bool, sim::TagModel::kKnots> known{};
   for (std::size_t i = 0; i < table.size(); ++i) {
-    known[i] = rendered[i].size() >= kFewRows && !fast[i].empty();
+    known[i] = rendered[i].size() >= kMinRows && !fast[i].empty();
     if (known[i]) table[i] *= *Quantile(rendered[i], 0.5) / *Quantile(fast[i], 0.5);
   }
   for (std::size_t i = 0; i < table.size(); ++i) {
