@@ -44,8 +44,8 @@ void RequireRendering(const std::string& who, const std::string& way_out) {
   static const std::optional<std::string> why = WhyNotRender();
   if (!why) return;
   throw BadInput(
-      fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend its "
-                  "OSMesa (Debian: libosmesa6){}{}.",
+      fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): "
+                  "install OSMesa (Debian: libosmesa6){}{}.",
                   who, *why, way_out.empty() ? "" : "; ", way_out));
 }
 

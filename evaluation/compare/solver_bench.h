@@ -24,7 +24,7 @@ struct BenchOptions {
   int repeats = 3;                    ///< of the timed solve; their median counts
   bool shares = true;                 ///< solve once more with a clock on the parts
   std::optional<double> deadline_ms;  ///< also solve under this wall-clock limit
-  /// Wall time that a backend may use, tight solves not counted: one that used more sits out the
+  /// Wall time that a backend may use, tight solves not counted: one that used more is skipped in the
   /// remaining problems. The referees among them still help to find the reference.
   double backend_seconds = 20.0;
   std::uint64_t seed = 1;  ///< of the order in which backends take turns

@@ -27,7 +27,7 @@ struct FlightSource {
 
 /// Landings without end: even ones through the scenario `forest`, odd ones in worlds of the hostile study,
 /// within its assumptions. `overrides` ("solver.limits=hard") hold in all of them. The same seed and
-/// index are the same flight. The source throws BadInput for an override that does not go with a flight.
+/// index are the same flight. The source throws BadInput for an override that a flight cannot take.
 FlightSource DrawnFlights(std::uint64_t seed, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

@@ -186,12 +186,12 @@ const std::vector<ExclusivePart>& ExclusiveParts() {
 void CheckExclusive(const ExclusivePart& part, const StudyArguments& arguments,
                     const Command& command) {
   if (arguments.parts.size() > 1)
-    throw BadInput(fmt::format("--parts: {} stands alone.", part.name));
+    throw BadInput(fmt::format("--parts: {} cannot be combined with other parts.", part.name));
   for (const std::string& name : command.Given()) {
     const bool fits =
         std::find(part.options.begin(), part.options.end(), name) != part.options.end();
     if (fits) continue;
-    throw BadInput(fmt::format("{} does not go with --parts {}.", name, part.name));
+    throw BadInput(fmt::format("{} cannot be used with --parts {}.", name, part.name));
   }
 }
 
@@ -204,7 +204,7 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   const bool flights = Named(arguments.parts, "flights");
   for (const char* option : {"--flights", "--planners"}) {
     if (!command.Given(option) || flights) continue;
-    throw BadInput(fmt::format("{} goes with --parts flights.", option));
+    throw BadInput(fmt::format("{} needs --parts flights.", option));
   }
   for (const char* option : {"--backend", "--guides"}) {
     if (!command.Given(option) || !flights || Named(arguments.planners, "landing")) continue;
@@ -213,10 +213,10 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   for (const char* option : {"--sets", "--later", "--oracle"}) {
     if (!command.Given(option) || Named(arguments.parts, "safety")) continue;
     if (Named(arguments.parts, "sensitivity")) continue;
-    throw BadInput(fmt::format("{} goes with --parts safety.", option));
+    throw BadInput(fmt::format("{} needs --parts safety.", option));
   }
   if (command.Given("--verdicts") && !command.Given("--oracle")) {
-    throw BadInput("--verdicts goes with --oracle.");
+    throw BadInput("--verdicts needs --oracle.");
   }
   const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
   if (only_growth && command.Given("--kinds") && arguments.kinds.size() != 1) {

@@ -46,7 +46,7 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
     if (!command.Given(alone)) continue;
     for (const char* other : {"--db", "--html", "--shard", "--retry", "--against", "--record"}) {
       if (command.Given(other))
-        throw BadInput(fmt::format("{} does not go with {}.", other, alone));
+        throw BadInput(fmt::format("{} cannot be used with {}.", other, alone));
     }
   }
   const std::pair<const char*, const char*> apart[] = {{"--only", "--show"},
@@ -146,8 +146,8 @@ int Run(HostileArguments arguments, const Registries& registries, const Command&
 }  // namespace
 
 void AddHostileStudyCommand(Command study, const Registries& registries, CommandRun* run) {
-  const Command command = study.AddCommand(
-      "hostile", "Whether anything is touched in worlds that nobody tuned for", "hostile.md");
+  const Command command =
+      study.AddCommand("hostile", "Collisions in worlds that are drawn to be hard", "hostile.md");
   const auto arguments = std::make_shared<HostileArguments>();
   HostileOptions& options = arguments->options;
   command.Add("--flights", options.flights, "Number of flights")

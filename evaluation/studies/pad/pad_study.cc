@@ -109,7 +109,7 @@ std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t sce
     }
     if (trial.scenario.own_state == OwnStateKind::kEstimated) {
       throw BadInput(
-          fmt::format("{}: own_state: estimated does not go with study pad, whose truth "
+          fmt::format("{}: own_state: estimated cannot be used with study pad: its truth "
                       "is in W while that pad filter lives in the estimate's frame.",
                       options.scenarios[scenario]));
     }
