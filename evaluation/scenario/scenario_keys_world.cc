@@ -47,10 +47,12 @@ void AddPadKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>(
       "pad.go_time", In(0.5, 600, "s"),
       "stop_and_go: between stops; reversing: in each direction; half a change of speed at both "
-      "ends included, which takes 2.25 / pad.acceleration times its size",
+      "ends included; a change of speed by v takes 2.25 v / pad.acceleration",
       TOUCHDOWN_AT(pad.go_time)));
-  keys.push_back(Number<Scenario>("pad.stop_time", In(0.5, 600, "s"),
-                                  "stop_and_go: of a stop, alike", TOUCHDOWN_AT(pad.stop_time)));
+  keys.push_back(
+      Number<Scenario>("pad.stop_time", In(0.5, 600, "s"),
+                       "stop_and_go: length of a stop, with half a change of speed at both ends",
+                       TOUCHDOWN_AT(pad.stop_time)));
   keys.push_back(Number<Scenario>("pad.acceleration", In(0.05, 20, "m/s^2"),
                                   "stop_and_go, reversing, random, waypoints: of changes of speed, "
                                   "at most; random, waypoints: across the path too",
