@@ -214,8 +214,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   return &result;
 }
 
-// A measured step that took longer than was reckoned with: its plan is flown from when it was there, and
-// no other step is begun before.
+// A measured step that took longer than expected: its plan is flown from when it was there, and no other
+// step begins before.
 bool Pilot::DeliverLate(double t) {
   if (!options_.latency.measured || measured_latency_ <= replan_.latency_s) return false;
   busy_until_ = t + measured_latency_;
@@ -267,7 +267,7 @@ double Pilot::RestClimb() const {
   return mission_.guidance == Guidance::kClimb ? parameters_.follow_height : 0.0;
 }
 
-// Who comes to rest may start above the deck, and is told where that is, too.
+// A vehicle that comes to rest may start above the deck: its request holds the pad, too.
 const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFilter& filter,
                                          const planning::OccupancyMap& map) {
   ReplanRequest& request = replan_.request;

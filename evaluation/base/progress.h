@@ -16,7 +16,7 @@ struct ProgressText {
 
 /// "kind C: 3 of 20 flights, 12 s left": the time left at the rate so far.
 /// @param done at least 1. @param elapsed_s since the first one was begun [s].
-/// `all` 0: nobody knows.
+/// `all` 0: it is not known.
 std::string ProgressLine(const ProgressText& text, int done, int all, double elapsed_s);
 
 /// When the next line is due. Times are since the beginning of the run [s].

@@ -109,7 +109,7 @@ bool Unwrap(std::string* text) {
   return text->size() == size;
 }
 
-// noexcept: what is thrown ends this process and does not get to whoever would catch it in its maker.
+// noexcept: what is thrown ends this process and does not get to a handler of the process that made it.
 [[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) noexcept {
   const std::string text = work(item);
   const std::uint64_t size = text.size();

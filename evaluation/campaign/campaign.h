@@ -95,7 +95,7 @@ struct CampaignResult {
   bool reports = true;
 };
 
-/// Whether this machine can fly the trials: what none of them could mend is said once, before the first.
+/// Whether this machine can fly the trials: what would fail in all of them is reported once, before the first.
 /// @throws BadInput
 void CheckTrials(const Campaign& campaign);
 

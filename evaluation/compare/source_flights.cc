@@ -29,7 +29,7 @@ namespace {
 constexpr const char* kForest = "forest";
 constexpr const char* kHostile = "study hostile";  // as its files say
 
-// Who listens takes time in a step: where the clock decides the flight it would be another one.
+// A listener takes time in a step: where the clock decides the flight it would be another one.
 SourceFlight Flown(SweepTrial trial, std::string command,
                    std::function<std::string(const TrialResult&)> judge) {
   if (trial.FliesAlone()) {

@@ -105,8 +105,8 @@ Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::
 /// To stay at the target, without a break.
 struct HoldTask {
   Outcome done = Outcome::kArrived;  ///< or kFollowed
-  double distance = 0.0;             ///< so near is at the target: who samples says so [m]
-  double time = 0.0;                 ///< so long [s]; 0, to follow: near it until the time-out
+  double distance = 0.0;  ///< so near is at the target [m]; the caller that samples decides
+  double time = 0.0;      ///< so long [s]; 0, to follow: near it until the time-out
 };
 
 /// Decides a trial step by step. A pure function of the samples. Does not

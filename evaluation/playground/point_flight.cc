@@ -239,9 +239,9 @@ nlohmann::ordered_json PointFlight::Report() {
   json["plan"] = FlightReport();
   if (answer_is_new_) {
     estimation::BeliefPredictor predictor;
-    const estimation::PadPrediction& foretold =
+    const estimation::PadPrediction& predicted =
         asked_->request.pad ? predictor.Predict(*asked_->request.pad) : estimation::UnknownPad();
-    json["plan"] = AnswerJson(answer_, PlannerOf(scene_), foretold, asked_->request.input.t_now);
+    json["plan"] = AnswerJson(answer_, PlannerOf(scene_), predicted, asked_->request.input.t_now);
     json["map"] = MapReport();
     answer_is_new_ = false;
   } else {

@@ -267,9 +267,9 @@ TEST_F(CampaignFiles, LostTrialsAreFlownAgainOnlyWhenAsked) {
   EXPECT_EQ(Fly(campaign, To(At("a.db"))).state.resumed, 4);
   CampaignOptions again = To(At("a.db"));
   again.retry = true;
-  const CampaignResult mended = Fly(campaign, again);
-  EXPECT_EQ(mended.state.resumed, 3);
-  EXPECT_NE(mended.rows[1].result.outcome, Outcome::kError);
+  const CampaignResult repaired = Fly(campaign, again);
+  EXPECT_EQ(repaired.state.resumed, 3);
+  EXPECT_NE(repaired.rows[1].result.outcome, Outcome::kError);
   Fly(campaign, To(At("whole.db")));
   EXPECT_EQ(Tables(At("a.db")), Tables(At("whole.db")));
 }

@@ -62,7 +62,7 @@ class FallbackLadder {
     return fallback_.NoTimeToBrake(start, space);
   }
 
-  /// Who went to where a cell is in sight makes no plan before it is known, or there is no better place.
+  /// A vehicle that went to where a cell is in sight makes no plan before the cell is known, or no better place is left.
   bool StillLooks(const OccupancyMap& map, bool from_odometry);
 
   /// What a committed rest is for.

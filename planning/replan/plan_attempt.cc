@@ -117,7 +117,7 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   const ReplanReason found = FindAnew(request, warm, leads_around, result);
   aside.reset();
   if (holds(found) || !may_keep) return found;
-  // Who looks for a better plan and finds none keeps what holds, before a later arrival is tried.
+  // If no better plan is found, what holds is kept before a later arrival is tried.
   const ReplanReason kept = KeepCommitted(request, result);
   return holds(kept) ? kept : found;
 }
@@ -153,7 +153,7 @@ ReplanReason PlanAttempt::Pose(const AttemptRequest& request, int segments, Pose
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
   const double t_end = request.t0 + request.duration;
   const Eigen::Vector3d end = EndStateAt(*request.pad, request.target, t_end).state.p;
-  if (!end.allFinite()) return ReplanReason::kPadUnreachable;  // nobody knows where it is then
+  if (!end.allFinite()) return ReplanReason::kPadUnreachable;  // where it is then is not known
   if (request.space->Blocked(end)) return ReplanReason::kGoalBlocked;
   return ReplanReason::kNone;
 }
@@ -287,8 +287,8 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   return best_.reason;
 }
 
-/// The way round takes longer than the straight one, by as much as it is longer at full speed. An arrival
-/// that others reckon with already is not put off like that.
+/// The path around takes longer than the straight one: by its extra length at full speed. An arrival that is
+/// committed is not postponed like that.
 void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request) {
   if (request->arrival == ArrivalMode::kFree) return;
   AttemptRequest later = *request;

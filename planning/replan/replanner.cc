@@ -32,7 +32,7 @@ constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost hold
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
-constexpr double kRestartAfter = 2.0;    // who asks later than this begins anew [s]
+constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -246,7 +246,7 @@ const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const
   return result_;
 }
 
-/// Who asks less often than options_.reaction says is taken to go on like that: else each plan would be flown
+/// A caller that asks less often than options_.reaction is taken to go on like that: else each plan would be flown
 /// into its stop.
 void Replanner::Impl::NoteAsked(double t_start) {
   const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
@@ -399,7 +399,7 @@ Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineStat
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised = on_plan && guess(DetourOf(next_.curve, input.t_start)) >
                                        options_.constants.retime_below * left;
-  // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
+  // A vehicle that follows a pad needs no shorter plans than usual; the last ones before a contact are.
   const double shortest =
       input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
   Attempt attempt;
@@ -451,7 +451,7 @@ ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& 
     if (attempt_.spent()) {
       // A later attempt gets a whole budget in the next step; a first one had it, and is left behind.
       unfinished_ = tried > 1 ? attempt : decision.next;
-      // Who rests and does not see what the way on needs may look from elsewhere (fallback_ladder.h).
+      // A vehicle at rest that does not see a cell which the path needs may look from elsewhere (fallback_ladder.h).
       return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
     }
     if (!decision.next) return decision.reason;

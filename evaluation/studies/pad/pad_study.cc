@@ -68,16 +68,16 @@ estimation::PadVector TruthFor(const PadBelief& belief, const PadState& pad) {
 
 PadSums Compare(const estimation::PadFilter& filter, const PadTruth& now, const PadTruth& later) {
   const PadState estimate = filter.Estimate(now.t);
-  const PadState foretold = Predict(filter).At(later.t);
+  const PadState predicted = Predict(filter).At(later.t);
   const PadBelief belief = filter.BeliefAt(now.t);
   PadSums sums;
   sums.samples = 1;
   sums.position2 = (estimate.p_WP - now.pad.p_WP).head<2>().squaredNorm();
   sums.velocity2 = (estimate.v_WP - now.pad.v_WP).head<2>().squaredNorm();
-  sums.prediction2 = (foretold.p_WP - later.pad.p_WP).head<2>().squaredNorm();
+  sums.prediction2 = (predicted.p_WP - later.pad.p_WP).head<2>().squaredNorm();
   sums.nees_position = PositionNees(estimate, now.pad.p_WP.head<2>()) / 2.0;
   sums.nees_state = StateNees(belief, TruthFor(belief, now.pad)) / StateSize(belief.motion);
-  sums.nees_prediction = PositionNees(foretold, later.pad.p_WP.head<2>()) / 2.0;
+  sums.nees_prediction = PositionNees(predicted, later.pad.p_WP.head<2>()) / 2.0;
   return sums;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the oracle said of the scenes that everybody asks for, so that nobody has to wait for it again.
+// Verdicts of the oracle on the common scenes, stored so that they are computed once.
 #pragma once
 
 #include <map>

@@ -52,13 +52,13 @@
 //
 // The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is
 // known well, and it stays open without tags where the rest of the way can be bridged: contact is
-// foretold within bridge_time of the last sighting, with a pad that is by then still known to
+// predicted within bridge_time of the last sighting, with a pad that is by then still known to
 // bridge_sigma. Without sightings neither improves, so a descent that pauses, or that lost the tags
 // too high up, closes the gate; and a committed descent is given up where the bridge has ended
 // without contact.
 //
-// Who leans farther than lean_max in a gust waits for a lull as behind a closed gate, and gives up a landing before
-// it touches: the hull would touch before the feet do, or the vehicle would be blown off.
+// A vehicle that tilts farther than lean_max in a gust waits for a lull as behind a closed gate. It gives up a landing
+// before it touches: the hull would touch before the feet do, or the vehicle would be blown off.
 //
 // With descent planned, tracking flies a plan that ends in contact already. decide_time before that
 // the same gate decides: if it is open the landing begins, else the vehicle arrives above the pad
@@ -147,7 +147,7 @@ struct MissionInputs {
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
   double sink_rate = 0.0;            ///< towards the deck, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
-  /// The same foretold for ContactIn from now, without further measurements; may be inf.
+  /// The same, predicted for ContactIn from now, without further measurements; may be inf.
   double contact_sigma = std::numeric_limits<double>::infinity();
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
   bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning

@@ -16,12 +16,12 @@ struct Margins {
 };
 
 /// Margins from what the vehicle knows: one standard deviation of its position [m] and of its attitude [rad],
-/// how far it was from its reference of late [m], and the steady force on it over its mass (its horizontal part:
+/// how far it was from its reference recently [m], and the steady force on it over its mass (its horizontal part:
 /// wind that pushes comes in gusts) [m/s^2].
 Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
                   const Eigen::Vector3d& pull_W) noexcept;
 
-/// The largest error of late: it fades with kFade [s].
+/// The largest recent error: it fades with kFade [s].
 class RecentError {
  public:
   static constexpr double kFade = 1.0;

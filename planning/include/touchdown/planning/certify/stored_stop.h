@@ -46,7 +46,7 @@ PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair);
 double LowestRest(double t, const HullSpace& hull);
 
 /// The deck is met with at most `share` of the sink rate and of the drift that the landing rule allows a
-/// touchdown at (docs/landing.md): the curve at time t [s], relative to the pad's centre as it is predicted.
+/// touchdown at (docs/mission.md): the curve at time t [s], relative to the pad's centre as it is predicted.
 bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull);
 
 /// When from t_from on the feet meet the deck, along the curve or going on from its end; infinite where they do

@@ -35,7 +35,7 @@ struct ReplannerState {
   double strip_floor = 0.0;                              ///< in W [m]
 };
 
-/// Plans, re-plans and holds the committed trajectory (docs/architecture.md). One instance
+/// Plans, re-plans and holds the committed trajectory (docs/replanning.md). One instance
 /// per vehicle; not thread-safe; different instances are independent.
 class Replanner : public Planner {
  public:
