@@ -148,7 +148,7 @@ def test_options_named_in_prose_exist(program, commands):
 
 def test_keys_named_in_prose_exist():
     """`key=value` and `--set key=value` in prose, against the table that is checked by the schema."""
-    table = (ROOT / "docs" / "scenario.md").read_text()
+    table = (ROOT / "docs" / "reference" / "scenario_keys.md").read_text()
     keys = set(re.findall(r"^\| `([a-z_.]+)`", table, re.M))
     wrong = []
     for document in written():

@@ -118,7 +118,7 @@ class Reader {
       const std::string meant = DidYouMean(name, all);
       if (!meant.empty()) return meant;
     }
-    if (words.empty()) return "; `docs/scenario.md` lists the keys";
+    if (words.empty()) return "; `docs/reference/scenario_keys.md` lists the keys";
     return Instead(name, words, "allowed here:");
   }
 

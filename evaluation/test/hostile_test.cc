@@ -352,7 +352,7 @@ TEST(HostileReport, WhatStoodIsListed) {
 }
 
 TEST(HostileReport, TheDocumentHasTheFamiliesAndTheConditions) {
-  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/hostile.md");
+  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/reference/hostile_worlds.md");
   std::ostringstream text;
   text << file.rdbuf();
   for (const HostileFamily& f : HostileFamilies()) {

@@ -419,7 +419,7 @@ TEST(ScenarioSchema, EveryKeyIsDocumentedOnce) {
 }
 
 TEST(ScenarioSchema, TheDocumentationIsTheTable) {
-  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/scenario.md");
+  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/reference/scenario_keys.md");
   std::ostringstream text;
   text << file.rdbuf();
   EXPECT_THAT(text.str(), HasSubstr(ScenarioKeysMarkdown(StandardRegistries())));
