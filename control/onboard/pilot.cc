@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The on-board loop around the libraries: the state machine says what to do, the replanner how to
-// fly there from the committed trajectory, the heading follows the way ahead so that the depth
-// camera sees where the vehicle is going, and the tracking law turns the reference into rotor
-// thrusts.
+// The on-board loop around the libraries. The state machine says what to do. The replanner finds a way there from the
+// committed trajectory. The heading follows the way ahead, so that the depth camera sees where the vehicle is going. The
+// tracking law turns the reference into rotor thrusts.
 #include "control/onboard/pilot.h"
 
 #include <algorithm>

@@ -31,10 +31,9 @@ struct FlightSource {
 FlightSource DrawnFlights(std::uint64_t seed, const std::vector<std::string>& overrides,
                           const Registries& registries);
 
-/// The flights of a file: a record, whose steps are asked again one by one from what the planner then knew; or
-/// the trials of a sweep or a study, which are flown again from their seeds, but for those that crashed, hung or
-/// ended in an error. Throws BadInput with one sentence for
-/// another file, and for a flight whose plans take as long as the clock says.
+/// The flights of a file. The steps of a record are asked again one by one, from what the planner then knew. The trials
+/// of a sweep or a study are flown again from their seeds, but for those that crashed, hung or ended in an error. Throws
+/// BadInput with one sentence for another file, and for a flight whose plans take as long as the clock says.
 FlightSource FlightsOf(const std::string& path, const std::vector<std::string>& overrides,
                        const Registries& registries);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pad filter on closed-loop data. A flight is flown once, with the filter of its scenario; then a
-// filter of each model is given the very measurements that came to it, at the moments at which they
-// came, and is asked 50 times a second where the pad is, how fast, and where it will be, the last as
-// the planner asks (estimation::Predict). A sample's course goes by the true turn rate up to its
-// horizon: no model can know of a turn that has not begun.
+// The pad filter on closed-loop data:
+// 1. Fly a flight once, with the filter of its scenario.
+// 2. Give a filter of each model the same measurements, at the moments at which they came.
+// 3. Ask each 50 times a second for the pad's position and velocity, and for its future as the planner asks
+//    (estimation::Predict).
+// A sample's course goes by the true turn rate up to its horizon: no model can know of a turn that has not begun.
 #include "evaluation/studies/pad/pad_study.h"
 
 #include <algorithm>

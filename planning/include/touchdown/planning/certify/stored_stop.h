@@ -30,11 +30,13 @@ void Enter(const PairProof& proof, Certificate* certificate);
 /// How a pair may end.
 enum class PairEnd { kRest, kRestOrContact, kContact };
 
-/// Finds a stop for the curve from `pair->curve` and fills t_stop and stop: braking, or where that is not proven or
-/// ends too low in the pad's way a climb, or, where the curve may end in contact,
-/// the rest of the curve and on to contact; shortly before contact that comes first. The curve until `t_handover` [s] and the stop until rest stay in `hull`
-/// from t_from [s] on. `limits` are what is left of them for the stop. Does not allocate if pair->stop
-/// has held one before.
+/// Finds a stop for the curve from `pair->curve`, and fills t_stop and stop. The stop is the first that is proven of:
+/// 1. shortly before a contact that the curve may make: the rest of the curve and on to contact;
+/// 2. braking, unless it ends too low in the pad's way;
+/// 3. a climb;
+/// 4. farther from such a contact: as 1.
+/// The curve until `t_handover` [s] and the stop until rest stay in `hull` from t_from [s] on. `limits` are what is left
+/// of them for the stop. Does not allocate if pair->stop has held one before.
 PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits& limits,
                     const HullSpace& hull, FlightPair* pair);
 
