@@ -4,6 +4,7 @@
 #   ./test.sh           the suite
 #   ./test.sh quick     the unit tests: minutes, for who changes the code
 #   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two; parts by name: address, tidy, threads
+#   ./test.sh wasm      the planner in a page: build/wasm/playground.html, and its tests; needs 0.8 GB more
 #   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
 set -euo pipefail
 
@@ -16,12 +17,16 @@ case ${1:-} in
   '') ;;
   quick) selection=(-L unit -LE 'python|docs') ;;
   deep) exec .ci/deep "${@:2}" ;;
+  wasm)
+    install_tiers build report test page wasm
+    exec .ci/wasm
+    ;;
   mutants)
     install_tiers build test
     exec .ci/mutants.py "${@:2}"
     ;;
   *)
-    echo "./test.sh $1: there is ./test.sh, and with it quick, deep and mutants." >&2
+    echo "./test.sh $1: there is ./test.sh, and with it quick, deep, wasm and mutants." >&2
     exit 2
     ;;
 esac

@@ -42,7 +42,7 @@ Question About() {
   Question json = {{"scene", SceneJson(first)},
                    {"backends", PlaygroundBackends()},
                    {"hull_radius", control::HullAtEveryTilt(vehicle)},
-                   {"clearance", control::LeastClearance(vehicle)},
+                   {"clearance", OnboardOptionsOf(first).map.inflation_radius},
                    {"foot_depth", vehicle.foot_depth},
                    {"deck_size", 2.0 * PlaygroundPad().deck_half_size}};
   json["camera"] = {{"fov_x_deg", camera.fov_x_deg},

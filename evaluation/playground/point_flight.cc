@@ -241,7 +241,7 @@ nlohmann::ordered_json PointFlight::Report() {
     estimation::BeliefPredictor predictor;
     const estimation::PadPrediction& predicted =
         asked_->request.pad ? predictor.Predict(*asked_->request.pad) : estimation::UnknownPad();
-    json["plan"] = AnswerJson(answer_, PlannerOf(scene_), predicted, asked_->request.input.t_now);
+    json["plan"] = AnswerJson(answer_, predicted, asked_->request.input.t_now);
     json["map"] = MapReport();
     answer_is_new_ = false;
   } else {
@@ -259,8 +259,7 @@ nlohmann::ordered_json PointFlight::Report() {
 
 nlohmann::ordered_json PointFlight::Explain() const {
   if (!asked_) return {};
-  const planning::ReplannerOptions options = PlannerOf(scene_);
-  planning::Replanner replanner(options, solvers::StandardBackends());
+  planning::Replanner replanner(PlannerOf(scene_), solvers::StandardBackends());
   replanner.Restore(before_);
   estimation::BeliefPredictor predictor;
   planning::ReplanInput input = asked_->request.input;
@@ -273,7 +272,7 @@ nlohmann::ordered_json PointFlight::Explain() const {
       asked_->request.rest_climb
           ? replanner.Rest(input, *asked_->request.rest_climb, onboard_.map())
           : replanner.Replan(input, onboard_.map());
-  FlightReport json = AnswerJson(result, options, pad, input.t_now);
+  FlightReport json = AnswerJson(result, pad, input.t_now);
   json["attempts"] = AttemptsJson(log);
   return json;
 }

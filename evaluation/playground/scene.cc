@@ -43,37 +43,45 @@ const std::vector<std::string>& PlaygroundBackends() {
 PlaygroundScene RandomScene(std::uint64_t seed) {
   constexpr double kAround = 1.4;   // of start and pad nothing stands [m]
   constexpr int kMostDraws = 1000;  // of places
+  // Draws in braces are in order with every compiler.
   sim::RandomStream stream(seed, "playground scene");
   PlaygroundScene scene;
   scene.walls.clear();
   scene.pillars.clear();
   scene.seed = seed;
-  scene.p_WB = {stream.Uniform(-7.0, -5.0), stream.Uniform(-3.0, 3.0), stream.Uniform(1.0, 2.5)};
   const auto& motions = PlaygroundMotions();
   const auto any = [&](double count) {
     return static_cast<std::size_t>(stream.Uniform(0.0, count));
   };
+  // In hundredths, and whole degrees: people read them.
+  const auto draw = [&](double low, double high) {
+    return std::round(100.0 * stream.Uniform(low, high)) / 100.0;
+  };
+  const auto draw_angle = [&](double low_deg, double high_deg) {
+    return estimation::Radians(std::round(stream.Uniform(low_deg, high_deg)));
+  };
+  scene.p_WB = {draw(-7.0, -5.0), draw(-3.0, 3.0), draw(1.0, 2.5)};
   scene.pad.kind = motions[any(static_cast<double>(motions.size()))].second;
-  scene.pad.p_start = {stream.Uniform(2.0, 6.0), stream.Uniform(-3.0, 3.0), 0.3};
-  scene.pad.heading = stream.Uniform(-M_PI, M_PI);
-  scene.pad.speed = stream.Uniform(0.2, 1.2);
-  scene.pad.turn_rate = stream.Uniform(0.1, 0.4);
+  scene.pad.p_start = {draw(2.0, 6.0), draw(-3.0, 3.0), 0.3};
+  scene.pad.heading = draw_angle(-180.0, 180.0);
+  scene.pad.speed = draw(0.2, 1.2);
+  scene.pad.turn_rate = draw(0.1, 0.4);
   scene.pad.seed = seed;
   const auto is_free = [&](const Eigen::Vector2d& p, double radius) {
     return (p - scene.p_WB.head<2>()).norm() > radius + kAround &&
            (p - scene.pad.p_start.head<2>()).norm() > radius + kAround;
   };
   const auto walls = any(4.0), pillars = 2 + any(8.0);
-  for (int draw = 0; draw < kMostDraws && scene.walls.size() < walls; ++draw) {
-    const Eigen::Vector2d p(stream.Uniform(-4.0, 4.0), stream.Uniform(-4.0, 4.0));
-    const double half = stream.Uniform(0.5, 2.0), yaw = stream.Uniform(0.0, M_PI);
-    const double height = stream.Uniform(1.5, 3.5);
+  for (int i = 0; i < kMostDraws && scene.walls.size() < walls; ++i) {
+    const Eigen::Vector2d p{draw(-4.0, 4.0), draw(-4.0, 4.0)};
+    const double half = draw(0.5, 2.0), yaw = draw_angle(0.0, 180.0);
+    const double height = draw(1.5, 3.5);
     if (!is_free(p, half)) continue;
     scene.walls.push_back({{p.x(), p.y(), 0.5 * height}, {half, 0.1, 0.5 * height}, yaw});
   }
-  for (int draw = 0; draw < kMostDraws && scene.pillars.size() < pillars; ++draw) {
-    const Eigen::Vector2d p(stream.Uniform(-4.5, 4.5), stream.Uniform(-4.5, 4.5));
-    const double radius = stream.Uniform(0.2, 0.6);
+  for (int i = 0; i < kMostDraws && scene.pillars.size() < pillars; ++i) {
+    const Eigen::Vector2d p{draw(-4.5, 4.5), draw(-4.5, 4.5)};
+    const double radius = draw(0.2, 0.6);
     if (!is_free(p, radius)) continue;
     scene.pillars.push_back({{p.x(), p.y(), 1.5}, radius, 3.0});
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A scene's JSON form. Whoever writes it by hand is told of a key that there is not, and of a number out of range.
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <stdexcept>
 #include <string_view>
@@ -100,7 +101,11 @@ class Part {
 const std::vector<std::string> kArrivals = {"fixed", "free"};
 const std::vector<std::string> kKnown = {"camera", "all"};
 
-double ToDegrees(double radians) { return radians / estimation::kRadPerDeg; }
+// As a person has written it: back and forth without what rounding leaves.
+double ToDegrees(double radians) {
+  constexpr double kDigits = 1e9;
+  return std::round(kDigits * radians * estimation::kDegPerRad) / kDigits;
+}
 
 sim::PadMotionConfig PadFrom(const SceneDocument& json, sim::PadMotionConfig pad) {
   const Part part(json, "scene.pad",

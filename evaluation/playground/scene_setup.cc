@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/playground/scene_setup.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -12,6 +13,7 @@ namespace {
 
 // As the program has them by default.
 constexpr double kPlanLatency = 0.02;   // planning.latency [s]
+constexpr double kClearance = 0.4;      // planning.clearance [m]
 constexpr double kPeriodSlack = 0.004;  // by which a step may come late [s]
 
 }  // namespace
@@ -46,6 +48,7 @@ control::OnboardOptions OnboardOptionsOf(const PlaygroundScene& scene) {
       control::LandingOptions(PlaygroundVehicle(), scene.pad.p_start.z(), scene.limits);
   options.deck_size = 2.0 * PlaygroundPad().deck_half_size;
   options.latency.time = kPlanLatency;
+  options.map.inflation_radius = std::max(options.map.inflation_radius, kClearance);
   options.estimate_disturbance = false;  // a point flies its reference exactly
   return options;
 }

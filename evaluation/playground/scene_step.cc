@@ -57,7 +57,6 @@ void LearnScene(const PlaygroundScene& scene, planning::OccupancyMap* map) {
 }
 
 nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
-                                  const planning::ReplannerOptions& options,
                                   const estimation::PadPrediction& pad, double t_now) {
   AnswerDocument json;
   json["status"] = planning::ToString(result.status);
@@ -89,15 +88,13 @@ nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
   json["cost"] = result.solver.cost;
   AnswerDocument& terms = json["terms"] = AnswerDocument::array();
   for (const solvers::TermCost& term : result.solver.cost_by_term) terms.push_back(term.name);
-  json["clearance"] = options.hull_radius;
   return json;
 }
 
 SceneStep::SceneStep(const PlaygroundScene& scene)
-    : options_(PlannerOf(scene)),
-      map_(KnownMap(scene)),
+    : map_(KnownMap(scene)),
       pad_(sim::PadMotion(scene.pad)),
-      replanner_(options_, solvers::StandardBackends()),
+      replanner_(PlannerOf(scene), solvers::StandardBackends()),
       input_(QuestionOf(scene, pad_)) {
   replanner_.Prepare(map_);
   replanner_.CommitHover(scene.p_WB, 0.0);
@@ -112,7 +109,7 @@ const planning::ReplanResult& SceneStep::Ask() {
 nlohmann::ordered_json SceneStep::Explain() {
   planning::ReplanLog log;
   replanner_.set_log(&log);
-  nlohmann::ordered_json json = AnswerJson(Ask(), options_, pad_, input_.t_now);
+  nlohmann::ordered_json json = AnswerJson(Ask(), pad_, input_.t_now);
   replanner_.set_log(nullptr);
   json["attempts"] = AttemptsJson(log);
   return json;

@@ -17,7 +17,6 @@ namespace touchdown::evaluation {
 
 /// A step as JSON, without its attempts. `pad`: what it planned to.
 nlohmann::ordered_json AnswerJson(const planning::ReplanResult& result,
-                                  const planning::ReplannerOptions& options,
                                   const estimation::PadPrediction& pad, double t_now);
 
 /// Backend `solver` made its steps ready: a question that may be put again and again.
@@ -34,7 +33,6 @@ class SceneStep {
   double MeanTime(int steps);
 
  private:
-  planning::ReplannerOptions options_;
   planning::OccupancyMap map_;
   sim::OraclePadPrediction pad_;
   planning::Replanner replanner_;

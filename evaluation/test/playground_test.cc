@@ -81,9 +81,9 @@ TEST(Playground, PlansAsTheProgramDoes) {
                           pillar.center.y(), pillar.radius, pillar.height);
     }
     const Registries registries = StandardRegistries();
-    const SolvedStep solved =
-        SolveStep(StepFromStart(ParseScenario(text, "scene", "scene.yaml", registries), registries),
-                  0, registries);
+    const SolvedStep solved = SolveStep(
+        StepFromStart(ParseScenario(text, "scene", "scene.yaml", {}, registries), registries), 0,
+        registries);
     const Json plan = PlanOf(scene);
     EXPECT_EQ(plan["status"], planning::ToString(solved.outcome.status));
     EXPECT_EQ(plan["attempts"].size(), solved.log.attempts.size());
