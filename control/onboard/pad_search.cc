@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An image without the pad takes the finder longest, and far from the pad all are such. So an image
-// is searched only if a ball about the expected pad, large enough for the sheet and for five
-// standard deviations of the expectation and half a metre, reaches into the camera's pyramid of
-// view, and is not so far away that no tag can be read. Against an expectation that is wrong and does
-// not know it, every tenth image is searched all the same.
+// An image without the pad takes the finder longest, and far from the pad all are such. So an image is searched only if
+// a ball about the expected pad reaches into the camera's pyramid of view, near enough for a tag to be read. The ball has
+// room for the sheet, for five standard deviations of the expectation and for half a metre. The expectation may be wrong
+// without knowing it: every tenth image is searched all the same.
 #include "control/onboard/pad_search.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Returns from the pad vehicle are no obstacles, or the goal of the flight would be one; those that may be from
-// it are kept in doubt until the tags tell where it was (touchdown/planning/map/pad_outline.h).
-// In the frame of an estimated own state a sighting is good to the tags' accuracy, but the frame wanders as the
-// estimate does, which the pad filter takes for a motion of the pad; and the pad's GPS is off by the estimate's
-// whole error. So GPS leads to the pad, with the estimate's doubt added to its own, and tags, once seen, guide
-// alone: what the vehicle lands by, the place relative to it, does not suffer from an estimate that has drifted.
+// Returns from the pad vehicle are no obstacles, or the goal of the flight would be one. Returns that may be from it are
+// kept in doubt until the tags show where it was (touchdown/planning/map/pad_outline.h).
+// In the frame of an estimated own state a sighting is as exact as the tags are. But the frame wanders as the estimate
+// does, which the pad filter takes for a motion of the pad. And the pad's GPS is off by the estimate's whole error. So
+// GPS leads to the pad, with the estimate's doubt added to its own. Tags, once seen, guide alone: the landing needs the
+// place relative to the pad only, which does not suffer from an estimate that has drifted.
 #include "control/onboard/senses.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole flight is known, so the camera's way is planned: at key times, views from all around are given a cost
-// (hidden, too near to an obstacle, far away, not from behind), and the cheapest way from view to view is found by
-// dynamic programming. Between the keys it is smoothed from both sides, so that nothing lags.
+// The whole flight is known, so the camera's way is planned. At key times, views from all around are given a cost:
+// hidden, too near to an obstacle, far away, not from behind. Dynamic programming finds the cheapest way from view to
+// view. Between the keys it is smoothed from both sides, so that nothing lags.
 
 #include "evaluation/video/chase_camera.h"
 

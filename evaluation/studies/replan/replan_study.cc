@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every accepted plan is looked at again at points 1 cm apart: its speed and acceleration; whether it is
-// in one of the map's blocked cells, which the certificate has asked along chords; and, sharing nothing with
-// the certificate, FCL's distance from these points to the obstacles themselves. Cells hold their obstacles, so that a plan that is clear of the inflated cells is at
-// least the inflation away from every obstacle.
+// Every accepted plan is checked again at points 1 cm apart:
+// - its speed and acceleration;
+// - whether it is in one of the map's blocked cells, which the certificate has asked along chords;
+// - FCL's distance from these points to the obstacles themselves, which shares nothing with the certificate.
+// Cells hold their obstacles. So a plan that is clear of the inflated cells is at least the inflation away from every
+// obstacle.
 #include "evaluation/studies/replan/replan_study.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fits the fast tag camera to rendered views. Detection: the probit's two constants by maximum
-// likelihood over all tags in view, on a grid that is refined; a part of the noise common to all tags
-// of an image was tried and fitted to nothing. Noise: from each view the fast camera looks with some
-// noise of the corners; in each class of sizes the noise is scaled by what the medians of the
-// position errors ask for, since the error goes with the noise, and again for what is not linear.
+// Fits the fast tag camera to rendered views. Detection: the probit's two constants by maximum likelihood over all tags
+// in view, on a grid that is refined. (A part of the noise common to all tags of an image fits to nothing.) Noise: the
+// fast camera looks from each view with some noise of the corners. In each class of sizes the noise is scaled so that the
+// medians of the position errors agree, because the error is proportional to the noise. It is scaled again for
+// what is not linear.
 #include "evaluation/studies/tags/tag_fit.h"
 
 #include <algorithm>
