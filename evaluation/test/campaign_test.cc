@@ -242,7 +242,7 @@ TEST_F(CampaignFiles, AMergeIsRefusedWhereTrialsDoNotFit) {
     EXPECT_FALSE(std::filesystem::exists(At("out.db")));
   };
   refused({a, b}, false, "1 of 4 trials are in none of the files, the first of them is trial 3");
-  refused({a, c}, true, c + ": trial 0 stands in " + a);
+  refused({a, c}, true, c + ": trial 0 is in " + a);
   refused({a, d}, true, d + ": it does not belong to " + a + ": its sweep_seed is 8, not 7");
   refused({a, At("none.db")}, true, "none.db");
   // What is missing can be flown afterwards.
