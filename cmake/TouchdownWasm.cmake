@@ -14,3 +14,13 @@ set(Eigen3_DIR "/usr/share/eigen3/cmake" CACHE PATH "")
 # Exceptions as the browsers have them; two numbers at a time.
 add_compile_options(-fwasm-exceptions -msimd128)
 add_link_options(-fwasm-exceptions)
+
+# The linker runs scripts in Node: their modules are where the distribution has them, and some versions have a fetch of
+# their own, which the scripts take for a browser's.
+set(node_options "")
+execute_process(COMMAND node --no-experimental-fetch -e 0 RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+if(NOT failed)
+  set(node_options "NODE_OPTIONS=--no-experimental-fetch")
+endif()
+set_property(GLOBAL PROPERTY RULE_LAUNCH_LINK
+  "${CMAKE_COMMAND} -E env NODE_PATH=/usr/share/nodejs ${node_options}")

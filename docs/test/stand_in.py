@@ -31,7 +31,7 @@ STUDIES = ("study paper", "study solvers", "study ablation", "study run")
 # A command that needs more than this in its short form needs a rule here.
 CPU_SECONDS = int(os.environ.get("TOUCHDOWN_CPU_SECONDS", "20"))
 OUTPUTS = ("--record", "--plot", "--video", "--save-map", "--db", "--picture", "--trace", "--frames", "--out",
-           "--html")  # fmt: skip
+           "--html", "--mcap")  # fmt: skip
 WHICH = ("none", "failures", "all")
 
 

@@ -39,7 +39,8 @@ Question About() {
   const planning::ReplannerOptions options = PlannerOf(first);
   const estimation::VehicleModel vehicle = PlaygroundVehicle();
   const sim::DepthCameraConfig camera;
-  Question json = {{"scene", SceneJson(first)},
+  Question json = {{"version", TOUCHDOWN_VERSION},
+                   {"scene", SceneJson(first)},
                    {"backends", PlaygroundBackends()},
                    {"hull_radius", control::HullAtEveryTilt(vehicle)},
                    {"clearance", OnboardOptionsOf(first).map.inflation_radius},

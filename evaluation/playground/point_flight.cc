@@ -2,6 +2,7 @@
 #include "evaluation/playground/point_flight.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -14,6 +15,7 @@
 #include "evaluation/record/step_json.h"
 #include "touchdown/control/onboard/envelope.h"
 #include "touchdown/estimation/pad/pad_predictor.h"
+#include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -108,6 +110,7 @@ void PointFlight::Move(const PlaygroundScene& scene) {
   field_ = FieldOf(scene_);
   depth_camera_ = DepthCameraIn(field_, scene_.seed);
   tag_sensor_ = sim::TagSensor({}, field_, scene_.seed);
+  Judge();
 }
 
 void PointFlight::Step() {

@@ -40,8 +40,13 @@ const std::vector<std::string>& PlaygroundBackends() {
   return kBackends;
 }
 
+double BriskAcceleration(double speed) {
+  return std::max(sim::PadMotionConfig{}.acceleration, speed);
+}
+
 PlaygroundScene RandomScene(std::uint64_t seed) {
-  constexpr double kAround = 1.4;   // of start and pad nothing stands [m]
+  constexpr double kAround = 1.4;   // of the start, and of the pad's way, nothing stands [m] ...
+  constexpr double kPadWay = 20.0;  // ... for so long [s]
   constexpr int kMostDraws = 1000;  // of places
   // Draws in braces are in order with every compiler.
   sim::RandomStream stream(seed, "playground scene");
@@ -65,11 +70,16 @@ PlaygroundScene RandomScene(std::uint64_t seed) {
   scene.pad.p_start = {draw(2.0, 6.0), draw(-3.0, 3.0), 0.3};
   scene.pad.heading = draw_angle(-180.0, 180.0);
   scene.pad.speed = draw(0.2, 1.2);
+  scene.pad.acceleration = BriskAcceleration(scene.pad.speed);
   scene.pad.turn_rate = draw(0.1, 0.4);
   scene.pad.seed = seed;
+  const sim::PadMotion motion(scene.pad);
   const auto is_free = [&](const Eigen::Vector2d& p, double radius) {
-    return (p - scene.p_WB.head<2>()).norm() > radius + kAround &&
-           (p - scene.pad.p_start.head<2>()).norm() > radius + kAround;
+    bool free = (p - scene.p_WB.head<2>()).norm() > radius + kAround;
+    for (double t = 0.0; free && t < kPadWay; t += 0.5) {
+      free = (p - motion.At(t).p_WP.head<2>()).norm() > radius + kAround;
+    }
+    return free;
   };
   const auto walls = any(4.0), pillars = 2 + any(8.0);
   for (int i = 0; i < kMostDraws && scene.walls.size() < walls; ++i) {

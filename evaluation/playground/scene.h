@@ -43,6 +43,9 @@ nlohmann::ordered_json SceneJson(const PlaygroundScene& scene);
 /// 0 to 3 walls and 2 to 9 pillars between a start and a pad with a motion, all drawn. The same seed gives the same scene.
 PlaygroundScene RandomScene(std::uint64_t seed);
 
+/// From standing to its speed [m/s] within a second: a pad that stops and goes has time to [m/s^2].
+double BriskAcceleration(double speed);
+
 /// Names of the motions that a pad of the page may have.
 const std::vector<std::pair<std::string, sim::PadMotionConfig::Kind>>& PlaygroundMotions();
 

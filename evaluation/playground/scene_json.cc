@@ -124,8 +124,7 @@ sim::PadMotionConfig PadFrom(const SceneDocument& json, sim::PadMotionConfig pad
   part.Number("turn_rate", -2.0, 2.0, &pad.turn_rate);
   part.Number("height", 0.1, 3.0, &pad.p_start.z());
   part.Number("seed", 0.0, kMostSeeds, &seed);
-  // From standing to its speed within a second: a pad that stops has time to.
-  pad.acceleration = std::max(sim::PadMotionConfig{}.acceleration, pad.speed);
+  pad.acceleration = BriskAcceleration(pad.speed);
   pad.p_start.head<2>() = p;
   pad.seed = static_cast<std::uint64_t>(seed);
   return pad;

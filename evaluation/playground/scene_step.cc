@@ -14,6 +14,7 @@
 #include "sim/sensors/depth_camera.h"
 #include "touchdown/control/onboard/envelope.h"
 #include "touchdown/planning/map/pad_outline.h"
+#include "touchdown/solvers/backend_registry.h"
 
 namespace touchdown::evaluation {
 namespace {

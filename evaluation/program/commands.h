@@ -33,6 +33,7 @@ void AddListCommand(Command app, const Registries& registries, CommandRun* run);
 void AddPlanCommand(Command app, const Registries& registries, CommandRun* run);
 void AddProfileCommand(Command app, const Registries& registries, CommandRun* run);
 void AddReplayCommand(Command app, const Registries& registries, CommandRun* run);
+void AddExportCommand(Command app, const Registries& registries, CommandRun* run);
 
 /// The options that choose a scenario, shared by the commands that fly.
 struct ScenarioArguments {

@@ -201,6 +201,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
   AddPlanCommand(Command(&app), registries, &run);
   AddProfileCommand(Command(&app), registries, &run);
   AddReplayCommand(Command(&app), registries, &run);
+  AddExportCommand(Command(&app), registries, &run);
   AddCheckTermCommand(Command(&app), registries, &run);
   AddCheckVehicleCommand(Command(&app), registries, &run);
   AddListCommand(Command(&app), registries, &run);

@@ -49,7 +49,9 @@ SchemaKey<Element> PlaceKey(const char* what) {
 // x and y of two points or more.
 SchemaKey<WallObstacle> PointsKey() {
   const auto range = schema::In(-200, 200, "m");
-  return {"points", range.ToString(),
+  return {"points",
+          "m",
+          range.ToString(),
           "x and y in W of each point of the middle line: two points or more",
           [range](WallObstacle& wall, const YAML::Node& node, const Where& where) {
             const int size = node.IsSequence() ? static_cast<int>(node.size()) : 0;

@@ -29,7 +29,10 @@ void AddTrialKeys(KeyList& keys);
 template <typename Owner, typename At>
 SchemaKey<Owner> Number(std::string name, ValueRange range, std::string doc, At at) {
   return {
-      name, range.ToString(), std::move(doc),
+      name,
+      range.unit,
+      range.ToString(),
+      std::move(doc),
       [=](Owner& o, const YAML::Node& n, const Where& w) { at(o) = ReadNumber(n, w, name, range); },
       [=](const Owner& o) { return WriteNumber(at(o)); }};
 }
@@ -41,7 +44,10 @@ SchemaKey<Scenario> Whole(std::string name, int lowest, int highest, std::string
                                 .append(", ")
                                 .append(std::to_string(highest))
                                 .append("], whole");
-  return {name, range, std::move(doc),
+  return {name,
+          "",
+          range,
+          std::move(doc),
           [=](Scenario& s, const YAML::Node& n, const Where& w) {
             at(s) = ReadWhole(n, w, name, lowest, highest);
           },
@@ -50,7 +56,10 @@ SchemaKey<Scenario> Whole(std::string name, int lowest, int highest, std::string
 
 template <int kSize, typename Owner, typename At>
 SchemaKey<Owner> Vector(std::string name, ValueRange range, std::string doc, At at) {
-  return {name, range.ToString(), std::move(doc),
+  return {name,
+          range.unit,
+          range.ToString(),
+          std::move(doc),
           [=](Owner& o, const YAML::Node& n, const Where& w) {
             at(o) = ReadVector(n, w, name, kSize, range);
           },
@@ -59,7 +68,10 @@ SchemaKey<Owner> Vector(std::string name, ValueRange range, std::string doc, At 
 
 template <typename At>
 SchemaKey<Scenario> Bool(std::string name, std::string doc, At at) {
-  return {name, "true or false", std::move(doc),
+  return {name,
+          "",
+          "true or false",
+          std::move(doc),
           [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadBool(n, w, name); },
           [=](const Scenario& s) { return std::string(at(s) ? "true" : "false"); }};
 }
@@ -68,7 +80,10 @@ SchemaKey<Scenario> Bool(std::string name, std::string doc, At at) {
 template <typename At>
 SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& words, std::string doc,
                            At at) {
-  return {name, Enumerate(words), std::move(doc),
+  return {name,
+          "",
+          Enumerate(words),
+          std::move(doc),
           [=](Scenario& s, const YAML::Node& n, const Where& w) {
             using Enum = std::remove_reference_t<decltype(at(s))>;
             at(s) = static_cast<Enum>(ReadChoice(n, w, name, words));
@@ -78,7 +93,10 @@ SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& wor
 
 template <typename Owner = Scenario, typename At>
 SchemaKey<Owner> Text(std::string name, std::string range, std::string doc, At at) {
-  return {name, std::move(range), std::move(doc),
+  return {name,
+          "",
+          std::move(range),
+          std::move(doc),
           [=](Owner& o, const YAML::Node& n, const Where& w) { at(o) = ReadText(n, w, name); },
           [=](const Owner& o) { return WriteText(at(o)); }};
 }
@@ -86,7 +104,10 @@ SchemaKey<Owner> Text(std::string name, std::string range, std::string doc, At a
 /// The name of an entry of a registry, which scenario_check asks.
 template <typename At>
 SchemaKey<Scenario> Word(std::string name, const std::string& list, std::string doc, At at) {
-  return {name, "as `touchdown list " + list + "` says", std::move(doc),
+  return {name,
+          "",
+          "as `touchdown list " + list + "` says",
+          std::move(doc),
           [=](Scenario& s, const YAML::Node& n, const Where& w) { at(s) = ReadText(n, w, name); },
           [=](const Scenario& s) { return at(s); }};
 }

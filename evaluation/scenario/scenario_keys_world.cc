@@ -85,7 +85,9 @@ SchemaKey<Scenario> RotorSenses() {
   const std::string name = "airframe.rotor_senses";
   const std::string allowed = "file, auto or a list of 1 and -1";
   return {
-      name, allowed,
+      name,
+      "",
+      allowed,
       "imported vehicles: sign of each rotor's reaction torque about z, in the file's order; auto: "
       "neighbours turn against each other where the file's senses cannot steer",
       [=](Scenario& s, const YAML::Node& n, const Where& w) {
@@ -170,7 +172,7 @@ void AddTrialKeys(KeyList& keys) {
                        "image came and no new plan was made; 0: never",
                        TOUCHDOWN_AT(stand_limit)));
   keys.push_back(
-      {"seed", "[0, 2^53], whole", "seed of every random stream",
+      {"seed", "", "[0, 2^53], whole", "seed of every random stream",
        [](Scenario& s, const YAML::Node& n, const Where& w) { s.seed = ReadSeed(n, w, "seed"); },
        [](const Scenario& s) { return std::to_string(s.seed); }});
 }

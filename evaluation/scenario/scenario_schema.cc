@@ -59,7 +59,7 @@ std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries) {
   Offer("controller", registries.controllers, &keys);
   Offer("pad.prediction", registries.predictors, &keys);
   for (const Parameter& parameter : ParametersOf(registries)) {
-    keys.push_back({parameter.key, parameter.range.ToString(), parameter.doc,
+    keys.push_back({parameter.key, parameter.range.unit, parameter.range.ToString(), parameter.doc,
                     [parameter](Scenario& s, const YAML::Node& n, const Where& w) {
                       s.parameters[parameter.key] =
                           ReadNumber(n, w, parameter.key, parameter.range);

@@ -15,6 +15,7 @@ namespace touchdown::evaluation {
 template <typename Owner>
 struct SchemaKey {
   std::string name;   ///< dotted, "pad.speed"
+  std::string unit;   ///< empty: none
   std::string range;  ///< allowed values in words, with their unit
   std::string doc;    ///< one line
   /// Reads the value into its member. @throws BadInput

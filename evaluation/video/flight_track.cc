@@ -74,6 +74,24 @@ std::vector<TrackSample> ReadSamples(SqliteDb& db) {
   return samples;
 }
 
+std::vector<TrackBelief> ReadBeliefs(SqliteDb& db) {
+  std::vector<TrackBelief> beliefs;
+  TableRows pad(db, "pad",
+                "source, t, px, py, pz, vx, vy, vz, yaw, yaw_rate, cov_xx, cov_xy, cov_yy", "t");
+  while (pad.Next()) {
+    if (pad.Text() == kTrue) continue;
+    TrackBelief& belief = beliefs.emplace_back();
+    belief.t = pad.Number();
+    belief.pad.p_WP = Place(&pad);
+    belief.pad.v_WP = pad.Vector3();
+    belief.pad.yaw = pad.Number();
+    belief.pad.yaw_rate = pad.Number();
+    const double xx = pad.Number(), xy = pad.Number();
+    belief.pad.cov_p << xx, xy, xy, pad.Number();
+  }
+  return beliefs;
+}
+
 std::vector<TrackEvent> ReadEvents(SqliteDb& db) {
   std::vector<TrackEvent> events;
   TableRows mode(db, "mode", "t, mode", "t LIMIT 1");  // the first one is no event
@@ -107,6 +125,7 @@ FlightTrack::FlightTrack(const std::string& record_path) {
   try {
     SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
     samples_ = ReadSamples(db);
+    beliefs_ = ReadBeliefs(db);
     events_ = ReadEvents(db);
     touchdown_ = ReadTouchdown(db);
   } catch (const SqliteError& error) {

@@ -17,6 +17,12 @@ struct TrackSample {
   estimation::PadState pad;
 };
 
+/// The pad as it was believed to be at one time, with the covariance of its place.
+struct TrackBelief {
+  double t = 0.0;  ///< [s]
+  estimation::PadState pad;
+};
+
 struct TrackEvent {
   double t = 0.0;    ///< [s]
   std::string kind;  ///< as in the record
@@ -39,6 +45,8 @@ class FlightTrack {
   /// Between samples, states are interpolated. @param t is clamped to [0, t_end()] [s].
   TrackSample At(double t) const;
 
+  /// What was believed of the pad, from when on anything was; at times of samples.
+  const std::vector<TrackBelief>& beliefs() const { return beliefs_; }
   /// All that happened, in order.
   const std::vector<TrackEvent>& events() const { return events_; }
   /// Of a flight that landed.
@@ -46,6 +54,7 @@ class FlightTrack {
 
  private:
   std::vector<TrackSample> samples_;
+  std::vector<TrackBelief> beliefs_;
   std::vector<TrackEvent> events_;
   std::optional<TrackTouchdown> touchdown_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The page: reads its flights, builds the picture, moves time.
-import { Color, DirectionalLight, Fog, HemisphereLight, Scene, Vector3, WebGLRenderer } from "three";
+import { Vector3 } from "three";
 import "uplot/dist/uPlot.min.css";
 import { BLACK, BLUE, FLIGHTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 import { Flight } from "./flight.js";
@@ -10,13 +10,13 @@ import { Pad } from "./pad.js";
 import { Panel, outcomeWords } from "./panel.js";
 import { Flown, Plans } from "./plans.js";
 import { Plots } from "./plots.js";
+import { makeStage, shineOn } from "./stage.js";
 import { Timeline } from "./timeline.js";
 import { unpack } from "./unpack.js";
 import { Vehicle } from "./vehicle.js";
 import { VIEWS, Views } from "./views.js";
 import { Prior, makeGoal, makeWorld, makeZones } from "./world.js";
 
-const SKY_COLOUR = "#EDF2F6";
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
 const CLICK = 9; // a plan is taken within so many pixels
 
@@ -107,17 +107,7 @@ class Replay {
 
   makePicture() {
     const canvas = at("picture");
-    this.renderer = new WebGLRenderer({ canvas, antialias: true });
-    this.renderer.shadowMap.enabled = true;
-    this.scene = new Scene();
-    this.scene.background = new Color(SKY_COLOUR);
-    this.scene.fog = new Fog(SKY_COLOUR, 60, 180);
-    this.scene.add(new HemisphereLight("#FFFFFF", "#B9B4A8", 2.2));
-    this.sun = new DirectionalLight("#FFFFFF", 2.0);
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(2048, 2048);
-    Object.assign(this.sun.shadow.camera, { left: -14, right: 14, top: 14, bottom: -14, near: 1, far: 60 });
-    this.scene.add(this.sun, this.sun.target);
+    Object.assign(this, makeStage(canvas));
     const begin = this.flights[0].vehicleAt(this.begin, new Vector3());
     // Of two worlds that of the flight is drawn that is looked at.
     const [one, other] = this.flights.map((flight) => JSON.stringify(flight.document.obstacles));
@@ -313,8 +303,7 @@ class Replay {
       shown.update(t, i === this.selected, drawsPad, this.views.onBoard);
     });
     const body = this.shown.vehicle.body.position;
-    this.sun.target.position.copy(body);
-    this.sun.position.copy(body).add(new Vector3(6, -10, 18));
+    shineOn(this.sun, body);
     this.views.update(this.shown.vehicle, this.size[0] / this.size[1]);
     this.renderer.render(this.scene, this.views.camera);
     this.drawLabels();

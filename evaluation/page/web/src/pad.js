@@ -27,7 +27,8 @@ function sheetTexture(sheet) {
   return texture;
 }
 
-function makePad(pad, deckHeight) {
+/** The deck and what carries it, without a sheet; its origin is the middle of the deck's face. */
+export function makeCarrier(pad, deckHeight) {
   const group = new Group();
   const white = new MeshLambertMaterial({ color: "#F8F8F6" }), dark = new MeshLambertMaterial({ color: "#4A4F57" });
   const deck = new Mesh(new BoxGeometry(2 * pad.half_size, 2 * pad.half_size, pad.thickness), white);
@@ -35,14 +36,25 @@ function makePad(pad, deckHeight) {
   const height = Math.max(deckHeight - pad.thickness - pad.ground_gap, 0.02);
   const body = new Mesh(new BoxGeometry(2 * pad.body[0], 2 * pad.body[1], height), dark);
   body.position.z = -pad.thickness - height / 2;
+  deck.castShadow = body.castShadow = deck.receiveShadow = true;
+  group.add(deck, body);
+  return group;
+}
+
+/** A printed sheet that lies on the deck. */
+export function makeSheet(side, texture) {
   const sheet = new Mesh(
-    new PlaneGeometry(pad.sheet.side, pad.sheet.side),
-    new MeshLambertMaterial({ map: sheetTexture(pad.sheet), polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 }),
+    new PlaneGeometry(side, side),
+    new MeshLambertMaterial({ map: texture, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 }),
   );
   sheet.position.z = 0.001;
-  deck.castShadow = body.castShadow = true;
-  deck.receiveShadow = sheet.receiveShadow = true;
-  group.add(deck, body, sheet);
+  sheet.receiveShadow = true;
+  return sheet;
+}
+
+function makePad(pad, deckHeight) {
+  const group = makeCarrier(pad, deckHeight);
+  group.add(makeSheet(pad.sheet.side, sheetTexture(pad.sheet)));
   const plate = pad.sheet.side / 2 - pad.plate_from; // from there to the sheet's front edge
   if (plate > 1e-3) {
     const cover = new Mesh(new BoxGeometry(plate, pad.sheet.side, 0.004), new MeshLambertMaterial({ color: "#6B6F76" }));
@@ -52,7 +64,7 @@ function makePad(pad, deckHeight) {
   return group;
 }
 
-function square(half, z) {
+export function square(half, z) {
   return [half, half, z, -half, half, z, -half, -half, z, half, -half, z, half, half, z];
 }
 
@@ -71,7 +83,7 @@ function grownSquare(half, by, z) {
 }
 
 /** The ellipse of a covariance in the plane, about the origin. */
-function ellipse(xx, xy, yy, z) {
+export function ellipse(xx, xy, yy, z) {
   const middle = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
   const a = SIGMAS * Math.sqrt(Math.max(middle + spread, 0)), b = SIGMAS * Math.sqrt(Math.max(middle - spread, 0));
   const angle = 0.5 * Math.atan2(2 * xy, xx - yy);

@@ -42,7 +42,7 @@ function meshOf(shape) {
 }
 
 /** A camera's pyramid, from its place out to its range. */
-function frustumOf(camera) {
+export function frustumOf(camera) {
   const [x, y] = camera.slope;
   // The range is along the ray: the corners are no farther than what is ahead.
   const far = camera.range / Math.hypot(1, x, y);

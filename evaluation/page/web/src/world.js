@@ -53,26 +53,37 @@ function gridTexture() {
   return texture;
 }
 
-/** Ground and obstacles. */
-export function makeWorld(obstacles, middle) {
-  const group = new Group();
+/** A plane with a line at every metre. */
+export function makeGround(middle) {
   const ground = new Mesh(new PlaneGeometry(EXTENT, EXTENT), new MeshLambertMaterial({ map: gridTexture() }));
   ground.position.set(Math.round(middle.x), Math.round(middle.y), -0.005);
   ground.receiveShadow = true;
-  group.add(ground);
-  const material = new MeshLambertMaterial({ color: BUILDING, transparent: true, opacity: 0.55 });
-  const edges = new LineBasicMaterial({ color: EDGE });
-  for (const obstacle of obstacles) {
-    const geometry = geometryOf(obstacle);
-    const mesh = new Mesh(geometry, material);
-    if (obstacle.kind !== "mesh") {
-      mesh.position.set(...obstacle.centre);
-      mesh.rotation.z = obstacle.yaw ?? 0;
-    }
-    mesh.castShadow = mesh.receiveShadow = true;
-    if (obstacle.kind === "box" && obstacles.length <= MOST_EDGES) mesh.add(new LineSegments(new EdgesGeometry(geometry), edges));
-    group.add(mesh);
+  return ground;
+}
+
+export function obstacleMaterials() {
+  return { faces: new MeshLambertMaterial({ color: BUILDING, transparent: true, opacity: 0.55 }), edges: new LineBasicMaterial({ color: EDGE }) };
+}
+
+/** `drawsEdges`: of boxes. */
+export function makeObstacle(obstacle, { faces, edges }, drawsEdges) {
+  const geometry = geometryOf(obstacle);
+  const mesh = new Mesh(geometry, faces);
+  if (obstacle.kind !== "mesh") {
+    mesh.position.set(...obstacle.centre);
+    mesh.rotation.z = obstacle.yaw ?? 0;
   }
+  mesh.castShadow = mesh.receiveShadow = true;
+  if (obstacle.kind === "box" && drawsEdges) mesh.add(new LineSegments(new EdgesGeometry(geometry), edges));
+  return mesh;
+}
+
+/** Ground and obstacles. */
+export function makeWorld(obstacles, middle) {
+  const group = new Group();
+  group.add(makeGround(middle));
+  const materials = obstacleMaterials();
+  for (const obstacle of obstacles) group.add(makeObstacle(obstacle, materials, obstacles.length <= MOST_EDGES));
   return group;
 }
 

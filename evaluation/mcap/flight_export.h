@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "touchdown/evaluation/scenario/registries.h"
+
+namespace touchdown::evaluation {
+
+/// Makes sure before the work that WriteMcap will be able to write there: the name, which must end in .mcap, the place, the
+/// descriptions of the messages. @throws BadInput
+void CheckMcap(const std::string& option, const std::string& path);
+
+using ExportProgress = std::function<void(int done, int all)>;
+
+/// Writes a recorded flight as an MCAP file for Foxglove and Rerun (docs/mcap.md). The same record gives the same bytes. The file
+/// appears whole or not at all. `progress`, where it is not empty, is told how many of the messages are written; what it
+/// throws ends the work.
+/// @throws BadInput as ReadRecord, and where images are to be rendered that cannot be; std::runtime_error
+void WriteMcap(const std::string& record_path, const std::string& mcap_path,
+               const Registries& registries, const ExportProgress& progress);
+
+}  // namespace touchdown::evaluation

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How an export begins, ends and fails, and the parts that it is made of. What is in its messages is compared with the record by
+// evaluation/mcap/node.
+#include "evaluation/mcap/flight_export.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "evaluation/base/bad_input.h"
+#include "evaluation/base/sqlite_db.h"
+#include "evaluation/flight/closed_loop.h"
+#include "evaluation/mcap/occupied_cells.h"
+#include "evaluation/mcap/point_cloud.h"
+#include "evaluation/mcap/solid.h"
+#include "evaluation/record/record.h"
+#include "touchdown/evaluation/base/shipped_files.h"
+
+namespace touchdown::evaluation {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string SentenceOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string BytesIn(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class FlightExports : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = ::testing::TempDir() + "flight_export";
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directory(folder_);
+    const Scenario scenario = LoadScenario(FindScenario("forest"), {"timeout=1"}, registries_);
+    TrialRecord flown;
+    const TrialResult result = RunTrial(scenario, scenario.seed, registries_, &flown);
+    WriteRecord(record_ = folder_ + "/f.db", scenario, result, flown);
+    file_ = folder_ + "/f.mcap";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void Export() { WriteMcap(record_, file_, registries_, {}); }
+
+  std::vector<std::string> Files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  void Execute(const std::string& sql) {
+    SqliteDb(record_, SqliteDb::Mode::kReadWrite).Execute(sql);
+  }
+
+  const Registries registries_ = StandardRegistries();
+  std::string folder_, record_, file_;
+};
+
+TEST_F(FlightExports, RepeatBitByBitAndTellHowFarTheyAre) {
+  std::vector<std::pair<int, int>> told;
+  WriteMcap(record_, file_, registries_, [&](int done, int all) { told.push_back({done, all}); });
+  const std::string bytes = BytesIn(file_);
+  EXPECT_EQ(bytes.substr(0, 5), "\x89MCAP");
+  ASSERT_GT(told.size(), 100U);
+  EXPECT_EQ(told.front().first, 1);
+  EXPECT_EQ(told.back(), std::make_pair(static_cast<int>(told.size()), told.back().first));
+  Export();  // over it
+  EXPECT_EQ(BytesIn(file_), bytes);
+}
+
+TEST_F(FlightExports, LeaveNothingWhereTheyAreEnded) {
+  struct Ended {};
+  EXPECT_THROW(WriteMcap(record_, file_, registries_,
+                         [](int done, int) {
+                           if (done == 50) throw Ended{};
+                         }),
+               Ended);
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
+TEST_F(FlightExports, SayWhatIsNoRecord) {
+  record_ = folder_ + "/none.db";
+  EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("there is no such record"));
+  record_ = folder_ + "/f.txt";
+  std::ofstream(record_) << "a text";
+  EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("f.txt: not a record"));
+  record_ = folder_ + "/f.db";
+  Execute("UPDATE pad SET cov_xx = NULL WHERE source = 'estimate'");
+  EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("f.db: its table pad lacks a number"));
+  EXPECT_THAT(Files(), ElementsAre("f.db", "f.txt"));
+}
+
+TEST_F(FlightExports, SayThatAMapLeavesItsWindow) {
+  Execute("UPDATE map_change SET ix = ix + 100000 WHERE state = 'occupied'");
+  EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("cells outside of the map's window"));
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
+TEST_F(FlightExports, NeedAPlaceAndItsName) {
+  EXPECT_EQ(SentenceOf([&] { CheckMcap("--mcap", file_); }), "");
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+  EXPECT_EQ(SentenceOf([] { CheckMcap("--mcap", "f.bag"); }),
+            "--mcap f.bag: the name must end in .mcap.");
+  EXPECT_THAT(SentenceOf([&] { CheckMcap("--mcap", folder_ + "/no/f.mcap"); }),
+              HasSubstr("no directory"));
+}
+
+MapChange ChangeOf(const planning::CellIndex& origin, std::vector<MapRun> runs) {
+  MapChange change;
+  change.origin = origin;
+  change.runs = std::move(runs);
+  return change;
+}
+
+TEST(OccupiedCells, FollowTheWindowAndTellWhatIsNew) {
+  using planning::CellState;
+  OccupiedCells cells({4, 4, 2});
+  cells.Apply(ChangeOf({0, 0, 0},
+                       {{{0, 1, 0}, 2, CellState::kOccupied}, {{2, 1, 0}, 1, CellState::kFree}}));
+  EXPECT_THAT(cells.TakeNew(),
+              ElementsAre(OccupiedCells::Cell{0, 1, 0}, OccupiedCells::Cell{0, 1, 1}));
+  EXPECT_TRUE(cells.TakeNew().empty());
+  // The window moves on by a cell along x: the first one is forgotten. The other one is seen to be free, a third appears.
+  cells.Apply(ChangeOf({1, 0, 0}, {{{4, 3, 1}, 1, CellState::kOccupied}}));
+  EXPECT_THAT(cells.all(), ElementsAre(OccupiedCells::Cell{0, 1, 1}, OccupiedCells::Cell{1, 3, 4}));
+  cells.Apply(ChangeOf({1, 0, 0}, {{{1, 1, 0}, 1, CellState::kFree}}));
+  EXPECT_THAT(cells.TakeNew(), ElementsAre(OccupiedCells::Cell{1, 3, 4}));
+  EXPECT_THROW(cells.Apply(ChangeOf({1, 0, 0}, {{{4, 3, 1}, 2, CellState::kOccupied}})),
+               std::invalid_argument);
+  EXPECT_THROW(cells.Apply(ChangeOf({1, 0, 0}, {{{0, 3, 1}, 1, CellState::kOccupied}})),
+               std::invalid_argument);
+}
+
+Solid SolidOf(Solid::Kind kind) {
+  Solid solid;
+  solid.kind = kind;
+  solid.pose.translate(Eigen::Vector3d(3.0, -2.0, 1.0))
+      .rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()));
+  solid.size = {1.0, 1.0, 2.0};
+  return solid;
+}
+
+TEST(Solids, HaveTheirArea) {
+  EXPECT_NEAR(AreaOf(SurfaceOf(SolidOf(Solid::Kind::kBox))), 10.0, 1e-12);
+  // Polygons lie within the circle.
+  const double cylinder = M_PI * (1.0 * 2.0 + 2.0 * 0.25);
+  EXPECT_NEAR(AreaOf(SurfaceOf(SolidOf(Solid::Kind::kCylinder))), cylinder, 0.03 * cylinder);
+  Solid ball = SolidOf(Solid::Kind::kEllipsoid);
+  ball.size.setConstant(2.0);
+  EXPECT_NEAR(AreaOf(SurfaceOf(ball)), 4.0 * M_PI, 0.05 * 4.0 * M_PI);
+}
+
+TEST(Solids, AreCoveredByPoints) {
+  constexpr double kSpacing = 0.1;
+  for (const auto kind : {Solid::Kind::kBox, Solid::Kind::kCylinder, Solid::Kind::kEllipsoid}) {
+    const Solid solid = SolidOf(kind);
+    CloudPoints points;
+    AddSurface(solid, kSpacing, &points);
+    const TriangleSurface surface = SurfaceOf(solid);
+    for (const Eigen::Vector3d& corner : surface.corners) {
+      double nearest = 1.0;
+      for (const CloudPoint& point : points) {
+        nearest = std::min(nearest, (point.p - solid.pose * corner).norm());
+      }
+      EXPECT_LT(nearest, 2.0 * kSpacing);
+    }
+    // On the surface: none is farther from the middle than the corners, and none far within.
+    for (const CloudPoint& point : points) {
+      const Eigen::Vector3d p = (solid.pose.inverse() * point.p).cwiseQuotient(0.5 * solid.size);
+      const double round = kind == Solid::Kind::kEllipsoid ? p.norm()
+                           : kind == Solid::Kind::kCylinder
+                               ? std::max(p.head<2>().norm(), std::abs(p.z()))
+                               : p.cwiseAbs().maxCoeff();
+      EXPECT_LE(round, 1.0 + 1e-9);
+      EXPECT_GE(round, 0.94);
+    }
+    EXPECT_LT(static_cast<double>(points.size()), 4.0 * AreaOf(surface) / (kSpacing * kSpacing));
+  }
+}
+
+}  // namespace
+}  // namespace touchdown::evaluation
