@@ -7,6 +7,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -114,6 +115,14 @@ def test_every_command_runs(document, folder, commands):
     for entry in sorted(ran, key=lambda entry: -entry["cpu_s"])[:5]:
         print(f"{entry['cpu_s']:6.2f} s  line {entry['line']}: {shlex.join(entry['short'])}")
     assert not wrong, "\n".join(f"{document.name}:{sentence}" for sentence in wrong)
+
+
+def test_the_lines_of_pandas_read_a_record(folder):
+    blocks = [block for block in Document(ROOT / "docs" / "record.md").blocks if block.language == "python"]
+    assert len(blocks) == 1 and len(blocks[0].text.splitlines()) == 6, "six lines"
+    done = subprocess.run([sys.executable, "-c", blocks[0].text], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"planned +\d+", done.stdout), done.stdout
 
 
 def test_no_command_hides_where_it_is_not_collected():
