@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The library touchdown_allocations: counts allocations by standing in front of the C library's allocator, where
-// operator new, Eigen and other libraries all end. Programs of ours are not linked with it: who wants to count
+// operator new, Eigen and other libraries all end. Programs of ours are not linked with it: a program that wants to count
 // preloads it, the tests link it. Needs glibc's own names for its allocator.
 
 #include <cerrno>

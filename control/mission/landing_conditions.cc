@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gate, corridor, cone and contact: each a bound on what is estimated now, the gate also on what is foretold
+// Gate, corridor, cone and contact: each a bound on what is estimated now, the gate also on what is predicted
 // for the contact.
 
 #include "control/mission/landing_conditions.h"
@@ -11,7 +11,7 @@ namespace touchdown::control {
 namespace {
 
 constexpr double kHeightError =
-    0.02;  // one sigma of an estimated own height (docs/own_state.md) [m]
+    0.02;  // one sigma of an estimated own height (docs/results/own_state/tables.md) [m]
 
 // Whether what is known now lasts until contact, were nothing measured on the way.
 bool CanBridge(const MissionState& s, const MissionInputs& in, const MissionParameters& p) {
@@ -42,7 +42,7 @@ Conditions Assess(const MissionState& s, const MissionInputs& in,
   const bool own_good =
       in.own_usable && (in.own_fresh || LastedLonger(s.own_stale_since, s.t, p.own_patience));
   const bool seen = in.pad_sigma <= p.gate_sigma && in.tag_age <= p.gate_tag_age;
-  // A bridge is what is foretold in W, and dead reckoning leaves W.
+  // A bridge rests on a prediction in W, and dead reckoning leaves W.
   const bool bridged = in.own_fresh && CanBridge(s, in, p);
   now.gate = !now.numbers_valid || !own_good ? Gate::kOwnState
              : !in.pad_available             ? Gate::kNoPad

@@ -36,8 +36,8 @@ bool TooFarOff(const MissionState& s, const MissionInputs& in, const Conditions&
 
 // Will the feet be still enough over the deck when they touch it?
 bool TooFast(const MissionInputs& in, const MissionParameters& p) {
-  const bool foretold = Planned(in) && std::isfinite(in.arrival_in);
-  const double left = foretold ? std::max(0.0, in.arrival_in) : 0.0;
+  const bool predicted = Planned(in) && std::isfinite(in.arrival_in);
+  const double left = predicted ? std::max(0.0, in.arrival_in) : 0.0;
   return in.horizontal_speed > p.contact_speed + p.closing_rate * left;
 }
 

@@ -17,11 +17,11 @@ constexpr double kTiltReserve_deg = 10.0;  // beyond plans: stops in wind count 
 // ... and beyond that, for gusts alone. In gusts of 15 m/s a vehicle 20 % too light is up to 0.9 m off
 // its reference without it and 0.2 m with it; more brings no more.
 constexpr double kGustReserve_deg = 10.0;
-constexpr double kSteepest = 1.3;          // [rad]
-constexpr double kFeetAboveGround = 0.3;   // away from the pad [m]
-constexpr double kCorridorWeight = 300.0;  // of a planned landing ...
-constexpr double kHurry = 100.0;           // ... and of the arrival time in it
-constexpr double kSpeedPrior = 0.5;        // of the pad, share of the speed limit
+constexpr double kSteepest = 1.3;             // [rad]
+constexpr double kFeetAboveGround = 0.3;      // away from the pad [m]
+constexpr double kCorridorWeight = 300.0;     // of a planned landing ...
+constexpr double kArrivalTimeWeight = 100.0;  // ... and of the arrival time in it
+constexpr double kSpeedPrior = 0.5;           // of the pad, share of the speed limit
 
 double Beyond(const Envelope& envelope, double reserve_deg) {
   return std::min(kSteepest, (envelope.tilt_deg + reserve_deg) * estimation::kRadPerDeg);
@@ -85,7 +85,8 @@ void SetVehicle(const estimation::VehicleModel& model, const Envelope& envelope,
 void SetLanding(planning::ReplannerOptions* options) {
   options->problem.free_end_acceleration = false;
   SetWeight("approach_corridor", kCorridorWeight, options);
-  if (options->arrival == planning::ArrivalMode::kFree) SetWeight("arrival_time", kHurry, options);
+  if (options->arrival == planning::ArrivalMode::kFree)
+    SetWeight("arrival_time", kArrivalTimeWeight, options);
 }
 
 OnboardOptions LandingOptions(const estimation::VehicleModel& model, double deck_height,

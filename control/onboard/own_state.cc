@@ -15,16 +15,17 @@ namespace {
 using estimation::OwnUpdate;
 using estimation::VehicleState;
 
-constexpr double kDensest = 1000.0;  // given states are kept [Hz]
-constexpr double kCarriedOn = 0.1;   // a given state is good for so long without a newer one [s]
-constexpr double kAhead = 0.1;       // of the time that was advanced to: no measurement is [s]
+constexpr double kDensest = 1000.0;    // given states are kept [Hz]
+constexpr double kStateTimeout = 0.1;  // a given state is good for so long without a newer one [s]
+constexpr double kAhead = 0.1;         // of the time that was advanced to: no measurement is [s]
 
-constexpr double kLargest = 1e10;    // [m], [m/s], [rad/s]: no simulator goes on beyond it
+constexpr double kLargest = 1e10;  // [m], [m/s], [rad/s]: no simulator goes on beyond it
 
 // Written so that a number that is none fails each.
 bool IsPossible(const VehicleState& s) {
   const auto within = [](const Eigen::Vector3d& a) { return (a.array().abs() < kLargest).all(); };
-  return IsTime(s.t) && within(s.p_WB) && within(s.v_WB) && within(s.w_WB_B) && std::abs(s.q_WB.norm() - 1.0) < 1e-3;
+  return IsTime(s.t) && within(s.p_WB) && within(s.v_WB) && within(s.w_WB_B) &&
+         std::abs(s.q_WB.norm() - 1.0) < 1e-3;
 }
 
 VehicleState CarriedTo(double t, const VehicleState& from) {
@@ -73,7 +74,7 @@ Taken OwnState::Take(const VehicleState& state) {
   if (filter_) return Taken::kUnasked;
   if (!IsPossible(state) || IsAhead(state.t)) return Taken::kInvalid;
   if (!advanced_ && !Reaches(state.t)) size_ = 0;  // the newest may be of a wrong time
-  int at = size_;  // in front of which it belongs
+  int at = size_;                                  // in front of which it belongs
   while (at > 0 && given(at - 1).t > state.t) --at;
   if (at > 0 && given(at - 1).t == state.t) return Taken::kDoubled;
   if (size_ > 0 && state.t < given(size_ - 1).t - span_) return Taken::kTooOld;
@@ -159,7 +160,7 @@ VehicleState OwnState::At(double t) const {
   }
   if (size_ == 0) return now_;
   const VehicleState& from = LatestAt(t);
-  return CarriedTo(std::clamp(t, from.t, from.t + kCarriedOn), from);
+  return CarriedTo(std::clamp(t, from.t, from.t + kStateTimeout), from);
 }
 
 bool OwnState::Reaches(double t) const {
@@ -174,8 +175,8 @@ estimation::OwnStatus OwnState::Status(double t) const {
     return ahead ? estimation::OwnStatus::kImuStale : filter_->Status(t + ahead_);
   }
   if (size_ == 0) return estimation::OwnStatus::kAligning;
-  return std::abs(t - LatestAt(t).t) <= kCarriedOn ? estimation::OwnStatus::kGood
-                                                   : estimation::OwnStatus::kImuStale;
+  return std::abs(t - LatestAt(t).t) <= kStateTimeout ? estimation::OwnStatus::kGood
+                                                      : estimation::OwnStatus::kImuStale;
 }
 
 double OwnState::HorizontalSigma() const {

@@ -32,7 +32,7 @@ class OwnState {
   bool known() const;
 
   /// Brings now() to the time t [s]. Given states from later than that, by more than a moment, are forgotten: before
-  /// the first call nobody knew the time.
+  /// the first call the time was not known.
   void Advance(double t);
   /// The state by the newest measurement, or at the time of Advance if that is later.
   const estimation::VehicleState& now() const { return now_; }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The on-board loop around the libraries: the state machine says what to do, the replanner how to
-// fly there from the committed trajectory, the heading follows the way ahead so that the depth
-// camera sees where the vehicle is going, and the tracking law turns the reference into rotor
-// thrusts.
+// The on-board loop around the libraries. The state machine says what to do. The replanner finds a way there from the
+// committed trajectory. The heading follows the way ahead, so that the depth camera sees where the vehicle is going. The
+// tracking law turns the reference into rotor thrusts.
 #include "control/onboard/pilot.h"
 
 #include <algorithm>
@@ -30,7 +29,7 @@ constexpr double kAlignTolerance = 0.35;  // heading counts as aligned within th
 constexpr double kContactShare = 0.2;     // of the weight, on the feet: enough to be a contact
 constexpr double kLeaning = 0.1;          // of steady force over weight: a foot goes ahead
 constexpr double kTurnTime = 2.0;         // ... so long before a planned contact [s]
-constexpr double kFarAside =
+constexpr double kMaxHeadingChange =
     70.0 * estimation::kRadPerDeg;  // of the way: half a foot's sector and more
 constexpr double kUpright = 0.07;   // ... until it is less than that
 constexpr double kFlareMargin = 5.0 * estimation::kRadPerDeg;
@@ -214,8 +213,8 @@ const planning::ReplanResult* Pilot::Replan(const estimation::VehicleState& vehi
   return &result;
 }
 
-// A measured step that took longer than was reckoned with: its plan is flown from when it was there, and
-// no other step is begun before.
+// A measured step that took longer than expected: its plan is flown from when it was there, and no other
+// step begins before.
 bool Pilot::DeliverLate(double t) {
   if (!options_.latency.measured || measured_latency_ <= replan_.latency_s) return false;
   busy_until_ = t + measured_latency_;
@@ -267,7 +266,7 @@ double Pilot::RestClimb() const {
   return mission_.guidance == Guidance::kClimb ? parameters_.follow_height : 0.0;
 }
 
-// Who comes to rest may start above the deck, and is told where that is, too.
+// A vehicle that comes to rest may start above the deck: its request holds the pad, too.
 const planning::ReplanResult& Pilot::Ask(bool for_plan, const estimation::PadFilter& filter,
                                          const planning::OccupancyMap& map) {
   ReplanRequest& request = replan_.request;
@@ -418,7 +417,7 @@ double Pilot::DesiredHeading() {
   if (!leans_) return heading_ = heading_ahead_;
   heading_ = HeadingIntoWind(model_, force_W, heading_);
   const bool aside = foot_height_ > parameters_.gate_height &&
-                     std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kFarAside;
+                     std::abs(estimation::WrapAngle(heading_ - heading_ahead_)) > kMaxHeadingChange;
   return heading_ = aside ? HeadingIntoWind(model_, force_W, heading_ahead_) : heading_;
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Returns from the pad vehicle are no obstacles, or the goal of the flight would be one; those that may be from
-// it are kept in doubt until the tags tell where it was (touchdown/planning/map/pad_outline.h).
-// In the frame of an estimated own state a sighting is good to the tags' accuracy, but the frame wanders as the
-// estimate does, which the pad filter takes for a motion of the pad; and the pad's GPS is off by the estimate's
-// whole error. So GPS leads to the pad, with the estimate's doubt added to its own, and tags, once seen, guide
-// alone: what the vehicle lands by, the place relative to it, does not suffer from an estimate that has drifted.
+// Returns from the pad vehicle are no obstacles, or the goal of the flight would be one. Returns that may be from it are
+// kept in doubt until the tags show where it was (touchdown/planning/map/pad_outline.h).
+// In the frame of an estimated own state a sighting is as exact as the tags are. But the frame wanders as the estimate
+// does, which the pad filter takes for a motion of the pad. And the pad's GPS is off by the estimate's whole error. So
+// GPS leads to the pad, with the estimate's doubt added to its own. Tags, once seen, guide alone: the landing needs the
+// place relative to the pad only, which does not suffer from an estimate that has drifted.
 #include "control/onboard/senses.h"
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 namespace touchdown::control {
 namespace {
 
-constexpr double kTagsGuide = 0.5;     // GPS is left out while tags are younger than this [s]
-constexpr double kAheadOfTime = 0.05;  // of the newest own state: no measurement is [s]
+constexpr double kTagsGuide = 0.5;      // GPS is left out while tags are younger than this [s]
+constexpr double kMaxClockLead = 0.05;  // of the newest own state: no measurement is [s]
 // From a start that is given free no farther than the hull, no stop is in free cells: a vehicle whose hull reaches 0.52 m
 // never left 0.8 m in wind, and always left 0.9 m.
 constexpr double kAroundHull = 0.45;  // [m]
@@ -57,7 +57,7 @@ void Senses::Begin() {
 }
 
 bool Senses::IsAhead(double t) const {
-  return !IsTime(t) || (own_.known() && t > own_.now().t + kAheadOfTime);
+  return !IsTime(t) || (own_.known() && t > own_.now().t + kMaxClockLead);
 }
 
 std::optional<Taken> Senses::Refused(double t, const Stamps& used) const {

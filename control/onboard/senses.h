@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "control/onboard/own_state.h"
-#include "control/onboard/pad_look.h"
+#include "control/onboard/pad_search.h"
 #include "control/onboard/stamps.h"
 #include "touchdown/control/onboard/onboard_options.h"
 #include "touchdown/control/onboard/taken.h"
@@ -61,7 +61,7 @@ class Senses {
   double start_free_;
   bool pad_is_obstacle_;  // the goal is another than the pad
   Stamps fixes_, sightings_, pad_images_, images_;
-  PadLook look_;
+  PadSearch look_;
   estimation::DepthFrame frame_;
   std::vector<estimation::PadArrival>* pad_log_ = nullptr;
 };

@@ -190,10 +190,10 @@ TEST(LandingGate, ContactInIsThatOfTheDescent) {
   mission.in.horizontal_distance = 0.6;  // paused: it has to gain speed again
   mission.Run(1.0);
   mission.in.horizontal_distance = 0.1;
-  const double foretold = ContactIn(mission.state, mission.in, mission.parameters);
+  const double predicted = ContactIn(mission.state, mission.in, mission.parameters);
   const double begin = mission.in.t;
   for (int k = 0; k < 600 && mission.outputs.foot_height > 0.0; ++k) mission.Tick();
-  EXPECT_NEAR(mission.in.t - begin, foretold - mission.parameters.contact_reserve, 0.02);
+  EXPECT_NEAR(mission.in.t - begin, predicted - mission.parameters.contact_reserve, 0.02);
   mission.in.height = std::nan("");
   EXPECT_EQ(ContactIn(mission.state, mission.in, mission.parameters),
             std::numeric_limits<double>::infinity());

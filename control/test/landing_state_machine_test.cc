@@ -150,7 +150,7 @@ TEST(LandingStateMachine, TheCommandWaitsForAVehicleThatLags) {
   EXPECT_EQ(mission.outputs.descent_hold, DescentHold::kLag);
   mission.Run(1.0);
   EXPECT_NEAR(mission.outputs.foot_height, held, 1e-6);
-  // Who takes a goal so near as reached does not come: the command goes on.
+  // The goal counts as reached from so near that the vehicle would not come: the command goes on.
   mission.in.at_goal = true;
   mission.Run(0.2);
   EXPECT_LT(mission.outputs.foot_height, held);

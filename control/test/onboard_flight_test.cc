@@ -106,7 +106,7 @@ Landing Fly(std::uint64_t seed, const Mess& mess) {
   world.pad_velocity = speed * Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
   const double wall = draws.Draw(-1.5, 1.5);
   world.wall = {Eigen::Vector3d(3.0, wall - 1.25, 0.0), Eigen::Vector3d(3.3, wall + 1.25, 3.5)};
-  // A pad that drives through the wall is nobody's to land on.
+  // No vehicle can land on a pad that drives through the wall.
   if (world.pad_velocity.x() < 0.0) world.pad_velocity.x() *= -1.0;
 
   Post post(mess, seed + 1000000);

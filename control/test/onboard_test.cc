@@ -153,7 +153,7 @@ TEST(Onboard, AStateFromTheFutureIsRefused) {
   EXPECT_EQ(onboard.own().t, 0.2);
 }
 
-// Before the first step nobody knows the time: what is far ahead then is forgotten at the first step.
+// Before the first step the time is not known: what is far ahead then is forgotten at the first step.
 TEST(Onboard, AWrongStateBeforeTheFirstStepDoesNotBlindIt) {
   Onboard onboard = Hovering(0.1);
   onboard.Take(At(1e6, {9, 9, 9}));

@@ -25,9 +25,9 @@ TEST(VehicleFrequencies, FollowTheRootOfWhatTurnsTheVehicle) {
   estimation::VehicleModel heavy = ToyQuadrotor();
   heavy.inertia *= 4.0;
   heavy.inertia.z() *= 4.0;
-  const Quickness usual = QuicknessOf(heavy);
+  const BandwidthRatio usual = BandwidthRatioOf(heavy);
   heavy.inertia *= 4.0;
-  const Quickness slow = QuicknessOf(heavy);
+  const BandwidthRatio slow = BandwidthRatioOf(heavy);
   EXPECT_NEAR(slow.tilt, 0.5 * usual.tilt, 1e-12);
   EXPECT_NEAR(slow.yaw, 0.5 * usual.yaw, 1e-12);
   EXPECT_LT(usual.tilt, 0.51);
@@ -43,9 +43,9 @@ TEST(VehicleFrequencies, FollowTheRootOfWhatTurnsTheVehicle) {
 TEST(VehicleFrequencies, AreNeverHigher) {
   estimation::VehicleModel light = ToyQuadrotor();
   light.inertia *= 0.1;
-  const Quickness quickness = QuicknessOf(light);
-  EXPECT_EQ(quickness.tilt, 1.0);
-  EXPECT_EQ(quickness.yaw, 1.0);
+  const BandwidthRatio ratio = BandwidthRatioOf(light);
+  EXPECT_EQ(ratio.tilt, 1.0);
+  EXPECT_EQ(ratio.yaw, 1.0);
 }
 
 }  // namespace

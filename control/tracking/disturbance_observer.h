@@ -47,7 +47,7 @@ class DisturbanceObserver {
   void Hover(const estimation::VehicleState& state, const estimation::Commands& thrusts) noexcept;
 
   const Disturbance& disturbance() const { return disturbance_; }
-  /// The force without its quick changes [N]: what plans can reckon with.
+  /// The force without its quick changes [N]: what plans can account for.
   const Eigen::Vector3d& steady_force_W() const { return steady_force_W_; }
 
  private:

@@ -25,7 +25,7 @@ constexpr double kFarthestHeading = 0.5;
 /// The heading from which AttitudeFromThrust would make R_WB, while its thrust axis points up.
 double HeadingOf(const Eigen::Matrix3d& R_WB) { return std::atan2(-R_WB(0, 1), R_WB(1, 1)); }
 
-/// `yaw`, or as far towards it as kFarthestHeading leads. Who is upside down has no heading to keep.
+/// `yaw`, or as far towards it as kFarthestHeading leads. A vehicle upside down has no heading to keep.
 double NearerHeading(double yaw, const Eigen::Matrix3d& R_WB) {
   const double heading = HeadingOf(R_WB), off = estimation::WrapAngle(yaw - heading);
   if (R_WB(2, 2) <= 0.0 || std::abs(off) <= kFarthestHeading) return yaw;

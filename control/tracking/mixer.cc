@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mixer: the paper's eq. 8 for any actuators. The wrench is linear in the commands; the matrix
-// is inverted once. Saturation by priority: with the contribution r of the roll and pitch moment, a
-// collective thrust T is possible if low_i <= s r_i + c_i T <= high_i for every actuator i (c_i: its share
-// in pure thrust, 0 where it makes a moment alone, which bounds s by itself). The greatest scale s <= 1 that leaves such a T, none above what is wanted or what
-// the thrust may be raised to, follows in closed form from all rotors and pairs of them; T is clamped to its
-// interval; yaw takes what is left.
+// Mixer: the paper's eq. 8 for any actuators. The wrench is linear in the commands; the matrix is inverted once.
+// Saturation by priority, with the contribution r of the roll and pitch moment:
+// 1. A collective thrust T is possible if low_i <= s r_i + c_i T <= high_i for every actuator i. c_i is its share in
+//    pure thrust. It is 0 for an actuator that makes a moment alone, which bounds s by itself.
+// 2. Take the greatest scale s <= 1 that leaves such a T, none above what is wanted or what the thrust may be raised to.
+//    It follows in closed form from all rotors and pairs of them.
+// 3. Clamp T to its interval. Yaw takes what is left.
 
 #include "control/tracking/mixer.h"
 

@@ -21,7 +21,7 @@ double Share(double turn, double error, double frequency) {
 
 }  // namespace
 
-Quickness QuicknessOf(const estimation::VehicleModel& model) {
+BandwidthRatio BandwidthRatioOf(const estimation::VehicleModel& model) {
   const ControllerOptions options;
   const Eigen::Vector3d turn = estimation::HoverTurn(model);
   return {Share(turn.head<2>().minCoeff(), kTiltError, options.attitude_frequency),
@@ -29,19 +29,19 @@ Quickness QuicknessOf(const estimation::VehicleModel& model) {
 }
 
 ControllerOptions OptionsFor(const estimation::VehicleModel& model) {
-  const Quickness quickness = QuicknessOf(model);
+  const BandwidthRatio ratio = BandwidthRatioOf(model);
   ControllerOptions options;
-  options.attitude_frequency *= quickness.tilt;
-  options.position_frequency *= quickness.tilt;
-  options.yaw_frequency *= quickness.yaw;
+  options.attitude_frequency *= ratio.tilt;
+  options.position_frequency *= ratio.tilt;
+  options.yaw_frequency *= ratio.yaw;
   return options;
 }
 
 DisturbanceObserverOptions ObserverFor(const estimation::VehicleModel& model) {
-  const Quickness quickness = QuicknessOf(model);
+  const BandwidthRatio ratio = BandwidthRatioOf(model);
   DisturbanceObserverOptions options;
-  options.force_bandwidth *= quickness.tilt;
-  options.moment_bandwidth *= quickness.tilt;
+  options.force_bandwidth *= ratio.tilt;
+  options.moment_bandwidth *= ratio.tilt;
   return options;
 }
 

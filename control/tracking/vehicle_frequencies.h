@@ -8,13 +8,13 @@
 namespace touchdown::control {
 
 /// How fast a vehicle can follow over what the default frequencies ask; each in (0, 1].
-struct Quickness {
+struct BandwidthRatio {
   double tilt = 1.0;  ///< of roll and pitch, and of what is steered by them
   double yaw = 1.0;
 };
 
 /// Throws std::invalid_argument as estimation::AllocationOf does.
-Quickness QuicknessOf(const estimation::VehicleModel& model);
+BandwidthRatio BandwidthRatioOf(const estimation::VehicleModel& model);
 
 /// The default bandwidths, as slow as the vehicle is.
 DisturbanceObserverOptions ObserverFor(const estimation::VehicleModel& model);

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rooms of the house: what each includes, as the sources say it and as docs/architecture.md allows it.
+"""The rooms of the house: what each includes, as the sources say it and as docs/rooms.md allows it.
 
-    python3 docs/test/rooms.py    prints the graph: files, room, what it includes
+    python3 docs/test/rooms.py           prints the graph (files, room, what it includes) and every breach
+    python3 docs/test/rooms.py --draw    draws it in docs/architecture.md
 """
 import re
 import sys
@@ -11,6 +12,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("solvers", "estimation", "planning", "control", "sim", "evaluation")
 MOST_FILES = 50
+TABLE = ROOT / "docs" / "rooms.md"
+PICTURE = ROOT / "docs" / "architecture.md"
 # What a public header may need of others: nothing but the standard library and Eigen's arrays.
 PUBLIC_NEEDS = re.compile(r"[a-z_]+|Eigen/\w+|sys/types\.h")
 
@@ -89,7 +92,7 @@ def wrong_in(files, rows):
     may = dict(rows)
     for room, reached in sorted(graph(files).items()):
         if room not in may:
-            said.append(f"{room} has no line in docs/architecture.md")
+            said.append(f"{room} has no line in docs/rooms.md")
             continue
         folder = room.split("/")[0]
         wanted = {other if other.split("/")[0] == folder else other.split("/")[0] + "/" for other in reached}
@@ -103,7 +106,7 @@ def wrong_in(files, rows):
         count = sum(file.room == room for file in files)
         if count > MOST_FILES:
             said.append(f"{room} holds {count} files; {MOST_FILES} are the most")
-    said += [f"docs/architecture.md has a line for {room}, which is no room" for room in order if room not in graph(files)]
+    said += [f"docs/rooms.md has a line for {room}, which is no room" for room in order if room not in graph(files)]
     for room in order:
         owner = {}
         for file in (file for file in files if file.room == room):
@@ -138,8 +141,52 @@ def text(files):
     return "\n".join(lines)
 
 
+def reduced(edges):
+    """The edges of a graph without circles that do not follow from others: {from: [to]}"""
+
+    def reached(start):
+        return set().union(*({to} | reached(to) for to in edges[start]))
+
+    return {start: sorted(to for to in ends if not any(to in reached(other) for other in ends))
+            for start, ends in edges.items()}  # fmt: skip
+
+
+def drawing(files):
+    """The graph as a Mermaid diagram: folders as boxes, their rooms inside. Arrows lead from what includes to what
+    is included. Those that follow from others are left out."""
+    edges = graph(files)
+    folders = {folder: {room for room in edges if room.split("/")[0] == folder} for folder in FOLDERS}
+    folders = {folder: rooms for folder, rooms in folders.items() if rooms}
+    lines = ["flowchart TB"]
+    for folder, rooms in folders.items():
+        inside = reduced({room: edges[room] & rooms for room in sorted(rooms)})
+        lines += [f"  subgraph {folder}", "    direction TB"]
+        for room, ends in inside.items():
+            to = f" --> {' & '.join(map(_node, ends))}" if ends else ""
+            lines.append(f"    {_node(room)}[{room.removeprefix(folder + '/')}]{to}")
+        lines.append("  end")
+    between = {folder: {other.split("/")[0] for room in rooms for other in edges[room]} - {folder}
+               for folder, rooms in folders.items()}  # fmt: skip
+    lines += [f"  {folder} ==> {' & '.join(ends)}" for folder, ends in reduced(between).items() if ends]
+    return "\n".join(lines)
+
+
+def _node(room):
+    """A name that is no folder's and no word of Mermaid."""
+    return room.replace("/", "_") + "_"
+
+
+def drawn(page):
+    """The first diagram of the page."""
+    return re.search(r"^```mermaid\n(.*?)\n```$", page, re.S | re.M)
+
+
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--draw"]:
+        content = PICTURE.read_text(encoding="utf-8")
+        block = drawn(content)
+        PICTURE.write_text(content[: block.start(1)] + drawing(sources()) + content[block.end(1) :], encoding="utf-8")
     print(text(sources()))
-    problems = wrong_in(sources(), allowed((ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")))
+    problems = wrong_in(sources(), allowed(TABLE.read_text(encoding="utf-8")))
     print("\n".join(problems))
     sys.exit(bool(problems))

@@ -7,6 +7,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -116,6 +117,14 @@ def test_every_command_runs(document, folder, commands):
     assert not wrong, "\n".join(f"{document.name}:{sentence}" for sentence in wrong)
 
 
+def test_the_lines_of_pandas_read_a_record(folder):
+    blocks = [block for block in Document(ROOT / "docs" / "record.md").blocks if block.language == "python"]
+    assert len(blocks) == 1 and len(blocks[0].text.splitlines()) == 6, "six lines"
+    done = subprocess.run([sys.executable, "-c", blocks[0].text], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"planned +\d+", done.stdout), done.stdout
+
+
 def test_no_command_hides_where_it_is_not_collected():
     starts = re.compile(r"\s*(\$ )?(build/|touchdown [a-z]|\./\w+\.sh|cmake -|cmake --|ctest|apt|git )")
     hidden = []
@@ -148,7 +157,7 @@ def test_options_named_in_prose_exist(program, commands):
 
 def test_keys_named_in_prose_exist():
     """`key=value` and `--set key=value` in prose, against the table that is checked by the schema."""
-    table = (ROOT / "docs" / "scenario.md").read_text()
+    table = (ROOT / "docs" / "reference" / "scenario_keys.md").read_text()
     keys = set(re.findall(r"^\| `([a-z_.]+)`", table, re.M))
     wrong = []
     for document in written():

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the documents name exists: files, symbols, links, code; and every page can be found."""
 import re
+import subprocess
+from pathlib import Path
 
 import pytest
 from documents import ROOT, Document, documents
@@ -8,6 +10,7 @@ from documents import ROOT, Document, documents
 PAGES = documents()
 EXAMPLES = [ROOT / "docs" / "CMakeLists.txt", *sorted((ROOT / "docs" / "examples").rglob("*.*")),
             *sorted((ROOT / "evaluation" / "test" / "consumer").iterdir())]  # fmt: skip
+SOURCES = (".cc", ".h", ".py", ".js", ".mjs", ".def", ".cmake", ".txt", ".yaml", ".sh", ".json", ".xml", ".ipynb")
 FOLDERS = "touchdown|solvers|estimation|planning|control|sim|evaluation|docs|cmake"
 
 
@@ -87,10 +90,31 @@ def test_code_in_the_documents_is_code_of_the_examples():
     assert not wrong, "no file of docs/examples holds the code of\n" + "\n".join(wrong)
 
 
+def linked(path):
+    """The pages to which a page leads."""
+    return {(path.parent / to.partition("#")[0]).resolve() for _, to in Document(path).links()}
+
+
 def test_every_page_is_in_the_index():
-    index = ROOT / "docs" / "README.md"
-    listed = {(index.parent / to.partition("#")[0]).resolve() for _, to in Document(index).links()}
-    missing = [page.name for page in PAGES if page.path not in listed | {index}]
+    """Those of results in theirs, or in the summary that is listed there."""
+    index, results = ROOT / "docs" / "README.md", ROOT / "docs" / "results" / "README.md"
+    listed = linked(index) | linked(results)
+    for summary in results.parent.glob("*.md"):
+        listed |= linked(summary) & set((results.parent / summary.stem).rglob("*.md"))
+    missing = [page.name for page in PAGES if page.path not in listed | {index, ROOT / "README.md"}]
     assert not missing, "docs/README.md does not name " + ", ".join(missing)
-    front = {(ROOT / to).resolve() for _, to in Document(ROOT / "README.md").links()}
-    assert index in front
+    assert index in linked(ROOT / "README.md") and results in linked(index)
+
+
+def test_pages_that_sources_name_exist():
+    names = subprocess.run(["git", "-C", ROOT, "ls-files"], capture_output=True, text=True, check=True).stdout.split()
+    wrong, found = [], 0
+    for name in names:
+        if Path(name).suffix not in SOURCES or name.startswith(("docs/test/", "evaluation/data/")):
+            continue
+        for number, line in enumerate((ROOT / name).read_text(encoding="utf-8").split("\n"), 1):
+            pages = re.findall(r"\bdocs/[\w/]+\.md", line)
+            found += len(pages)
+            wrong += [f"{name}:{number}: {page}" for page in pages if not (ROOT / page).exists()]
+    assert found > 100, "where are they?"
+    assert not wrong, "there is no such page:\n" + "\n".join(wrong)

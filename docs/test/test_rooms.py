@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The includes are what docs/architecture.md says, and a breach of its rules is seen."""
+"""The includes are what docs/rooms.md says and docs/architecture.md draws, and a breach of the rules is seen."""
 import pytest
 import rooms
 
@@ -32,7 +32,7 @@ def said(root, files):
 
 def test_includes_are_what_the_page_says():
     files = rooms.sources()
-    page = (rooms.ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    page = rooms.TABLE.read_text(encoding="utf-8")
     print(rooms.text(files))
     assert len(files) > 400, "where are the sources?"
     assert not (wrong := rooms.wrong_in(files, rooms.allowed(page))), "\n".join(wrong)
@@ -71,3 +71,26 @@ def test_an_upward_line_is_no_leave(tmp_path):
 def test_a_full_room_is_named(tmp_path):
     wrong = said(tmp_path, {f"planning/map/part_{i}.h": "" for i in range(rooms.MOST_FILES)})
     assert wrong == ["planning/map holds 51 files; 50 are the most"]
+
+
+def test_the_drawing_is_the_include_graph():
+    page = rooms.PICTURE.read_text(encoding="utf-8")
+    assert rooms.drawn(page)[1] == rooms.drawing(rooms.sources()), "python3 docs/test/rooms.py --draw draws it anew"
+
+
+def test_an_include_is_drawn_unless_it_follows_from_others(tmp_path):
+    said(tmp_path, {"planning/replan/plan.cc": '#include "planning/map/cells.h"\n#include "planning/path/path.h"\n',
+                    "planning/path/path.h": '#include "planning/map/cells.h"\n#include "touchdown/solvers/banded/step.h"\n'})  # fmt: skip
+    assert rooms.drawing(rooms.sources(tmp_path)) == """flowchart TB
+  subgraph solvers
+    direction TB
+    solvers_banded_[banded] --> solvers_linear_
+    solvers_linear_[linear]
+  end
+  subgraph planning
+    direction TB
+    planning_map_[map]
+    planning_path_[path] --> planning_map_
+    planning_replan_[replan] --> planning_path_
+  end
+  planning ==> solvers"""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whoever asks for the installed package asks for the version that is here."""
+"""Every find_package of the installed package asks for the version that is here."""
 import re
 import subprocess
 from pathlib import Path
@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_everybody_asks_for_this_version():
+def test_every_find_package_asks_for_this_version():
     version = re.search(r"project\(touchdown VERSION (\d+\.\d+)", (ROOT / "CMakeLists.txt").read_text())[1]
     names = subprocess.run(["git", "-C", ROOT, "ls-files", "*.md", "*.txt", "*.ipynb"], capture_output=True, text=True,
                            check=True).stdout.split()  # fmt: skip

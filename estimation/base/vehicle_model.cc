@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The wrench is linear in the commands: column i is what actuator i does per unit. With four actuators that do not
-// depend on each other the matrix B is inverted; with more, of all commands that make a wrench the shortest is taken,
-// each as a share of its range: W B^T (B W B^T)^-1 w with the squares of the ranges in W. Without W a weak actuator
-// of another unit would have to do most of the work.
+// depend on each other the matrix B is inverted. With more, the shortest of all commands that make a wrench is taken,
+// each as a share of its range: W B^T (B W B^T)^-1 w with the squares of the ranges in W. Without W a weak actuator of
+// another unit would have to do most of the work.
 
 #include "touchdown/estimation/base/vehicle_model.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Direct alignment of the printed sheet with the image (B. Lucas and T. Kanade, 1981; S. Baker and
-// I. Matthews, "Lucas-Kanade 20 years on", 2004): Gauss-Newton on the grey levels, I = gain * model
-// + offset, over the six unknowns of the pose and these two, with Huber's weights; first with a wide
-// blur, which finds its way from farther, then with the camera's own, or, of an image that motion
-// has blurred, the one of a few that explains it best. The model of a pixel is the sheet's mean over
-// what the pixel sees of it: four rectangles along the pad's axes that have the variances of the
-// pixel's quarters, projected.
+// Direct alignment of the printed sheet with the image (B. Lucas and T. Kanade, 1981; S. Baker and I. Matthews,
+// "Lucas-Kanade 20 years on", 2004): Gauss-Newton on the grey levels, I = gain * model + offset, with Huber's weights.
+// The unknowns are the six of the pose, gain and offset. The first blur is wide, and finds its way from farther. The
+// second one is the camera's own. If motion has blurred the image, it is the one of a few that explains it best. The
+// model of a pixel is the sheet's mean over what the pixel sees of it: four rectangles along the pad's axes that have
+// the variances of the pixel's quarters, projected.
 
 #include "touchdown/estimation/tags/pad_alignment.h"
 

@@ -330,7 +330,7 @@ double CirclePredictionError(PadModel model, bool tags) {
   return std::sqrt(squares / count);
 }
 
-TEST(PadFilter, TurnRateForetellsACircleBetterThanThePaper) {
+TEST(PadFilter, TurnRatePredictsACircleBetterThanThePaper) {
   const double paper = CirclePredictionError(PadModel::kPaper, true);
   const double turn_rate = CirclePredictionError(PadModel::kTurnRate, true);
   RecordProperty("paper_m", std::to_string(paper));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the program says goes to a file in memory: it never waits for a reader, and what it may leave running holds up nobody. It
+// What the program says goes to a file in memory: it never waits for a reader, and what it may leave running holds up no reader. It
 // is spawned, not forked: the rasteriser has threads. It stays in this process's group, so that a keyboard's signals end both.
 #include "evaluation/base/child_program.h"
 

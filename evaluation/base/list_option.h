@@ -28,7 +28,7 @@ CLI::Option* AddListOption(CLI::App& command, const std::string& name, std::vect
       if (!fault.empty()) throw CLI::ValidationError(name, fault);
       if (!CLI::detail::lexical_cast(text, value)) throw CLI::ConversionError(text, name);
       if (std::find(list->begin(), list->end(), value) != list->end()) {
-        throw CLI::ValidationError(name, text + " stands there twice");
+        throw CLI::ValidationError(name, text + " is given twice");
       }
       list->push_back(value);
     }

@@ -32,7 +32,7 @@ double SteadySeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-struct ProgressTeller::Run {
+struct ProgressPrinter::Run {
   explicit Run(SecondsClock with) : clock(std::move(with)) {}
   const SecondsClock clock;
   const bool rewritten = StderrIsTerminal();
@@ -47,12 +47,12 @@ struct ProgressTeller::Run {
   }
 };
 
-ProgressTeller::ProgressTeller(SecondsClock clock)
+ProgressPrinter::ProgressPrinter(SecondsClock clock)
     : run_(std::make_shared<Run>(std::move(clock))) {}
 
-double ProgressTeller::elapsed_s() const { return run_->clock() - run_->begin; }
+double ProgressPrinter::elapsed_s() const { return run_->clock() - run_->begin; }
 
-void ProgressTeller::operator()(const std::string& line, bool last) {
+void ProgressPrinter::operator()(const std::string& line, bool last) {
   if (!run_->pace.Due(elapsed_s()) && !last) return;
   if (!run_->rewritten) return spdlog::info("{}", line);
   ShowStatus(line);

@@ -16,7 +16,7 @@ struct ProgressText {
 
 /// "kind C: 3 of 20 flights, 12 s left": the time left at the rate so far.
 /// @param done at least 1. @param elapsed_s since the first one was begun [s].
-/// `all` 0: nobody knows.
+/// `all` 0: it is not known.
 std::string ProgressLine(const ProgressText& text, int done, int all, double elapsed_s);
 
 /// When the next line is due. Times are since the beginning of the run [s].
@@ -39,9 +39,9 @@ double SteadySeconds();
 
 /// Tells how far a long run is: on a terminal in one line that is written over, else in the log. Copies share it. Not to be
 /// used from two threads at a time.
-class ProgressTeller {
+class ProgressPrinter {
  public:
-  explicit ProgressTeller(SecondsClock clock = SteadySeconds);
+  explicit ProgressPrinter(SecondsClock clock = SteadySeconds);
   /// The last line is told whenever it comes, and stays.
   void operator()(const std::string& line, bool last);
   double elapsed_s() const;  ///< since construction [s]
@@ -60,7 +60,7 @@ class Progress {
 
  private:
   ProgressText text_;
-  ProgressTeller tell_;
+  ProgressPrinter tell_;
 };
 
 }  // namespace touchdown::evaluation

@@ -28,8 +28,8 @@ std::string Try() {
 // Empty: nothing stands against it. Tried in a process of its own: the rasteriser starts threads that stay, and a
 // process with threads is not to be forked, as a sweep forks for its trials.
 std::optional<std::string> WhyNotRender() {
-  constexpr double kPatience = 60.0;  // [s]
-  WorkerProcess process([](int) { return Try(); }, kPatience);
+  constexpr double kTimeout = 60.0;  // [s]
+  WorkerProcess process([](int) { return Try(); }, kTimeout);
   process.Start(0);
   const WorkerReply reply = process.Receive();
   if (reply.end == WorkerReply::End::kTimedOut) return "it does not come to an end";
@@ -44,8 +44,8 @@ void RequireRendering(const std::string& who, const std::string& way_out) {
   static const std::optional<std::string> why = WhyNotRender();
   if (!why) return;
   throw BadInput(
-      fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): mend its "
-                  "OSMesa (Debian: libosmesa6){}{}.",
+      fmt::format("{} needs off-screen rendering, which this machine does not offer ({}): "
+                  "install OSMesa (Debian: libosmesa6){}{}.",
                   who, *why, way_out.empty() ? "" : "; ", way_out));
 }
 

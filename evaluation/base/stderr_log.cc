@@ -26,7 +26,7 @@ void WriteToStderr(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return;  // there is nobody to tell
+    if (written <= 0) return;  // no reader is left
     text.remove_prefix(static_cast<std::size_t>(written));
   }
 }

@@ -13,7 +13,7 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr std::size_t kLongList = 12;  // names
-constexpr int kLettersAnError = 3;     // one in so many is near
+constexpr int kLettersPerTypo = 3;     // one in so many is near
 constexpr int kMostErrors = 2;
 
 using Parts = std::vector<std::string>;  // of a dotted name
@@ -37,7 +37,7 @@ const std::string* Nearest(const Parts& word, const std::vector<std::string>& na
     if (!at || (*at + 1 == word.size()) != same_group) continue;
     const int distance = EditDistance(word[*at], parts[*at]);
     const int most =
-        std::clamp(static_cast<int>(word[*at].size()) / kLettersAnError, 1, kMostErrors);
+        std::clamp(static_cast<int>(word[*at].size()) / kLettersPerTypo, 1, kMostErrors);
     // Not every word of one letter is near every other.
     if (distance > most || distance >= least || distance >= static_cast<int>(parts[*at].size())) {
       continue;

@@ -11,7 +11,7 @@ namespace touchdown::evaluation {
 void ShareWork(std::vector<WorkerProcess>& workers, int at_a_time, const std::vector<int>& items,
                const std::function<void(const WorkerReply&)>& take,
                const std::function<bool()>& stop) {
-  constexpr int kPatienceMs = 200;
+  constexpr int kPollMs = 200;
   const std::size_t most = std::min(workers.size(), static_cast<std::size_t>(at_a_time));
   std::size_t next = 0;
   while (!stop()) {
@@ -25,7 +25,7 @@ void ShareWork(std::vector<WorkerProcess>& workers, int at_a_time, const std::ve
       busy.push_back(&worker);
     }
     if (busy.empty()) return;
-    if (poll(waits.data(), waits.size(), kPatienceMs) <= 0) continue;
+    if (poll(waits.data(), waits.size(), kPollMs) <= 0) continue;
     for (std::size_t i = 0; i < busy.size(); ++i) {
       if (waits[i].revents != 0) take(busy[i]->Receive());
     }

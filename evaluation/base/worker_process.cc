@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two forks. The worker is forked once, before its maker opens files or starts MPI, and stays as small as it
-// was; for each piece of work it forks a child, whose answer it reads from a pipe until the child closes it
-// or the time is up. Both are killed by the kernel when the process above them ends, however it ends, and
-// ignore the signals of a keyboard, which reach the whole group: their maker decides.
+// Two forks. The worker is forked once, before its maker opens files or starts MPI, and stays as small as it was. For
+// each piece of work it forks a child, and reads its answer from a pipe until the child closes it or the time is up.
+// The kernel kills both when the process above them ends, however it ends. Both ignore the signals of a keyboard, which
+// reach the whole group: their maker decides.
 #include "evaluation/base/worker_process.h"
 
 #include <algorithm>
@@ -109,7 +109,7 @@ bool Unwrap(std::string* text) {
   return text->size() == size;
 }
 
-// noexcept: what is thrown ends this process and does not get to whoever would catch it in its maker.
+// noexcept: what is thrown ends this process and does not get to a handler of the process that made it.
 [[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) noexcept {
   const std::string text = work(item);
   const std::uint64_t size = text.size();

@@ -29,12 +29,12 @@ class InUse {
  public:
   explicit InUse(const char* name) : name_(name) {}
 
-  /// Nobody else may use it.
+  /// No other call may use it.
   class Claim {
    public:
     explicit Claim(InUse& of) : of_(of) {
-      int nobody = 0;
-      if (!of.users_.compare_exchange_strong(nobody, kAlone)) of.Refuse();
+      int none = 0;
+      if (!of.users_.compare_exchange_strong(none, kAlone)) of.Refuse();
     }
     ~Claim() { of_.users_ = 0; }
     Claim(const Claim&) = delete;
@@ -72,7 +72,7 @@ class InUse {
 
 /// Something of C++ that Python may use during one call, in the thread that was called.
 template <class T>
-class Lent {
+class Borrowed {
  public:
   void Lend(const T* it) {
     it_ = it;

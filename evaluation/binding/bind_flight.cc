@@ -145,7 +145,8 @@ void Compare(const evaluation::CompareOptions& options, const std::string& db,
     const auto end = [call = Call::Now()] {
       if (call->MustEnd()) throw Ended();
     };
-    parts.backends = solvers::Overheard(parts.backends, [&](const solvers::AskedSolve&) { end(); });
+    parts.backends =
+        solvers::Overheard(parts.backends, [&](const solvers::SolveRequest&) { end(); });
     try {
       evaluation::MachineState machine;
       machine.load_before = evaluation::LoadAverage();

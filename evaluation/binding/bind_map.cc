@@ -5,7 +5,7 @@
 #include "evaluation/base/map_file.h"
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
-#include "evaluation/binding/map_look.h"
+#include "evaluation/binding/map_view.h"
 #include "touchdown/planning/certify/curve_check.h"
 #include "touchdown/planning/map/persistent_map.h"
 
@@ -20,13 +20,13 @@ using PointsIn = Eigen::Ref<const Points>;
 namespace {
 
 template <class Work>
-auto Look(const MapLook& look, Work&& work) {
+auto Look(const MapView& look, Work&& work) {
   const InUse::Share share(look.use);
   return work(look.get());
 }
 
 template <class Ask>
-py::array_t<bool> OfPoints(const MapLook& look, const PointsIn& points, const Ask& ask) {
+py::array_t<bool> OfPoints(const MapView& look, const PointsIn& points, const Ask& ask) {
   py::array_t<bool> told(points.rows());
   bool* out = told.mutable_data();
   Look(look, [&](const OccupancyMap& map) {
@@ -39,19 +39,19 @@ py::array_t<bool> OfPoints(const MapLook& look, const PointsIn& points, const As
   return told;
 }
 
-py::array_t<bool> Blocked(const MapLook& look, const PointsIn& points) {
+py::array_t<bool> Blocked(const MapView& look, const PointsIn& points) {
   return OfPoints(look, points, [](const OccupancyMap& map, const Eigen::Vector3d& p) {
     return map.IsBlocked(p);
   });
 }
 
-py::array_t<bool> ObservedFree(const MapLook& look, const PointsIn& points) {
+py::array_t<bool> ObservedFree(const MapView& look, const PointsIn& points) {
   return OfPoints(look, points, [](const OccupancyMap& map, const Eigen::Vector3d& p) {
     return map.HasIndex(p) && map.IsObservedFree(map.CellOf(p));
   });
 }
 
-py::array_t<std::uint8_t> States(const MapLook& look) {
+py::array_t<std::uint8_t> States(const MapView& look) {
   const InUse::Share share(look.use);
   std::vector<planning::CellState> states;
   look.get().CopyStates(&states);
@@ -62,7 +62,7 @@ py::array_t<std::uint8_t> States(const MapLook& look) {
   return array;
 }
 
-double FirstBlocked(const MapLook& look, const planning::UniformBspline& curve,
+double FirstBlocked(const MapView& look, const planning::UniformBspline& curve,
                     std::optional<double> t_from, double floor, double ceiling) {
   const InUse::Share share(look.use);
   planning::FreeSpace space;
@@ -77,17 +77,17 @@ template <class Class>
 void DefLooks(Class& c) {
   c.def_property_readonly(
        "resolution",
-       [](const MapLook& l) { return Look(l, [](const auto& map) { return map.resolution(); }); },
+       [](const MapView& l) { return Look(l, [](const auto& map) { return map.resolution(); }); },
        "Side of a cell [m].")
       .def_property_readonly(
           "origin",
-          [](const MapLook& l) {
+          [](const MapView& l) {
             return Look(l, [](const auto& map) { return Eigen::Vector3i(map.origin()); });
           },
           "Lowest cell of the window: the cell of a place p is floor(p / resolution).")
       .def_property_readonly(
           "size",
-          [](const MapLook& l) {
+          [](const MapView& l) {
             return Look(l, [](const auto& map) { return Eigen::Vector3i(map.size()); });
           },
           "Of the window along x, y and z [cells].")
@@ -106,7 +106,7 @@ void DefLooks(Class& c) {
            "ceiling"_a = std::numeric_limits<double>::infinity(), Doc("FirstBlockedTime"))
       .def(
           "count_observed_free",
-          [](const MapLook& l) {
+          [](const MapView& l) {
             return Look(l, [](const auto& map) { return map.CountObservedFree(); });
           },
           Doc("OccupancyMap::CountObservedFree"));
@@ -213,10 +213,10 @@ void BindMap(py::module_& m) {
       .Field("half_size", &PadOutline::half_size)
       .Field("sigma", &PadOutline::sigma)
       .Done();
-  py::class_<MapLook, std::shared_ptr<MapLook>> look(
+  py::class_<MapView, std::shared_ptr<MapView>> look(
       m, "MapView", "A map that may be looked at during one call: what planners are given.");
   DefLooks(look);
-  py::class_<OwnMap, MapLook, std::shared_ptr<OwnMap>>(m, "OccupancyMap", Doc("OccupancyMap"))
+  py::class_<OwnMap, MapView, std::shared_ptr<OwnMap>>(m, "OccupancyMap", Doc("OccupancyMap"))
       .def(py::init([](const Options* options, const std::optional<Eigen::Vector3d>& centre) {
              auto made = std::make_shared<OwnMap>(options ? *options : Options());
              if (centre) made->map().Recentre(*centre);

@@ -4,7 +4,7 @@
 
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
-#include "evaluation/binding/map_look.h"
+#include "evaluation/binding/map_view.h"
 #include "evaluation/binding/replanned.h"
 #include "touchdown/control/onboard/envelope.h"
 #include "touchdown/control/onboard/onboard.h"

@@ -7,7 +7,7 @@
 
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
-#include "evaluation/binding/map_look.h"
+#include "evaluation/binding/map_view.h"
 #include "evaluation/binding/part_registries.h"
 #include "evaluation/binding/predictions.h"
 #include "evaluation/binding/replanned.h"
@@ -30,7 +30,7 @@ class OwnReplanner {
       : use("Replanner"), planner_(Made(With(options, registries))) {}
 
   ~OwnReplanner() {
-    const UnderWay under_way;
+    const CallGuard under_way;
     const py::gil_scoped_release release;  // a backend may wait for another one's solve
     planner_.reset();
   }
@@ -44,13 +44,13 @@ class OwnReplanner {
     hovers_ = true;
   }
 
-  std::unique_ptr<Replanned> Replan(const MapLook& map, const ReplanInput& input,
+  std::unique_ptr<Replanned> Replan(const MapView& map, const ReplanInput& input,
                                     const py::object& pad, bool explain) {
     return Ask(map, input, pad, explain, [&](const ReplanInput& asked) -> const ReplanResult& {
       return planner_->Replan(asked, map.get());
     });
   }
-  std::unique_ptr<Replanned> Rest(const MapLook& map, const ReplanInput& input,
+  std::unique_ptr<Replanned> Rest(const MapView& map, const ReplanInput& input,
                                   const py::object& pad, double climb, bool explain) {
     if (!std::isfinite(climb)) throw py::value_error("climb must be finite");
     return Ask(map, input, pad, explain, [&](const ReplanInput& asked) -> const ReplanResult& {
@@ -77,7 +77,7 @@ class OwnReplanner {
   }
 
   template <class Question>
-  std::unique_ptr<Replanned> Ask(const MapLook& map, ReplanInput input, const py::object& pad,
+  std::unique_ptr<Replanned> Ask(const MapView& map, ReplanInput input, const py::object& pad,
                                  bool explain, const Question& question) {
     const InUse::Claim claim(use);
     const InUse::Share share(map.use);

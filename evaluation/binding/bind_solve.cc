@@ -165,7 +165,7 @@ class Solver {
     }
   }
   ~Solver() {
-    const UnderWay under_way;
+    const CallGuard under_way;
     const py::gil_scoped_release release;  // a backend may wait for another one's solve
     backend_.reset();
   }
@@ -280,7 +280,7 @@ void BindResult(py::module_& m) {
       .def_property_readonly("cost_by_term", &CostByTerm, Doc("TermCost"))
       .def_readonly("max_violation", &SolverResult::max_violation,
                     Doc("SolverSummary::max_violation"))
-      .def_readonly("iterations", &SolverResult::iterations, "That the backend told of.")
+      .def_readonly("iterations", &SolverResult::iterations, "As reported by the backend.")
       .def_readonly("evaluations", &SolverResult::evaluations, Doc("SolverSummary::evaluations"))
       .def_readonly("wall_s", &SolverResult::wall_s, "Wall time of the solve [s].")
       .def_readonly("cpu_s", &SolverResult::cpu_s, Doc("SolverSummary::cpu_s"))

@@ -219,7 +219,7 @@ std::shared_ptr<const PadPrediction> PredictionOf(const py::object& object) {
   return std::make_shared<PythonPrediction>(Kept(object));
 }
 
-Loan::Loan(const PadPrediction* prediction) {
+PredictionLoan::PredictionLoan(const PadPrediction* prediction) {
   if (prediction == nullptr) {
     object_ = py::none();
     return;
@@ -229,7 +229,7 @@ Loan::Loan(const PadPrediction* prediction) {
   object_ = py::cast(lent_);
 }
 
-Loan::~Loan() {
+PredictionLoan::~PredictionLoan() {
   if (lent_) lent_->lent.Return();
 }
 

@@ -35,7 +35,7 @@ void HearOfTheEnd() {
   pybind11::module_::import("atexit").attr("register")(pybind11::cpp_function(&EndCalls));
 }
 
-UnderWay::UnderWay() {
+CallGuard::CallGuard() {
   if (IsMain()) return;
   if (ending) {
     const pybind11::gil_scoped_release release;
@@ -44,7 +44,7 @@ UnderWay::UnderWay() {
   ++under_way;
 }
 
-UnderWay::~UnderWay() {
+CallGuard::~CallGuard() {
   if (!IsMain()) --under_way;
 }
 

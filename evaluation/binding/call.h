@@ -53,12 +53,12 @@ class Call {
 void HearOfTheEnd();
 
 /// A call is under way in this thread. The lock is held.
-class UnderWay {
+class CallGuard {
  public:
-  UnderWay();
-  ~UnderWay();
-  UnderWay(const UnderWay&) = delete;
-  UnderWay& operator=(const UnderWay&) = delete;
+  CallGuard();
+  ~CallGuard();
+  CallGuard(const CallGuard&) = delete;
+  CallGuard& operator=(const CallGuard&) = delete;
 };
 
 /// The interpreter ends, and this is not its main thread.
@@ -73,7 +73,7 @@ auto WithoutLock(Work&& work) {
     WithoutLock([&] { result.emplace(work()); });
     return std::move(*result);
   } else {
-    const UnderWay under_way;
+    const CallGuard under_way;
     Call call;
     std::exception_ptr thrown;
     {

@@ -24,7 +24,7 @@ class Prediction {
   }
   const std::shared_ptr<const estimation::PadPrediction>& owned() const { return owned_; }
 
-  Lent<estimation::PadPrediction> lent;
+  Borrowed<estimation::PadPrediction> lent;
 
  private:
   std::shared_ptr<const estimation::PadPrediction> owned_;
@@ -35,12 +35,12 @@ class Prediction {
 std::shared_ptr<const estimation::PadPrediction> PredictionOf(const pybind11::object& object);
 
 /// Lends a prediction to Python while it lives; None without one.
-class Loan {
+class PredictionLoan {
  public:
-  explicit Loan(const estimation::PadPrediction* prediction);
-  ~Loan();
-  Loan(const Loan&) = delete;
-  Loan& operator=(const Loan&) = delete;
+  explicit PredictionLoan(const estimation::PadPrediction* prediction);
+  ~PredictionLoan();
+  PredictionLoan(const PredictionLoan&) = delete;
+  PredictionLoan& operator=(const PredictionLoan&) = delete;
   pybind11::object object() const { return object_; }
 
  private:

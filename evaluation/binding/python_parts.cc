@@ -8,7 +8,7 @@
 
 #include "evaluation/binding/bind.h"
 #include "evaluation/binding/call.h"
-#include "evaluation/binding/map_look.h"
+#include "evaluation/binding/map_view.h"
 #include "evaluation/binding/predictions.h"
 #include "evaluation/binding/python_term.h"
 #include "touchdown/planning/replan/stage_timer.h"
@@ -66,7 +66,7 @@ class MapLoan {
   py::object object() const { return py::cast(lent_); }
 
  private:
-  std::shared_ptr<MapLook> lent_ = std::make_shared<MapLook>();
+  std::shared_ptr<MapView> lent_ = std::make_shared<MapView>();
 };
 
 /// Holds what `plan` of the object gives; brakes and climbs by itself.
@@ -135,7 +135,7 @@ class PythonPlanner : public planning::Planner {
   bool Ask(const ReplanInput& input, const OccupancyMap& map, std::optional<UniformBspline>* curve,
            ReplanReason* reason) {
     return WithLock([&] {
-      const Loan pad(input.pad);
+      const PredictionLoan pad(input.pad);
       const MapLoan lent(map);
       py::object request =
           py::module_::import("touchdown._parts")

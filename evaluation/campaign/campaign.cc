@@ -225,7 +225,8 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
       return none;
     }
     if (!alike) {
-      throw BadInput("The ranks were not started alike: builds, processors or trials differ.");
+      throw BadInput(
+          "The ranks were not started in the same way: builds, processors or trials differ.");
     }
   }
   Flight flight(campaign, options, progress);

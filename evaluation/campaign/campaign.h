@@ -95,16 +95,15 @@ struct CampaignResult {
   bool reports = true;
 };
 
-/// Whether this machine can fly the trials: what none of them could mend is said once, before the first.
+/// Whether this machine can fly the trials: what would fail in all of them is reported once, before the first.
 /// @throws BadInput
 void CheckTrials(const Campaign& campaign);
 
-/// Flies the trials that its file does not hold yet, each in a process of its own, those that fly
-/// alone after the others, and adds each to the file when it ends: one that dies or takes too long
-/// becomes a row with outcome `crashed` or `hung`. Which rows there are and what they say does not
-/// depend on the number of jobs, ranks or shards, nor on interruptions, but for trials that fly alone.
-/// The calling process should have no other threads. `progress` is called once before the first trial
-/// and after each. @throws BadInput if the file is of another campaign, build or shard; SqliteError
+/// Flies the trials that its file does not hold yet, each in a process of its own. Trials that fly alone come after the
+/// others. Each is added to the file when it ends. One that dies or takes too long becomes a row with outcome `crashed`
+/// or `hung`. The rows do not depend on the number of jobs, ranks or shards, nor on interruptions, but for trials that
+/// fly alone. The calling process should have no other threads. `progress` is called once before the first trial and
+/// after each. @throws BadInput if the file is of another campaign, build or shard; SqliteError
 CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& options,
                            const Registries& registries,
                            const std::function<void(const CampaignState&)>& progress);

@@ -19,7 +19,7 @@ class CampaignProgress {
   void operator()(const CampaignState& state);
 
  private:
-  std::optional<ProgressTeller> tell_;  ///< from the first call on
+  std::optional<ProgressPrinter> tell_;  ///< from the first call on
 };
 
 /// Tells the log how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere.

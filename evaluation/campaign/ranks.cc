@@ -19,8 +19,8 @@ namespace touchdown::evaluation {
 namespace {
 
 constexpr int kTag = 1;
-constexpr int kNoMore = -1;
-constexpr int kNapMs = 2;
+constexpr int kEndOfWork = -1;
+constexpr int kPollMs = 2;
 
 struct Message {
   int from = 0;
@@ -51,7 +51,7 @@ void SendNumber(int to, int number) {
 }
 
 int NumberIn(const std::string& bytes) {
-  int number = kNoMore;
+  int number = kEndOfWork;
   std::memcpy(&number, bytes.data(), std::min(bytes.size(), sizeof(number)));
   return number;
 }
@@ -70,16 +70,16 @@ WorkerReply Unpacked(const std::string& bytes) {
 // Sleeps a little; whether the worker, if it is busy, has its reply.
 bool Nap(const WorkerProcess& worker) {
   pollfd wait{worker.descriptor(), POLLIN, 0};
-  return poll(&wait, worker.busy() ? 1 : 0, kNapMs) > 0;
+  return poll(&wait, worker.busy() ? 1 : 0, kPollMs) > 0;
 }
 
 // Rank 0's side of the end.
 void Dismiss(int size) {
-  for (int rank = 1; rank < size; ++rank) SendNumber(rank, kNoMore);
+  for (int rank = 1; rank < size; ++rank) SendNumber(rank, kEndOfWork);
   Message message;
   for (int left = size - 1; left > 0;) {
     if (!TakeMessage(&message)) {
-      poll(nullptr, 0, kNapMs);
+      poll(nullptr, 0, kPollMs);
     } else if (message.bytes.empty()) {
       --left;
     }
@@ -149,7 +149,7 @@ void Ranks::Follow(WorkerProcess& worker) {
   for (;;) {
     while (TakeMessage(&message)) {
       const int item = NumberIn(message.bytes);
-      if (item == kNoMore) return Send(0, "");
+      if (item == kEndOfWork) return Send(0, "");
       worker.Start(item);
     }
     if (Nap(worker)) Send(0, Packed(worker.Receive()));

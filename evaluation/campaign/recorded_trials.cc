@@ -126,7 +126,7 @@ Recorded RecordedNamed(const std::string& name) {
   if (name == "none") return Recorded::kNone;
   if (name == "failures") return Recorded::kFailures;
   if (name == "all") return Recorded::kAll;
-  throw std::invalid_argument(fmt::format("{} is none of none, failures, all", name));
+  throw std::invalid_argument(fmt::format("{} must be one of none, failures, all", name));
 }
 
 std::vector<const SweepRow*> ToRecord(const std::vector<SweepRow>& rows, Recorded which) {

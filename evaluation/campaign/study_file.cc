@@ -79,8 +79,7 @@ class MapReader {
                                    Instead(name, Names(), "allowed here:")));
       }
       if (!seen.insert(name).second) {
-        throw BadInput(
-            fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+        throw BadInput(fmt::format("{}: {} is given twice.", where.ToString(), name));
       }
       key->take(entry.second, where, name);
     }
@@ -143,8 +142,7 @@ void ReadElements(const YAML::Node& list, const Where& where, const std::string&
     if (!plain || known || element.name.empty()) {
       throw BadInput(fmt::format(
           "{}: {}[{}].name must be {}, not {}.", reader.WhereIs(list[i]).ToString(), key, i,
-          known ? "another than those before it" : "made of letters, digits, '_', '-' and '.'",
-          element.name));
+          known ? "unique" : "made of letters, digits, '_', '-' and '.'", element.name));
     }
     if (element.title.empty()) element.title = element.name;
     elements->push_back(std::move(element));

@@ -24,7 +24,7 @@ struct StudyCell {
   bool quick = true;                 ///< also in the short form
 };
 
-/// Who flies.
+/// The planner and solver that fly.
 struct StudyMethod {
   std::string name;     ///< in file names and labels
   std::string title;    ///< in the report

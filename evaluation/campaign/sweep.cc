@@ -108,7 +108,7 @@ Variation Variation::Parse(const std::string& text, const Registries& registries
   for (const std::string& value : Split(rest, ',')) {
     std::vector<std::string>& values = variation.values;
     if (std::find(values.begin(), values.end(), value) != values.end()) {
-      throw BadInput(fmt::format("--vary {}: {} stands there twice.", text, value));
+      throw BadInput(fmt::format("--vary {}: {} is given twice.", text, value));
     }
     values.push_back(value);
   }

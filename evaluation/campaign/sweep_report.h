@@ -15,7 +15,7 @@ namespace touchdown::evaluation {
 std::string SweepText(const Campaign& campaign, const std::vector<SweepRow>& rows);
 
 /// The document of `touchdown sweep --json`: summary, failures, trials. Everything but `wall_clock`
-/// is the same for the same options, whoever flew the trials.
+/// is the same for the same options, whichever machine flew the trials.
 nlohmann::ordered_json SweepJson(const Campaign& campaign, const std::vector<SweepRow>& rows);
 
 }  // namespace touchdown::evaluation

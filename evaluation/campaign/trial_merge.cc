@@ -60,7 +60,7 @@ MergedTrials CheckTrials(const std::vector<Input>& inputs, bool partial) {
       const auto [at, fresh] = flown.emplace(trial, &input);
       if (fresh) continue;
       throw BadInput(
-          fmt::format("{}: trial {} stands in {} as well.", input.path, trial, at->second->path));
+          fmt::format("{}: trial {} is in {} as well.", input.path, trial, at->second->path));
     }
   }
   const std::vector<int> planned = Trials(*inputs.front().db, "planned");

@@ -132,7 +132,7 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
 TrialStore::~TrialStore() {
   if (!db_) return;
   try {
-    // One file again, which can be copied, unless somebody is just reading it: it is as good with its log.
+    // One file again, which can be copied, unless it is being read just now: it is as good with its log.
     db_->Execute("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
   } catch (const SqliteError&) {
   }

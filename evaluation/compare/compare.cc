@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "evaluation/base/bad_input.h"
-#include "evaluation/compare/posing_flights.h"
+#include "evaluation/compare/source_flights.h"
 
 namespace touchdown::evaluation {
 namespace {
@@ -43,7 +43,7 @@ CompareResult RunCompare(const CompareOptions& options, const Registries& regist
   int solve = 0;  // of the flight
   Registries overheard = registries;
   overheard.backends =
-      solvers::Overheard(registries.backends, [&](const solvers::AskedSolve& asked) {
+      solvers::Overheard(registries.backends, [&](const solvers::SolveRequest& asked) {
         const int flight = static_cast<int>(result.flights.size()) - 1;
         const int number = solve++;
         if (done() == most || result.asked++ % result.every != 0) return;
@@ -51,7 +51,7 @@ CompareResult RunCompare(const CompareOptions& options, const Registries& regist
         report(done(), most == std::numeric_limits<int>::max() ? 0 : most);
       });
   for (int i = 0; done() < most && i != source.flights; ++i) {
-    const PosingFlight flight = source.flight(i);
+    const SourceFlight flight = source.flight(i);
     result.flights.push_back(flight.command);
     solve = 0;
     std::string note;

@@ -37,7 +37,7 @@ struct CompareResult : BenchResult {
 /// same terms, weights, pairs and start. Which are taken is a matter of counting. What the flight's own backend
 /// answers has a say in what is asked next.
 /// A flight that cannot be flown is noted, and the next one is flown. `report(done, all)` is called after each
-/// problem, with 0 for all where nobody knows. Throws BadInput if a backend is unknown or named twice, if none can solve the formulation, or if the
+/// problem, with 0 for all where it is not known. Throws BadInput if a backend is unknown or named twice, if none can solve the formulation, or if the
 /// flights pose no problem.
 CompareResult RunCompare(const CompareOptions& options, const Registries& registries,
                          const std::function<void(int done, int all)>& report);

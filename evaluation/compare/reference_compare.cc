@@ -63,7 +63,7 @@ class Contest {
     cells_.push_back(std::move(cell));
   }
 
-  /// After all were asked: the optimum may be the best that anybody found.
+  /// After all were asked: the optimum may be the best that any backend found.
   std::vector<ReferenceCell> Judge() {
     for (ReferenceCell& cell : cells_) {
       for (ReferenceSolve& solve : cell.solves) {
@@ -204,7 +204,7 @@ std::string ReferenceText(const ReferenceOptions& options, const ReferenceResult
       "  {:<15}{:>16}{:>13}{:>14}{:>13}{:>9}{:>11}{:>9}{:>9}\n",
       options.set, result.problems.size(), options.starts, options.seed, options.max_iterations,
       result.published ? "an optimum that is known, which may be a local one"
-                       : "the best that anybody found",
+                       : "the best that any backend found",
       "backend", "right", "at the best", elsewhere, "not claimed", "refused", "median ms", "p95",
       "largest");
   for (const std::string& backend : result.backends) {

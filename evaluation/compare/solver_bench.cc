@@ -40,13 +40,13 @@ constexpr double kTight = 1e-10;
 constexpr double kTightViolation = 1e-9;
 constexpr double kNever = 1e-15;
 constexpr double kNeverViolation = 1e-12;
-const std::vector<std::string> kReferees = {"banded", "ipopt"};
+const std::vector<std::string> kReferenceBackends = {"banded", "ipopt"};
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool IsReferee(const std::string& name) { return Contains(kReferees, name); }
+bool IsReference(const std::string& name) { return Contains(kReferenceBackends, name); }
 
 void SetTolerances(double tolerance, double violation, solvers::SolverOptions* options) {
   for (const solvers::OptionSpec& spec : std::vector(options->specs())) {
@@ -100,7 +100,7 @@ void CheckNames(const std::vector<std::string>& names, const solvers::BackendReg
 }  // namespace
 
 /// One backend at work on the problems of one structure.
-struct SolverBench::Contestant {
+struct SolverBench::BenchBackend {
   std::string name;
   std::unique_ptr<SolverBackend> tight;     ///< for SolvePhase::kTight
   std::unique_ptr<SolverBackend> unending;  ///< for those that are ended from outside
@@ -110,7 +110,7 @@ struct SolverBench::Contestant {
 /// All backends that can solve the problems of one structure.
 struct SolverBench::Field {
   solvers::ViewStructure structure;
-  std::vector<Contestant> contestants;
+  std::vector<BenchBackend> backends;
   solvers::ViewEvaluation outside;
 };
 
@@ -155,13 +155,13 @@ bool SolverBench::Compares(const std::string& name) const {
 void SolverBench::Enter(const solvers::BackendEntry& entry, const solvers::View& view,
                         Field* field) {
   const bool compared = Compares(entry.name);
-  if (!compared && !IsReferee(entry.name)) return;
-  Contestant who;
-  who.name = entry.name;
-  who.tight = entry.make();
-  who.unending = entry.make();
-  who.usual = entry.make();
-  const std::string refusal = who.tight->Refusal(view);
+  if (!compared && !IsReference(entry.name)) return;
+  BenchBackend backend;
+  backend.name = entry.name;
+  backend.tight = entry.make();
+  backend.unending = entry.make();
+  backend.usual = entry.make();
+  const std::string refusal = backend.tight->Refusal(view);
   const auto told = [&](const Refusal& of) { return of.backend == entry.name; };
   auto& refusals = result_.refusals;
   if (!refusal.empty()) {
@@ -170,20 +170,21 @@ void SolverBench::Enter(const solvers::BackendEntry& entry, const solvers::View&
     }
     return;
   }
-  SetTolerances(kTight, kTightViolation, &who.tight->options());
-  SetTolerances(kNever, kNeverViolation, &who.unending->options());
-  for (const auto& backend : {&who.tight, &who.unending, &who.usual}) (*backend)->Prepare(view);
+  SetTolerances(kTight, kTightViolation, &backend.tight->options());
+  SetTolerances(kNever, kNeverViolation, &backend.unending->options());
+  for (const auto& solver : {&backend.tight, &backend.unending, &backend.usual})
+    (*solver)->Prepare(view);
   if (compared && !Contains(result_.backends, entry.name)) {
     result_.backends.push_back(entry.name);
     std::sort(result_.backends.begin(), result_.backends.end(), [&](const auto& a, const auto& b) {
       return PlaceOf(registry_, a) < PlaceOf(registry_, b);
     });
   }
-  field->contestants.push_back(std::move(who));
+  field->backends.push_back(std::move(backend));
 }
 
-// First solves pay for pages, caches and lazy set-up; nobody is timed on them.
-SolverBench::Field& SolverBench::FieldFor(const solvers::AskedSolve& asked) {
+// First solves pay for pages, caches and lazy set-up; they are not timed.
+SolverBench::Field& SolverBench::FieldFor(const solvers::SolveRequest& asked) {
   for (Field& field : fields_) {
     if (field.structure.IsOf(asked.view)) return field;
   }
@@ -194,20 +195,20 @@ SolverBench::Field& SolverBench::FieldFor(const solvers::AskedSolve& asked) {
   Stop stop;
   stop.max_iterations = 50;
   stop.wall_limit_s = 1.0;
-  for (Contestant& who : field.contestants) {
-    for (const auto& backend : {&who.tight, &who.unending, &who.usual}) {
-      (*backend)->Solve(asked.view, asked.start, stop, &solver_);
+  for (BenchBackend& backend : field.backends) {
+    for (const auto& solver : {&backend.tight, &backend.unending, &backend.usual}) {
+      (*solver)->Solve(asked.view, asked.start, stop, &solver_);
     }
   }
   return field;
 }
 
-// A function of seed, problem and arguments: nobody always follows the same one.
-std::vector<SolverBench::Contestant*> SolverBench::Shuffled(SolvePhase phase, int repeat) {
+// A function of seed, problem and arguments. No backend always follows the same other.
+std::vector<SolverBench::BenchBackend*> SolverBench::Shuffled(SolvePhase phase, int repeat) {
   sim::RandomStream stream(options_.seed,
                            fmt::format("compare order {} {} {}", index(), ToString(phase), repeat));
-  std::vector<Contestant*> order;
-  for (Contestant& who : field_->contestants) order.push_back(&who);
+  std::vector<BenchBackend*> order;
+  for (BenchBackend& backend : field_->backends) order.push_back(&backend);
   for (std::size_t left = order.size(); left > 1; --left) {
     const auto drawn = static_cast<std::size_t>(stream.Uniform(0.0, static_cast<double>(left)));
     std::swap(order[left - 1], order[std::min(drawn, left - 1)]);
@@ -224,20 +225,20 @@ SolverBench::Merit SolverBench::Judge(const Eigen::VectorXd& y) {
   return merit;
 }
 
-SolveRow SolverBench::Solve(Contestant* who, SolvePhase phase, const Stop& stop) {
-  SolverBackend& backend = phase == SolvePhase::kDeadline ? *who->usual
-                           : phase == SolvePhase::kTight  ? *who->tight
-                                                          : *who->unending;
+SolveRow SolverBench::Solve(BenchBackend* backend, SolvePhase phase, const Stop& stop) {
+  SolverBackend& solver = phase == SolvePhase::kDeadline ? *backend->usual
+                          : phase == SolvePhase::kTight  ? *backend->tight
+                                                         : *backend->unending;
   const double cpu = solvers::ThreadCpuSeconds();
   const auto wall = std::chrono::steady_clock::now();
-  backend.Solve(asked_->view, asked_->start, stop, &solver_);
+  solver.Solve(asked_->view, asked_->start, stop, &solver_);
   SolveRow row;
   row.cpu_ms = 1e3 * (solvers::ThreadCpuSeconds() - cpu);
   row.wall_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - wall).count();
-  if (phase != SolvePhase::kTight) seconds_[who->name] += 1e-3 * row.wall_ms;
+  if (phase != SolvePhase::kTight) seconds_[backend->name] += 1e-3 * row.wall_ms;
   row.problem = index();
-  row.backend = who->name;
+  row.backend = backend->name;
   row.phase = phase;
   row.status = solver_.status;
   row.iterations = solver_.iterations;
@@ -258,15 +259,16 @@ void SolverBench::Rate(const ProblemRow& row, SolveRow* solve) const {
 void SolverBench::FindReference(ProblemRow* row) {
   row->reference_cost = std::numeric_limits<double>::quiet_NaN();
   std::vector<SolveRow> solves;
-  for (Contestant* who : Shuffled(SolvePhase::kTight, 0)) {
-    if (out_.contains(who->name) && !IsReferee(who->name)) continue;
+  for (BenchBackend* backend : Shuffled(SolvePhase::kTight, 0)) {
+    if (out_.contains(backend->name) && !IsReference(backend->name)) continue;
     ++row->reference_solves;
-    SolveRow solve = Solve(who, SolvePhase::kTight, UntilIdle());
+    SolveRow solve = Solve(backend, SolvePhase::kTight, UntilIdle());
     if (solve.reached && !(solve.cost >= row->reference_cost)) {
       row->reference_cost = solve.cost;
       row->reference_backend = solve.backend;
     }
-    if (Compares(who->name) && !out_.contains(who->name)) solves.push_back(std::move(solve));
+    if (Compares(backend->name) && !out_.contains(backend->name))
+      solves.push_back(std::move(solve));
   }
   for (SolveRow& solve : solves) {
     Rate(*row, &solve);
@@ -274,20 +276,21 @@ void SolverBench::FindReference(ProblemRow* row) {
   }
 }
 
-void SolverBench::SolveToGap(Contestant* who, const ProblemRow& row, int repeat, bool shares) {
+void SolverBench::SolveToGap(BenchBackend* backend, const ProblemRow& row, int repeat,
+                             bool shares) {
   const double enough = row.reference_cost + options_.gap * std::abs(row.reference_cost);
   Stop stop = Limited();
   stop.shares = shares;
   stop.callback = [enough](const solvers::StopQuery& query) {
     return query.cost <= enough && query.max_violation <= solvers::Evaluator::kFeasible;
   };
-  SolveRow solve = Solve(who, shares ? SolvePhase::kShares : SolvePhase::kGap, stop);
+  SolveRow solve = Solve(backend, shares ? SolvePhase::kShares : SolvePhase::kGap, stop);
   solve.repeat = repeat;
   Rate(row, &solve);
   result_.solves.push_back(std::move(solve));
 }
 
-void SolverBench::SolveUnderDeadline(Contestant* who, const ProblemRow& row, int repeat) {
+void SolverBench::SolveUnderDeadline(BenchBackend* backend, const ProblemRow& row, int repeat) {
   double best = std::numeric_limits<double>::infinity();
   Stop stop = Limited();
   stop.wall_limit_s = 1e-3 * *options_.deadline_ms;
@@ -295,7 +298,7 @@ void SolverBench::SolveUnderDeadline(Contestant* who, const ProblemRow& row, int
     if (query.max_violation <= solvers::Evaluator::kFeasible) best = std::min(best, query.cost);
     return false;
   };
-  SolveRow solve = Solve(who, SolvePhase::kDeadline, stop);
+  SolveRow solve = Solve(backend, SolvePhase::kDeadline, stop);
   solve.repeat = repeat;
   // Before the first feasible point there is nothing to return.
   const bool feasible = solve.max_violation <= solvers::Evaluator::kFeasible;
@@ -323,25 +326,26 @@ ProblemRow SolverBench::Facts(const solvers::View& view) {
   return row;
 }
 
-// Those that have used their time take no further part.
+// Backends that have used their time are skipped from here on.
 void SolverBench::EndTurns() {
-  for (const Contestant& who : field_->contestants) {
-    if (out_.contains(who.name) || seconds_[who.name] < options_.backend_seconds) continue;
-    out_.insert(who.name);
-    if (!Compares(who.name)) continue;
+  for (const BenchBackend& backend : field_->backends) {
+    if (out_.contains(backend.name) || seconds_[backend.name] < options_.backend_seconds) continue;
+    out_.insert(backend.name);
+    if (!Compares(backend.name)) continue;
     result_.refusals.push_back(
-        {who.name,
-         fmt::format("backend {} sits out after {} problems: it had used its time, {:.4g} s.",
-                     who.name, index(), seconds_[who.name])});
+        {backend.name,
+         fmt::format("backend {} is skipped after {} problems: its time of {:.4g} s is used up.",
+                     backend.name, index(), seconds_[backend.name])});
   }
 }
 
-void SolverBench::Run(const solvers::AskedSolve& asked, int flight, int solve) {
+void SolverBench::Run(const solvers::SolveRequest& asked, int flight, int solve) {
   asked_ = &asked;
   field_ = &FieldFor(asked);
-  const bool anybody = std::any_of(field_->contestants.begin(), field_->contestants.end(),
-                                   [&](const Contestant& who) { return Compares(who.name); });
-  if (!anybody) {
+  const bool compares =
+      std::any_of(field_->backends.begin(), field_->backends.end(),
+                  [&](const BenchBackend& backend) { return Compares(backend.name); });
+  if (!compares) {
     ++result_.refused;  // the refusals say why
     return;
   }
@@ -356,15 +360,15 @@ void SolverBench::Run(const solvers::AskedSolve& asked, int flight, int solve) {
   row.standing = row.start_gap <= options_.gap;
   if (std::isfinite(row.reference_cost) && !row.standing) {
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
-      for (Contestant* who : Shuffled(SolvePhase::kGap, repeat)) {
-        if (!Compares(who->name) || out_.contains(who->name)) continue;
-        SolveToGap(who, row, repeat, false);
-        if (options_.deadline_ms) SolveUnderDeadline(who, row, repeat);
+      for (BenchBackend* backend : Shuffled(SolvePhase::kGap, repeat)) {
+        if (!Compares(backend->name) || out_.contains(backend->name)) continue;
+        SolveToGap(backend, row, repeat, false);
+        if (options_.deadline_ms) SolveUnderDeadline(backend, row, repeat);
       }
     }
-    for (Contestant* who : Shuffled(SolvePhase::kShares, 0)) {
-      if (options_.shares && Compares(who->name) && !out_.contains(who->name)) {
-        SolveToGap(who, row, 0, true);
+    for (BenchBackend* backend : Shuffled(SolvePhase::kShares, 0)) {
+      if (options_.shares && Compares(backend->name) && !out_.contains(backend->name)) {
+        SolveToGap(backend, row, 0, true);
       }
     }
   }

@@ -24,7 +24,7 @@ struct BenchOptions {
   int repeats = 3;                    ///< of the timed solve; their median counts
   bool shares = true;                 ///< solve once more with a clock on the parts
   std::optional<double> deadline_ms;  ///< also solve under this wall-clock limit
-  /// Wall time that a backend may use, tight solves not counted: one that used more sits out the
+  /// Wall time that a backend may use, tight solves not counted: one that used more is skipped in the
   /// remaining problems. The referees among them still help to find the reference.
   double backend_seconds = 20.0;
   std::uint64_t seed = 1;  ///< of the order in which backends take turns
@@ -87,7 +87,7 @@ struct BenchResult {
   std::vector<ProblemRow> problems;
   std::vector<SolveRow> solves;
   std::vector<Refusal> refusals;
-  int refused = 0;  ///< problems that nobody compared could take
+  int refused = 0;  ///< problems that no compared backend could take
 };
 
 /// All backends of a registry, which solve the problems that they are shown, in place. Backends take turns
@@ -101,26 +101,26 @@ class SolverBench {
   ~SolverBench();
 
   /// Solves the asked problem with every backend. `flight` and `solve` say where it comes from.
-  void Run(const solvers::AskedSolve& asked, int flight, int solve);
+  void Run(const solvers::SolveRequest& asked, int flight, int solve);
 
   const BenchResult& result() const { return result_; }
 
  private:
-  struct Contestant;
+  struct BenchBackend;
   struct Field;
   struct Merit;
 
-  Field& FieldFor(const solvers::AskedSolve& asked);
+  Field& FieldFor(const solvers::SolveRequest& asked);
   void Enter(const solvers::BackendEntry& entry, const solvers::View& view, Field* field);
   Merit Judge(const Eigen::VectorXd& y);
-  SolveRow Solve(Contestant* who, SolvePhase phase, const solvers::Stop& stop);
+  SolveRow Solve(BenchBackend* backend, SolvePhase phase, const solvers::Stop& stop);
   ProblemRow Facts(const solvers::View& view);
   void FindReference(ProblemRow* row);
-  void SolveToGap(Contestant* who, const ProblemRow& row, int repeat, bool shares);
-  void SolveUnderDeadline(Contestant* who, const ProblemRow& row, int repeat);
+  void SolveToGap(BenchBackend* backend, const ProblemRow& row, int repeat, bool shares);
+  void SolveUnderDeadline(BenchBackend* backend, const ProblemRow& row, int repeat);
   void Rate(const ProblemRow& row, SolveRow* solve) const;
   void EndTurns();
-  std::vector<Contestant*> Shuffled(SolvePhase phase, int repeat);
+  std::vector<BenchBackend*> Shuffled(SolvePhase phase, int repeat);
   bool Compares(const std::string& name) const;
   int index() const { return static_cast<int>(result_.problems.size()); }
 
@@ -133,7 +133,7 @@ class SolverBench {
   BenchResult result_;
 
   // The problem at hand.
-  const solvers::AskedSolve* asked_ = nullptr;
+  const solvers::SolveRequest* asked_ = nullptr;
   Field* field_ = nullptr;
   solvers::SolverResult solver_;
 };

@@ -65,14 +65,14 @@ std::optional<SafetyWatch> SafetyWatchOf(const PlannerEntry& planner, const sim:
   return SafetyWatch(world.config().obstacles);
 }
 
-std::optional<StayTask> StayOf(const Scenario& scenario) {
+std::optional<HoldTask> StayOf(const Scenario& scenario) {
   switch (scenario.task) {
     case TaskKind::kLand:
       break;
     case TaskKind::kFollow:
-      return StayTask{Outcome::kFollowed, scenario.follow.distance, scenario.follow.time};
+      return HoldTask{Outcome::kFollowed, scenario.follow.distance, scenario.follow.time};
     case TaskKind::kGoTo:
-      return StayTask{Outcome::kArrived, scenario.go_to.distance, scenario.go_to.time};
+      return HoldTask{Outcome::kArrived, scenario.go_to.distance, scenario.go_to.time};
   }
   return std::nullopt;
 }
@@ -328,7 +328,7 @@ class Trial {
     if (record_ != nullptr) record_->events.push_back({t, kind, text});
   }
 
-  // The simulated sensors are right by construction: what the vehicle takes for no measurement is ours to mend.
+  // The simulated sensors are right by construction: a measurement that the vehicle refuses is our bug.
   void CheckTaken() const {
     const int invalid = onboard_.taken()[static_cast<std::size_t>(control::Taken::kInvalid)];
     if (invalid > 0) throw std::logic_error(fmt::format("{} measurements were invalid", invalid));
@@ -418,7 +418,7 @@ class Trial {
   sim::LeastClearance clearance_;
   bool has_prior_;
   TaskKind task_;
-  std::optional<StayTask> stay_;
+  std::optional<HoldTask> stay_;
   planning::MovingGoal goal_;  ///< of the task go_to
   Scenario::Limits limits_;
   LandingTimeTask landing_time_;  ///< at the start
@@ -442,7 +442,7 @@ class Trial {
   std::optional<planning::PersistentMap> memory_;  ///< of a flight with a prior, at its end
 };
 
-// What the simulator or a backend refuses before the flight is the user's to mend.
+// What the simulator or a backend refuses before the flight is a user error.
 Trial SetUp(const Scenario& scenario, std::uint64_t seed, const Registries& registries,
             TrialRecord* record, TrialSamples* samples) {
   if (scenario.sensing == SensingKind::kRendered) RequireRenderedSensing();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cell against obstacle, each test exact: a turned box by separating axes in the plane, a cylinder
-// by the point of the cell nearest to its axis, a sphere by the one nearest to its centre, a mesh by its triangles, a column by its interval on each axis, and a side of
-// a ring by the distance from its segment to the cell, a convex function along the segment.
+// Cell against obstacle. Each test is exact:
+// - a turned box by separating axes in the plane;
+// - a cylinder by the point of the cell nearest to its axis, a sphere by the one nearest to its centre;
+// - a mesh by its triangles, a column by its interval on each axis;
+// - a side of a ring by the distance from its segment to the cell, a convex function along the segment.
 #include "evaluation/flight/field_map.h"
 
 #include <algorithm>

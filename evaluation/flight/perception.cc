@@ -26,8 +26,8 @@ sim::PadGpsConfig GpsConfig(const Scenario& scenario) {
 Perception::Perception(const Scenario& scenario, const sim::World& world, std::uint64_t seed)
     : own_(scenario, seed),
       gps_(GpsConfig(scenario), seed),
-      pad_eye_(MakePadEye(scenario, world.config(), seed)),
-      depth_eye_(MakeDepthEye(scenario, world.config(), seed)) {
+      pad_sensor_(MakePadSensor(scenario, world.config(), seed)),
+      depth_sensor_(MakeDepthSensor(scenario, world.config(), seed)) {
   if (scenario.map_observed_free == ObservedFreeKind::kTruth) truth_ = world.config().obstacles;
 }
 
@@ -41,7 +41,7 @@ void Perception::Sense(const sim::World& world, control::Onboard* onboard) {
   const estimation::PadState pad = world.pad();
   SenseOwn(vehicle, onboard);
   SensePad(vehicle, pad, onboard);
-  depth_eye_->Look(vehicle, pad, &sensing_times_);
+  depth_sensor_->Look(vehicle, pad, &sensing_times_);
   onboard->Take(world.foot_force());
   const double sensed = solvers::ThreadCpuSeconds();
   sensing_cpu_s_ += sensed - begin;
@@ -67,8 +67,8 @@ void Perception::SensePad(const estimation::VehicleState& vehicle, const estimat
     });
   };
   if (const auto fix = gps_.Poll(t, pad)) take(*fix, &sensing_times_.pad_filter);
-  pad_eye_->Look(vehicle, onboard->own(), pad, &sensing_times_);
-  while (const auto seen = pad_eye_->Poll(t)) {
+  pad_sensor_->Look(vehicle, onboard->own(), pad, &sensing_times_);
+  while (const auto seen = pad_sensor_->Poll(t)) {
     if (seen->image) {
       take(*seen->image, &sensing_times_.pad_finding);
     } else {
@@ -79,18 +79,18 @@ void Perception::SensePad(const estimation::VehicleState& vehicle, const estimat
 
 void Perception::SenseDepth(const estimation::VehicleState& vehicle, control::Onboard* onboard) {
   image_taken_ = false;
-  while (auto glimpse = depth_eye_->Poll(vehicle.t)) {
+  while (auto timed = depth_sensor_->Poll(vehicle.t)) {
     image_taken_ = true;
     frame_times_ = {};
-    frame_times_.sense = glimpse->sense;
+    frame_times_.sense = timed->sense;
     {
       const planning::StageTimer timer(&frame_times_.map);
-      onboard->Take(glimpse->image);
+      onboard->Take(timed->image);
     }
     if (truth_) {
       ObserveTruth(*truth_, onboard->own().p_WB - vehicle.p_WB, onboard->mutable_map());
     }
-    depth_eye_->Recycle(std::move(*glimpse));
+    depth_sensor_->Recycle(std::move(*timed));
   }
 }
 

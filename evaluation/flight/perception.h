@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "evaluation/base/sensing_times.h"
-#include "evaluation/flight/depth_eye.h"
+#include "evaluation/flight/depth_sensor.h"
 #include "evaluation/flight/own_sense.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "sim/sensors/gps.h"
 #include "sim/world/world.h"
 #include "touchdown/control/onboard/onboard.h"
@@ -58,8 +58,8 @@ class Perception {
 
   OwnSense own_;
   sim::PadGps gps_;
-  std::unique_ptr<PadEye> pad_eye_;
-  std::unique_ptr<DepthEye> depth_eye_;
+  std::unique_ptr<PadSensor> pad_sensor_;
+  std::unique_ptr<DepthSensor> depth_sensor_;
   estimation::DepthImage image_;
   std::optional<sim::ObstacleField> truth_;  // stands in for what the depth camera sees free
   bool pad_measured_ = false;

@@ -147,7 +147,7 @@ std::string Broken(const LandingRule& rule, const Touchdown& d) {
 }
 
 LandingJudge::LandingJudge(const LandingRule& rule, double timeout,
-                           const std::optional<StayTask>& stay)
+                           const std::optional<HoldTask>& stay)
     : rule_(rule), timeout_(timeout), stay_(stay) {}
 
 std::optional<Outcome> LandingJudge::Observe(const JudgeSample& sample) {

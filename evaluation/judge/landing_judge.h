@@ -103,10 +103,10 @@ std::string Broken(const LandingRule& rule, const Touchdown& touchdown);
 Eigen::Vector3d DeckPointVelocity(const estimation::PadState& pad, const Eigen::Vector3d& p_WB);
 
 /// To stay at the target, without a break.
-struct StayTask {
+struct HoldTask {
   Outcome done = Outcome::kArrived;  ///< or kFollowed
-  double distance = 0.0;             ///< so near is at the target: who samples says so [m]
-  double time = 0.0;                 ///< so long [s]; 0, to follow: near it until the time-out
+  double distance = 0.0;  ///< so near is at the target [m]; the caller that samples decides
+  double time = 0.0;      ///< so long [s]; 0, to follow: near it until the time-out
 };
 
 /// Decides a trial step by step. A pure function of the samples. Does not
@@ -114,7 +114,7 @@ struct StayTask {
 class LandingJudge {
  public:
   /// A landing is asked for within `timeout` [s], or to stay.
-  LandingJudge(const LandingRule& rule, double timeout, const std::optional<StayTask>& stay = {});
+  LandingJudge(const LandingRule& rule, double timeout, const std::optional<HoldTask>& stay = {});
 
   /// Takes the next sample (t rising). Returns the outcome once it is decided, and from then on.
   std::optional<Outcome> Observe(const JudgeSample& sample);
@@ -132,7 +132,7 @@ class LandingJudge {
 
   LandingRule rule_;
   double timeout_;
-  std::optional<StayTask> stay_;
+  std::optional<HoldTask> stay_;
   std::optional<Outcome> outcome_;
   std::optional<Touchdown> touchdown_;
   double t_previous_ = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How early a landing is possible at all: what a trial's time to land is measured against. The proof
-// is in docs/t_star.md.
+// is in docs/t_star.md and landing_time_lower.cc.
 #pragma once
 
 #include <numbers>

@@ -31,8 +31,8 @@ constexpr double kEndMargin = 1e-3;         // by which the end set is aimed at 
 constexpr double kHeightMargin = 1e-4;      // how far the feet may end from the deck's face [m]
 constexpr double kFirstStretch = 1.02;      // of the lower bound
 constexpr double kStretch = 1.2;
-constexpr double kBisected = 5e-4;  // share of T
-constexpr double kMet = 1e-9;       // cost of an end that the check will let pass
+constexpr double kBisectionTolerance = 5e-4;  // share of T
+constexpr double kMet = 1e-9;                 // cost of an end that the check will let pass
 constexpr int kMostIterations = 60;
 
 /// |difference of order kOrder / h^kOrder| <= limit at every knot, as (|d|^2 - L^2) / (2 L) <= 0.
@@ -310,7 +310,7 @@ std::optional<LandingFlight> LandingTimeUpperBound(const LandingTimeTask& task,
     met *= kStretch;
   }
   if (met > task.horizon) return std::nullopt;
-  while (met - missed > kBisected * met) {
+  while (met - missed > kBisectionTolerance * met) {
     const double middle = 0.5 * (missed + met);
     (attainable.At(middle, &flight) ? met : missed) = middle;
   }

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "evaluation/flight/depth_eye.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/depth_sensor.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "evaluation/mcap/flight_scene.h"
 #include "evaluation/mcap/message_parts.h"
 

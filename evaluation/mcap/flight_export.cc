@@ -20,7 +20,7 @@
 #include "evaluation/base/bad_input.h"
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/rendering_check.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "evaluation/judge/landing_judge.h"
 #include "evaluation/mcap/flight_camera.h"
 #include "evaluation/mcap/flight_figures.h"

@@ -7,8 +7,8 @@
 
 #include "estimation/base/degrees.h"
 #include "estimation/tags/pad_sheet.h"
-#include "evaluation/flight/depth_eye.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/depth_sensor.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "evaluation/page/rounded.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "sim/vehicle/vehicle_file.h"
@@ -20,11 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kTenthsOfMillimetres = 4;
+constexpr int kDecimals = 4;  // of metres
 
 Json Numbers(const Eigen::Ref<const Eigen::VectorXd>& numbers) {
   Json json = Json::array();
-  for (const double x : numbers) json.push_back(Rounded(x, kTenthsOfMillimetres));
+  for (const double x : numbers) json.push_back(Rounded(x, kDecimals));
   return json;
 }
 
@@ -40,7 +40,7 @@ Json ShapeJson(const sim::VehicleShape& shape) {
   if (shape.kind != sim::VehicleShape::Kind::kMesh) return json;
   Json &corners = json["corners"] = Json::array(), &triangles = json["triangles"] = Json::array();
   for (const Eigen::Vector3d& corner : shape.corners) {
-    for (const double x : corner) corners.push_back(Rounded(x, kTenthsOfMillimetres));
+    for (const double x : corner) corners.push_back(Rounded(x, kDecimals));
   }
   for (const Eigen::Vector3i& triangle : shape.triangles) {
     for (const int corner : triangle) triangles.push_back(corner);

@@ -21,7 +21,7 @@ using Span = planning::StageTimes::Span;
 // Buffers grow to what a flight needs in its first steps.
 constexpr int kWarmUp = 20;
 // A flight of a minute has about 2 spans a depth image and 8 a replanning step; more are dropped.
-constexpr std::size_t kSpansOfARun = 1 << 16;
+constexpr std::size_t kSpansPerRun = 1 << 16;
 
 Profile Begin(const Scenario& scenario, const ProfileOptions& options) {
   Profile profile;
@@ -35,7 +35,7 @@ Profile Begin(const Scenario& scenario, const ProfileOptions& options) {
 template <typename Run>
 void Listen(const ProfileOptions& options, planning::SpanLog* log, const Run& run) {
   planning::SpanLog unkept;
-  if (options.spans) log->Reserve(log->spans().size() + kSpansOfARun);
+  if (options.spans) log->Reserve(log->spans().size() + kSpansPerRun);
   const planning::SpanLog::Listening listening(options.spans ? log : &unkept);
   run();
 }

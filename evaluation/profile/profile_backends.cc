@@ -109,8 +109,7 @@ std::string BackendsText(const BackendsProfile& profile) {
   text += CompareProblemsText(profile.solves);
   text += fmt::format(
       "  solve: until a feasible point is within {:g} of the best known cost; whole step: with "
-      "this "
-      "backend in the loop, the steps whose start stands among them\n"
+      "this backend in the loop, also where its problem is optimal at the start\n"
       "  {:<15}{:>12}{:>27}   {:>27}{:>7}{:>20}\n"
       "  {:<15}{:>12}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>7}{:>12}{:>8}\n",
       profile.gap, "", "", "solve", "whole step", "", "allocations a step", "backend", "reached",

@@ -30,7 +30,7 @@ ManifestFacts Facts(const Profile& profile, const MachineState& machine) {
   return facts;
 }
 
-// Allocations are NULL where nobody counted.
+// Allocations are NULL where they were not counted.
 std::optional<int> Allocations(const Profile& profile, const planning::StageTimes::Span& span) {
   if (!profile.allocations_counted) return std::nullopt;
   return static_cast<int>(span.allocations);

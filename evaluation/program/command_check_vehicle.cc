@@ -104,7 +104,7 @@ int CheckVehicleFile(const CheckVehicleArguments& arguments, const Registries& r
 
 void AddCheckVehicleCommand(Command app, const Registries& registries, CommandRun* run) {
   const Command command = app.AddCommand(
-      "check-vehicle", "Say all that a vehicle's file lacks, draw it and hover it", "vehicles.md");
+      "check-vehicle", "Check a vehicle's file, draw it and fly a test hover", "vehicles.md");
   const auto arguments = std::make_shared<CheckVehicleArguments>();
   command.Add("FILE", arguments->file, "MJCF file, or default").Required();
   command.Add("--set", arguments->set, "Change a key of the scenario; may be given again")

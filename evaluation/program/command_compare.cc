@@ -47,10 +47,10 @@ void CheckApplies(const Command& command, const CompareArguments& arguments) {
   for (const std::string& name : command.Given()) {
     const bool of_set = std::find(of_sets.begin(), of_sets.end(), name) != of_sets.end();
     if (landing ? name != "--starts" : of_set) continue;
-    throw BadInput(fmt::format("{} does not go with --problem-set {}.", name, set));
+    throw BadInput(fmt::format("{} cannot be used with --problem-set {}.", name, set));
   }
   if (command.Given("--seed") && command.Given("--from")) {
-    throw BadInput("--seed does not go with --from: the flights have their own.");
+    throw BadInput("--seed cannot be used with --from: the flights have their own.");
   }
 }
 
@@ -102,7 +102,7 @@ int Compare(CompareArguments arguments, const Registries& registries) {
     for (const std::string& text : options.set) {
       if (text.rfind(std::string(key) + "=", 0) == 0) {
         throw BadInput(
-            fmt::format("--set {}: --{} says it, too.", text, std::string(key).substr(7)));
+            fmt::format("--set {}: --{} already sets it.", text, std::string(key).substr(7)));
       }
     }
     options.set.push_back(fmt::format("{}={}", key, value));
@@ -153,8 +153,7 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
       .Check(Range(1, 100000));
   command
       .Add("--every", options.every,
-           "One of so many solves that the flights ask for is a problem; default: 1 of a record, "
-           "else 25")
+           "Take every N-th solve that the flights ask for; default: 1 of a record, else 25")
       .Check(Range(1, 100000));
   command.Add("--arrival", arguments->arrival, "Short for --set solver.arrival=")
       .Check(OneOf({"fixed", "free"}));
@@ -182,9 +181,7 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
       .ShowDefault();
   command.Add("--deadline-ms", bench.deadline_ms, "Also stop solves after this wall time")
       .Check(Range(1e-3, 1e5));
-  command
-      .Add("--backend-seconds", bench.backend_seconds,
-           "A backend that used this much wall time sits out the remaining problems [s]")
+  command.Add("--backend-seconds", bench.backend_seconds, "Skip a backend after this wall time [s]")
       .Check(Range(0.1, 1e6))
       .ShowDefault();
   command.Add("--pin", arguments->pin, "Run on this CPU only").Check(Range(0, 1023));

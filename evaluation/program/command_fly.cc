@@ -213,9 +213,9 @@ int Fly(const FlyArguments& arguments, const Scenario& scenario, const Registrie
              [&](const std::string& kept, const std::string& page) {
                const bool stays = !arguments.record.empty();
                WriteReplayPage(page, {{kept, stays ? kept : scenario.name, stays}}, registries,
-                               TellReplay());
+                               LogReplay());
              });
-    if (!arguments.json) TellPage(arguments.html);
+    if (!arguments.json) PrintPagePath(arguments.html);
   }
   if (!arguments.video.empty()) {
     const VideoProgress tell = TellVideo();

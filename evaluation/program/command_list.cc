@@ -237,8 +237,8 @@ void Print(const std::string& what, const Json& list) {
 }  // namespace
 
 void AddListCommand(Command app, const Registries& registries, CommandRun* run) {
-  const Command command =
-      app.AddCommand("list", "List what can be named: in a scenario, or as one", "scenario.md");
+  const Command command = app.AddCommand(
+      "list", "List scenarios, backends, terms, planners and other parts", "scenario.md");
   struct Arguments {
     std::string what;
     bool json = false;

@@ -53,7 +53,8 @@ void CheckApplies(const Command& command) {
   }
   if (!command.Given("--from")) throw BadInput("--backends needs --from: a record to ask again.");
   for (const char* alone : {"--backend", "--trace", "--db", "--deadline-ms"}) {
-    if (command.Given(alone)) throw BadInput(fmt::format("{} does not go with --backends.", alone));
+    if (command.Given(alone))
+      throw BadInput(fmt::format("{} cannot be used with --backends.", alone));
   }
 }
 
@@ -96,12 +97,13 @@ int RunBackends(const ProfileArguments& arguments, const Registries& registries)
   options.repeats = arguments.options.repeats;
   const auto all = std::find(options.backends.begin(), options.backends.end(), kAll);
   if (all != options.backends.end()) {
-    if (options.backends.size() > 1) throw BadInput("--backends all: it stands alone.");
+    if (options.backends.size() > 1)
+      throw BadInput("--backends all: it cannot be combined with other backends.");
     options.backends.clear();
   }
   for (const std::string& text : options.overrides) {
     if (text.rfind("solver.backend=", 0) == 0 || text.rfind("solver.gap=", 0) == 0) {
-      throw BadInput(fmt::format("--set {}: it does not go with --backends.", text));
+      throw BadInput(fmt::format("--set {}: it cannot be used with --backends.", text));
     }
   }
   MachineState machine;

@@ -42,8 +42,8 @@ int RunReplay(const ReplayArguments& arguments, const Registries& registries) {
   if (!arguments.html.empty()) {
     std::vector<ShownRecord> records = {{arguments.record, arguments.record}};
     if (!arguments.beside.empty()) records.push_back({arguments.beside, arguments.beside});
-    WriteReplayPage(arguments.html, records, registries, TellReplay());
-    TellPage(arguments.html);
+    WriteReplayPage(arguments.html, records, registries, LogReplay());
+    PrintPagePath(arguments.html);
   }
   if (!arguments.video.empty()) {
     WriteVideo(arguments.record, arguments.video, registries, TellVideo());

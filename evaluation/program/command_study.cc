@@ -20,7 +20,7 @@
 #include "evaluation/report/report_program.h"
 #include "evaluation/studies/fidelity/ego_fidelity.h"
 #include "evaluation/studies/replan/forest_flight_report.h"
-#include "evaluation/studies/replan/oracle_book.h"
+#include "evaluation/studies/replan/oracle_verdicts.h"
 #include "evaluation/studies/replan/replan_growth.h"
 #include "evaluation/studies/replan/replan_report.h"
 #include "evaluation/studies/replan/replan_study.h"
@@ -165,14 +165,14 @@ int RunSensitivity(const StudyArguments& arguments, const Registries& registries
   return kDone;
 }
 
-/// A part that stands alone, and the options that go with it.
-struct LonePart {
+/// A part that excludes all others, and the options that it takes.
+struct ExclusivePart {
   const char* name;
   std::vector<const char*> options;
 };
 
-const std::vector<LonePart>& LoneParts() {
-  static const std::vector<LonePart> parts = {
+const std::vector<ExclusivePart>& ExclusiveParts() {
+  static const std::vector<ExclusivePart> parts = {
       {"fidelity", {"--parts", "--scenes", "--kinds", "--seed", "--json"}},
       {"flights",
        {"--parts", "--flights", "--planners", "--kinds", "--seed", "--backend", "--guides", "--db",
@@ -183,14 +183,15 @@ const std::vector<LonePart>& LoneParts() {
   return parts;
 }
 
-void CheckLonePart(const LonePart& part, const StudyArguments& arguments, const Command& command) {
+void CheckExclusive(const ExclusivePart& part, const StudyArguments& arguments,
+                    const Command& command) {
   if (arguments.parts.size() > 1)
-    throw BadInput(fmt::format("--parts: {} stands alone.", part.name));
+    throw BadInput(fmt::format("--parts: {} cannot be combined with other parts.", part.name));
   for (const std::string& name : command.Given()) {
     const bool fits =
         std::find(part.options.begin(), part.options.end(), name) != part.options.end();
     if (fits) continue;
-    throw BadInput(fmt::format("{} does not go with --parts {}.", name, part.name));
+    throw BadInput(fmt::format("{} cannot be used with --parts {}.", name, part.name));
   }
 }
 
@@ -203,7 +204,7 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   const bool flights = Named(arguments.parts, "flights");
   for (const char* option : {"--flights", "--planners"}) {
     if (!command.Given(option) || flights) continue;
-    throw BadInput(fmt::format("{} goes with --parts flights.", option));
+    throw BadInput(fmt::format("{} needs --parts flights.", option));
   }
   for (const char* option : {"--backend", "--guides"}) {
     if (!command.Given(option) || !flights || Named(arguments.planners, "landing")) continue;
@@ -212,17 +213,17 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   for (const char* option : {"--sets", "--later", "--oracle"}) {
     if (!command.Given(option) || Named(arguments.parts, "safety")) continue;
     if (Named(arguments.parts, "sensitivity")) continue;
-    throw BadInput(fmt::format("{} goes with --parts safety.", option));
+    throw BadInput(fmt::format("{} needs --parts safety.", option));
   }
   if (command.Given("--verdicts") && !command.Given("--oracle")) {
-    throw BadInput("--verdicts goes with --oracle.");
+    throw BadInput("--verdicts needs --oracle.");
   }
   const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
   if (only_growth && command.Given("--kinds") && arguments.kinds.size() != 1) {
     throw BadInput("--kinds: the part growth is of one kind.");
   }
-  for (const LonePart& part : LoneParts()) {
-    if (Named(arguments.parts, part.name)) CheckLonePart(part, arguments, command);
+  for (const ExclusivePart& part : ExclusiveParts()) {
+    if (Named(arguments.parts, part.name)) CheckExclusive(part, arguments, command);
   }
 }
 
@@ -263,7 +264,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
   const auto write = [&](const std::string& path) { WriteReplanStudy(path, parts, machine); };
   if (!arguments.db.empty()) write(arguments.db);
   if (!arguments.verdicts.empty()) {
-    OracleBook book;
+    OracleVerdicts book;
     for (const ReplanStudyPart& part : parts) {
       if (part.varied.empty()) book.Add(part.options.scenes, part.rows);
     }

@@ -46,7 +46,7 @@ void CheckArguments(const HostileArguments& arguments, const Command& command) {
     if (!command.Given(alone)) continue;
     for (const char* other : {"--db", "--html", "--shard", "--retry", "--against", "--record"}) {
       if (command.Given(other))
-        throw BadInput(fmt::format("{} does not go with {}.", other, alone));
+        throw BadInput(fmt::format("{} cannot be used with {}.", other, alone));
     }
   }
   const std::pair<const char*, const char*> apart[] = {{"--only", "--show"},
@@ -113,7 +113,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
                                      flight, registries);
     WriteHtml("--html", arguments.html,
               HostilePage(arguments.options, result.rows, flights, registries));
-    if (!arguments.json) TellPage(arguments.html);
+    if (!arguments.json) PrintPagePath(arguments.html);
   }
   if (arguments.json) {
     std::cout << HostileJson(arguments.options, result.rows).dump(2) << std::endl;
@@ -127,7 +127,7 @@ int Fly(const HostileArguments& arguments, const Registries& registries) {
   }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
                                 [](const SweepRow& row) { return IsLost(row.result.outcome); });
-  return lost || BreaksThePromise(result.rows) ? kFellShort : kDone;
+  return lost || ViolatesGuarantee(result.rows) ? kFellShort : kDone;
 }
 
 int Run(HostileArguments arguments, const Registries& registries, const Command& command) {
@@ -146,8 +146,8 @@ int Run(HostileArguments arguments, const Registries& registries, const Command&
 }  // namespace
 
 void AddHostileStudyCommand(Command study, const Registries& registries, CommandRun* run) {
-  const Command command = study.AddCommand(
-      "hostile", "Whether anything is touched in worlds that nobody tuned for", "hostile.md");
+  const Command command =
+      study.AddCommand("hostile", "Collisions in worlds that are drawn to be hard", "hostile.md");
   const auto arguments = std::make_shared<HostileArguments>();
   HostileOptions& options = arguments->options;
   command.Add("--flights", options.flights, "Number of flights")

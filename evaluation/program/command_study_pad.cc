@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// touchdown study pad: how well the pad is known and foretold in flights, by each model of the filter.
+// touchdown study pad: how exactly each model of the pad filter estimates and predicts the pad in flights.
 #include "evaluation/program/command_study_pad.h"
 
 #include <algorithm>
@@ -50,8 +50,7 @@ int Run(const PadStudyArguments& arguments, const Registries& registries) {
 
 void AddPadStudyCommand(Command study, const Registries& registries, CommandRun* run) {
   const Command command = study.AddCommand(
-      "pad", "How well the pad is known and foretold in flights, by both models of its filter",
-      "pad_filter.md");
+      "pad", "Accuracy of the pad filter in flights, for both of its models", "pad_filter.md");
   const auto arguments = std::make_shared<PadStudyArguments>();
   PadStudyOptions& options = arguments->options;
   options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -54,8 +54,7 @@ int Run(const TagStudyArguments& arguments) {
   CheckBlur(arguments.options);
   if (!arguments.db.empty()) CheckNewStudy("--db", arguments.db);
   if (arguments.fit && arguments.fovs.size() * arguments.noises.size() != 1) {
-    throw BadInput(
-        "--fit goes with one field of view and one noise: name them by --fov and --noise.");
+    throw BadInput("--fit needs one field of view and one noise: name them by --fov and --noise.");
   }
   RequireRendering("study tags", "");
   if (!arguments.frames.empty()) MakeDirectory(arguments.frames);

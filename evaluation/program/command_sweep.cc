@@ -105,7 +105,7 @@ int Sweep(const SweepArguments& arguments, const Registries& registries) {
     const auto flights = RecordFlown(arguments.html, result.rows, RecordedNamed(arguments.record),
                                      flight, registries);
     WriteHtml("--html", arguments.html, SweepPage(campaign, result.rows, flights));
-    if (!arguments.json) TellPage(arguments.html);
+    if (!arguments.json) PrintPagePath(arguments.html);
   }
   const bool lost = std::any_of(result.rows.begin(), result.rows.end(),
                                 [](const SweepRow& row) { return IsLost(row.result.outcome); });

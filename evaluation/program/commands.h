@@ -55,10 +55,10 @@ struct ScenarioArguments {
 void CheckTimings(bool allow_debug);
 
 /// Says on stdout that a page was written.
-void TellPage(const std::string& path);
+void PrintPagePath(const std::string& path);
 
 /// Tells the log how far a page of flights is.
-ReplayProgress TellReplay();
+ReplayProgress LogReplay();
 
 /// Tells the log how far a video is. While it lives SIGINT and SIGTERM end the making of it, by Interruption: nothing of it is left.
 VideoProgress TellVideo();

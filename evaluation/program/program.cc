@@ -75,11 +75,11 @@ void CheckTimings(bool allow_debug) {
       "or give --allow-debug.");
 }
 
-void TellPage(const std::string& path) {
+void PrintPagePath(const std::string& path) {
   std::cout << fmt::format("{}: open it in a browser\n", path) << std::flush;
 }
 
-ReplayProgress TellReplay() {
+ReplayProgress LogReplay() {
   const auto lines = std::make_shared<std::map<std::string, Progress>>();
   return [lines](const std::string& name, int done, int all) {
     lines->try_emplace(name, ProgressText{"steps", name}).first->second(done, all);

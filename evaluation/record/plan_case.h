@@ -12,7 +12,7 @@
 
 namespace touchdown::evaluation {
 
-/// A step that nobody flew: the vehicle hovers at the scenario's start, the obstacles in the map's
+/// A step of no flight: the vehicle hovers at the scenario's start, the obstacles in the map's
 /// window are all known, and so is the pad's future; the first plan to above the pad is asked for.
 /// The recorded result of its only step is empty. @throws BadInput if the scenario cannot be set up.
 RecordedFlight StepFromStart(const Scenario& scenario, const Registries& registries);

@@ -218,7 +218,7 @@ void WriteRequests(SqliteDb& db, const std::vector<RecordPlan>& plans) {
       bound.Run(id, static_cast<int>(i), s.bound[i].from, s.bound[i].to);
     }
     if (s.unfinished) {
-      unfinished.Run(id, s.unfinished->attempt, s.unfinished->duration,
+      unfinished.Run(id, s.unfinished->number, s.unfinished->duration,
                      s.unfinished->arrival == planning::ArrivalMode::kFree,
                      s.unfinished->unseen_reach);
     }

@@ -253,13 +253,15 @@ void ReadStates(SqliteDb& db, std::vector<RecordPlan>* plans) {
   ReadMany(
       TableRows(db, "unfinished", "plan, attempt, duration, arrival_free, unseen_reach", "plan"),
       plans, [](TableRows& row, RecordPlan* plan) {
-        planning::Rung& rung = plan->before.unfinished.emplace();
-        rung.attempt = row.Integer(0, kMostAttempts);
-        rung.duration = row.Number();
-        rung.arrival = row.Flag() ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
-        rung.unseen_reach = row.Number();
-        if (!(rung.duration > 0.0 && rung.duration <= kLongest)) row.Refuse("has no duration");
-        if (!(rung.unseen_reach >= 0.0 && rung.unseen_reach <= planning::UnseenZone::kFarthest)) {
+        planning::Attempt& attempt = plan->before.unfinished.emplace();
+        attempt.number = row.Integer(0, kMostAttempts);
+        attempt.duration = row.Number();
+        attempt.arrival = row.Flag() ? planning::ArrivalMode::kFree : planning::ArrivalMode::kFixed;
+        attempt.unseen_reach = row.Number();
+        if (!(attempt.duration > 0.0 && attempt.duration <= kLongest))
+          row.Refuse("has no duration");
+        if (!(attempt.unseen_reach >= 0.0 &&
+              attempt.unseen_reach <= planning::UnseenZone::kFarthest)) {
           row.Refuse("reaches too far");
         }
       });

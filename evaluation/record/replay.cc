@@ -14,7 +14,7 @@
 namespace touchdown::evaluation {
 namespace {
 
-// What a backend or the vehicle's file refuses is the user's to mend.
+// What a backend or the vehicle's file refuses is a user error.
 template <class Make>
 auto Made(const RecordedFlight& flight, Make&& make) {
   try {

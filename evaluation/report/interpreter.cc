@@ -100,11 +100,11 @@ Interpreter FirstWith(const std::vector<std::string>& packages,
 }
 
 std::string InterpreterWith(const std::vector<std::string>& packages) {
-  constexpr double kPatience = 30.0;  // [s], for an interpreter on a slow disk
+  constexpr double kTimeout = 30.0;  // [s], for an interpreter on a slow disk
   static std::map<std::vector<std::string>, std::string> kept;
   const auto known = kept.find(packages);
   if (known != kept.end()) return known->second;
-  const Interpreter found = FirstWith(packages, InterpretersToAsk(), kPatience);
+  const Interpreter found = FirstWith(packages, InterpretersToAsk(), kTimeout);
   if (found.path != TOUCHDOWN_DEFAULT_PYTHON) {
     spdlog::info("the report is made by {} ({})", found.path, found.named_by);
   }

@@ -13,7 +13,7 @@ const std::vector<OptionKey<Options>>& EgoKeys() {
       {"ego.goal_rate",
        [](Options& o) -> double& { return o.goal_rate; },
        {0.1, 100, false, "Hz"},
-       "planner ego: the pad's position is sent as a new goal so often"},
+       "planner ego: rate at which the pad's position is sent as a new goal"},
       {"ego.horizon",
        [](Options& o) -> double& { return o.plan.horizon; },
        {1, 50, false, "m"},

@@ -23,9 +23,9 @@ SchemaKey<Element> BaseKey() {
 
 template <typename Element>
 SchemaKey<Element> TurnKey(const char* about) {
-  return Optional(schema::Vector<3, Element>(
-      "turn_deg", schema::In(-360, 360, "deg"),
-      std::string("roll, pitch and yaw ").append(about), TOUCHDOWN_AT(turn_deg)));
+  return Optional(schema::Vector<3, Element>("turn_deg", schema::In(-360, 360, "deg"),
+                                             std::string("roll, pitch and yaw ").append(about),
+                                             TOUCHDOWN_AT(turn_deg)));
 }
 
 template <typename Element>
@@ -42,18 +42,17 @@ SchemaKey<Element> FileKey(const char* what) {
 
 template <typename Element>
 SchemaKey<Element> PlaceKey(const char* what) {
-  return Optional(schema::Vector<3, Element>("at", schema::In(-1e4, 1e4, "m"), what,
-                                             TOUCHDOWN_AT(at)));
+  return Optional(
+      schema::Vector<3, Element>("at", schema::In(-1e4, 1e4, "m"), what, TOUCHDOWN_AT(at)));
 }
 
 // x and y of two points or more.
 SchemaKey<WallObstacle> PointsKey() {
   const auto range = schema::In(-200, 200, "m");
   return {"points",
-          "list of 4 numbers or more",
           "m",
           range.ToString(),
-          "x and y in W of one point of the middle line after the other",
+          "x and y in W of each point of the middle line: two points or more",
           [range](WallObstacle& wall, const YAML::Node& node, const Where& where) {
             const int size = node.IsSequence() ? static_cast<int>(node.size()) : 0;
             if (size < 4 || size % 2 != 0) {
@@ -114,7 +113,8 @@ const ElementKeys<WallObstacle>& WallKeys() {
 
 const ElementKeys<MeshObstacle>& MeshKeys() {
   static const ElementKeys<MeshObstacle> keys = {
-      FileKey<MeshObstacle>("closed surfaces of triangles: OBJ, STL, PLY and what else assimp reads"),
+      FileKey<MeshObstacle>(
+          "closed surfaces of triangles: OBJ, STL, PLY and what else assimp reads"),
       Optional(schema::Number<MeshObstacle>("scale", schema::Above(0, 1e6, ""),
                                             "metres to the file's unit of length",
                                             TOUCHDOWN_AT(scale))),
@@ -139,15 +139,13 @@ const ElementKeys<HeightFieldObstacle>& HeightFieldKeys() {
 const ElementKeys<OctomapObstacle>& OctomapKeys() {
   static const ElementKeys<OctomapObstacle> keys = {
       FileKey<OctomapObstacle>("OctoMap file (.bt or .ot) of any cell size: its occupied cells"),
-      PlaceKey<OctomapObstacle>("place of the file's origin in W"),
-      YawKey<OctomapObstacle>(),
+      PlaceKey<OctomapObstacle>("place of the file's origin in W"), YawKey<OctomapObstacle>(),
       Optional(schema::Vector<3, OctomapObstacle>(
           "crop_min", schema::In(-1e4, 1e4, "m"),
           "cells whose middle is below this, in the file's frame, are left out",
           TOUCHDOWN_AT(crop_min))),
       Optional(schema::Vector<3, OctomapObstacle>("crop_max", schema::In(-1e4, 1e4, "m"),
-                                                  "... or above this",
-                                                  TOUCHDOWN_AT(crop_max)))};
+                                                  "... or above this", TOUCHDOWN_AT(crop_max)))};
   return keys;
 }
 

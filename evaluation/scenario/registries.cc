@@ -63,7 +63,7 @@ void RequireKey(const char* what, const std::string& part, const Parameter& para
   }
   for (const Parameter& other : others) {
     if (other.key == parameter.key && !Same(other, parameter)) {
-      refuse("stands twice, with another default or range");
+      refuse("is given twice, with another default or range");
     }
     if (other.key.starts_with(parameter.key + ".")) refuse("is the group of " + other.key);
   }

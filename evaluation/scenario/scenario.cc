@@ -47,8 +47,7 @@ class Reader {
       const std::string key = KeyText(entry.first);
       const std::string name = prefix.empty() ? key : prefix + "." + key;
       if (!seen.insert(name).second) {
-        throw BadInput(
-            fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+        throw BadInput(fmt::format("{}: {} is given twice.", where.ToString(), name));
       }
       ReadEntry(name, entry.second, where);
     }
@@ -56,8 +55,7 @@ class Reader {
 
   void ReadEntry(const std::string& name, const YAML::Node& value, const Where& where) {
     if (lines_ && source_->where.count(name) != 0) {
-      throw BadInput(
-          fmt::format("{}: {} stands here for the second time.", where.ToString(), name));
+      throw BadInput(fmt::format("{}: {} is given twice.", where.ToString(), name));
     }
     if (const auto key = FindScenarioKey(name, keys_)) {
       key->set(source_->scenario, value, where);
@@ -120,7 +118,7 @@ class Reader {
       const std::string meant = DidYouMean(name, all);
       if (!meant.empty()) return meant;
     }
-    if (words.empty()) return "; `docs/scenario.md` lists the keys";
+    if (words.empty()) return "; `docs/reference/scenario_keys.md` lists the keys";
     return Instead(name, words, "allowed here:");
   }
 

@@ -153,7 +153,8 @@ void CheckTerms(const ScenarioSource& source, const planning::TermRegistry& term
         const planning::TermEntry& entry = TermNamed(terms, name);
         if (entry.use == planning::TermUse::kMovingObstacles) {
           throw std::invalid_argument(
-              "term " + name + " does nothing in a flight, where nobody tells of moving obstacles");
+              "term " + name +
+              " does nothing in a flight: a flight has no source of moving obstacles");
         }
         ApplyTermKey(entry, key, TermSettingsOf(name, {{key, value}}));
       } catch (const std::invalid_argument& error) {

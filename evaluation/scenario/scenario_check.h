@@ -20,12 +20,16 @@ struct ScenarioSource {
   Where WhereOf(const std::string& key) const;
 };
 
-/// What no single key shows: obstacles or the pad on the start, obstacles on the pad's way, a GPS outage
-/// that ends before it begins, a deck smaller than the sheet that is to be seen on it, a latency beyond
-/// the replanning period, a clearance below the hull, a ceiling below what is flown, an unreadable vehicle
-/// or map file, an airframe or a wind direction without effect; a backend, one of its options, a term or
-/// a goal in an obstacle or beyond floor and ceiling, one of its parameters that the registries do not know or allow; a formulation that the backend refuses.
-/// A pad faster than the vehicle is none of it: the flight shows what becomes of it. @throws BadInput
+/// Checks what no single key shows. Refused are:
+/// - obstacles or the pad on the start, obstacles on the pad's way, a goal in an obstacle or beyond floor and ceiling;
+/// - a GPS outage that ends before it begins, a latency beyond the replanning period;
+/// - a deck smaller than the sheet that the camera must see on it;
+/// - a clearance below the hull, a ceiling below what is flown;
+/// - a vehicle file or map file that cannot be read;
+/// - an airframe or a wind direction without effect;
+/// - a backend, term, option or parameter that the registries do not know or allow;
+/// - a formulation that the backend refuses.
+/// A pad faster than the vehicle is not refused: the flight shows what becomes of it. @throws BadInput
 void CheckScenario(const ScenarioSource& source, const Registries& registries);
 
 /// Whether images of the pad can be made: whether there is room for its printed sheet. @param where begins the sentence.

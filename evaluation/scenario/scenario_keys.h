@@ -30,7 +30,6 @@ template <typename Owner, typename At>
 SchemaKey<Owner> Number(std::string name, ValueRange range, std::string doc, At at) {
   return {
       name,
-      "number",
       range.unit,
       range.ToString(),
       std::move(doc),
@@ -44,9 +43,8 @@ SchemaKey<Scenario> Whole(std::string name, int lowest, int highest, std::string
                                 .append(std::to_string(lowest))
                                 .append(", ")
                                 .append(std::to_string(highest))
-                                .append("]");
+                                .append("], whole");
   return {name,
-          "whole number",
           "",
           range,
           std::move(doc),
@@ -59,7 +57,6 @@ SchemaKey<Scenario> Whole(std::string name, int lowest, int highest, std::string
 template <int kSize, typename Owner, typename At>
 SchemaKey<Owner> Vector(std::string name, ValueRange range, std::string doc, At at) {
   return {name,
-          std::string("list of ").append(std::to_string(kSize)).append(" numbers"),
           range.unit,
           range.ToString(),
           std::move(doc),
@@ -72,7 +69,6 @@ SchemaKey<Owner> Vector(std::string name, ValueRange range, std::string doc, At 
 template <typename At>
 SchemaKey<Scenario> Bool(std::string name, std::string doc, At at) {
   return {name,
-          "true or false",
           "",
           "true or false",
           std::move(doc),
@@ -85,7 +81,6 @@ template <typename At>
 SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& words, std::string doc,
                            At at) {
   return {name,
-          "choice",
           "",
           Enumerate(words),
           std::move(doc),
@@ -99,7 +94,6 @@ SchemaKey<Scenario> Choice(std::string name, const std::vector<std::string>& wor
 template <typename Owner = Scenario, typename At>
 SchemaKey<Owner> Text(std::string name, std::string range, std::string doc, At at) {
   return {name,
-          "text",
           "",
           std::move(range),
           std::move(doc),
@@ -111,7 +105,6 @@ SchemaKey<Owner> Text(std::string name, std::string range, std::string doc, At a
 template <typename At>
 SchemaKey<Scenario> Word(std::string name, const std::string& list, std::string doc, At at) {
   return {name,
-          "name",
           "",
           "as `touchdown list " + list + "` says",
           std::move(doc),

@@ -27,8 +27,7 @@ void AddAirKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("wind.gust.start", In(0, 600, "s"), "the first gust begins",
                                   TOUCHDOWN_AT(wind.gust.start)));
   keys.push_back(Number<Scenario>("wind.gust.duration", Above(0, 600, "s"),
-                                  "of a gust, from nothing to nothing",
-                                  TOUCHDOWN_AT(wind.gust.duration)));
+                                  "total length of a gust", TOUCHDOWN_AT(wind.gust.duration)));
   keys.push_back(
       Number<Scenario>("wind.gust.period", In(0, 600, "s"),
                        "from one gust to the next, at least wind.gust.duration; 0: one only",

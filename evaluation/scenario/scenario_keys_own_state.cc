@@ -20,7 +20,7 @@ void AddOwnStateKeys(KeyList& keys) {
                                   TOUCHDOWN_AT(own.gps.sigma)));
   keys.push_back(
       Number<Scenario>("own.gps.drift", In(0, 5, "m"),
-                       "the same of an error that lasts for about 60 s, beside the other",
+                       "standard deviation of a slow error (60 s), added to own.gps.sigma",
                        TOUCHDOWN_AT(own.gps.drift)));
   keys.push_back(Number<Scenario>("own.gps.latency_ms", In(0, 400, "ms"),
                                   "from the time stamp of a fix to the filter",
@@ -37,7 +37,7 @@ void AddOwnStateKeys(KeyList& keys) {
                                   TOUCHDOWN_AT(own.odometry.sigma)));
   keys.push_back(
       Number<Scenario>("own.odometry.drift", In(0, 5, "m/s"),
-                       "the same of an error that lasts for about 10 s, beside the other",
+                       "standard deviation of a slow error (10 s), added to own.odometry.sigma",
                        TOUCHDOWN_AT(own.odometry.drift)));
   keys.push_back(Number<Scenario>("own.height.rate", In(0, 100, "Hz"),
                                   "rate of the barometer; 0: there is none",

@@ -59,7 +59,7 @@ void AddPlanningKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("planning.rate", Above(0, 100, "Hz"), "rate of replanning",
                                   TOUCHDOWN_AT(planning.rate)));
   const ValueRange latency = In(0, 1000, "ms");
-  keys.push_back({"planning.latency", "number or word", "ms", latency.ToString() + " or measured",
+  keys.push_back({"planning.latency", "ms", latency.ToString() + " or measured",
                   "time from the question to the plan that is flown, no more than the period of "
                   "planning.rate; measured: the wall clock's, late plans are flown late",
                   [latency](Scenario& s, const YAML::Node& n, const Where& w) {

@@ -58,7 +58,7 @@ void AddDepthKeys(KeyList& keys) {
 void AddSensorKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("gps.sigma", In(0, 5, "m"),
                                   "standard deviation of the pad's GPS, each axis; the pad filter "
-                                  "reckons with 1 mm at least",
+                                  "assumes at least 1 mm",
                                   TOUCHDOWN_AT(gps.sigma)));
   keys.push_back(Number<Scenario>("gps.rate", Above(0, 100, "Hz"), "rate of the pad's GPS",
                                   TOUCHDOWN_AT(gps.rate)));
@@ -67,8 +67,8 @@ void AddSensorKeys(KeyList& keys) {
                                      "missing if they are equal",
                                      TOUCHDOWN_AT(gps.outage)));
   keys.push_back(Number<Scenario>("gps.outliers", In(0, 1, ""),
-                                  "probability of each fix to be off by gps.outlier_size, which it "
-                                  "does not tell",
+                                  "probability of each fix to be off by gps.outlier_size, "
+                                  "without a larger sigma",
                                   TOUCHDOWN_AT(gps.outliers)));
   keys.push_back(Number<Scenario>("gps.outlier_size", In(0, 1000, "m"),
                                   "error of an outlier, in any direction",

@@ -47,10 +47,12 @@ void AddPadKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>(
       "pad.go_time", In(0.5, 600, "s"),
       "stop_and_go: between stops; reversing: in each direction; half a change of speed at both "
-      "ends included, which takes 2.25 / pad.acceleration times its size",
+      "ends included; a change of speed by v takes 2.25 v / pad.acceleration",
       TOUCHDOWN_AT(pad.go_time)));
-  keys.push_back(Number<Scenario>("pad.stop_time", In(0.5, 600, "s"),
-                                  "stop_and_go: of a stop, alike", TOUCHDOWN_AT(pad.stop_time)));
+  keys.push_back(
+      Number<Scenario>("pad.stop_time", In(0.5, 600, "s"),
+                       "stop_and_go: length of a stop, with half a change of speed at both ends",
+                       TOUCHDOWN_AT(pad.stop_time)));
   keys.push_back(Number<Scenario>("pad.acceleration", In(0.05, 20, "m/s^2"),
                                   "stop_and_go, reversing, random, waypoints: of changes of speed, "
                                   "at most; random, waypoints: across the path too",
@@ -84,7 +86,6 @@ SchemaKey<Scenario> RotorSenses() {
   const std::string allowed = "file, auto or a list of 1 and -1";
   return {
       name,
-      "choice or list of numbers",
       "",
       allowed,
       "imported vehicles: sign of each rotor's reaction torque about z, in the file's order; auto: "
@@ -171,7 +172,7 @@ void AddTrialKeys(KeyList& keys) {
                        "image came and no new plan was made; 0: never",
                        TOUCHDOWN_AT(stand_limit)));
   keys.push_back(
-      {"seed", "whole number", "", "[0, 2^53]", "seed of every random stream",
+      {"seed", "", "[0, 2^53], whole", "seed of every random stream",
        [](Scenario& s, const YAML::Node& n, const Where& w) { s.seed = ReadSeed(n, w, "seed"); },
        [](const Scenario& s) { return std::to_string(s.seed); }});
 }

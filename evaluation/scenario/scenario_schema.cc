@@ -3,6 +3,10 @@
 // all go through it; the defaults are those of a default-constructed Scenario and stand nowhere else.
 #include "evaluation/scenario/scenario_schema.h"
 
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "evaluation/base/words.h"
@@ -37,7 +41,6 @@ void Offer(const std::string& name, const std::vector<Entry>& registry,
   const std::vector<std::string> names = NamesOf(registry);
   for (SchemaKey<Scenario>& key : *keys) {
     if (key.name != name) continue;
-    key.type = "choice";
     key.range = Enumerate(names);
     for (const Part& part : registry) key.doc += fmt::format("; {}: {}", part.name, part.summary);
     key.set = [name, names, take = key.set](Scenario& s, const YAML::Node& n, const Where& w) {
@@ -56,16 +59,16 @@ std::vector<SchemaKey<Scenario>> ScenarioKeys(const Registries& registries) {
   Offer("controller", registries.controllers, &keys);
   Offer("pad.prediction", registries.predictors, &keys);
   for (const Parameter& parameter : ParametersOf(registries)) {
-    keys.push_back(
-        {parameter.key, "number", parameter.range.unit, parameter.range.ToString(), parameter.doc,
-         [parameter](Scenario& s, const YAML::Node& n, const Where& w) {
-           s.parameters[parameter.key] = ReadNumber(n, w, parameter.key, parameter.range);
-         },
-         [parameter](const Scenario& s) {
-           const auto given = s.parameters.find(parameter.key);
-           const bool is_given = given != s.parameters.end();
-           return WriteNumber(is_given ? given->second : parameter.value);
-         }});
+    keys.push_back({parameter.key, parameter.range.unit, parameter.range.ToString(), parameter.doc,
+                    [parameter](Scenario& s, const YAML::Node& n, const Where& w) {
+                      s.parameters[parameter.key] =
+                          ReadNumber(n, w, parameter.key, parameter.range);
+                    },
+                    [parameter](const Scenario& s) {
+                      const auto given = s.parameters.find(parameter.key);
+                      const bool is_given = given != s.parameters.end();
+                      return WriteNumber(is_given ? given->second : parameter.value);
+                    }});
   }
   return keys;
 }
@@ -131,35 +134,87 @@ std::string DumpOpenKeys(const Scenario& scenario) {
   return text;
 }
 
+namespace {
+
+/// The page's sections: a heading and a table for each group of keys, in the order in which the groups first come.
+class KeyTables {
+ public:
+  template <class Owner>
+  void Add(const SchemaKey<Owner>& key, const std::string& name, const std::string& value) {
+    const std::string group = GroupOf(name);
+    std::string doc = key.doc;
+    for (const char* begin : {"imported vehicles: ", "planner ego: ", "planner pid: "}) {
+      if (NoteOf(group) != nullptr && doc.rfind(begin, 0) == 0) doc.erase(0, std::strlen(begin));
+    }
+    AddRow(group, name, value, key.range, doc);
+  }
+  void AddOpen(const std::string& name, const std::string& value, const std::string& range,
+               const std::string& doc) {
+    AddRow(GroupOf(name), name, value, range, doc);
+  }
+
+  std::string Text() const {
+    std::string text;
+    for (const auto& [group, rows] : groups_) {
+      const char* note = NoteOf(group);
+      text +=
+          fmt::format("{}## {}\n\n{}| key | default | allowed | meaning |\n|---|---|---|---|\n{}",
+                      text.empty() ? "" : "\n", group,
+                      note == nullptr ? "" : fmt::format("{}\n\n", note), rows);
+    }
+    return text;
+  }
+
+ private:
+  static std::string GroupOf(const std::string& name) {
+    const std::size_t dot = name.find('.');
+    return dot == std::string::npos ? "flight" : name.substr(0, dot);
+  }
+
+  static const char* NoteOf(const std::string& group) {
+    if (group == "airframe") return "Imported vehicles only.";
+    if (group == "ego") return "Only with `planner: ego` or `planner: ego-velocity`.";
+    if (group == "pid") return "Only with `planner: pid`.";
+    return nullptr;
+  }
+
+  void AddRow(const std::string& group, const std::string& name, const std::string& value,
+              const std::string& range, const std::string& doc) {
+    auto at = std::find_if(groups_.begin(), groups_.end(),
+                           [&group](const auto& named) { return named.first == group; });
+    if (at == groups_.end()) at = groups_.insert(at, {group, ""});
+    at->second += fmt::format("| `{}` | {} | {} | {} |\n", name, value, range, doc);
+  }
+
+  std::vector<std::pair<std::string, std::string>> groups_;  // heading, rows
+};
+
+}  // namespace
+
 std::string ScenarioKeysMarkdown(const Registries& registries) {
   const Scenario defaults;
-  std::string text =
-      "| key | type | unit | allowed | default | meaning |\n|---|---|---|---|---|---|\n";
+  KeyTables tables;
   for (const SchemaKey<Scenario>& key : ScenarioKeys(registries)) {
-    text += fmt::format("| `{}` | {} | {} | {} | `{}` | {} |\n", key.name, key.type, key.unit,
-                        key.range, key.get(defaults), key.doc);
+    tables.Add(key, key.name, fmt::format("`{}`", key.get(defaults)));
   }
-  text +=
-      "| `solver.options.<name>` | number |  | as `touchdown list backends` says | the backend's | "
-      "an option of the backend |\n"
-      "| `terms.<term>.weight` | number |  | [0, 1e9] | as `touchdown list terms` says | 0 "
-      "switches "
-      "the term off, a positive weight on |\n"
-      "| `terms.<term>.hard` | true or false |  | true or false | by solver.limits | the term as "
-      "constraints instead of a cost |\n"
-      "| `terms.<term>.<parameter>` | number |  | as `touchdown list terms --json` says | the "
-      "term's | a parameter of the term |\n";
+  tables.AddOpen("solver.options.<name>", "the backend's", "as `touchdown list backends` says",
+                 "an option of the backend");
+  tables.AddOpen("terms.<term>.weight", "as `touchdown list terms` says", "[0, 1e9]",
+                 "0 switches the term off, a positive weight on");
+  tables.AddOpen("terms.<term>.hard", "by solver.limits", "true or false",
+                 "the term as constraints instead of a cost");
+  tables.AddOpen("terms.<term>.<parameter>", "the term's", "as `touchdown list terms --json` says",
+                 "a parameter of the term");
   const Scenario none;
-  ForEachObstacleList(none, [&text](const std::string& list, const auto& elements,
-                                    const auto& keys) {
-    const typename std::decay_t<decltype(elements)>::value_type element;
-    for (const auto& key : keys) {
-      const std::string value = key.optional ? fmt::format("`{}`", key.get(element)) : "required";
-      text += fmt::format("| `{}[].{}` | {} | {} | {} | {} | {} |\n", list, key.name, key.type,
-                          key.unit, key.range, value, key.doc);
-    }
-  });
-  return text;
+  ForEachObstacleList(
+      none, [&tables](const std::string& list, const auto& elements, const auto& keys) {
+        const typename std::decay_t<decltype(elements)>::value_type element;
+        for (const auto& key : keys) {
+          tables.Add(key, fmt::format("{}[].{}", list, key.name),
+                     key.optional ? fmt::format("`{}`", key.get(element)) : "required");
+        }
+      });
+  return tables.Text();
 }
 
 }  // namespace touchdown::evaluation

@@ -15,9 +15,8 @@ namespace touchdown::evaluation {
 template <typename Owner>
 struct SchemaKey {
   std::string name;   ///< dotted, "pad.speed"
-  std::string type;   ///< "number", "choice", "list of 3 numbers", …
   std::string unit;   ///< empty: none
-  std::string range;  ///< allowed values in words
+  std::string range;  ///< allowed values in words, with their unit
   std::string doc;    ///< one line
   /// Reads the value into its member. @throws BadInput
   std::function<void(Owner&, const YAML::Node&, const Where&)> set;
@@ -40,7 +39,7 @@ bool IsOpenGroup(const std::string& name);
 /// The parameters and the open keys that are set, as lines of YAML.
 std::string DumpOpenKeys(const Scenario& scenario);
 
-/// The schema as a Markdown table: docs/scenario.md is this text, a test compares.
+/// The schema as Markdown tables by group: docs/reference/scenario_keys.md has this text, a test compares.
 std::string ScenarioKeysMarkdown(const Registries& registries);
 
 }  // namespace touchdown::evaluation

@@ -27,7 +27,8 @@ std::shared_ptr<const sim::PadCourse> PadCourseOf(const Scenario& scenario,
 /// The goal of the task go_to.
 planning::MovingGoal GoalOf(const Scenario& scenario);
 
-/// What foretells the pad, whose future is `truth`, or in the task go_to the goal. @throws std::invalid_argument if the predictor is unknown.
+/// The predictor of the pad, whose future is `truth`, or in the task go_to of the goal. @throws std::invalid_argument if
+/// it is unknown.
 std::unique_ptr<estimation::PadPredictor> PredictorOf(const Scenario& scenario,
                                                       const Registries& registries,
                                                       std::shared_ptr<const sim::PadCourse> truth);

@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostKept = 16;   // files whose obstacles are kept
-constexpr double kTouching = 1e-9;      // contact of surfaces is no overlap [m]
+constexpr std::size_t kMostKept = 16;  // files whose obstacles are kept
+constexpr double kTouching = 1e-9;     // contact of surfaces is no overlap [m]
 
 Eigen::Matrix3d Turned(const Eigen::Vector3d& turn_deg) {
   const Eigen::Vector3d turn = turn_deg * estimation::kRadPerDeg;
@@ -67,8 +67,8 @@ std::vector<sim::Obstacle> SolidsOf(const WallObstacle& spec) {
     const Eigen::Vector2d along = to - from;
     sim::Box box;
     box.center << 0.5 * (from + to), spec.base + 0.5 * spec.height;
-    box.half_extents = 0.5 * Eigen::Vector3d(along.norm() + spec.thickness, spec.thickness,
-                                             spec.height);
+    box.half_extents =
+        0.5 * Eigen::Vector3d(along.norm() + spec.thickness, spec.thickness, spec.height);
     box.yaw = std::atan2(along.y(), along.x());
     boxes.emplace_back(box);
   }
@@ -104,7 +104,7 @@ std::vector<sim::Obstacle> Read(const OctomapObstacle& spec) {
 }
 
 // By all that decides what a file gives: the keys of its element, its size and when it was written.
-class FileShelf {
+class FileCache {
  public:
   using Solids = std::shared_ptr<const std::vector<sim::Obstacle>>;
 
@@ -129,37 +129,37 @@ class FileShelf {
 };
 
 template <typename Element>
-constexpr bool kIsFile = std::is_same_v<Element, MeshObstacle> ||
-                         std::is_same_v<Element, HeightFieldObstacle> ||
-                         std::is_same_v<Element, OctomapObstacle>;
+constexpr bool kIsFile =
+    std::is_same_v<Element, MeshObstacle> || std::is_same_v<Element, HeightFieldObstacle> ||
+    std::is_same_v<Element, OctomapObstacle>;
 
 }  // namespace
 
 ObstacleList ObstaclesOf(const Scenario& scenario) {
-  static FileShelf shelf;
+  static FileCache cache;
   ObstacleList list;
-  ForEachObstacleList(scenario, [&](const std::string& name, const auto& elements,
-                                    const auto& keys) {
-    using Element = typename std::decay_t<decltype(elements)>::value_type;
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      const std::string key = fmt::format("{}[{}]", name, i);
-      const auto add = [&](const std::vector<sim::Obstacle>& solids) {
-        for (const sim::Obstacle& solid : solids) {
-          sim::Validate(solid, "a solid of it");
-          list.push_back({key, solid});
-        }
-      };
-      try {
-        if constexpr (kIsFile<Element>) {
-          add(*shelf.Take(elements[i], keys));
-        } else {
-          add(SolidsOf(elements[i]));
-        }
-      } catch (const std::invalid_argument& error) {
-        throw BadInput(fmt::format("{}: {}.", key, error.what()));
-      }
-    }
-  });
+  ForEachObstacleList(scenario,
+                      [&](const std::string& name, const auto& elements, const auto& keys) {
+                        using Element = typename std::decay_t<decltype(elements)>::value_type;
+                        for (std::size_t i = 0; i < elements.size(); ++i) {
+                          const std::string key = fmt::format("{}[{}]", name, i);
+                          const auto add = [&](const std::vector<sim::Obstacle>& solids) {
+                            for (const sim::Obstacle& solid : solids) {
+                              sim::Validate(solid, "a solid of it");
+                              list.push_back({key, solid});
+                            }
+                          };
+                          try {
+                            if constexpr (kIsFile<Element>) {
+                              add(*cache.Take(elements[i], keys));
+                            } else {
+                              add(SolidsOf(elements[i]));
+                            }
+                          } catch (const std::invalid_argument& error) {
+                            throw BadInput(fmt::format("{}: {}.", key, error.what()));
+                          }
+                        }
+                      });
   return list;
 }
 
@@ -211,11 +211,11 @@ double HorizontalGap(const sim::Obstacle& obstacle, const Eigen::Vector2d& centr
   // Along the box's own axes the spread is as wide as its shadow there. Both are too short at corners.
   const double c = std::cos(box->yaw), s = std::sin(box->yaw);
   const Eigen::Vector2d off = middle - centre;
-  const Eigen::Vector2d along(std::abs(c * off.x() + s * off.y()), std::abs(c * off.y() - s * off.x()));
+  const Eigen::Vector2d along(std::abs(c * off.x() + s * off.y()),
+                              std::abs(c * off.y() - s * off.x()));
   const Eigen::Vector2d shadow(std::abs(c) * spread.x() + std::abs(s) * spread.y(),
                                std::abs(s) * spread.x() + std::abs(c) * spread.y());
-  return std::max(by_bounds,
-                  (along - shadow - box->half_extents.head<2>()).cwiseMax(0.0).norm());
+  return std::max(by_bounds, (along - shadow - box->half_extents.head<2>()).cwiseMax(0.0).norm());
 }
 
 }  // namespace touchdown::evaluation

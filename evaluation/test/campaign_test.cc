@@ -242,7 +242,7 @@ TEST_F(CampaignFiles, AMergeIsRefusedWhereTrialsDoNotFit) {
     EXPECT_FALSE(std::filesystem::exists(At("out.db")));
   };
   refused({a, b}, false, "1 of 4 trials are in none of the files, the first of them is trial 3");
-  refused({a, c}, true, c + ": trial 0 stands in " + a);
+  refused({a, c}, true, c + ": trial 0 is in " + a);
   refused({a, d}, true, d + ": it does not belong to " + a + ": its sweep_seed is 8, not 7");
   refused({a, At("none.db")}, true, "none.db");
   // What is missing can be flown afterwards.
@@ -267,9 +267,9 @@ TEST_F(CampaignFiles, LostTrialsAreFlownAgainOnlyWhenAsked) {
   EXPECT_EQ(Fly(campaign, To(At("a.db"))).state.resumed, 4);
   CampaignOptions again = To(At("a.db"));
   again.retry = true;
-  const CampaignResult mended = Fly(campaign, again);
-  EXPECT_EQ(mended.state.resumed, 3);
-  EXPECT_NE(mended.rows[1].result.outcome, Outcome::kError);
+  const CampaignResult repaired = Fly(campaign, again);
+  EXPECT_EQ(repaired.state.resumed, 3);
+  EXPECT_NE(repaired.rows[1].result.outcome, Outcome::kError);
   Fly(campaign, To(At("whole.db")));
   EXPECT_EQ(Tables(At("a.db")), Tables(At("whole.db")));
 }

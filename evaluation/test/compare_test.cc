@@ -14,7 +14,7 @@
 #include "evaluation/base/sqlite_db.h"
 #include "evaluation/campaign/campaign.h"
 #include "evaluation/campaign/sweep.h"
-#include "evaluation/compare/posing_flights.h"
+#include "evaluation/compare/source_flights.h"
 #include "evaluation/flight/closed_loop.h"
 #include "evaluation/record/record.h"
 #include "evaluation/studies/hostile/hostile_study.h"
@@ -30,17 +30,17 @@ class Flights : public ::testing::Test {
   void TearDown() override { std::filesystem::remove(path_); }
 
   // Starts of all solves that the flight asks for, and the costs there.
-  std::vector<Eigen::VectorXd> Asked(const PosingFlight& flight) const {
+  std::vector<Eigen::VectorXd> Asked(const SourceFlight& flight) const {
     std::vector<Eigen::VectorXd> starts;
     Registries overheard = registries_;
     overheard.backends = solvers::Overheard(
         registries_.backends,
-        [&](const solvers::AskedSolve& asked) { starts.push_back(asked.start.y); });
+        [&](const solvers::SolveRequest& asked) { starts.push_back(asked.start.y); });
     flight.fly(overheard);
     return starts;
   }
 
-  static PosingFlight FlownAs(const SweepTrial& trial) {
+  static SourceFlight FlownAs(const SweepTrial& trial) {
     return {"", [trial](const Registries& overheard) {
               RunTrial(trial.scenario, trial.seed, overheard);
               return std::string();
@@ -82,7 +82,7 @@ TEST_F(Flights, ARecordAsksWhatTheFlightAsked) {
   const Scenario scenario = LoadScenario(FindScenario("forest"), kShort, registries_);
   std::vector<Eigen::VectorXd> flown;
   TrialRecord record;
-  const PosingFlight flight{"", [&](const Registries& overheard) {
+  const SourceFlight flight{"", [&](const Registries& overheard) {
                               WriteRecord(path_, scenario,
                                           RunTrial(scenario, 1, overheard, &record), record);
                               return std::string();
@@ -175,7 +175,7 @@ TEST_F(Flights, AFlightDoesNotKnowWhoListens) {
   Registries overheard = registries_;
   int solve = 0;
   overheard.backends =
-      solvers::Overheard(registries_.backends, [&](const solvers::AskedSolve& asked) {
+      solvers::Overheard(registries_.backends, [&](const solvers::SolveRequest& asked) {
         if (solve++ % 5 == 0) bench.Run(asked, 0, solve);
       });
   RunTrial(scenario, 5, overheard, &heard);

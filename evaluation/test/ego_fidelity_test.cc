@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The baseline in the scenes in which the released program was measured: a sample of them. The
-// whole of it is in docs/ego.md.
+// whole of it is in docs/results/ego/tables.md.
 #include "evaluation/studies/fidelity/ego_fidelity.h"
 
 #include <fstream>

@@ -21,7 +21,7 @@ TEST(ForestFlight, ReachesTheGoalWithinTheLimitsAndTwiceAlike) {
   const ForestFlightOptions options = OfKind("B");
   const ForestFlight a = FlyThroughForest(options, solvers::StandardBackends(), 1);
   EXPECT_EQ(a.outcome, FlightOutcome::kReached) << ToString(a.outcome) << " " << a.message;
-  // From within kThere of it, the straight way is 36 m.
+  // From within kGoalRadius of it, the straight way is 36 m.
   EXPECT_GT(a.length, 35.5);
   EXPECT_LT(a.length, 45.0);
   EXPECT_GT(a.clearance, options.kind.inflation);

@@ -346,13 +346,13 @@ TEST(HostileReport, WhatStoodIsListed) {
     EXPECT_THAT(report, HasSubstr("--show 3"));
     EXPECT_THAT(report, HasSubstr("steps without a proven pair"));
   }
-  EXPECT_TRUE(BreaksThePromise({row}));
+  EXPECT_TRUE(ViolatesGuarantee({row}));
   row.result.outcome = Outcome::kDisarmedInAir;
   EXPECT_THAT(HostileText(options, {row}), HasSubstr("Ended otherwise: 1"));
 }
 
 TEST(HostileReport, TheDocumentHasTheFamiliesAndTheConditions) {
-  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/hostile.md");
+  std::ifstream file(TOUCHDOWN_SOURCE_DIR "/docs/reference/hostile_worlds.md");
   std::ostringstream text;
   text << file.rdbuf();
   for (const HostileFamily& f : HostileFamilies()) {

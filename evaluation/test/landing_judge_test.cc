@@ -274,20 +274,20 @@ TEST_F(LandingJudgeTest, TimeRunsOutWithoutAPlan) {
 }
 
 TEST_F(LandingJudgeTest, FollowingUntilTheTimeIsUpIsWhatWasAskedFor) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 2.0, 0.0});
+  judge_ = LandingJudge(LandingRule{}, 20.0, HoldTask{Outcome::kFollowed, 2.0, 0.0});
   Run(30.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kFollowed);
 }
 
 TEST_F(LandingJudgeTest, FollowingFromFarOffIsNone) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 2.0, 0.0});
+  judge_ = LandingJudge(LandingRule{}, 20.0, HoldTask{Outcome::kFollowed, 2.0, 0.0});
   sample_.vehicle.p_WB.x() = 4.0;
   Run(30.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kTimeout);
 }
 
 TEST_F(LandingJudgeTest, FollowingWithoutAPlanIsInfeasible) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 2.0, 0.0});
+  judge_ = LandingJudge(LandingRule{}, 20.0, HoldTask{Outcome::kFollowed, 2.0, 0.0});
   sample_.plan_valid = false;
   Run(30.0);
   EXPECT_EQ(judge_.outcome(), Outcome::kInfeasible);
@@ -340,7 +340,7 @@ TEST(OutcomeText, EveryClassHasItsOwnNameAndSentence) {
 
 TEST_F(LandingJudgeTest, AStayIsDoneAfterItsTimeWithoutABreak) {
   for (const Outcome done : {Outcome::kFollowed, Outcome::kArrived}) {
-    judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{done, 2.0, 3.0});
+    judge_ = LandingJudge(LandingRule{}, 20.0, HoldTask{done, 2.0, 3.0});
     sample_.t = 0.0;
     sample_.at_target = true;
     Run(2.9);
@@ -356,7 +356,7 @@ TEST_F(LandingJudgeTest, AStayIsDoneAfterItsTimeWithoutABreak) {
 }
 
 TEST_F(LandingJudgeTest, AStayThatIsNeverLongEnoughIsATimeout) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kFollowed, 2.0, 3.0});
+  judge_ = LandingJudge(LandingRule{}, 20.0, HoldTask{Outcome::kFollowed, 2.0, 3.0});
   for (int i = 0; i < 20; ++i) {
     sample_.at_target = i % 2 == 0;
     Run(1.1);
@@ -365,7 +365,7 @@ TEST_F(LandingJudgeTest, AStayThatIsNeverLongEnoughIsATimeout) {
 }
 
 TEST_F(LandingJudgeTest, ThePadIsAnObstacleOnTheWayToAGoal) {
-  judge_ = LandingJudge(LandingRule{}, 20.0, StayTask{Outcome::kArrived, 0.5, 1.0});
+  judge_ = LandingJudge(LandingRule{}, 20.0, HoldTask{Outcome::kArrived, 0.5, 1.0});
   Touch();
   EXPECT_EQ(judge_.outcome(), Outcome::kCollision);
 }

@@ -42,7 +42,7 @@ TEST(ListOption, RefusesWhatIsEmptyTwiceOrOutOfRange) {
     EXPECT_THAT(Parse({"--sizes", list}).fault, HasSubstr("--sizes: an entry of the list '"))
         << list;
   }
-  EXPECT_THAT(Parse({"--sizes", "20,3,20.0"}).fault, HasSubstr("--sizes: 20.0 stands there twice"));
+  EXPECT_THAT(Parse({"--sizes", "20,3,20.0"}).fault, HasSubstr("--sizes: 20.0 is given twice"));
   EXPECT_THAT(Parse({"--sizes", "20", "--sizes", "20"}).fault, HasSubstr("twice"));
   EXPECT_THAT(Parse({"--sizes", "20,101"}).fault, HasSubstr("101"));
   EXPECT_THAT(Parse({"--sizes", "20,many"}).fault, HasSubstr("many"));

@@ -61,7 +61,7 @@ std::vector<PadStudyRow> Replay(const PadLog& log, estimation::PadModel model) {
   return rows;
 }
 
-TEST(PadStudy, ToldByTagsTheTurnIsForetoldAndThePaperGoesStraightOn) {
+TEST(PadStudy, WithTagsTheTurnIsPredictedAndThePaperGoesStraightOn) {
   const PadLog log = DrivenLog(kTurnRate, true);
   const auto turn_rate = Replay(log, estimation::PadModel::kTurnRate);
   const auto paper = Replay(log, estimation::PadModel::kPaper);

@@ -9,7 +9,7 @@
 #include "evaluation/base/bad_input.h"
 #include "evaluation/flight/field_map.h"
 #include "evaluation/judge/motion_search.h"
-#include "evaluation/studies/replan/oracle_book.h"
+#include "evaluation/studies/replan/oracle_verdicts.h"
 #include "evaluation/studies/replan/scene_sets.h"
 
 namespace touchdown::evaluation {
@@ -96,22 +96,22 @@ TEST(MotionSearch, FindsAWayThatTheStartsSpeedAllows) {
   EXPECT_GE(found, 2);
 }
 
-class OracleBookFile : public ::testing::Test {
+class OracleVerdictsFile : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
-  const std::string path_ = ::testing::TempDir() + "oracle_book_test.csv";
+  const std::string path_ = ::testing::TempDir() + "oracle_verdicts_test.csv";
 };
 
-TEST_F(OracleBookFile, ReadsBackWhatWasWritten) {
+TEST_F(OracleVerdictsFile, ReadsBackWhatWasWritten) {
   std::vector<ReplanRow> rows(4);
   rows[0].oracle = OracleVerdict{true, "path"};
   rows[1].oracle = OracleVerdict{true, "motion"};
   rows[2].oracle = OracleVerdict{false, "", true};
   rows[3].oracle = OracleVerdict{false, ""};
-  OracleBook book;
+  OracleVerdicts book;
   book.Add(Of("slits", "D"), rows);
   book.Write(path_);
-  const OracleBook read(path_);
+  const OracleVerdicts read(path_);
   for (int i = 0; i < 4; ++i) {
     const auto verdict = read.Find(Of("slits", "D"), i);
     ASSERT_TRUE(verdict);
@@ -126,11 +126,11 @@ TEST_F(OracleBookFile, ReadsBackWhatWasWritten) {
   EXPECT_FALSE(read.Find(other, 0));
 }
 
-TEST_F(OracleBookFile, IsRefusedWithItsLine) {
+TEST_F(OracleVerdictsFile, IsRefusedWithItsLine) {
   const auto refused = [&](const std::string& line) {
     std::ofstream(path_) << "set,kind,seed,verdicts\n" << line << '\n';
     try {
-      OracleBook book(path_);
+      OracleVerdicts book(path_);
     } catch (const BadInput& error) {
       return std::string(error.what()).find(":2:") != std::string::npos;
     }
@@ -143,8 +143,8 @@ TEST_F(OracleBookFile, IsRefusedWithItsLine) {
 }
 
 // The verdicts that are shipped are the oracle's, of the scenes that are drawn today.
-TEST(OracleBook, TheShippedOneSaysWhatTheOracleDoes) {
-  const OracleBook book = StandardOracleBook();
+TEST(OracleVerdicts, TheShippedOneSaysWhatTheOracleDoes) {
+  const OracleVerdicts book = StandardOracleBook();
   for (const std::string& set : SceneSetNames()) {
     const SceneOptions options = Of(set, "C");
     PlanOracle oracle(SceneReplannerOptions(options, Base()), solvers::StandardBackends());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole landings by one plan to contact: soft, soon, in wind; and pads that nobody can land on.
+// Whole landings by one plan to contact: soft, soon, in wind; and pads that no vehicle can land on.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -61,7 +61,7 @@ double LowestFeet(const TrialRecord& record, const estimation::VehicleModel& mod
   return lowest;
 }
 
-// Whoever has not seen the tags turns away above the deck, by plans that are certified.
+// A vehicle that has not seen the tags turns away above the deck, by plans that are certified.
 TEST(PlannedLanding, WithoutTagsItStaysAboveThePadHoweverSeldomItPlans) {
   const std::vector<std::vector<std::string>> cases = {
       {}, {"planning.rate=5"}, {"planning.latency=90"}, {"planning.rate=1"}};

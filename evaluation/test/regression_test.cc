@@ -155,7 +155,7 @@ TEST(RegressionOfBackends, EvaluationsToTheGap) {
     Registries overheard = registries;
     int asked = 0;
     overheard.backends =
-        solvers::Overheard(registries.backends, [&](const solvers::AskedSolve& solve) {
+        solvers::Overheard(registries.backends, [&](const solvers::SolveRequest& solve) {
           if (asked++ % 12 == 0) bench.Run(solve, 0, asked);
         });
     RunTrial(scenario, seed, overheard);

@@ -105,11 +105,11 @@ TEST_F(Replayed, WhatWasNotFinishedToo) {
   const RecordedFlight flight = ReadRecord(path_, {}, registries_);
   int unfinished = 0;
   for (std::size_t i = 0; i < flight.plans.size(); ++i) {
-    const std::optional<planning::Rung>& read = flight.plans[i].before.unfinished;
-    const std::optional<planning::Rung>& flown = flown_.plans[i].before.unfinished;
+    const std::optional<planning::Attempt>& read = flight.plans[i].before.unfinished;
+    const std::optional<planning::Attempt>& flown = flown_.plans[i].before.unfinished;
     ASSERT_EQ(read.has_value(), flown.has_value()) << i;
     if (!read) continue;
-    EXPECT_EQ(read->attempt, flown->attempt) << i;
+    EXPECT_EQ(read->number, flown->number) << i;
     EXPECT_EQ(read->duration, flown->duration) << i;
     EXPECT_EQ(read->arrival, flown->arrival) << i;
     ++unfinished;

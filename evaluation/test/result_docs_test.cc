@@ -136,10 +136,10 @@ std::uint32_t Fingerprint(const std::vector<std::string>& texts) {
 }
 
 // A reader knows a format by its version alone: with other columns the version must be another one
-// too. Who changes a table raises the format's version and enters both here.
+// too. A change of a table raises the format's version; both are entered here.
 TEST(ResultDocs, OtherColumnsAreAnotherVersion) {
   const std::map<std::string, std::string> known = {
-      {"record", "19 3398539122"},       {"trials", "8 3477732655"},
+      {"record", "19 3398539122"},      {"trials", "8 3477732655"},
       {"comparison", "3 1794598769"},   {"profile", "2 3081091663"},
       {"replan study", "4 3330845746"}, {"forest flights", "1 1622777177"},
       {"pad study", "2 3143308301"},    {"tag study", "1 1906377180"}};

@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "control/onboard/pad_look.h"
+#include "control/onboard/pad_search.h"
 #include "evaluation/flight/closed_loop.h"
-#include "evaluation/flight/depth_eye.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/depth_sensor.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "evaluation/record/trial_json.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "touchdown/evaluation/base/shipped_files.h"
@@ -31,14 +31,14 @@ std::string Deterministic(const Scenario& scenario, const TrialResult& result) {
 }
 
 /// A sighting, with the vehicle's true state at its time stamp.
-struct PadGlimpse {
+struct PadDetection {
   estimation::PadSighting sighting;
   estimation::VehicleState vehicle;
 };
 
-/// What an eye sees of a standing pad, from `height` above it and `aside` of it.
+/// What a sensor sees of a standing pad, from `height` above it and `aside` of it.
 struct Watch {
-  std::vector<PadGlimpse> glimpses;
+  std::vector<PadDetection> detections;
   std::vector<double> arrivals;
   int searched = 0;  ///< images
   SensingTimes times;
@@ -49,8 +49,8 @@ Watch WatchPad(const Overrides& overrides, int images, double height, double asi
                double speed = 0.0, bool thrifty = true) {
   const Scenario scenario = Open(overrides);
   const sim::WorldConfig world = WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries());
-  const auto eye = MakePadEye(scenario, world, 7);
-  control::PadLook look(thrifty);
+  const auto sensor = MakePadSensor(scenario, world, 7);
+  control::PadSearch look(thrifty);
   estimation::PadState pad;
   pad.p_WP = {3.0, 2.0, scenario.pad.deck_height};
   estimation::PadFilterOptions options;
@@ -67,8 +67,8 @@ Watch WatchPad(const Overrides& overrides, int images, double height, double asi
   for (int k = 0; k < images; ++k) {
     const estimation::VehicleState vehicle = vehicle_at(k / scenario.tag_rate);
     filter.AddGps({vehicle.t, pad.p_WP.head<2>(), 0.05});
-    eye->Look(vehicle, vehicle, pad, &watch.times);
-    while (const auto seen = eye->Poll(vehicle.t)) {
+    sensor->Look(vehicle, vehicle, pad, &watch.times);
+    while (const auto seen = sensor->Poll(vehicle.t)) {
       std::optional<estimation::PadSighting> sighting;
       if (seen->image) {
         sighting = look.Find(*seen->image, vehicle_at(seen->image->t), filter);
@@ -77,102 +77,103 @@ Watch WatchPad(const Overrides& overrides, int images, double height, double asi
         sighting = seen->sighting;
       }
       if (!sighting) continue;
-      watch.glimpses.push_back({*sighting, vehicle_at(sighting->t)});
+      watch.detections.push_back({*sighting, vehicle_at(sighting->t)});
       watch.arrivals.push_back(vehicle.t);
     }
   }
   return watch;
 }
 
-double ErrorOf(const PadGlimpse& glimpse, double deck_height) {
+double ErrorOf(const PadDetection& detection, double deck_height) {
   const Eigen::Vector3d p_WP =
-      glimpse.vehicle.p_WB + glimpse.vehicle.q_WB * glimpse.sighting.p_BP_B;
+      detection.vehicle.p_WB + detection.vehicle.q_WB * detection.sighting.p_BP_B;
   return (p_WP - Eigen::Vector3d(3.0, 2.0, deck_height)).norm();
 }
 
-TEST(PadEye, BothKindsSeeThePadWhereItIs) {
+TEST(PadSensor, BothKindsSeeThePadWhereItIs) {
   for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
     const Watch watch = WatchPad({kind}, 10, 2.0);
-    ASSERT_EQ(watch.glimpses.size(), 10U) << kind;
-    for (const PadGlimpse& glimpse : watch.glimpses) EXPECT_LT(ErrorOf(glimpse, 0.5), 0.01) << kind;
+    ASSERT_EQ(watch.detections.size(), 10U) << kind;
+    for (const PadDetection& detection : watch.detections)
+      EXPECT_LT(ErrorOf(detection, 0.5), 0.01) << kind;
   }
 }
 
-TEST(PadEye, DropsItsShareOfTheImages) {
-  const std::size_t fast = WatchPad({"camera.drop=0.3"}, 1000, 2.0).glimpses.size();
+TEST(PadSensor, DropsItsShareOfTheImages) {
+  const std::size_t fast = WatchPad({"camera.drop=0.3"}, 1000, 2.0).detections.size();
   EXPECT_NEAR(static_cast<double>(fast), 700.0, 60.0);
   // The same stream drops the same images of both kinds.
   const Watch few = WatchPad({"camera.drop=0.3"}, 40, 2.0);
   const Watch rendered = WatchPad({"camera.drop=0.3", "sensing=rendered"}, 40, 2.0);
-  EXPECT_LT(rendered.glimpses.size(), 40U);
-  ASSERT_EQ(few.glimpses.size(), rendered.glimpses.size());
-  for (std::size_t i = 0; i < few.glimpses.size(); ++i) {
-    EXPECT_EQ(few.glimpses[i].sighting.t, rendered.glimpses[i].sighting.t);
+  EXPECT_LT(rendered.detections.size(), 40U);
+  ASSERT_EQ(few.detections.size(), rendered.detections.size());
+  for (std::size_t i = 0; i < few.detections.size(); ++i) {
+    EXPECT_EQ(few.detections[i].sighting.t, rendered.detections[i].sighting.t);
   }
 }
 
-TEST(PadEye, LatencyDelaysButKeepsTheStamp) {
+TEST(PadSensor, LatencyDelaysButKeepsTheStamp) {
   const Watch watch = WatchPad({"camera.latency_ms=120"}, 40, 2.0);
-  ASSERT_GE(watch.glimpses.size(), 30U);
-  for (std::size_t i = 0; i < watch.glimpses.size(); ++i) {
-    const double age = watch.arrivals[i] - watch.glimpses[i].sighting.t;
+  ASSERT_GE(watch.detections.size(), 30U);
+  for (std::size_t i = 0; i < watch.detections.size(); ++i) {
+    const double age = watch.arrivals[i] - watch.detections[i].sighting.t;
     EXPECT_NEAR(age, 0.15, 1e-9);  // the first look after 120 ms
   }
 }
 
-TEST(PadEye, AHalfCoveredPadShowsTwoTagsAndIsStillWhereItIs) {
+TEST(PadSensor, AHalfCoveredPadShowsTwoTagsAndIsStillWhereItIs) {
   for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
     for (const double height : {1.0, 2.0, 3.0}) {
       const Watch watch = WatchPad({kind, "camera.occlusion=0.5"}, 6, height);
-      EXPECT_GE(watch.glimpses.size(), 5U) << kind << " at " << height;
-      for (const PadGlimpse& glimpse : watch.glimpses) {
-        EXPECT_LE(glimpse.sighting.tags_seen, 2) << kind;
-        EXPECT_LT(ErrorOf(glimpse, 0.5), 0.08) << kind << " at " << height;
+      EXPECT_GE(watch.detections.size(), 5U) << kind << " at " << height;
+      for (const PadDetection& detection : watch.detections) {
+        EXPECT_LE(detection.sighting.tags_seen, 2) << kind;
+        EXPECT_LT(ErrorOf(detection, 0.5), 0.08) << kind << " at " << height;
       }
     }
   }
-  EXPECT_TRUE(WatchPad({"camera.occlusion=0.9"}, 10, 2.0).glimpses.empty());
-  EXPECT_TRUE(WatchPad({"camera.occlusion=0.9", "sensing=rendered"}, 5, 2.0).glimpses.empty());
+  EXPECT_TRUE(WatchPad({"camera.occlusion=0.9"}, 10, 2.0).detections.empty());
+  EXPECT_TRUE(WatchPad({"camera.occlusion=0.9", "sensing=rendered"}, 5, 2.0).detections.empty());
 }
 
-TEST(PadEye, PassingOverImagesOnlySavesTime) {
+TEST(PadSensor, PassingOverImagesOnlySavesTime) {
   const auto pass = [](bool thrifty) {
     return WatchPad({"sensing=rendered"}, 50, 2.0, -8.0, 5.0, thrifty);
   };
   const Watch thrifty = pass(true);
   const Watch all = pass(false);
-  ASSERT_GT(all.glimpses.size(), 10U);
-  ASSERT_EQ(thrifty.glimpses.size(), all.glimpses.size());
-  for (std::size_t i = 0; i < all.glimpses.size(); ++i) {
-    EXPECT_EQ(thrifty.glimpses[i].sighting.t, all.glimpses[i].sighting.t);
-    EXPECT_EQ(thrifty.glimpses[i].sighting.p_BP_B, all.glimpses[i].sighting.p_BP_B);
-    EXPECT_EQ(thrifty.glimpses[i].sighting.yaw_BP, all.glimpses[i].sighting.yaw_BP);
+  ASSERT_GT(all.detections.size(), 10U);
+  ASSERT_EQ(thrifty.detections.size(), all.detections.size());
+  for (std::size_t i = 0; i < all.detections.size(); ++i) {
+    EXPECT_EQ(thrifty.detections[i].sighting.t, all.detections[i].sighting.t);
+    EXPECT_EQ(thrifty.detections[i].sighting.p_BP_B, all.detections[i].sighting.p_BP_B);
+    EXPECT_EQ(thrifty.detections[i].sighting.yaw_BP, all.detections[i].sighting.yaw_BP);
   }
 }
 
-TEST(PadEye, EveryTenthImageIsSearchedAnyhow) {
+TEST(PadSensor, EveryTenthImageIsSearchedAnyhow) {
   EXPECT_EQ(WatchPad({"sensing=rendered"}, 9, 2.0, -20.0).searched, 0);
   EXPECT_EQ(WatchPad({"sensing=rendered"}, 10, 2.0, -20.0).searched, 1);
 }
 
-TEST(DepthEye, DropsAndDelaysItsImages) {
+TEST(DepthSensor, DropsAndDelaysItsImages) {
   for (const char* kind : {"sensing=fast", "sensing=rendered"}) {
     const Scenario scenario =
         Open({kind, "depth.drop=0.5", "depth.latency_ms=150", "depth.width=40", "depth.height=30"});
-    const auto eye =
-        MakeDepthEye(scenario, WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries()), 3);
+    const auto sensor = MakeDepthSensor(
+        scenario, WorldOf(scenario, DrawTrial(scenario, 1), StandardRegistries()), 3);
     SensingTimes times;
     int arrived = 0;
     for (int k = 0; k < 100; ++k) {
       estimation::VehicleState vehicle;
       vehicle.t = 0.1 * k;
       vehicle.p_WB.z() = 2.0;
-      eye->Look(vehicle, {}, &times);
-      while (auto glimpse = eye->Poll(vehicle.t)) {
-        EXPECT_NEAR(vehicle.t - glimpse->image.t, 0.2, 1e-9);
-        EXPECT_EQ(glimpse->image.depth.size(), 1200U);
+      sensor->Look(vehicle, {}, &times);
+      while (auto timed = sensor->Poll(vehicle.t)) {
+        EXPECT_NEAR(vehicle.t - timed->image.t, 0.2, 1e-9);
+        EXPECT_EQ(timed->image.depth.size(), 1200U);
         ++arrived;
-        eye->Recycle(std::move(*glimpse));
+        sensor->Recycle(std::move(*timed));
       }
     }
     EXPECT_NEAR(arrived, 50, 20) << kind;

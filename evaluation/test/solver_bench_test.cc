@@ -180,7 +180,7 @@ TEST_F(Bench, ASlowBackendSitsOutAndARefereeStillHelps) {
   }
   for (const SolveRow& row : result.solves) EXPECT_EQ(row.problem, 0);
   ASSERT_EQ(result.refusals.size(), 2U);
-  EXPECT_THAT(result.refusals[0].reason, HasSubstr("sits out after 1 problems"));
+  EXPECT_THAT(result.refusals[0].reason, HasSubstr("is skipped after 1 problems"));
   CompareResult told;
   static_cast<BenchResult&>(told) = result;
   told.flights = {"by hand"};
@@ -271,7 +271,7 @@ TEST(CompareSummary, FailuresAreInfiniteAndTheMedianRepeatCounts) {
   EXPECT_DOUBLE_EQ(*s.cpu_ms.median, 2.0);  // of 1, 2, infinite, each three times
   EXPECT_EQ(*s.cpu_ms.p95, kInfinity);
   EXPECT_EQ(*s.cpu_ms.max, kInfinity);
-  EXPECT_EQ(s.reported_success, 12) << "with those where nobody found a feasible point";
+  EXPECT_EQ(s.reported_success, 12) << "with those where no backend found a feasible point";
   EXPECT_EQ(s.agreeing, 6);
   EXPECT_EQ(TimedProblems(MadeUp()), 9);
 }

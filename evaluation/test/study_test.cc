@@ -228,7 +228,7 @@ TEST_F(WrittenStudy, MistakesAreNamed) {
       {head + cells, "a study needs a cell and a method"},
       {"title: t\n" + cells + methods, "a study lacks the key reference"},
       {head + cells + "methods: [{name: b}]\n", "reference must be one of the methods, not a"},
-      {head + cells + "methods: [{name: a}, {name: a}]\n", "another than those before it"},
+      {head + cells + "methods: [{name: a}, {name: a}]\n", "must be unique"},
       {head + cells + "methods: [{name: a/b}]\n", "made of letters"},
       {head + cells + "methods: [{name: a, trials: 0}]\n", ".yaml:5: trials must be"},
       {head + "cells: [{name: c}]\n" + methods, "cells[0] lacks the key scenario"},

@@ -61,7 +61,7 @@ TEST(TagStudy, NothingIsSaidOfHeightsWithoutAView) {
   }
 }
 
-// Not the views of the fit. Ranges of heights one by one take thousands of views: docs/tag_pose.md.
+// Not the views of the fit. Ranges of heights one by one take thousands of views: docs/results/tag_pose/tables.md.
 TEST(TagStudy, FastCameraAgreesWithTheRenderedOne) {
   const TagStudyOptions options = Views(450, 7);
   const auto rows = RunTagStudy(options, {});

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "estimation/tags/pad_tags.h"
-#include "evaluation/flight/depth_eye.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/depth_sensor.h"
+#include "evaluation/flight/pad_sensor.h"
 
 namespace touchdown::evaluation {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole flight is known, so the camera's way is planned: at key times, views from all around are given a cost
-// (hidden, too near to an obstacle, far away, not from behind), and the cheapest way from view to view is found by
-// dynamic programming. Between the keys it is smoothed from both sides, so that nothing lags.
+// The whole flight is known, so the camera's way is planned. At key times, views from all around are given a cost:
+// hidden, too near to an obstacle, far away, not from behind. Dynamic programming finds the cheapest way from view to
+// view. Between the keys it is smoothed from both sides, so that nothing lags.
 
 #include "evaluation/video/chase_camera.h"
 
@@ -22,7 +22,7 @@ constexpr std::array<double, 4> kElevations = {0.30, 0.50, 0.80, 1.15};  // abov
 constexpr std::array<double, 4> kDistances = {3.3, 4.4, 6.2, 9.0};       // to the focus [m]
 constexpr std::size_t kViews = kAzimuths * kElevations.size() * kDistances.size();
 constexpr double kFocusShare = 0.45;  // of the way from vehicle to target ...
-constexpr double kFocusMost = 1.3;    // ... at most [m]
+constexpr double kMaxFocus = 1.3;     // ... at most [m]
 constexpr double kVehicleSize = 0.3;  // of a part that may be hidden alone [m]
 constexpr double kTargetSize = 0.6;   // [m]
 constexpr double kFloor = 0.6;        // least height of the camera [m]
@@ -50,7 +50,7 @@ View ViewOf(std::size_t index) {
 
 Eigen::Vector3d FocusOf(const ChaseSubject& subject) {
   const Eigen::Vector3d way = subject.target_W - subject.vehicle_W;
-  return subject.vehicle_W + std::min(kFocusShare, kFocusMost / std::max(way.norm(), 1e-9)) * way;
+  return subject.vehicle_W + std::min(kFocusShare, kMaxFocus / std::max(way.norm(), 1e-9)) * way;
 }
 
 Eigen::Vector3d SightOf(const View& view) {

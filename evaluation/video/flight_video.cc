@@ -13,7 +13,7 @@
 #include "evaluation/base/output_path.h"
 #include "evaluation/base/rendering_check.h"
 #include "evaluation/base/words.h"
-#include "evaluation/flight/pad_eye.h"
+#include "evaluation/flight/pad_sensor.h"
 #include "evaluation/scenario/scenario_check.h"
 #include "evaluation/scenario/scenario_world.h"
 #include "evaluation/video/camera_insets.h"

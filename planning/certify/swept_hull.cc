@@ -322,7 +322,7 @@ bool AboveDeck(const HullSpace& hull, const Eigen::Vector3d& p, double t, double
   return DistanceBeside(deck, p) > hull.radius() + PadOutline::kSigmas * deck.sigma;
 }
 
-/// Between floor and ceiling; who starts beyond one of them does not go farther. Where the deck may be
+/// Between floor and ceiling; a vehicle that starts beyond one of them does not go farther. Where the deck may be
 /// touched it is the floor itself.
 bool LevelKept(const FreeSpace& space, const Eigen::Vector3d& p, const Eigen::Vector3d& start,
                bool may_touch) {

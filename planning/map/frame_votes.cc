@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ray enters every cell but its first through one face. The faces of one axis are crossed at
-// equal steps of the other two coordinates, so the cells behind them are found axis by axis with
-// two additions each, none waiting for a comparison: the order along the ray, which a traversal
-// pays for with a branch per cell, does not matter to votes. Coordinates are in fixed point, of 2^-40
-// cells in a window of 2^22 cells: over the longest ray the cells are those of a ray displaced by less
-// than 1e-9 cells. Each is shifted so that its whole cells are where the address has them. A vote is
-// one store, two are reckoned at a time; rays are clipped to the window first, so that no cell needs
-// a test.
+// A ray enters every cell but its first through one face. The faces of one axis are crossed at equal steps of the other
+// two coordinates. So the cells behind them are found axis by axis with two additions each, none waiting for a
+// comparison. The order along the ray, which costs a traversal a branch per cell, does not matter to votes.
+// Coordinates are in fixed point, of 2^-40 cells in a window of 2^22 cells: over the longest ray the cells are those of
+// a ray displaced by less than 1e-9 cells. Each is shifted so that its whole cells are where the address has them. A
+// vote is one store, two are computed at a time. Rays are clipped to the window first: no cell needs a test.
 
 #include "touchdown/planning/map/frame_votes.h"
 
@@ -26,7 +24,7 @@ constexpr int kTrackBits = 62;  // of a coordinate in fixed point, its sign left
 
 std::uint64_t Unsigned(std::int64_t x) { return static_cast<std::uint64_t>(x); }
 
-/// Two numbers that are reckoned with at once.
+/// Two numbers in one register, computed at once.
 using Pair = std::uint64_t __attribute__((vector_size(16)));
 
 Pair Steps(std::int64_t from, std::int64_t by) { return Pair{Unsigned(from), Unsigned(from + by)}; }

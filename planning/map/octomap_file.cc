@@ -109,7 +109,7 @@ OctomapFile CheckOctomapFile(std::string_view file) {
     result.format == MapFormat::kBinary ? walk.BinaryNode(0) : walk.LogOddsNode(0);
   }
   if (walk.nodes() != size) {
-    Refuse("its head tells of " + std::to_string(size) + " nodes, and it holds " +
+    Refuse("its header says " + std::to_string(size) + " nodes, and it holds " +
            std::to_string(walk.nodes()));
   }
   if (!walk.at_end()) Refuse("there is more behind its last node");

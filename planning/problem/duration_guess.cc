@@ -14,11 +14,11 @@ namespace {
 
 // Shares of the limits that the profile uses: a smooth spline cannot sit on its limits.
 constexpr double kCruiseShare = 0.80;
-constexpr double kHurryShare = 0.97;
+constexpr double kFastCruiseShare = 0.97;
 constexpr double kSlowestClosing = 0.02;
 constexpr double kAccelerationShare = 0.45;
 constexpr int kFixedPointSteps = 6;
-constexpr double kThere = 1e-3;  // [m]
+constexpr double kZeroLength = 1e-3;  // [m]
 
 /// Time to cover `length` from closing speed v0 to rest with plateau `cruise` and acceleration a.
 double PlateauTime(double length, double v0, double cruise, double a) {
@@ -41,7 +41,7 @@ double GuessAtShare(const SplineState& start, double t0, const estimation::PadPr
   const SplineState goal_now = EndStateAt(pad, target, t0).state;
   const Eigen::Vector3d gap = goal_now.p - start.p;
   const double length = gap.norm() * detour;
-  if (length < kThere) return 0.0;
+  if (length < kZeroLength) return 0.0;
   const Eigen::Vector3d along = gap.normalized();
   double T = length / limits.speed;
   for (int i = 0; i < kFixedPointSteps; ++i) {
@@ -71,7 +71,7 @@ double GuessDuration(const SplineState& start, double t0, const estimation::PadP
   const double T = GuessAtShare(start, t0, pad, target, limits, detour, kCruiseShare);
   if (std::isfinite(T)) return T;
   // A fast pad leaves no room for comfort; the certificate decides whether it can be caught.
-  return GuessAtShare(start, t0, pad, target, limits, detour, kHurryShare);
+  return GuessAtShare(start, t0, pad, target, limits, detour, kFastCruiseShare);
 }
 
 }  // namespace touchdown::planning

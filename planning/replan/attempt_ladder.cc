@@ -9,15 +9,15 @@ namespace touchdown::planning {
 namespace {
 
 struct Case {
-  const Rung& rung;
+  const Attempt& attempt;
   const Outcome& outcome;
-  const LadderFacts& facts;
+  const AttemptFacts& facts;
   const StepConstants& constants;
 
-  bool first() const { return rung.attempt == 0; }
-  bool closed() const { return rung.unseen_reach > 0.0; }
+  bool first() const { return attempt.number == 0; }
+  bool closed() const { return attempt.unseen_reach > 0.0; }
   bool is(ReplanReason reason) const { return outcome.reason == reason; }
-  bool free() const { return rung.arrival == ArrivalMode::kFree; }
+  bool free() const { return attempt.arrival == ArrivalMode::kFree; }
   bool slower_helps() const {
     return is(ReplanReason::kLimitsExceeded) || is(ReplanReason::kUnobserved) ||
            is(ReplanReason::kCollisionRemains) || is(ReplanReason::kGoalBlocked) ||
@@ -25,21 +25,21 @@ struct Case {
   }
 };
 
-Climb Stop(ReplanReason reason) { return {std::nullopt, reason}; }
+AttemptDecision Stop(ReplanReason reason) { return {std::nullopt, reason}; }
 
-Climb Next(const Case& c, void (*change)(const Case& c, Rung* rung)) {
-  Climb climb = {c.rung, ReplanReason::kNone};
-  ++climb.next->attempt;
-  change(c, &*climb.next);
-  return climb;
+AttemptDecision Next(const Case& c, void (*change)(const Case& c, Attempt* attempt)) {
+  AttemptDecision decision = {c.attempt, ReplanReason::kNone};
+  ++decision.next->number;
+  change(c, &*decision.next);
+  return decision;
 }
 
 /// Once more a little later: a pad that brakes is not met with what was promised before.
-void LandLater(const Case& c, Rung* rung) {
-  if (c.facts.arrival == ArrivalMode::kFree && rung->duration >= c.facts.min_duration) {
-    rung->arrival = ArrivalMode::kFree;
+void LandLater(const Case& c, Attempt* attempt) {
+  if (c.facts.arrival == ArrivalMode::kFree && attempt->duration >= c.facts.min_duration) {
+    attempt->arrival = ArrivalMode::kFree;
   } else {
-    rung->duration = std::min(c.constants.stretch * rung->duration, c.facts.max_duration);
+    attempt->duration = std::min(c.constants.stretch * attempt->duration, c.facts.max_duration);
   }
 }
 
@@ -47,19 +47,19 @@ void LandLater(const Case& c, Rung* rung) {
 /// the pressure of what it hit.
 double Tried(const Case& c) {
   const bool fled = c.free() && !c.is(ReplanReason::kLimitsExceeded);
-  return fled ? c.rung.duration : std::max(c.rung.duration, c.outcome.duration);
+  return fled ? c.attempt.duration : std::max(c.attempt.duration, c.outcome.duration);
 }
 
 /// Fixed, and at least as late as a fresh guess: a promise that cannot be kept binds no longer.
-void ArriveLater(const Case& c, Rung* rung) {
-  rung->arrival = ArrivalMode::kFixed;
-  rung->duration =
+void ArriveLater(const Case& c, Attempt* attempt) {
+  attempt->arrival = ArrivalMode::kFixed;
+  attempt->duration =
       std::min(std::max(c.constants.stretch * Tried(c), c.facts.fresh), c.facts.max_duration);
 }
 
 struct Rule {
   bool (*holds)(const Case& c);
-  Climb (*climb)(const Case& c);
+  AttemptDecision (*decision)(const Case& c);
 };
 
 constexpr std::array kRules = {
@@ -69,21 +69,23 @@ constexpr std::array kRules = {
     Rule{[](const Case& c) { return c.facts.lands_soon; },
          [](const Case& c) { return Stop(c.outcome.reason); }},
     // What the last plan led around may be seen by now.
-    Rule{
-        [](const Case& c) { return c.first() && c.closed() && !c.is(ReplanReason::kUnobserved); },
-        [](const Case& c) { return Next(c, [](const Case&, Rung* r) { r->unseen_reach = 0.0; }); }},
+    Rule{[](const Case& c) { return c.first() && c.closed() && !c.is(ReplanReason::kUnobserved); },
+         [](const Case& c) {
+           return Next(c, [](const Case&, Attempt* r) { r->unseen_reach = 0.0; });
+         }},
     // What the stop would have touched unseen is closed, and the same arrival tried again.
     Rule{[](const Case& c) { return !c.closed() && c.is(ReplanReason::kUnobserved); },
          [](const Case& c) {
            return Next(
-               c, [](const Case& of, Rung* r) { r->unseen_reach = of.constants.unseen_reach; });
+               c, [](const Case& of, Attempt* r) { r->unseen_reach = of.constants.unseen_reach; });
          }},
     Rule{[](const Case& c) {
-           return c.closed() && c.facts.at_rest && c.rung.unseen_reach > c.constants.unseen_least;
+           return c.closed() && c.facts.at_rest &&
+                  c.attempt.unseen_reach > c.constants.unseen_least;
          },
          [](const Case& c) {
            return Next(
-               c, [](const Case& of, Rung* r) { r->unseen_reach = of.constants.unseen_least; });
+               c, [](const Case& of, Attempt* r) { r->unseen_reach = of.constants.unseen_least; });
          }},
     Rule{[](const Case& c) { return c.closed() && c.facts.at_rest; },
          [](const Case&) { return Stop(ReplanReason::kUnobserved); }},
@@ -94,19 +96,19 @@ constexpr std::array kRules = {
          [](const Case& c) { return Next(c, ArriveLater); }},
     Rule{[](const Case& c) { return !c.slower_helps() && c.free(); },
          [](const Case& c) {
-           return Next(c, [](const Case&, Rung* r) { r->arrival = ArrivalMode::kFixed; });
+           return Next(c, [](const Case&, Attempt* r) { r->arrival = ArrivalMode::kFixed; });
          }},
 };
 
 }  // namespace
 
-Climb NextRung(const Rung& rung, const Outcome& outcome, const LadderFacts& facts,
-               const StepConstants& constants) {
-  const Case c = {rung, outcome, facts, constants};
+AttemptDecision NextAttempt(const Attempt& attempt, const Outcome& outcome,
+                            const AttemptFacts& facts, const StepConstants& constants) {
+  const Case c = {attempt, outcome, facts, constants};
   const auto rule =
       std::find_if(kRules.begin(), kRules.end(), [&](const Rule& r) { return r.holds(c); });
   if (rule == kRules.end()) return Stop(outcome.reason);
-  return rule->climb(c);
+  return rule->decision(c);
 }
 
 }  // namespace touchdown::planning

@@ -85,7 +85,7 @@ bool Fallback::Rests(double t0, const SplineState& start, const Eigen::Vector3d&
   Certificate certificate = Certify(pair_.curve, t0, nullptr, nullptr, limits_, *hull.space);
   Enter(proof, &certificate);
   const bool enough =
-      room == Room::kOfPlans ? certificate.passed() : proof.proven && certificate.limits_kept;
+      room == Room::kPlanClearance ? certificate.passed() : proof.proven && certificate.limits_kept;
   if (!enough) return false;
   result->pair() = pair_;
   result->certificate = certificate;
@@ -104,7 +104,7 @@ bool Fallback::Escapes(double t0, const SplineState& start, const HullSpace& hul
                        ReplanResult* result) {
   CellIndex way_out = hull.space->map->CellOf(start.p);
   return hull.space->Blocked(start.p) && GridSearch::NearestFree(*hull.space, &way_out) &&
-         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull, Room::kOfPlans,
+         Rests(t0, start, hull.space->map->CentreOf(way_out) - start.p, hull, Room::kPlanClearance,
                result);
 }
 

@@ -21,8 +21,8 @@ class Fallback {
 
   /// Around a stop.
   enum class Room {
-    kOfPlans,  ///< the clearance of plans is kept, or what is within it is only left
-    kOfHull,   ///< the pair is proven, and no more
+    kPlanClearance,  ///< the clearance of plans is kept, or what is within it is only left
+    kHullClearance,  ///< the pair is proven, and no more
   };
   /// From `start` at t0 to rest, `shift` away from where braking ends.
   bool Rests(double t0, const SplineState& start, const Eigen::Vector3d& shift,

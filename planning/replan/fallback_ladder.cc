@@ -9,10 +9,10 @@ namespace touchdown::planning {
 
 namespace {
 
-const Eigen::Vector3d kUpFromMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
+const Eigen::Vector3d kClimbAfterMiss(0.0, 0.0, 0.5);  // of a landing whose deck is gone [m]
 const Eigen::Vector3d kNoShift(0.0, 0.0, 0.0);
-constexpr double kLookTime = 2.0;   // at rest, before a vehicle looks from elsewhere [s] ...
-constexpr double kAsideFrom = 1.5;  // ... at a cell no farther than this [m]
+constexpr double kLookTime = 2.0;      // at rest, before a vehicle looks from elsewhere [s] ...
+constexpr double kVantageRange = 1.5;  // ... at a cell no farther than this [m]
 
 }  // namespace
 
@@ -48,15 +48,15 @@ Fallen FallbackLadder::StepDown(const FallbackFacts& facts, ReplanResult* result
   }
   // A landing has no stop of its own, and that of a reference that was lost is elsewhere.
   if (result->from_odometry || committed.Lands()) {
-    if (Stops(facts, kNoShift, Fallback::Room::kOfPlans, result) ||
-        Stops(facts, kUpFromMiss, Fallback::Room::kOfPlans, result)) {
+    if (Stops(facts, kNoShift, Fallback::Room::kPlanClearance, result) ||
+        Stops(facts, kClimbAfterMiss, Fallback::Room::kPlanClearance, result)) {
       return {.commits = true};
     }
   }
   if (landing == Fallback::Landing::kMisses) {
-    if (!Stops(facts, kUpFromMiss, Fallback::Room::kOfHull, result) &&
-        !Stops(facts, kNoShift, Fallback::Room::kOfHull, result)) {
-      fallback_.RisesUnproven(t0, facts.start, kUpFromMiss.z(), hull, result);
+    if (!Stops(facts, kClimbAfterMiss, Fallback::Room::kHullClearance, result) &&
+        !Stops(facts, kNoShift, Fallback::Room::kHullClearance, result)) {
+      fallback_.RisesUnproven(t0, facts.start, kClimbAfterMiss.z(), hull, result);
       result->status = ReplanStatus::kBraking;
     }
     return {.commits = true};
@@ -72,7 +72,7 @@ Fallen FallbackLadder::Rest(const FallbackFacts& facts, double climb, ReplanResu
     memory_.climb.reset();
     // Below a roof a part of the climb takes the vehicle out of the pad's way, too.
     for (const double rise : {climb, 0.5 * climb, 0.25 * climb, 0.0}) {
-      if (!Stops(facts, {0.0, 0.0, rise}, Fallback::Room::kOfPlans, result)) continue;
+      if (!Stops(facts, {0.0, 0.0, rise}, Fallback::Room::kPlanClearance, result)) continue;
       // That none came out is no reason to stop trying.
       if (rise > 0.0 || climb == 0.0) memory_.climb = climb;
       if (rise > 0.0) result->status = ReplanStatus::kClimbing;
@@ -106,13 +106,13 @@ bool FallbackLadder::Stops(const FallbackFacts& facts, const Eigen::Vector3d& sh
   return true;
 }
 
-/// Who has looked for long and does not see what the way on needs goes to where it is better in sight. But not
-/// low, where the pad may come by, nor from where a landing goes on.
+/// A vehicle that has looked for long, and does not see a cell that the path needs, goes to where it sees the cell
+/// better. It does not go low, where the pad may come by, nor from where a landing goes on.
 bool FallbackLadder::StepsAside(const FallbackFacts& facts, ReplanResult* result) {
   if (!result->unseen_W || facts.t0 - facts.committed->Last().t_end() < kLookTime) return false;
   memory_.looks_at_W.reset();
   const Eigen::Vector3d unseen = *result->unseen_W;
-  if ((facts.start.p - unseen).norm() > kAsideFrom) return false;
+  if ((facts.start.p - unseen).norm() > kVantageRange) return false;
   const HullSpace& hull = *facts.hull;
   double lowest = -std::numeric_limits<double>::infinity();
   if (hull.pad != nullptr) {
@@ -121,7 +121,7 @@ bool FallbackLadder::StepsAside(const FallbackFacts& facts, ReplanResult* result
   }
   for (const Eigen::Vector3d& shift : Vantages(facts.start.p, unseen, facts.pull_W)) {
     if (facts.start.p.z() + shift.z() < lowest) continue;
-    if (!Stops(facts, shift, Fallback::Room::kOfPlans, result)) continue;
+    if (!Stops(facts, shift, Fallback::Room::kPlanClearance, result)) continue;
     memory_.looks_at_W = unseen;
     return true;
   }

@@ -37,9 +37,14 @@ struct [[nodiscard]] Fallen {
 bool LandsSoon(const FlightPair& committed, double t0, const EndpointTarget& endpoint,
                const HullSpace& hull);
 
-/// Where no plan was certified, the first of this that is proven: the landing that is committed, the committed curve
-/// with a newer stop, a way out from rest, a better place to look from, a rest; then the stop that is stored; and
-/// where that was a landing that misses, up, proven or not. It remembers what a rest was for. Does not allocate.
+/// What is flown if no plan was certified, the first of this that is proven:
+/// 1. the committed landing;
+/// 2. the committed curve with a newer stop;
+/// 3. a way out, from rest;
+/// 4. a better place to look from;
+/// 5. a rest;
+/// 6. after a landing that misses: up, proven or not; else the stored stop.
+/// It remembers what a rest was for. Does not allocate.
 class FallbackLadder {
  public:
   explicit FallbackLadder(const Limits& limits) : fallback_(limits) {}
@@ -62,7 +67,7 @@ class FallbackLadder {
     return fallback_.NoTimeToBrake(start, space);
   }
 
-  /// Who went to where a cell is in sight makes no plan before it is known, or there is no better place.
+  /// A vehicle that went to where a cell is in sight makes no plan before the cell is known, or no better place is left.
   bool StillLooks(const OccupancyMap& map, bool from_odometry);
 
   /// What a committed rest is for.

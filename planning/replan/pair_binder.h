@@ -14,10 +14,9 @@
 
 namespace touchdown::planning {
 
-/// Chooses the half-spaces {p, v} of the control points of a curve that is blocked: those along a guide
-/// past what blocks it get the convex piece of free space around their place on the guide, those beside
-/// it the piece around their place on the curve. What was bound in one round stays bound in the next,
-/// around where the curve is then.
+/// Chooses the half-spaces {p, v} of the control points of a curve that is blocked. Points along a guide past what
+/// blocks it get the convex piece of free space around their place on the guide. Points beside it get the piece around
+/// their place on the curve. What was bound in one round stays bound in the next, around where the curve is then.
 class PairBinder {
  public:
   static constexpr int kMostControlPoints = 67;  ///< of a curve

@@ -117,7 +117,7 @@ ReplanReason PlanAttempt::Try(const AttemptRequest& request, ReplanResult* resul
   const ReplanReason found = FindAnew(request, warm, leads_around, result);
   aside.reset();
   if (holds(found) || !may_keep) return found;
-  // Who looks for a better plan and finds none keeps what holds, before a later arrival is tried.
+  // If no better plan is found, what holds is kept before a later arrival is tried.
   const ReplanReason kept = KeepCommitted(request, result);
   return holds(kept) ? kept : found;
 }
@@ -153,7 +153,7 @@ ReplanReason PlanAttempt::Pose(const AttemptRequest& request, int segments, Pose
   if (hard && problem.boundary_facts().end_too_fast) return ReplanReason::kEndTooFast;
   const double t_end = request.t0 + request.duration;
   const Eigen::Vector3d end = EndStateAt(*request.pad, request.target, t_end).state.p;
-  if (!end.allFinite()) return ReplanReason::kPadUnreachable;  // nobody knows where it is then
+  if (!end.allFinite()) return ReplanReason::kPadUnreachable;  // where it is then is not known
   if (request.space->Blocked(end)) return ReplanReason::kGoalBlocked;
   return ReplanReason::kNone;
 }
@@ -250,7 +250,7 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   if (!first.at_start) KeepWay(request, result);
   const bool keeps_side = kept_.known() && !first.at_start;
   if (keeps_side) {
-    EndBeside(kept_, first_curve_, *request.space, options_.constants.beside_time, &span);
+    EndBeside(kept_, first_curve_, *request.space, options_.constants.hold_beside_time, &span);
     const double share = (kept_.t_end() - kept_.t0()) / first_curve_.duration();
     kept_.Bind({kept_.t0() + share * (span.t_in - request.t0),
                 kept_.t0() + share * (span.t_out - request.t0)});
@@ -263,8 +263,9 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
     if (i > 0 && (first.at_start || i >= (planned ? options_.max_guides : rescues))) break;
     const bool kept = i == 0 && keeps_side;
     if (!kept) {
-      const ReplanReason found = LayWay(
-          request, span, planned ? options_.constants.way_dearer * first_cost : kNoBound, result);
+      const ReplanReason found =
+          LayWay(request, span,
+                 planned ? options_.constants.path_cost_ratio * first_cost : kNoBound, result);
       if (i > 0 && found != ReplanReason::kNone) break;  // there is no other way
       if (found != ReplanReason::kNone) return found;
     }
@@ -286,8 +287,8 @@ ReplanReason PlanAttempt::TryWays(const AttemptRequest& asked, Posed* posed, Rep
   return best_.reason;
 }
 
-/// The way round takes longer than the straight one, by as much as it is longer at full speed. An arrival
-/// that others reckon with already is not put off like that.
+/// The path around takes longer than the straight one: by its extra length at full speed. An arrival that is
+/// committed is not postponed like that.
 void PlanAttempt::Postpone(const TimedWay& way, Posed* posed, AttemptRequest* request) {
   if (request->arrival == ArrivalMode::kFree) return;
   AttemptRequest later = *request;
@@ -338,7 +339,7 @@ ReplanReason PlanAttempt::Follow(const AttemptRequest& request, const TimedWay& 
       if (runs.empty() || (runs.size() == 1 && runs.front().at_start)) return end;
     }
     const double before = std::exchange(blocked, BlockedTime(runs));
-    if (blocked > options_.constants.blocked_left * before) break;
+    if (blocked > options_.constants.blocked_share_left * before) break;
   }
   return Finish(request, candidate, result);
 }
@@ -474,7 +475,7 @@ double PlanAttempt::CostOfShape(const solvers::SolverSummary& solver) const {
 bool PlanAttempt::Better(const Candidate& a, const Candidate& b, bool keeps_side) const {
   if (a.reason != ReplanReason::kNone) return false;
   if (b.reason != ReplanReason::kNone) return true;
-  const double share = keeps_side ? options_.constants.side_cheaper : 1.0;
+  const double share = keeps_side ? options_.constants.side_change_ratio : 1.0;
   return CostOfShape(a.solver) < share * CostOfShape(b.solver);
 }
 

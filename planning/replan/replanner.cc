@@ -27,12 +27,12 @@ namespace touchdown::planning {
 
 namespace {
 
-constexpr double kLongAgo = -std::numeric_limits<double>::infinity();
+constexpr double kNeverTime = -std::numeric_limits<double>::infinity();
 constexpr double kStripMemory = 2.0;  // the strip over a pad that was lost holds this long [s]
 constexpr int kUsualPaths = 32;       // room for those of one step
 constexpr int kUsualPathPoints = 512;
 constexpr double kClockRounding = 1e-6;  // [s]
-constexpr double kNewBeginning = 2.0;    // who asks later than this begins anew [s]
+constexpr double kRestartAfter = 2.0;    // a longer pause between calls resets the memory [s]
 constexpr double kLookAhead = 2.0;       // of the cells that the next stops need [s]
 
 /// Length of what is left of a curve over the straight line between its ends, at least 1.
@@ -113,10 +113,11 @@ class Replanner::Impl {
   void NoteAsked(double t_start);
   SplineState Start(const ReplanInput& input);
   double FirstFreeArrival(const ReplanInput& input, double T, const OccupancyMap& map) const;
-  Rung FirstRung(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
-                 LadderFacts* facts);
-  AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start, const Rung& rung,
-                            const LadderFacts& facts, double first, const HullSpace& hull);
+  Attempt FirstAttempt(const ReplanInput& input, const SplineState& start, const FreeSpace& plain,
+                       AttemptFacts* facts);
+  AttemptRequest RequestFor(const ReplanInput& input, const SplineState& start,
+                            const Attempt& attempt, const AttemptFacts& facts, double first,
+                            const HullSpace& hull);
   ReplanReason Plan(const ReplanInput& input, const SplineState& start, const OccupancyMap& map);
   HullSpace HullIn(const FreeSpace& space, const estimation::PadPrediction* pad) const;
   std::optional<Eigen::Vector3d> NeededNext(const ReplanInput& input, const HullSpace& hull) const;
@@ -133,14 +134,14 @@ class Replanner::Impl {
   bool stands_ = false;            // something is committed
   ReplanResult result_;
   UnseenZone unseen_;
-  bool planned_before_ = false;     // the committed curve is a plan to the pad: its arrival is kept
-  bool around_unseen_ = false;      // ... and it led around cells that were not seen
-  BoundParts bound_;                // what of it is bound to free space
-  double looked_t_ = 0.0;           // when other ways were last looked for [s]
-  std::optional<Rung> unfinished_;  // at which this step will have run out of its budget, ...
-  std::optional<Rung> resumes_;     // ... and the last one did
-  FreeSpace strip_;                 // over the last known pad ...
-  double strip_t_ = kLongAgo;       // ... at this time
+  bool planned_before_ = false;  // the committed curve is a plan to the pad: its arrival is kept
+  bool around_unseen_ = false;   // ... and it led around cells that were not seen
+  BoundParts bound_;             // what of it is bound to free space
+  double looked_t_ = 0.0;        // when other ways were last looked for [s]
+  std::optional<Attempt> unfinished_;  // at which this step will have run out of its budget, ...
+  std::optional<Attempt> resumes_;     // ... and the last one did
+  FreeSpace strip_;                    // over the last known pad ...
+  double strip_t_ = kNeverTime;        // ... at this time
 };
 
 FreeSpace Replanner::Impl::Space(const OccupancyMap& map) const {
@@ -204,7 +205,7 @@ void Replanner::Impl::Restore(const ReplannerState& state) {
   asked_t_ = state.asked_t;
   unfinished_ = state.unfinished;
   fallback_.Restore({state.looks_at_W, state.climb});
-  strip_t_ = state.strip_t.value_or(kLongAgo);
+  strip_t_ = state.strip_t.value_or(kNeverTime);
   strip_.floor = options_.floor_height;
   strip_.ceiling = options_.ceiling_height;
   strip_.pad_from = state.strip_from;
@@ -245,11 +246,11 @@ const ReplanResult& Replanner::Impl::RefuseState(const ReplanInput& input, const
   return result_;
 }
 
-/// Who asks less often than options_.reaction says is taken to go on like that: else each plan would be flown
+/// A caller that asks less often than options_.reaction is taken to go on like that: else each plan would be flown
 /// into its stop.
 void Replanner::Impl::NoteAsked(double t_start) {
   const double since = asked_t_ ? t_start - *asked_t_ : 0.0;
-  if (since <= kNewBeginning) reaction_ = std::max(reaction_, since);
+  if (since <= kRestartAfter) reaction_ = std::max(reaction_, since);
   asked_t_ = t_start;
 }
 
@@ -379,8 +380,8 @@ double Replanner::Impl::FirstFreeArrival(const ReplanInput& input, double T,
 
 /// What is tried first, and what the ladder of attempts depends on. Out of reach: the fresh guess is longer than
 /// a plan may be.
-Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& start,
-                                const FreeSpace& plain, LadderFacts* facts) {
+Attempt Replanner::Impl::FirstAttempt(const ReplanInput& input, const SplineState& start,
+                                      const FreeSpace& plain, AttemptFacts* facts) {
   StageTimer timer(&result_.times.predict, StageTimer::kWhileLogged);
   const auto guess = [&](double detour) {
     return GuessDuration(start, input.t_start, *input.pad, input.endpoint, limits_, detour);
@@ -398,71 +399,72 @@ Rung Replanner::Impl::FirstRung(const ReplanInput& input, const SplineState& sta
   const bool on_plan = planned_before_ && !result_.from_odometry;
   const bool promised = on_plan && guess(DetourOf(next_.curve, input.t_start)) >
                                        options_.constants.retime_below * left;
-  // Who follows a pad needs no shorter plans than usual; the last ones before a contact are.
+  // A vehicle that follows a pad needs no shorter plans than usual; the last ones before a contact are.
   const double shortest =
       input.endpoint.touches() ? options_.min_contact_duration : options_.min_duration;
-  Rung rung;
-  rung.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
+  Attempt attempt;
+  attempt.duration = std::clamp(promised ? left : facts->fresh, shortest, options_.max_duration);
   // The prepared problems' free arrival has the usual bound below.
-  const bool fixed = rung.duration < options_.min_duration || facts->lands_soon;
-  rung.arrival = fixed ? ArrivalMode::kFixed : options_.arrival;
+  const bool fixed = attempt.duration < options_.min_duration || facts->lands_soon;
+  attempt.arrival = fixed ? ArrivalMode::kFixed : options_.arrival;
   // A plan that led around what was not seen is followed by others that do: not by turns.
   const bool closes = around_unseen_ && on_plan && !facts->lands_soon;
-  rung.unseen_reach = closes ? options_.constants.unseen_reach : 0.0;
-  return rung;
+  attempt.unseen_reach = closes ? options_.constants.unseen_reach : 0.0;
+  return attempt;
 }
 
 /// The ladder of attempts (attempt_ladder.h), until one gives a plan.
 ReplanReason Replanner::Impl::Plan(const ReplanInput& input, const SplineState& start,
                                    const OccupancyMap& map) {
-  LadderFacts facts;
-  Rung rung = FirstRung(input, start, Space(map), &facts);
+  AttemptFacts facts;
+  Attempt attempt = FirstAttempt(input, start, Space(map), &facts);
   if (!(facts.fresh <= options_.max_duration)) return ReplanReason::kPadUnreachable;
   const bool on_plan = planned_before_ && !result_.from_odometry;
-  const double first = std::max(rung.duration, facts.fresh);
+  const double first = std::max(attempt.duration, facts.fresh);
   // On a plan the next step first looks whether that holds.
-  if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) rung = *resumes_;
+  if (resumes_ && !on_plan && !facts.lands_soon && !result_.from_odometry) attempt = *resumes_;
   attempt_.BeginStep();
   for (int tried = 1;; ++tried) {
-    if (!facts.lands_soon) rung.duration = FirstFreeArrival(input, rung.duration, map);
-    FreeSpace space = SpaceOverPad(input, start, input.t_start + rung.duration, map);
+    if (!facts.lands_soon) attempt.duration = FirstFreeArrival(input, attempt.duration, map);
+    FreeSpace space = SpaceOverPad(input, start, input.t_start + attempt.duration, map);
     const HullSpace hull = HullIn(space, DeckOf(input));
-    if (rung.unseen_reach > 0.0) {
-      unseen_.Build(hull, start.p, rung.unseen_reach);
+    if (attempt.unseen_reach > 0.0) {
+      unseen_.Build(hull, start.p, attempt.unseen_reach);
       space.unseen = &unseen_;
     }
     const ReplanReason reason =
-        attempt_.Run(RequestFor(input, start, rung, facts, first, hull), &result_);
+        attempt_.Run(RequestFor(input, start, attempt, facts, first, hull), &result_);
     result_.work = attempt_.work();
     if (reason == ReplanReason::kNone) {
-      around_unseen_ = rung.unseen_reach > 0.0 && result_.rebinds > 0;
+      around_unseen_ = attempt.unseen_reach > 0.0 && result_.rebinds > 0;
       return reason;
     }
     if (reason == ReplanReason::kCollisionRemains && fallback_.NoTimeToBrake(start, space))
       return reason;
     // What is not seen yet may soon be: as long as it can, the committed curve goes on.
-    if (reason == ReplanReason::kUnobserved && rung.attempt == 0 && on_plan && !facts.at_rest &&
+    if (reason == ReplanReason::kUnobserved && attempt.number == 0 && on_plan && !facts.at_rest &&
         !facts.lands_soon && fallback_.GoesOn(FactsFor(input, start, hull), &result_)) {
       return reason;
     }
-    const Climb climb = NextRung(rung, {reason, attempt_.duration()}, facts, options_.constants);
+    const AttemptDecision decision =
+        NextAttempt(attempt, {reason, attempt_.duration()}, facts, options_.constants);
     if (attempt_.spent()) {
       // A later attempt gets a whole budget in the next step; a first one had it, and is left behind.
-      unfinished_ = tried > 1 ? rung : climb.next;
-      // Who rests and does not see what the way on needs may look from elsewhere (fallback_ladder.h).
+      unfinished_ = tried > 1 ? attempt : decision.next;
+      // A vehicle at rest that does not see a cell which the path needs may look from elsewhere (fallback_ladder.h).
       return facts.at_rest && result_.unseen_W ? ReplanReason::kUnobserved : reason;
     }
-    if (!climb.next) return climb.reason;
-    rung = *climb.next;
+    if (!decision.next) return decision.reason;
+    attempt = *decision.next;
   }
 }
 
 /// @param first the first duration that was thought of [s].
 AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const SplineState& start,
-                                           const Rung& rung, const LadderFacts& facts, double first,
-                                           const HullSpace& hull) {
+                                           const Attempt& attempt, const AttemptFacts& facts,
+                                           double first, const HullSpace& hull) {
   const StepConstants& constants = options_.constants;
-  const bool is_first = rung.attempt == 0;
+  const bool is_first = attempt.number == 0;
   AttemptRequest request;
   request.start = start;
   request.t0 = input.t_start;
@@ -471,12 +473,12 @@ AttemptRequest Replanner::Impl::RequestFor(const ReplanInput& input, const Splin
   request.target = input.endpoint;
   request.limits = limits_;
   request.pull_W = input.pull_W;
-  request.arrival = rung.arrival;
-  request.duration = rung.duration;
+  request.arrival = attempt.arrival;
+  request.duration = attempt.duration;
   request.space = hull.space;
   request.hull = &hull;
   // A stretched plan is slower, not longer: it needs hardly more control points.
-  const double longest = std::min(rung.duration, constants.grid_longest * first);
+  const double longest = std::min(attempt.duration, constants.grid_longest * first);
   request.near_segments =
       SegmentsFor(longest, limits_, constants.fine_segments, options_.segment_length);
   request.segments = is_first ? SegmentsFor(longest, limits_, 1.0, options_.segment_length)

@@ -34,7 +34,7 @@ constexpr std::uint32_t StepsTo(int axis, int side) {
 
 // Room at first; a search that needs more makes more.
 constexpr std::size_t kUsualQueue = 1 << 16;
-constexpr std::size_t kUsualWay = 1024;
+constexpr std::size_t kPathReserve = 1024;
 
 constexpr std::uint32_t kAllSteps = (1u << 27) - 1;
 constexpr std::uint32_t kBelow[] = {StepsTo(0, -1), StepsTo(1, -1), StepsTo(2, -1)};
@@ -175,7 +175,7 @@ bool GridSearch::NearestFree(const FreeSpace& space, CellIndex* cell) {
 void GridSearch::Reserve(const OccupancyMap& map) {
   blocked_.Reserve(map);
   queue_->Reserve(kUsualQueue);
-  way_.reserve(kUsualWay);
+  way_.reserve(kPathReserve);
   const auto cells = static_cast<std::size_t>(map.size().cast<std::int64_t>().prod());
   if (cells_.size() == cells) return;
   cells_.assign(cells, Cell());

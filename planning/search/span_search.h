@@ -19,7 +19,7 @@ struct WayCost {
 
 /// A* on the free spans of the map's columns (column_spans.h) instead of its cells: a wall that a vehicle
 /// looks along is filled in two dimensions, not in three. A node is a span, with the height at which it was
-/// reached; who goes on to the next column keeps its height as long as that column is free there. The
+/// reached; a step to the next column keeps its height as long as that column is free there. The
 /// heights of the way that was found are straightened in the end. Not exact: a span remembers only the
 /// cheapest height. Deterministic. Its arrays have the size of the map's window and are kept between
 /// searches.

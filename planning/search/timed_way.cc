@@ -9,7 +9,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kStep = 0.05;  // sampling of a curve [s]
-constexpr std::size_t kUsualPlaces = 2048;
+constexpr std::size_t kPlacesReserve = 2048;
 constexpr std::size_t kUsualParts = 64;
 
 }  // namespace
@@ -27,7 +27,7 @@ double LengthOf(const UniformBspline& curve, double from, double to) {
 }
 
 TimedWay::TimedWay() {
-  places_.reserve(kUsualPlaces);
+  places_.reserve(kPlacesReserve);
   bound_.reserve(kUsualParts);
   detours_.reserve(kUsualParts);
 }

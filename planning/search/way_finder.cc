@@ -40,7 +40,7 @@ void SampleBetweenLevels(const UniformBspline& curve, const BlockedRun& run, con
 
 WayFinder::WayFinder(double vertical_cost, const StepConstants& constants, WorkBudget* budget)
     : constants_(constants),
-      search_({vertical_cost, constants.way_tight_cost}, constants.way_greed),
+      search_({vertical_cost, constants.way_tight_cost}, constants.heuristic_weight),
       budget_(budget) {
   barriers_.reserve(8);
   runs_.reserve(64);

@@ -5,7 +5,7 @@ namespace touchdown::planning {
 
 /// What a step may still do, in counted work: no clock decides what is planned. The costs are in
 /// the ratio of times that were measured, and make them nearly proportional to the work: of 250 slow steps of
-/// hostile flights the 99 % quantile of time over work is 1.5 times the median (docs/replan_study.md).
+/// hostile flights the 99 % quantile of time over work is 1.5 times the median (docs/results/replan/tables.md).
 class WorkBudget {
  public:
   static constexpr int kSpan = 1;     ///< that a search expands
@@ -13,7 +13,7 @@ class WorkBudget {
   static constexpr int kEvaluationsOfSetUp = 2;  ///< what the rest of a solve takes: set-up, checks
   static constexpr int kPair = 5;                ///< of a solve: bound and evaluated
 
-  // Who asks first does not get all of it.
+  // The first user does not get all of it.
   static constexpr double kKeptShare = 0.25;   ///< is for the committed plan, where it may be kept
   static constexpr double kSearchShare = 0.5;  ///< of what is left is the most for a search: of the
                                                ///< committed way, or beside a closed one

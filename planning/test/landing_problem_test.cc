@@ -400,7 +400,7 @@ TEST(LandingProblem, BeforeItsBoundaryItSaysSo) {
     EXPECT_THAT(Refused([&] { problem.boundary_facts(); }), testing::HasSubstr("boundary_facts()"));
     EXPECT_THAT(Refused([&] { problem.Curve(y); }), testing::HasSubstr("Curve()"));
     EXPECT_NE(Refused([&] { problem.Curve(y, &curve); }), "");
-    // Whoever solves it all the same is told that it has no value.
+    // A solve all the same reports that it has no value.
     auto backend = solvers::MakeBackend(solvers::StandardBackends(), "ipopt");
     backend->Prepare(problem.view());
     solvers::SolverResult result;

@@ -38,7 +38,7 @@ TEST(ReplannerArrival, TheWiderAWallTheLaterThePlanArrives) {
     ASSERT_EQ(result.status, ReplanStatus::kPlanned) << half_width;
     EXPECT_GT(result.curve.duration(), last) << half_width;
     last = result.curve.duration();
-    // Already the first attempt reckons with the longer way.
+    // Already the first attempt accounts for the longer path.
     ASSERT_FALSE(log.attempts.empty());
     const double guess = Guess(
         options, input, {replanner.Reference(input.t_start).p_WB, v_WB, Eigen::Vector3d::Zero()});

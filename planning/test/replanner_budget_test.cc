@@ -29,7 +29,7 @@ ReplannerOptions Within(int work, ArrivalMode arrival = ArrivalMode::kFree) {
   options.max_work = work;
   options.ceiling_height = 3.0;
   // Searches take a part of the work alone: what is asked here is how attempts go on.
-  options.constants.way_greed = 6.0;
+  options.constants.heuristic_weight = 6.0;
   return options;
 }
 

@@ -285,12 +285,12 @@ TEST(ReplannerFallback, AStopThatIsProvenNeedsNoMore) {
   const auto rests = [&](Fallback::Room room) {
     return Fallback(limits).Rests(0.0, start, {0.0, 0.0, 0.0}, hull, room, &result);
   };
-  EXPECT_FALSE(rests(Fallback::Room::kOfPlans));
-  ASSERT_TRUE(rests(Fallback::Room::kOfHull));
+  EXPECT_FALSE(rests(Fallback::Room::kPlanClearance));
+  ASSERT_TRUE(rests(Fallback::Room::kHullClearance));
   EXPECT_FALSE(result.certificate.clear);
   EXPECT_TRUE(result.certificate.stops_in_observed_space);
   hull.margin = 0.12;
-  EXPECT_FALSE(rests(Fallback::Room::kOfHull));
+  EXPECT_FALSE(rests(Fallback::Room::kHullClearance));
 }
 
 TEST(ReplannerFallback, AStartThatCannotBrakeIsNotTriedLater) {

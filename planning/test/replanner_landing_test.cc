@@ -161,7 +161,7 @@ TEST_F(LastStretch, ADeckThatHasTurnedBackIsNotTouched) {
   EXPECT_TRUE(result.certificate.stops_in_observed_space);
 }
 
-// Nothing else is proven: a hard touchdown is better than a rise into what nobody saw.
+// Nothing else is proven: a hard touchdown is better than a rise into what was not seen.
 TEST_F(LastStretch, WhereNothingElseIsProvenAHardLandingIsKept) {
   map_ = OccupancyMap(map_.options());
   const TurnedBack back(landing_, 0.4);
@@ -200,7 +200,7 @@ TEST_F(LastStretch, AMissedLandingInTheUnseenRisesAndIsNotCalledProven) {
   EXPECT_TRUE(Ask(gone).proven);
 }
 
-// Above the deck the hull is among cells that nobody sees free, as the deck is: no escape from there.
+// Above the deck the hull is among cells that are not seen free, as the deck is: no escape from there.
 TEST_F(LastStretch, WhoComesToRestKnowsTheDeckBelow) {
   t_ = landing_.curve.t_end() - 0.2;
   map_ = ObservedMap();

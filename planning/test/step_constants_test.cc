@@ -13,7 +13,7 @@
 namespace touchdown::planning {
 namespace {
 
-// A constant that is left out of the table would be measured by nobody.
+// A constant that is left out of the table would not be measured.
 TEST(StepConstants, AreAllInTheTableOnce) {
   const StepConstants usual;
   std::size_t size = 0;

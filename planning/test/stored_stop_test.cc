@@ -297,7 +297,7 @@ TEST_F(StopOverDeck, CloseOverTheDeckNothingSinksFasterThanItMayTouch) {
   }
   EXPECT_GT(dives, 20);
   EXPECT_GT(lands, 50);
-  // Who is there already and still too fast may brake.
+  // A vehicle that is there already and still too fast may brake.
   const SplineState low{{0, 0, 0.61}, {0, 0, -0.6}, {0, 0, 2.0}};
   const UniformBspline brakes = Between(low, {{0, 0, 0.59}, {0, 0, 0}, {0, 0, 0}}, 0.15);
   EXPECT_TRUE(SweepHull(brakes, 0.0, 0.15, {low.p, 0.0}, hull_, kNever).proven);

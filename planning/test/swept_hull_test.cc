@@ -294,7 +294,7 @@ TEST_F(OverDeck, WhatStandsOnItForbids) {
   EXPECT_FALSE(Lands());
 }
 
-// Who rises from above a deck that drives on leaves nothing but where the deck was.
+// A vehicle that rises from above a deck that drives on leaves nothing but where the deck was.
 TEST_F(OverDeck, WhereTheDeckWasIsNothingElse) {
   const ArcPad drives({0, 0, 0.45}, 0.8, 0.0, 0.0);
   const FreeSpace space = SpaceOf(map_);

@@ -125,7 +125,7 @@ TEST(UnseenZone, DoesNotAllocate) {
   EXPECT_EQ(solvers::AllocationCount(), before);
 }
 
-/// Flying towards a pad behind a block of cells that nobody has seen.
+/// Flying towards a pad behind a block of unseen cells.
 class TowardsTheUnseen : public ::testing::Test {
  protected:
   TowardsTheUnseen()

@@ -29,7 +29,7 @@ class Model : public fcl::BVHModel<fcl::OBBRSSd> {
   bool bounded_ = false;
 };
 
-// Made once for a surface as long as somebody has it: checks, touches and clearances of many flights ask for it.
+// Made once for a surface as long as it is held: checks, touches and clearances of many flights ask for it.
 std::shared_ptr<fcl::CollisionGeometryd> ModelOf(
     const std::shared_ptr<const TriangleMesh>& surface) {
   using Surface = std::weak_ptr<const TriangleMesh>;

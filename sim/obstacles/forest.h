@@ -50,12 +50,12 @@ const std::vector<std::string>& ForestKinds();
 /// min(1.2 m, 0.64 / sqrt(density)): at 0.5 /m^2 pillars 1.2 m apart would not fit.
 void SetDensity(double density, ForestConfig* config);
 
-/// Draws the forest. The same (config, seed) gives the same obstacles; each kind of draw has its own
-/// random stream. A pillar has width w = U(0.5, 0.7) m, scale s = U(0.5, 1.5) and radius w s / 2
-/// around its centre, which is snapped to the middle of a cell; a ring has its centre at a height of
-/// U(0.7, 0.8) m, half axes U(0.5, 0.7) m (horizontal) and U(0.7, 1.2) m (vertical) and is turned by
-/// U(-0.5, 0.5) rad. Throws std::invalid_argument naming a value out of range, or if the pillars do
-/// not fit.
+/// Draws the forest. The same (config, seed) gives the same obstacles; each kind of draw has its own random stream.
+/// - A pillar has width w = U(0.5, 0.7) m, scale s = U(0.5, 1.5) and radius w s / 2 around its centre, which is snapped
+///   to the middle of a cell.
+/// - A ring has its centre at a height of U(0.7, 0.8) m and half axes U(0.5, 0.7) m (horizontal) and U(0.7, 1.2) m
+///   (vertical), and is turned by U(-0.5, 0.5) rad.
+/// Throws std::invalid_argument naming a value out of range, or if the pillars do not fit.
 ObstacleField MakeForest(const ForestConfig& config, std::uint64_t seed);
 
 }  // namespace touchdown::sim

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nearest point of the surface lies in a triangle, on an edge or at a corner. The sign is that of the offset along
-// the normal there: the triangle's, the sum of the edge's two, or the sum at the corner by the angles, which is right
-// for every closed surface (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal,
-// IEEE TVCG 11(3), 2005).
+// the normal there: the triangle's, the sum of the edge's two, or the sum at the corner by the angles. This is right for
+// every closed surface (Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, IEEE
+// TVCG 11(3), 2005).
 #include "sim/obstacles/triangle_mesh.h"
 
 #include <algorithm>
@@ -143,8 +143,7 @@ void TriangleMesh::Check() const {
       }
     }
     const Eigen::Vector3d ab = Corner(t, 1) - Corner(t, 0), ac = Corner(t, 2) - Corner(t, 0);
-    const double longest =
-        std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
     if (!(ab.cross(ac).norm() > kFlat * longest)) {
       throw std::invalid_argument(name + " at " + PlaceText(Corner(t, 0)) + " has no area");
     }
@@ -160,8 +159,8 @@ void TriangleMesh::PairEdges() {
   };
   const auto refuse = [&](int t, int i, const char* why) {
     throw std::invalid_argument("the edge of triangle " + std::to_string(t) + " from " +
-                                PlaceText(Corner(t, i)) + " to " + PlaceText(Corner(t, (i + 1) % 3)) +
-                                " " + why);
+                                PlaceText(Corner(t, i)) + " to " +
+                                PlaceText(Corner(t, (i + 1) % 3)) + " " + why);
   };
   const int count = static_cast<int>(triangles_.size());
   for (int t = 0; t < count; ++t) {
@@ -225,8 +224,8 @@ double TriangleMesh::RayDistance(const Eigen::Vector3d& origin_W,
                                  const Eigen::Vector3d& direction_W) const {
   double first = kInfinity;
   tree_.AlongPlaces(origin_W, direction_W, &first, [&](int place) {
-    first = std::min(
-        first, RayTriangle(sides_[static_cast<std::size_t>(place)], origin_W, direction_W));
+    first = std::min(first,
+                     RayTriangle(sides_[static_cast<std::size_t>(place)], origin_W, direction_W));
   });
   return first;
 }
@@ -236,9 +235,9 @@ bool TriangleMesh::Meets(const Bounds& place) const {
   const Eigen::Array3d half = 0.5 * (place.max - place.min).array();
   bool reaches_in = false;
   tree_.Within(place, [&](int t) {
-    reaches_in = reaches_in || ReachesIn({Corner(t, 0) - middle, Corner(t, 1) - middle,
-                                          Corner(t, 2) - middle},
-                                         half);
+    reaches_in =
+        reaches_in ||
+        ReachesIn({Corner(t, 0) - middle, Corner(t, 1) - middle, Corner(t, 2) - middle}, half);
   });
   return reaches_in || SignedDistance(middle) < 0.0;
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene for the renderer. Choices, measured in MuJoCo 2.2.2 with OSMesa: no multisampling and no
-// shadows, each of which triples the time of a frame; statistic extent 1, so that the clipping planes
-// are in metres; 96 facets to a cylinder, which then is nowhere more than 0.05 % of its radius too
-// thin; the marker sheet as a thin box, since a plane on a mocap body does not compile. The
-// sheet's upper face is the deck's: the board below it is drawn that much thinner.
+// The scene for the renderer. Choices, measured in MuJoCo 2.2.2 with OSMesa:
+// - no multisampling and no shadows: each triples the time of a frame;
+// - statistic extent 1: the clipping planes are then in metres;
+// - 96 facets to a cylinder: nowhere more than 0.05 % of its radius too thin;
+// - the marker sheet is a thin box: a plane on a mocap body does not compile.
+// The sheet's upper face is the deck's: the board below it is drawn that much thinner.
 
 #include "sim/rendering/scene_mjcf.h"
 

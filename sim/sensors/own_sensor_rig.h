@@ -28,7 +28,7 @@ struct OwnSensorRigConfig {
 estimation::OwnStateOptions FilterOptionsFor(const OwnSensorRigConfig& rig,
                                              const estimation::OwnStateOptions& options = {});
 
-/// All sensors of the vehicle's own state: true states in, measurements out, to whoever `take`s them. Their clock
+/// All sensors of the vehicle's own state: true states in, measurements out, to the `take` of the caller. Their clock
 /// begins with the hover before the trial, so that no time is below zero: time stamps are ahead of the trial's by
 /// hover_before. The same configuration, seed and states give the same bits.
 class OwnSensorRig {

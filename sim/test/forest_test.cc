@@ -180,7 +180,7 @@ TEST(Forest, RefusesWhatCannotBe) {
               AllOf(HasSubstr("pillars is 800"), HasSubstr("fits")));
 }
 
-// Ragged pillars and rings have no geoms: whoever would draw them says so.
+// Ragged pillars and rings have no geoms: code that would draw them says so.
 TEST(Forest, VoxelShapesAreRefusedWhereAPictureIsAsked) {
   VisualScene scene;
   scene.obstacles = MakeForest(ForestOfKind("A"), 1);

@@ -125,7 +125,7 @@ TEST(OwnStateSource, CovarianceHoldsInTheWorld) {
 }
 
 // An error with memory is no white noise: the position is off by the drift and the filter does not
-// know it, but nothing diverges. The figure stands in docs/own_state.md.
+// know it, but nothing diverges. The figure stands in docs/results/own_state/tables.md.
 TEST(OwnStateSource, DriftOfTheGpsIsFollowedUnawares) {
   OwnStateSourceConfig config;
   config.sensors.gps.sensor.drift_sigma = 0.3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Worlds of all kinds of obstacles: whoever uses their geometry sees the same.
+// Worlds of all kinds of obstacles: all users of their geometry see the same.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>

@@ -31,7 +31,7 @@ constexpr double kLeastThrustToWeight = 1.2;  // below, there is nothing left to
 constexpr double kLeastTurn = 10.0;           // of roll and pitch [rad/s^2] ...
 constexpr double kLeastYawTurn = 0.5;         // ... and of the heading
 // With the default limits one in three landings beside obstacles fails at 17 rad/s^2, none at 35; with an acceleration of
-// 2 m/s^2 none at 17 either (docs/vehicles.md).
+// 2 m/s^2 none at 17 either (docs/results/flight_software/tables.md).
 constexpr double kEasyTurn = 25.0;
 
 std::string_view GeomName(const mjModel& m, int geom) { return m.names + m.name_geomadr[geom]; }

@@ -11,11 +11,14 @@ namespace touchdown::sim {
 
 // A vehicle is an MJCF file with
 // - one body `vehicle` with a free joint, and an <inertial> at its origin;
-// - a cylinder geom `hull` about z_B that holds body, arms and rotor discs, and feet: sphere geoms
-//   whose names begin with `foot`; other geoms with contype = conaffinity = 0 are for the eye only;
-// - sites and actuators `rotor0`, `rotor1` ..., four to eight: gear "0 0 1 0 0 k", k the reaction torque per newton
-//   with the rotor's sign, a control range, and dyntype="filter" with the thrust lag in dynprm, the same for all; a
-//   site that is a cylinder gives the radius of the rotor's disc. Gear "0 0 0 x y z" makes a moment alone;
+// - a cylinder geom `hull` about z_B that holds body, arms and rotor discs;
+// - feet: sphere geoms whose names begin with `foot`;
+// - other geoms, for the eye only, with contype = conaffinity = 0;
+// - four to eight sites and actuators `rotor0`, `rotor1` ...:
+//   - gear "0 0 1 0 0 k", k the reaction torque per newton with the rotor's sign;
+//   - a control range, and dyntype="filter" with the thrust lag in dynprm, the same for all;
+//   - a site that is a cylinder gives the radius of the rotor's disc;
+//   - gear "0 0 0 x y z" makes a moment alone;
 // - <custom> numerics `rotor_drag` (three) and `body_drag_area` (one).
 
 /// MJCF text of the vehicle that comes with the library (sim/models/quadrotor.xml).

@@ -6,7 +6,7 @@
 
 namespace touchdown::sim {
 
-/// Something about a vehicle's file, and what mends it; each a clause without a full stop.
+/// A problem of a vehicle's file, and its remedy; each a clause without a full stop.
 struct VehicleFinding {
   std::string what;
   std::string remedy;
@@ -15,10 +15,10 @@ struct VehicleFinding {
 /// A figure as a sentence has it: four digits.
 std::string Figure(double value);
 
-/// All that was found in a vehicle's file: a user mends it in one go.
+/// All problems of a vehicle's file: a user can fix them in one go.
 class VehicleFindings {
  public:
-  /// Without this mended the vehicle cannot be flown.
+  /// The vehicle cannot be flown before this is fixed.
   void Fault(std::string what, std::string remedy) {
     faults_.push_back({std::move(what), std::move(remedy)});
   }

@@ -37,7 +37,7 @@ constexpr double kUpright = 0.9998;                  // cosine of one degree
 constexpr double kSame = 1e-6;                       // relative, of figures that must agree
 constexpr double kNoProduct = 1e-9;                  // of inertia, over the moments
 constexpr double kLeastLag = 0.005, kMostLag = 1.0;  // [s]
-constexpr double kFeetMost = 0.98;                   // of the hull's radius
+constexpr double kMaxFeetRadius = 0.98;              // of the hull's radius
 constexpr double kFeetShare = 0.6;                   // of the hull's radius
 constexpr double kFeetClearance = 0.35;    // hull above soles, over the feet's distance from z_B
 constexpr double kLeastHullHeight = 0.01;  // [m]
@@ -406,7 +406,7 @@ void Import::SetBody() {
   within("radius of the hull [m]", radius_, 5.0, "; look at the geoms, or give airframe.hull");
   within("height of the hull [m]", top_ - bottom_, 5.0,
          "; look at the geoms, or give airframe.hull");
-  within("distance of the feet from the middle [m]", feet_at_, kFeetMost * radius_,
+  within("distance of the feet from the middle [m]", feet_at_, kMaxFeetRadius * radius_,
          ": airframe.feet");
   within("depth of the feet below the hull [m]", depth_ + bottom_, 5.0, ": airframe.feet");
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene as MJCF text. Choices, each measured in MuJoCo 2.2.2: Euler with 2 ms, Newton, elliptic
-// cone and impratio 10 (a landed vehicle creeps 0.05 mm in 13 s); the pad on slide and hinge joints
-// with velocity drives (a mocap body shows contact a surface at rest); no obstacles, whose touch is found elsewhere
-// (obstacle_touch.h); the pad's stateless actuators before the
-// rotors' stateful ones, as the compiler demands; small nconmax and njmax, which bound the memory
-// of mjData. Everything but the vehicle has contype 1 and conaffinity 0: it touches only the
-// vehicle. No angle is written in degrees or radians, so that the vehicle file's <compiler> cannot
-// matter.
+// The scene as MJCF text. Choices, each measured in MuJoCo 2.2.2:
+// - Euler with 2 ms, Newton, elliptic cone, impratio 10: a landed vehicle creeps 0.05 mm in 13 s.
+// - The pad is on slide and hinge joints with velocity drives: a mocap body shows contact a surface at rest.
+// - No obstacles: their touch is found elsewhere (obstacle_touch.h).
+// - The pad's stateless actuators come before the rotors' stateful ones: the compiler demands it.
+// - nconmax and njmax are small: they bound the memory of mjData.
+// Everything but the vehicle has contype 1 and conaffinity 0: it touches only the vehicle. No angle is written in
+// degrees or radians, so that the vehicle file's <compiler> cannot matter.
 
 #include "sim/world/world_mjcf.h"
 

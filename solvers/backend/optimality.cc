@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kAtBound = 1e-5;                      // way of a row to its bound, along its slope
-constexpr double kPushingFrom[] = {1e-5, 1e-3, 1e-1};  // the same, far from the optimum
+constexpr double kRemoteProbe[] = {1e-5, 1e-3, 1e-1};  // the same, far from the optimum
 constexpr double kRowWeight = 1e7;  // beside the curvature, of rows that are to be kept
 constexpr int kRefinements = 4;
 constexpr double kLeastCurvature = 1e-8;  // of a cost's slope
@@ -95,7 +95,7 @@ double OptimalityCheck::Above(const View& view, const Eigen::VectorXd& y, ViewEv
   };
   weigh();
   // Of rows that push a point may stay off as far as it is from the optimum: which ones push is tried.
-  for (const double reach : kPushingFrom) {
+  for (const double reach : kRemoteProbe) {
     if (rows_.size() == 0) break;
     at_bound_ = reach;
     if (!Estimate()) continue;

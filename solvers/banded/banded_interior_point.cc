@@ -41,7 +41,7 @@ constexpr double kFastSlack = 1.0;
 constexpr double kLateSlack = 1e-4;
 constexpr double kCarefulSlack = 1e-12;  // rounding
 constexpr int kLateStep = 15;
-constexpr double kMuchCheaper = 1e-3;  // of the cost, less than a point that is converged
+constexpr double kClearImprovement = 1e-3;  // of the cost, less than a point that is converged
 constexpr double kShortestStep = 1e-8;
 /// So many steps in a row that hardly move: this mode leads nowhere.
 constexpr int kMostStalls = 3;
@@ -51,7 +51,7 @@ constexpr int kMostCarefulSteps = 200;
 constexpr double kRounding = 1e-8;
 constexpr double kLeastTarget = 0.1;  // of the gap asked for
 constexpr double kLeastShare = 1e-6;  // of the gap there is, that a step aims at
-constexpr double kLeastShareWhereRowsBend = 1e-2;
+constexpr double kLeastShareCurvedRows = 1e-2;
 constexpr double kNearlyMet = 1e-4;
 constexpr double kBarrierDecrease = 0.2;
 constexpr double kBarrierSolved = 1e-2;  // errors at which its own problem counts as solved
@@ -262,9 +262,9 @@ SolveStatus BandedInteriorPoint::Attempt(const View& view, const Mode& mode,
       // much less is of another valley, which steps uphill have left.
       const double last = evaluator->last().full.value;
       const bool known_feasible = evaluator->best_violation() <= Evaluator::kFeasible;
-      const bool much_cheaper = evaluator->best_cost() < last - kMuchCheaper * std::abs(last) &&
-                                evaluator->best_violation() <= tolerances.violation;
-      left_better_ = known_feasible && (errors.row > Evaluator::kFeasible || much_cheaper);
+      const bool much_better = evaluator->best_cost() < last - kClearImprovement * std::abs(last) &&
+                               evaluator->best_violation() <= tolerances.violation;
+      left_better_ = known_feasible && (errors.row > Evaluator::kFeasible || much_better);
       if (!left_better_) evaluator->PreferLast();
       if (errors.row > Evaluator::kFeasible) {
         if (RowsContradict(evaluator->last().gradient)) return SolveStatus::kInfeasible;
@@ -351,7 +351,7 @@ double BandedInteriorPoint::FastDirection(const View& view, const Errors& errors
   const double ratio = Complementarity(LongestStep(errors.gap)) / mu;
   // Rows that are far from met bend: what the predictor thinks of the gap is not to be trusted.
   const bool bend = has_equalities_ && !mode_.elastic && errors.primal > kNearlyMet;
-  const double lowest = bend ? kLeastShareWhereRowsBend : kLeastShare;
+  const double lowest = bend ? kLeastShareCurvedRows : kLeastShare;
   const double target = std::max(mu * std::clamp(ratio * ratio * ratio, lowest, 1.0), least);
   SetCorrection(true);
   Direction(view, target, evaluator);

@@ -34,7 +34,7 @@ constexpr double kCloser = 0.9;  // share of the violation that a repeated run m
 /// what was gained, is still to be gained.
 constexpr double kStationary = 1e-9;
 
-/// CCSAQ solves a dual problem of one variable a row, to rounding and without asking anybody: where
+/// CCSAQ solves a dual problem of one variable a row, to rounding and without asking the caller: where
 /// rows pinch each other that never ends. Three times as many find 1 optimum in 30 more, in six
 /// times the time.
 constexpr int kMostDualEvaluations = 1000;

@@ -14,14 +14,14 @@ namespace {
 #ifndef TOUCHDOWN_SANITIZED
 void* volatile sink;
 
-// What nobody looks at need not be allocated.
+// What is not looked at need not be allocated.
 void* Seen(void* block) {
   sink = block;
   return block;
 }
 #endif
 
-// Tests that compare counts show something only if there is somebody who counts.
+// Tests that compare counts show something only if allocations are counted.
 TEST(AllocationCount, CountsWhateverAllocatesInThisThread) {
 #ifdef TOUCHDOWN_SANITIZED
   EXPECT_EQ(AllocationCount(), -1);

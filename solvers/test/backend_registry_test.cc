@@ -18,7 +18,7 @@ TEST(Overheard, HearsEverySolveOfEveryBackendAndChangesNone) {
                      Role::kCost);
   const View view(*p.problem);
   int heard = 0;
-  const BackendRegistry overheard = Overheard(StandardBackends(), [&](const AskedSolve& asked) {
+  const BackendRegistry overheard = Overheard(StandardBackends(), [&](const SolveRequest& asked) {
     ++heard;
     EXPECT_EQ(&asked.view, &view);
     EXPECT_EQ(asked.start.y, p.start);

@@ -29,7 +29,7 @@ TEST_P(EveryRowBackend, ConstrainedProblemsHaveTheirKnownOptima) {
     EXPECT_LE(result.max_violation, 1e-6);
     EXPECT_LT((result.x - standard.optimum).norm(), 1e-3);
   }
-  EXPECT_GT(solved, 0);  // whoever takes rows takes some of these
+  EXPECT_GT(solved, 0);  // a backend that takes rows takes some of these
   EXPECT_GT(2 * confirmed, solved);
 }
 

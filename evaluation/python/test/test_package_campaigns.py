@@ -98,7 +98,7 @@ def test_a_set_of_known_problems_has_a_row_for_each_problem_and_backend():
     assert len(done.summary) == 30 == len(done.solves) and set(done.summary["right"]) <= {0, 1}
     right = done.solves["verdict"].eq("right").groupby([done.solves["problem"], done.solves["backend"]]).sum()
     assert right.sum() == done.summary["right"].sum() > 20
-    with pytest.raises(touchdown.BadInput, match="--gap does not go with --problem-set mgh"):
+    with pytest.raises(touchdown.BadInput, match="--gap cannot be used with --problem-set mgh"):
         touchdown.compare(problem_set="mgh", gap=0.1)
 
 

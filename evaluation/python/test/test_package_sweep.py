@@ -292,6 +292,6 @@ def test_ranges_are_the_programs(run, command, options):
     "more", [{"html": "a.html"}, {"picture": "a.png"}, {"trial_limit": 3.0}, {"retry": True, "db": "a.db"}]
 )
 def test_what_does_not_go_with_parts_of_python_is_refused(in_process, more):
-    with pytest.raises(ValueError, match="does not go with registries"):
+    with pytest.raises(ValueError, match="cannot be used with registries"):
         touchdown.sweep("open", registries=object(), **more)
     assert in_process == []

@@ -204,7 +204,7 @@ def _check_in_process(jobs: int, db: Optional[PathLike], **options: Any) -> None
             raise BadInput(f"--db {problem}") from None
     for name, value in options.items():
         if value is not None:
-            raise ValueError(f"{name} is {value!r}: it does not go with registries, it must be left out")
+            raise ValueError(f"{name} is {value!r}: it cannot be used with registries")
     if jobs > 1:
         warnings.warn(f"jobs is {jobs}: parts written in Python fly in this process, one by one", stacklevel=3)
 

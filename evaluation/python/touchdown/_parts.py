@@ -107,7 +107,7 @@ class Controller(_Part):
 
 
 class PadPredictor(_Part):
-    """Foretells the pad from what the filter knows of it."""
+    """Predicts the pad from what the filter knows of it."""
 
     def predict(self, known: _touchdown.PadKnowledge) -> Any:
         """An object with at(t), which gives a PadState, for PadKnowledge; known.predict() is the library's."""

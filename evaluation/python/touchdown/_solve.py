@@ -37,7 +37,7 @@ def solve(
     multipliers  of the rows, from an earlier result: it begins there
 
     Gives a SolverResult, however the solve ends. Raises ValueError where the backend is unknown or refuses the problem, and
-    what a term raises. Who solves many problems of one structure keeps a Solver.
+    what a term raises. A caller that solves many problems of one structure keeps a Solver.
     """
     if start is None:
         if not isinstance(problem, _touchdown.LandingProblem):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How well the pad is foretold by both models of its filter (docs/pad_filter.md).
+"""How well the pad is predicted by both models of its filter (docs/pad_filter.md).
 
     /usr/bin/python3 -m touchdown_report.pad_study STUDY.db OUT.png
 """

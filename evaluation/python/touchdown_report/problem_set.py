@@ -47,7 +47,7 @@ class ProblemSet:
 
 
 def headline(manifest):
-    judged = "an optimum that is known" if manifest["published"] == "1" else "the best that anybody found"
+    judged = "an optimum that is known" if manifest["published"] == "1" else "the best that any backend found"
     return (
         f"problem set {manifest['problem_set']}, {manifest['starts']} starts each, "
         f"seed {manifest['seed']}",

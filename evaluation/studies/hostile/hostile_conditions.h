@@ -29,7 +29,7 @@ std::vector<std::string> ChooseBeyond(sim::RandomStream& draw, const std::string
                                       const std::vector<std::string>& fixed);
 
 /// Puts these out of the assumed range. What concerns the world is the generator's: see AddNearPost and
-/// HostileAsk.
+/// WorldRequest.
 void DrawBeyond(const std::vector<std::string>& beyond, sim::RandomStream& draw,
                 Scenario* scenario);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of families. What stands here in words is what the generators draw: docs/hostile.md is made
+// The list of families. What stands here in words is what the generators draw: docs/reference/hostile_worlds.md is made
 // of the same table, and a test compares.
 #include "evaluation/studies/hostile/hostile_family.h"
 

@@ -15,7 +15,7 @@ inline constexpr double kPromisedPole = 0.10;
 inline constexpr double kThickestPole = 0.20;
 
 /// What a generator is told beside the scenario's conditions, which are drawn before.
-struct HostileAsk {
+struct WorldRequest {
   bool thin_poles = false;  ///< poles thinner than kPromisedPole
 };
 
@@ -24,7 +24,7 @@ struct HostileFamily {
   const char* name;
   const char* what;    ///< one line
   const char* ranges;  ///< of its parameters, in words
-  void (*make)(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+  void (*make)(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 };
 
 /// In the order of the report.
@@ -34,17 +34,17 @@ std::vector<std::string> HostileFamilyNames();
 const HostileFamily& HostileFamilyNamed(const std::string& name);
 
 // The generators, by file: hostile_pockets.cc, hostile_passages.cc, hostile_heights.cc, hostile_open.cc.
-void MakeDeadEnd(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeFacingWall(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeBlindCorner(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeDoor(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeZigzag(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeWalls(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeOverhang(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeRoof(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeLowWall(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakePoles(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeNearStart(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
-void MakeWideField(const HostileAsk& ask, sim::RandomStream& draw, Scenario* scenario);
+void MakeDeadEnd(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeFacingWall(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeBlindCorner(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeDoor(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeZigzag(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeWalls(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeOverhang(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeRoof(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeLowWall(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakePoles(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeNearStart(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
+void MakeWideField(const WorldRequest& request, sim::RandomStream& draw, Scenario* scenario);
 
 }  // namespace touchdown::evaluation

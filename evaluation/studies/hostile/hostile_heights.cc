@@ -30,7 +30,7 @@ void AddLowThing(double x, double length, double half_deck, double side, sim::Ra
 
 }  // namespace
 
-void MakeOverhang(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeOverhang(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const int things = 1 + DrawOneOf(draw, 3);
   double x = DrawIn(draw, {1.8, 3.5});
   for (int i = 0; i < things; ++i) {
@@ -56,7 +56,7 @@ void MakeOverhang(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* 
   LaneBeyond(x - 2.0, draw, s);
 }
 
-void MakeRoof(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeRoof(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double x = DrawIn(draw, {5.0, 9.0}), length = DrawIn(draw, {8.0, 14.0});
   StraightLane(x, length, draw, s);
   const double base = s->pad.deck_height + DrawIn(draw, {1.4, 2.6});
@@ -77,7 +77,7 @@ void MakeRoof(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
   StartAt(0.0, DrawIn(draw, {-2.0, 2.0}), DrawIn(draw, {1.2, 3.5}), DrawIn(draw, {-45.0, 45.0}), s);
 }
 
-void MakeLowWall(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeLowWall(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double x = DrawIn(draw, {4.5, 8.0}), length = DrawIn(draw, {8.0, 14.0});
   StraightLane(x, length, draw, s);
   const double half_deck = 0.5 * s->pad.deck_size;

@@ -21,10 +21,10 @@ bool FarFromPoles(const Eigen::Vector2d& p, const Scenario& s) {
 
 }  // namespace
 
-void MakePoles(const HostileAsk& ask, sim::RandomStream& draw, Scenario* s) {
+void MakePoles(const WorldRequest& request, sim::RandomStream& draw, Scenario* s) {
   const std::size_t poles = 8 + static_cast<std::size_t>(DrawOneOf(draw, 13));
   const Span diameters =
-      ask.thin_poles ? Span{kThinnestPole, kPromisedPole} : Span{kPromisedPole, kThickestPole};
+      request.thin_poles ? Span{kThinnestPole, kPromisedPole} : Span{kPromisedPole, kThickestPole};
   const double end = DrawIn(draw, {6.0, 9.0});
   for (int i = 0; i < kPoleTries && s->cylinders.size() < poles; ++i) {
     const Eigen::Vector2d p(DrawIn(draw, {1.5, end}), DrawIn(draw, {-3.5, 3.5}));
@@ -36,7 +36,7 @@ void MakePoles(const HostileAsk& ask, sim::RandomStream& draw, Scenario* s) {
   LaneBeyond(end, draw, s);
 }
 
-void MakeNearStart(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeNearStart(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   StartAt(0.0, 0.0, DrawIn(draw, {1.2, 3.0}), DrawIn(draw, {-180.0, 180.0}), s);
   const double first = DrawIn(draw, {0.0, 360.0});
   const int things = 2 + DrawOneOf(draw, 4);
@@ -64,7 +64,7 @@ void MakeNearStart(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario*
   LaneBeyond(2.5, draw, s);
 }
 
-void MakeWideField(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeWideField(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   s->limits.speed = DrawIn(draw, {3.0, 6.0});
   const double x = DrawIn(draw, {8.0, 15.0}), y = DrawIn(draw, {-0.5, 0.5});
   if (DrawChance(draw, 0.5)) {

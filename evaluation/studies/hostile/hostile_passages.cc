@@ -19,7 +19,7 @@ void AddDoorWall(double x, double thickness, double half_width, double middle, d
 
 }  // namespace
 
-void MakeDoor(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeDoor(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double half_width = 0.5 * DrawIn(draw, {5.0, 9.0});
   const double x = DrawIn(draw, {2.0, 5.0}), behind = -DrawIn(draw, {1.5, 4.0});
   const double thickness = DrawIn(draw, {0.1, 0.6}), opening = DrawIn(draw, {1.2, 2.8});
@@ -40,7 +40,7 @@ void MakeDoor(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
   LaneBeyond(end, draw, s);
 }
 
-void MakeZigzag(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeZigzag(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double half = 0.5 * DrawIn(draw, {4.0, 5.5});
   const double gap = DrawIn(draw, {1.4, 2.6}), spacing = DrawIn(draw, {2.2, 4.0});
   const double thickness = DrawIn(draw, {0.1, 0.4});
@@ -62,7 +62,7 @@ void MakeZigzag(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s)
 }
 
 // One behind the other, each in a strip of its own, so that none closes the way of another.
-void MakeWalls(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeWalls(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const int walls = 2 + DrawOneOf(draw, 3);
   double x = DrawIn(draw, {1.5, 3.0});
   for (int i = 0; i < walls; ++i) {

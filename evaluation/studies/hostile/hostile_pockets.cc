@@ -6,7 +6,7 @@
 namespace touchdown::evaluation {
 
 // Inside is x in [-depth/2, depth/2], y in [-width/2, width/2]. The pad is beyond the wall at +x.
-void MakeDeadEnd(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeDeadEnd(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double depth = DrawIn(draw, {3.5, 7.0}), width = DrawIn(draw, {3.5, 7.0});
   const double wall = DrawIn(draw, {0.2, 0.8});
   const double x = 0.5 * depth, y = 0.5 * width;
@@ -31,7 +31,7 @@ void MakeDeadEnd(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s
   LaneBeyond(x + wall, draw, s);
 }
 
-void MakeFacingWall(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeFacingWall(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double x = DrawIn(draw, {1.2, 2.5});
   const double thickness = DrawIn(draw, {0.1, 1.0});
   const double half = 0.5 * DrawIn(draw, {3.0, 9.0});
@@ -48,7 +48,7 @@ void MakeFacingWall(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario
 
 // The first corridor leads along +y to the origin, the second one from there along +x. The post stands
 // where it is seen only from the corner.
-void MakeBlindCorner(const HostileAsk& /*ask*/, sim::RandomStream& draw, Scenario* s) {
+void MakeBlindCorner(const WorldRequest& /*request*/, sim::RandomStream& draw, Scenario* s) {
   const double half = 0.5 * DrawIn(draw, {1.9, 3.4});
   const double first = DrawIn(draw, {4.0, 7.0}), second = DrawIn(draw, {4.0, 7.0});
   const double wall = DrawIn(draw, {0.2, 0.8});

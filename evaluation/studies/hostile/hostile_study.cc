@@ -53,7 +53,7 @@ void ApplySet(const HostileOptions& options, const Registries& registries, Scena
   }
 }
 
-// What was fixed may not go with what was drawn beside it.
+// What was fixed may contradict what was drawn.
 void SuitConditions(const HostileOptions& options, Scenario* s) {
   if (!Sets(options, "planning.latency")) {
     s->planning.latency.ms = std::min(s->planning.latency.ms, std::floor(1e3 * LongestLatency(*s)));
@@ -74,12 +74,12 @@ void DrawWorld(const HostileFamily& family, const std::vector<std::string>& beyo
   const auto holds = [&](const char* name) {
     return std::find(beyond.begin(), beyond.end(), name) != beyond.end();
   };
-  HostileAsk ask;
-  ask.thin_poles = holds(kThinPoles);
+  WorldRequest request;
+  request.thin_poles = holds(kThinPoles);
   for (int i = 0; i < kWorlds; ++i) {
     Scenario world = *scenario;
     sim::RandomStream draw(seed, fmt::format("hostile world {}", i));
-    family.make(ask, draw, &world);
+    family.make(request, draw, &world);
     const bool free = StartRoom(world) >= kTakeOffRoom - 1e-9;
     if (holds(kNearObstacle)) AddNearPost(draw, &world);
     TurnWorld(draw, &world);
@@ -89,7 +89,7 @@ void DrawWorld(const HostileFamily& family, const std::vector<std::string>& beyo
     *scenario = std::move(world);
     return;
   }
-  throw BadInput(fmt::format("--set {}: no world of the family {} goes with it.",
+  throw BadInput(fmt::format("--set {}: no world of the family {} fits it.",
                              fmt::join(options.set, " --set "), family.name));
 }
 
@@ -145,7 +145,7 @@ HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
     flight.way = FindWay(flight.trial.scenario, registries, kCatchTime);
   } catch (const std::exception& error) {
     if (options.set.empty()) throw;
-    throw BadInput(fmt::format("--set {} does not go with what is drawn for flight {} ({}): {}",
+    throw BadInput(fmt::format("--set {} cannot be used with what is drawn for flight {} ({}): {}",
                                fmt::join(options.set, " --set "), index, flight.family,
                                error.what()));
   }

@@ -28,7 +28,7 @@ struct HostileFlight {
 };
 
 /// Flight `index`: a pure function of index and options but for `flights`.
-/// @throws BadInput for options that are wrong, or for a --set that no world goes with
+/// @throws BadInput for options that are wrong, or for a --set that no world fits
 HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
                                 const Registries& registries);
 

@@ -65,7 +65,7 @@ bool EndedOtherwise(const TrialResult& result) {
          !CameToNothing(result);
 }
 
-bool BreaksThePromise(const std::vector<SweepRow>& rows) {
+bool ViolatesGuarantee(const std::vector<SweepRow>& rows) {
   return std::any_of(rows.begin(), rows.end(), [](const SweepRow& row) {
     if (!row.result.safety) return false;  // its planner promises nothing
     const bool unproven = row.result.safety->uncertified_steps > 0;

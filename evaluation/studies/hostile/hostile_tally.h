@@ -49,7 +49,7 @@ struct HostileTally {
 };
 
 /// A flight within the assumptions collided, or made a step without a proven pair: a defect.
-bool BreaksThePromise(const std::vector<SweepRow>& rows);
+bool ViolatesGuarantee(const std::vector<SweepRow>& rows);
 
 /// The rows of one family, of all if it is empty; within or beyond.
 HostileTally TallyOf(const std::vector<SweepRow>& rows, const std::string& family, bool within);

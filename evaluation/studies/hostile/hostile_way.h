@@ -7,7 +7,7 @@ namespace touchdown::evaluation {
 
 /// Whether a hostile world can be flown at all, decided before anything is flown: A* on the true obstacles,
 /// from the start to above the pad's lane, at a place that the pad still reaches. Clearance, speed and
-/// acceleration are figures of the study alone: none comes from what the planner reckons with.
+/// acceleration are figures of the study alone: none comes from what the planner assumes.
 struct HostileWay {
   bool exists = false;
   double clearance = 0.0;  ///< around the body's centre, with which it was looked for [m]

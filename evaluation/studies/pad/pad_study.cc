@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pad filter on closed-loop data. A flight is flown once, with the filter of its scenario; then a
-// filter of each model is given the very measurements that came to it, at the moments at which they
-// came, and is asked 50 times a second where the pad is, how fast, and where it will be, the last as
-// the planner asks (estimation::Predict). A sample's course goes by the true turn rate up to its
-// horizon: no model can know of a turn that has not begun.
+// The pad filter on closed-loop data:
+// 1. Fly a flight once, with the filter of its scenario.
+// 2. Give a filter of each model the same measurements, at the moments at which they came.
+// 3. Ask each 50 times a second for the pad's position and velocity, and for its future as the planner asks
+//    (estimation::Predict).
+// A sample's course goes by the true turn rate up to its horizon: no model can know of a turn that has not begun.
 #include "evaluation/studies/pad/pad_study.h"
 
 #include <algorithm>
@@ -68,16 +69,16 @@ estimation::PadVector TruthFor(const PadBelief& belief, const PadState& pad) {
 
 PadSums Compare(const estimation::PadFilter& filter, const PadTruth& now, const PadTruth& later) {
   const PadState estimate = filter.Estimate(now.t);
-  const PadState foretold = Predict(filter).At(later.t);
+  const PadState predicted = Predict(filter).At(later.t);
   const PadBelief belief = filter.BeliefAt(now.t);
   PadSums sums;
   sums.samples = 1;
   sums.position2 = (estimate.p_WP - now.pad.p_WP).head<2>().squaredNorm();
   sums.velocity2 = (estimate.v_WP - now.pad.v_WP).head<2>().squaredNorm();
-  sums.prediction2 = (foretold.p_WP - later.pad.p_WP).head<2>().squaredNorm();
+  sums.prediction2 = (predicted.p_WP - later.pad.p_WP).head<2>().squaredNorm();
   sums.nees_position = PositionNees(estimate, now.pad.p_WP.head<2>()) / 2.0;
   sums.nees_state = StateNees(belief, TruthFor(belief, now.pad)) / StateSize(belief.motion);
-  sums.nees_prediction = PositionNees(foretold, later.pad.p_WP.head<2>()) / 2.0;
+  sums.nees_prediction = PositionNees(predicted, later.pad.p_WP.head<2>()) / 2.0;
   return sums;
 }
 
@@ -109,7 +110,7 @@ std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t sce
     }
     if (trial.scenario.own_state == OwnStateKind::kEstimated) {
       throw BadInput(
-          fmt::format("{}: own_state: estimated does not go with study pad, whose truth "
+          fmt::format("{}: own_state: estimated cannot be used with study pad: its truth "
                       "is in W while that pad filter lives in the estimate's frame.",
                       options.scenarios[scenario]));
     }

@@ -13,7 +13,7 @@
 
 namespace touchdown::evaluation {
 
-/// How well the pad is known and foretold in flights, by each of the filter's models.
+/// Accuracy of the pad's estimate and prediction in flights, for each of the filter's models.
 struct PadStudyOptions {
   std::vector<std::string> scenarios = {"straight_turn", "circle"};
   std::vector<double> sigmas = {0.01, 0.5, 1.0};  ///< gps.sigma [m]
@@ -23,7 +23,7 @@ struct PadStudyOptions {
   int jobs = 1;
 };
 
-inline constexpr double kPadHorizon = 1.5;  ///< so far ahead is foretold [s]
+inline constexpr double kPadHorizon = 1.5;  ///< of the prediction [s]
 inline constexpr double kPadSettled = 3.0;  ///< flights count from here on [s]
 /// The filter took a sighting at most so old: it goes by tags, else by GPS alone [s].
 inline constexpr double kPadTagsFresh = 0.5;

@@ -32,7 +32,7 @@ constexpr double kSeenPeriod = 0.1;  // [s]
 constexpr double kTick = 0.005;      // of the flight [s]
 constexpr double kPeriod = 0.1;      // of the landing planner [s]
 constexpr double kLatency = 0.02;    // of its answers [s]
-constexpr double kThere = 0.3;       // from the goal [m] ...
+constexpr double kGoalRadius = 0.3;  // from the goal [m] ...
 constexpr double kSlow = 0.2;        // ... at most this fast [m/s]
 constexpr double kTimeout = 120.0;   // [s]
 constexpr int kDraws = 100;
@@ -159,7 +159,7 @@ class Flight {
     flight_.max_speed = std::max(flight_.max_speed, at.v_WB.norm());
     flight_.max_acceleration = std::max(flight_.max_acceleration, at.a_WB.norm());
     if (flight_.clearance < kFlightTouch) return End(FlightOutcome::kCollided);
-    const bool there = (at.p_WB - course_.goal).norm() < kThere && at.v_WB.norm() < kSlow;
+    const bool there = (at.p_WB - course_.goal).norm() < kGoalRadius && at.v_WB.norm() < kSlow;
     if (there) return End(FlightOutcome::kReached);
     if (t >= kTimeout) End(FlightOutcome::kStuck);
   }

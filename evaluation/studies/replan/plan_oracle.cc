@@ -23,12 +23,12 @@ namespace {
 using Eigen::Vector3d;
 using planning::UniformBspline;
 
-constexpr double kSoonest = 1.03;  // arrival that is tried, over the earliest possible
-constexpr double kLater = 1.09;    // of an arrival to the next
-constexpr int kArrivals = 16;      // up to 3.7 times the earliest possible
-constexpr int kWays = 6;           // around obstacles, of each sort of path
-constexpr int kRounds = 12;        // of binding
-constexpr double kPressure = 2.0;  // growth of the pairs' weight in each
+constexpr double kFirstArrivalRatio = 1.03;  // arrival that is tried, over the earliest possible
+constexpr double kLater = 1.09;              // of an arrival to the next
+constexpr int kArrivals = 16;                // up to 3.7 times the earliest possible
+constexpr int kWays = 6;                     // around obstacles, of each sort of path
+constexpr int kRounds = 12;                  // of binding
+constexpr double kPressure = 2.0;            // growth of the pairs' weight in each
 constexpr double kLimitPressure = 4.0;
 constexpr int kLimitRounds = 5;
 constexpr int kPathExpansions = 300000;
@@ -114,7 +114,8 @@ OracleAnswer PlanOracle::Impl::Ask(const ReplanScene& scene) {
   hull_.deck_half_size = options_.deck_half_size;
   hull_.foot_depth = options_.contact_height;
   arrivals_.clear();
-  double T = kSoonest * std::max(EarliestArrival(scene, options_.limits), options_.min_duration);
+  double T =
+      kFirstArrivalRatio * std::max(EarliestArrival(scene, options_.limits), options_.min_duration);
   for (int i = 0; i < kArrivals && T < options_.max_duration; ++i, T *= kLater) {
     const Vector3d end = planning::EndStateAt(*scene.end, scene.endpoint, T).state.p;
     if (!space_.Blocked(end)) arrivals_.push_back(T);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every accepted plan is looked at again at points 1 cm apart: its speed and acceleration; whether it is
-// in one of the map's blocked cells, which the certificate has asked along chords; and, sharing nothing with
-// the certificate, FCL's distance from these points to the obstacles themselves. Cells hold their obstacles, so that a plan that is clear of the inflated cells is at
-// least the inflation away from every obstacle.
+// Every accepted plan is checked again at points 1 cm apart:
+// - its speed and acceleration;
+// - whether it is in one of the map's blocked cells, which the certificate has asked along chords;
+// - FCL's distance from these points to the obstacles themselves, which shares nothing with the certificate.
+// Cells hold their obstacles. So a plan that is clear of the inflated cells is at least the inflation away from every
+// obstacle.
 #include "evaluation/studies/replan/replan_study.h"
 
 #include <algorithm>
@@ -91,9 +93,9 @@ const char* ToString(SceneStep step) {
 namespace {
 
 /// The steps of one scene after another.
-class SceneAsker {
+class SceneRunner {
  public:
-  SceneAsker(const ReplanStudyOptions& options, const solvers::BackendRegistry& backends)
+  SceneRunner(const ReplanStudyOptions& options, const solvers::BackendRegistry& backends)
       : options_(options),
         replanner_(SceneReplannerOptions(options.scenes, options.replanner), backends) {
     if (options.oracle) {
@@ -239,7 +241,7 @@ StageShares SharesOf(const std::vector<const ReplanRow*>& rows) {
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const solvers::BackendRegistry& backends,
                                       const std::function<void(int done, int all)>& report) {
-  SceneAsker asker(options, backends);
+  SceneRunner asker(options, backends);
   std::vector<ReplanRow> rows;
   for (int index = 0; index < options.count; ++index) {
     asker.AskAll(DrawReplanScene(options.scenes, index), index, &rows);
@@ -251,7 +253,7 @@ std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
 std::vector<ReplanRow> RunReplanStudy(const ReplanStudyOptions& options,
                                       const std::vector<ReplanScene>& scenes,
                                       const solvers::BackendRegistry& backends) {
-  SceneAsker asker(options, backends);
+  SceneRunner asker(options, backends);
   std::vector<ReplanRow> rows;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     asker.AskAll(scenes[i], static_cast<int>(i), &rows);

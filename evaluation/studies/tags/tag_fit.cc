@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fits the fast tag camera to rendered views. Detection: the probit's two constants by maximum
-// likelihood over all tags in view, on a grid that is refined; a part of the noise common to all tags
-// of an image was tried and fitted to nothing. Noise: from each view the fast camera looks with some
-// noise of the corners; in each class of sizes the noise is scaled by what the medians of the
-// position errors ask for, since the error goes with the noise, and again for what is not linear.
+// Fits the fast tag camera to rendered views. Detection: the probit's two constants by maximum likelihood over all tags
+// in view, on a grid that is refined. (A part of the noise common to all tags of an image fits to nothing.) Noise: the
+// fast camera looks from each view with some noise of the corners. In each class of sizes the noise is scaled so that the
+// medians of the position errors agree, because the error is proportional to the noise. It is scaled again for
+// what is not linear.
 #include "evaluation/studies/tags/tag_fit.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr double kTrialSigma = 0.1;  // [pixel]
 constexpr int kRounds = 3;
 constexpr int kRepeats = 10;
 constexpr double kLapse = 0.005;  // of tags, whatever their size: a stray one must not rule the fit
-constexpr int kFewRows = 25;      // a class with fewer takes its neighbour's noise
+constexpr int kMinRows = 25;      // a class with fewer takes its neighbour's noise
 
 double Probability(double x) { return 0.5 * std::erfc(-x * std::sqrt(0.5)); }
 
@@ -116,7 +116,7 @@ void FitSigma(const TagStudyOptions& options, const std::vector<TagStudyRow>& ro
   Table& table = aligned ? model->sheet_sigma : model->corner_sigma;
   std::array<bool, sim::TagModel::kKnots> known{};
   for (std::size_t i = 0; i < table.size(); ++i) {
-    known[i] = rendered[i].size() >= kFewRows && !fast[i].empty();
+    known[i] = rendered[i].size() >= kMinRows && !fast[i].empty();
     if (known[i]) table[i] *= *Quantile(rendered[i], 0.5) / *Quantile(fast[i], 0.5);
   }
   for (std::size_t i = 0; i < table.size(); ++i) {

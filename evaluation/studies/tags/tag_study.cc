@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views are drawn so that the pad's centre is anywhere in the image with the same probability, which
-// makes many of them partial and oblique: heights evenly over the range, any heading of vehicle and
-// pad, a tilt of up to 20 degrees in any direction. Each view's draws come first and are the same for
-// every camera; the image's noise has its own stream.
+// Views are drawn so that the pad's centre is anywhere in the image with the same probability. Many of them are partial
+// and oblique for that. Heights are even over the range, the headings of vehicle and pad are any, the tilt is up to 20
+// degrees in any direction. Each view's draws come first and are the same for every camera; the image's noise has its
+// own stream.
 #include "evaluation/studies/tags/tag_study.h"
 
 #include <algorithm>
@@ -79,8 +79,8 @@ TagRow RowOf(const estimation::PadTag& tag, const Eigen::Vector3d& p_CP,
   TagRow row;
   const Eigen::Vector3d center_C =
       R_CP * Eigen::Vector3d(tag.center_P.x(), tag.center_P.y(), 0.0) + p_CP;
-  row.view_angle_deg =
-      estimation::kDegPerRad * std::acos(std::clamp(-R_CP.col(2).dot(center_C.normalized()), -1.0, 1.0));
+  row.view_angle_deg = estimation::kDegPerRad *
+                       std::acos(std::clamp(-R_CP.col(2).dot(center_C.normalized()), -1.0, 1.0));
   Eigen::Matrix<double, 2, 4> corners = tag.Corners();
   row.in_view = true;
   for (int k = 0; k < 4; ++k) {

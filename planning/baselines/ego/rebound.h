@@ -24,9 +24,9 @@ struct ReboundCounts {
   int rebounds = 0;
 };
 
-/// The rebound optimisation (Zhou et al., algorithm 2): L-BFGS on smoothness, collision and
-/// feasibility; broken off for new {p, v} pairs whenever the nearly smooth polygon meets an obstacle
-/// that no pair speaks of; started again with a doubled collision weight while the result is blocked.
+/// The rebound optimisation (Zhou et al., algorithm 2): L-BFGS on smoothness, collision and feasibility. It is
+/// interrupted for new {p, v} pairs whenever the nearly smooth polygon meets an obstacle without a pair. It starts again
+/// with a doubled collision weight while the result is blocked.
 /// The first and last three control points never move. One instance serves one thread.
 class Rebound : private solvers::LbfgsFunction {
  public:

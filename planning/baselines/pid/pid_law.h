@@ -7,16 +7,18 @@
 
 namespace touchdown::planning {
 
-/// Gains of the track-then-descend baseline, from a position error to a velocity. Where the defaults come
-/// from: docs/pid.md.
+/// Gains of the track-then-descend baseline, from a position error to a velocity. The
+/// flights that chose the defaults: docs/results/ego/tables.md.
 struct PidGains {
-  double proportional = 2.0;    ///< horizontal, of the position error [1/s]
-  double integral = 0.2;        ///< of its integral [1/s^2]
-  double derivative = 0.1;      ///< of its rate [-]
-  double integral_limit = 0.5;  ///< the integral adds no more than this [m/s]
-  double integral_zone = 0.5;   ///< farther from the pad it stands still [m]
-  double height = 1.0;          ///< proportional gain of the height [1/s]
-  double response = 0.25;       ///< time constant with which a velocity is taken up [s]
+  double proportional = 2.0;  ///< horizontal, of the position error [1/s]
+  double integral = 0.2;      ///< of its integral [1/s^2]
+  double derivative = 0.1;    ///< of its rate [-]
+  /// The integral adds no more: what an error of 0.25 m asks for [m/s].
+  double integral_limit = 0.5;
+  /// Farther from the pad the integral stands still [m]: the distance at which the mission descends.
+  double integral_zone = 0.5;
+  double height = 1.0;     ///< proportional gain of the height [1/s]
+  double response = 0.25;  ///< time constant with which a velocity is taken up [s]
 };
 
 /// Throws std::invalid_argument naming the first gain out of its range.

@@ -17,7 +17,7 @@ namespace touchdown::planning {
 namespace {
 
 constexpr double kSmoothing = 0.02;  // [m]
-constexpr double kReliefShare = 0.5;
+constexpr double kRecoveryShare = 0.5;
 
 struct OutsideCorridor {
   static constexpr int kBlockSize = 3, kWindow = 3, kOutputs = 1;
@@ -38,7 +38,7 @@ struct OutsideCorridor {
     const Eigen::Vector3d& p = context.start.p;
     const double outside = Outside<double>({p.x(), p.y(), p.z()}, context.t0);
     excess = may_recover ? std::max(0.0, outside) : 0.0;
-    relieved_knots = kReliefShare * context.segments;
+    relieved_knots = kRecoveryShare * context.segments;
   }
 
   template <class T>

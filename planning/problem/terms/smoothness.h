@@ -103,7 +103,7 @@ class SegmentDerivatives {
     return {h, a, j, a * la, j * lj, a * (la * la + l2a), j * (lj * lj + l2j)};
   }
 
-  /// Two roots and two divisions a window are saved where h is the one that was foretold.
+  /// Two roots and two divisions a window are saved where h is the expected one.
   Scales At(double h) const { return h == at_.h ? at_ : ScalesAt(h); }
 
   int segments_;

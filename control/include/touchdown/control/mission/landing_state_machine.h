@@ -39,30 +39,29 @@
 //   emergency_stop hold            emergency_cleared  flag down for over emergency_time
 // clang-format on
 //
-// Contact counts in every mode in which what is flown leads to it: a go-around for which nothing is certified
-// ends on the deck.
-// A foot so low over a known deck that a climb would come too late keeps a landing from all go-arounds but those for pad_lost, no_contact
-// and own_state_lost: it touches anyway, and would bounce off.
-// (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed): every mode but disarmed, which is final: there
-// is no way out of it, and none into it but contact. A committed landing ends only by contact, an
-// error beyond commit_abort_distance (or outside the cone), too_fast, gust, the end of the bridge before the feet touch, no_contact,
-// own_state_lost, invalid_input or emergency. A pad counts as converged only while the vehicle's
-// own state is usable. Dead reckoning closes the gate for own_patience: a short outage of position
-// and velocity is waited out.
+// Contact counts in every mode in which what is flown leads to it: a go-around for which nothing is certified ends on
+// the deck. A foot may be so low over a known deck that a climb would come too late. Such a landing has go-arounds for
+// pad_lost, no_contact and own_state_lost only: it touches anyway, and would bounce off.
 //
-// The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is
-// known well, and it stays open without tags where the rest of the way can be bridged: contact is
-// foretold within bridge_time of the last sighting, with a pad that is by then still known to
-// bridge_sigma. Without sightings neither improves, so a descent that pauses, or that lost the tags
-// too high up, closes the gate; and a committed descent is given up where the bridge has ended
-// without contact.
+// (lands): landing, or any mode while `lands`. (flying): tracking, landing, go_around. (armed): every mode but disarmed,
+// which is final: there is no way out of it, and only contact leads into it.
 //
-// Who leans farther than lean_max in a gust waits for a lull as behind a closed gate, and gives up a landing before
-// it touches: the hull would touch before the feet do, or the vehicle would be blown off.
+// A committed landing ends only by contact, an error beyond commit_abort_distance (or outside the cone), too_fast, gust,
+// the end of the bridge before the feet touch, no_contact, own_state_lost, invalid_input or emergency. A pad counts as
+// converged only while the vehicle's own state is usable. Dead reckoning closes the gate for own_patience: a short
+// outage of position and velocity is waited out.
 //
-// With descent planned, tracking flies a plan that ends in contact already. decide_time before that
-// the same gate decides: if it is open the landing begins, else the vehicle arrives above the pad
-// instead, to make a new plan to contact from there once the gate is open.
+// The gate asks: will the feet meet the deck? It is open while the tags are seen and the pad is known well. Without tags
+// it stays open if the rest of the way can be bridged: contact is predicted within bridge_time of the last sighting, and
+// the pad is then still known to bridge_sigma. Without sightings neither improves. So a descent that pauses, or that
+// lost the tags too high up, closes the gate. A committed descent is aborted if the bridge ends without contact.
+//
+// A vehicle that tilts farther than lean_max in a gust waits for a lull as behind a closed gate. It gives up a landing
+// before it touches: the hull would touch before the feet do, or the vehicle would be blown off.
+//
+// With descent planned, tracking already flies a plan that ends in contact. The same gate decides decide_time before
+// contact. If it is open, the landing begins. Else the vehicle arrives above the pad instead, and makes a new plan to
+// contact from there once the gate is open.
 #pragma once
 
 #include <limits>
@@ -147,7 +146,7 @@ struct MissionInputs {
   double horizontal_speed = 0.0;     ///< relative to the pad, estimated [m/s]
   double sink_rate = 0.0;            ///< towards the deck, estimated [m/s]
   double pad_sigma = 0.0;            ///< horizontal 1 sigma of the pad's position [m], may be inf
-  /// The same foretold for ContactIn from now, without further measurements; may be inf.
+  /// The same, predicted for ContactIn from now, without further measurements; may be inf.
   double contact_sigma = std::numeric_limits<double>::infinity();
   double tag_age = std::numeric_limits<double>::infinity();  ///< of the last sighting [s]
   bool own_fresh = true;    ///< own state runs on fresh measurements, else it is dead reckoning

@@ -21,7 +21,7 @@
 
 namespace touchdown::control {
 
-/// What the vehicle is to do from now on, at three depths: whoever has an autopilot takes the middle or the last.
+/// What the vehicle is to do from now on, at three depths. A vehicle with an autopilot takes the middle or the last.
 struct Setpoint {
   double t = 0.0;                ///< [s]
   bool armed = true;             ///< false: the rotors are to stand still
@@ -72,7 +72,7 @@ class Onboard {
   Onboard(Onboard&&) noexcept;
   Onboard& operator=(Onboard&&) noexcept;
 
-  /// The own state, given; where it is estimated, its measurements. Before the flight nobody knows the time: a state
+  /// The own state, given; where it is estimated, its measurements. Before the flight the time is not known: a state
   /// that is older than the history counts for a new beginning, and those before it are forgotten.
   Taken Take(const estimation::VehicleState& state);
   Taken Take(const estimation::ImuSample& sample);

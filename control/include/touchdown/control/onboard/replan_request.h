@@ -14,7 +14,7 @@ struct ReplanRequest {
   planning::ReplanInput input;       ///< without its pad
   std::optional<double> rest_climb;  ///< to rest, this much higher [m]; none: to the pad
   std::optional<estimation::PadKnowledge>
-      pad;  ///< from which the predictor foretells it; none: it is not known
+      pad;  ///< from which the predictor predicts it; none: the pad is not known
 };
 
 /// A replanning step, as it was asked for.

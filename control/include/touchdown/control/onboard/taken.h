@@ -5,22 +5,22 @@
 
 namespace touchdown::control {
 
-/// What became of a measurement.
+/// How a measurement was treated.
 enum class Taken {
   kUsed,     ///< in its place in time, also where it came late or out of order
-  kWaiting,  ///< kept for the start of the filter
+  kWaiting,  ///< queued for the start of the filter
   kGated,    ///< too unlikely, or of no use to the filter now; nothing changed
   kEmpty,    ///< an image that does not show the pad, or no depth at all
   kIgnored,  ///< the pad's GPS, while its tags are seen and the own state is estimated
-  kDoubled,  ///< this sensor's measurement of that time has been taken already
+  kDoubled,  ///< a duplicate: this sensor's measurement of that time is there already
   kTooOld,   ///< older than the history reaches
   kInvalid,  ///< not finite, out of range, or ahead of time
-  kUnasked,  ///< this vehicle has no such sensor, or its own state is not known yet
+  kUnasked,  ///< not expected: no such sensor is configured, or the own state is not known yet
 };
 inline constexpr int kTakenKinds = 9;
 std::string_view ToString(Taken taken);
 
-/// A second one of the same time would be a double.
+/// A second one of the same time would be a duplicate.
 constexpr bool IsLookedAt(Taken taken) {
   return taken == Taken::kUsed || taken == Taken::kGated || taken == Taken::kWaiting;
 }

@@ -16,11 +16,10 @@ namespace touchdown::estimation {
 
 /// Error-state Kalman filter of the vehicle's own state from IMU, GPS, odometry, height, heading.
 ///
-/// IMU samples, in time order, drive it; every other measurement carries its own time stamp and may
-/// come up to max_delay late or ahead of its IMU sample: it is put where it belongs in the history
-/// and what is newer is processed again, so that the result is that of an ordered sequence. Start()
-/// begins from a known state; without it the filter begins by itself from a hover, as soon as it
-/// has IMU samples for hover_time, a position and a heading.
+/// IMU samples, in time order, drive it. Every other measurement carries its own time stamp and may come up to max_delay
+/// late or ahead of its IMU sample. It is inserted at its place in the history, and newer ones are processed again: the
+/// result is that of an ordered sequence. Start() begins from a known state. Without it the filter begins by itself from
+/// a hover, as soon as it has IMU samples for hover_time, a position and a heading.
 ///
 /// A value type: copies are independent and allocate. No other call allocates after construction.
 class OwnStateFilter {
@@ -48,10 +47,9 @@ class OwnStateFilter {
   /// the last reading less the bias. Meaningful once started().
   VehicleState Estimate() const;
 
-  /// The same at another time t [s]: carried on with the last readings, no more than max_delay
-  /// ahead, or as it was then, as far as the history reaches back and with all that is known by
-  /// now: for images, whose time stamp is past when they have been worked on. What it gives has the
-  /// time it is for.
+  /// The same at another time t [s]. Later: carried on with the last readings, no more than max_delay ahead. Earlier: as
+  /// far as the history reaches back, with all that is known by now. Images need it: their time stamp is past when they
+  /// have been worked on. The result has the time it is for.
   VehicleState Estimate(double t) const;
 
   /// The nominal state with its biases, and the covariance of its error. Meaningful once started().

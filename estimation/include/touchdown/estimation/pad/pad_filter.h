@@ -96,9 +96,9 @@ struct PadDiagnostics {
 
 /// Extended Kalman filter of the landing pad's horizontal motion.
 ///
-/// It starts in Cartesian velocity (PadMotion::kVelocity), so that a standing pad has no undefined
-/// heading, and turns to the model's own state as soon as a tag shows the heading or the motion is
-/// significant; it turns back when the heading is lost (standing for long without tags).
+/// It starts in Cartesian velocity (PadMotion::kVelocity), so that a standing pad has no undefined heading. It turns to
+/// the model's own state as soon as a tag shows the heading or the motion is significant. It turns back when the heading
+/// is lost (standing for long without tags).
 /// Measurements carry their own time stamps and may come late. A value type: copies are
 /// independent. No call allocates after construction.
 class PadFilter {

@@ -16,7 +16,7 @@ struct PadKnowledge {
   PadNoise noise;
 };
 
-/// Foretells the pad from what is known of it.
+/// Predicts the pad from what is known of it.
 class PadPredictor {
  public:
   virtual ~PadPredictor() = default;
@@ -26,12 +26,12 @@ class PadPredictor {
   virtual const PadPrediction& Predict(const PadKnowledge& known) = 0;
 };
 
-/// The future of the pad as one belief foretells it: straight for kVelocity and kHeading, a
+/// The future of the pad as one belief predicts it: straight for kVelocity and kHeading, a
 /// circular arc for kTurn. A snapshot by value: later measurements do not change it.
 class BeliefPrediction final : public PadPrediction {
  public:
   /// `height`: deck's upper face in W [m]. The turn rate is shrunk towards zero by its signal to
-  /// noise ratio, omega^3 / (omega^2 + var(omega)): a turn is foretold only as far as it is known.
+  /// noise ratio, omega^3 / (omega^2 + var(omega)): a turn is predicted only as far as it is known.
   BeliefPrediction(const PadBelief& belief, double height, const PadNoise& noise);
 
   /// Any finite t [s], before or after the belief's. Does not allocate.

@@ -15,13 +15,13 @@ struct Margins {
   double Sum() const { return own_state + attitude + tracking; }
 };
 
-/// Margins from what the vehicle knows: one standard deviation of its position [m] and of its attitude [rad],
-/// how far it was from its reference of late [m], and the steady force on it over its mass (its horizontal part:
-/// wind that pushes comes in gusts) [m/s^2].
+/// Margins from what the vehicle knows: one standard deviation of its position [m] and of its attitude [rad], its recent
+/// distance from its reference [m], and the steady force on it over its mass [m/s^2]. Of the force the horizontal part
+/// counts: wind that pushes comes in gusts.
 Margins MarginsOf(double sigma_position, double sigma_attitude, double recent_tracking,
                   const Eigen::Vector3d& pull_W) noexcept;
 
-/// The largest error of late: it fades with kFade [s].
+/// The largest recent error: it fades with kFade [s].
 class RecentError {
  public:
   static constexpr double kFade = 1.0;

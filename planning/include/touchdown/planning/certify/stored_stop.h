@@ -30,11 +30,13 @@ void Enter(const PairProof& proof, Certificate* certificate);
 /// How a pair may end.
 enum class PairEnd { kRest, kRestOrContact, kContact };
 
-/// Finds a stop for the curve from `pair->curve` and fills t_stop and stop: braking, or where that is not proven or
-/// ends too low in the pad's way a climb, or, where the curve may end in contact,
-/// the rest of the curve and on to contact; shortly before contact that comes first. The curve until `t_handover` [s] and the stop until rest stay in `hull`
-/// from t_from [s] on. `limits` are what is left of them for the stop. Does not allocate if pair->stop
-/// has held one before.
+/// Finds a stop for the curve from `pair->curve`, and fills t_stop and stop. The stop is the first that is proven of:
+/// 1. shortly before a contact that the curve may make: the rest of the curve and on to contact;
+/// 2. braking, unless it ends too low in the pad's way;
+/// 3. a climb;
+/// 4. farther from such a contact: as 1.
+/// The curve until `t_handover` [s] and the stop until rest stay in `hull` from t_from [s] on. `limits` are what is left
+/// of them for the stop. Does not allocate if pair->stop has held one before.
 PairProof ProvePair(double t_from, double t_handover, PairEnd ends, const Limits& limits,
                     const HullSpace& hull, FlightPair* pair);
 
@@ -46,7 +48,7 @@ PairProof ProveStop(double t_from, const HullSpace& hull, FlightPair* pair);
 double LowestRest(double t, const HullSpace& hull);
 
 /// The deck is met with at most `share` of the sink rate and of the drift that the landing rule allows a
-/// touchdown at (docs/landing.md): the curve at time t [s], relative to the pad's centre as it is predicted.
+/// touchdown at (docs/mission.md): the curve at time t [s], relative to the pad's centre as it is predicted.
 bool TouchesSoftly(const UniformBspline& curve, double t, double share, const HullSpace& hull);
 
 /// When from t_from on the feet meet the deck, along the curve or going on from its end; infinite where they do

@@ -70,14 +70,14 @@ inline constexpr double kLandingRoom = 0.9;
 inline constexpr double kAnyTime = -std::numeric_limits<double>::infinity();
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Looks whether the hull, grown by the margins, stays in observed-free cells along the curve from t_from
-/// to t_to [s], past the curve's end at its end's velocity, and the body's origin between floor and
-/// ceiling. Exceptions: cells that end below the map's ground height; while the body's origin is over the
-/// deck, wherever that may be within the error of its prediction, cells that end at or below the deck's
-/// upper face, and those over the deck where its returns lie by
-/// their noise, unless occupied; and, at the start, cells around `start` that the hull reached there already and
-/// does not come nearer to. Before `t_contact` [s] the feet are above the deck while the hull may be over it,
-/// and sink softly close to it, but for a start that is lower and rises. Does not allocate.
+/// Checks the curve from t_from to t_to [s], past its end at its end's velocity. The hull, grown by the margins, must
+/// stay in observed-free cells, and the body's origin between floor and ceiling. Exceptions:
+/// - cells that end below the map's ground height;
+/// - while the body's origin may be over the deck (within the error of its prediction): cells that end at or below the
+///   deck's upper face, and cells over the deck where its returns lie by their noise, unless occupied;
+/// - at the start: cells around `start` that the hull already reached there, and does not come nearer to.
+/// Before `t_contact` [s] the feet are above the deck while the hull may be over it, and sink softly close to it. A
+/// start that is lower and rises is allowed. Does not allocate.
 Sweep SweepHull(const UniformBspline& curve, double t_from, double t_to, const HullStart& start,
                 const HullSpace& hull, double t_contact);
 

@@ -50,7 +50,7 @@ inline bool IsGround(const CellIndex& cell, const OccupancyMapOptions& options) 
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
 /// Rolling log-odds occupancy grid with incremental inflation. The window follows the vehicle; what
-/// leaves it is forgotten here, and handed to whoever keeps it (touchdown/planning/map/persistent_map.h).
+/// leaves it is forgotten here, and handed to the listener that keeps it (touchdown/planning/map/persistent_map.h).
 ///
 /// Plans take unknown cells for free. Stops may not (docs/safety.md): they stay in cells that were
 /// observed free, which is less. A cell is observed free once a ray has passed it

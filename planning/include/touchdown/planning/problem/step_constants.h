@@ -11,12 +11,12 @@ namespace touchdown::planning {
 /// each is worth is measured by `touchdown study replan --parts sensitivity`.
 struct StepConstants {
   // Ways past what blocks a curve (way_finder.h).
-  double way_greed = 2.0;
+  double heuristic_weight = 2.0;
   double way_tight_cost = 8.0;
   double detour_longer = 2.0;
-  double beside_time = 0.5;
-  double way_dearer = 1.05;
-  double side_cheaper = 0.8;
+  double hold_beside_time = 0.5;
+  double path_cost_ratio = 1.05;
+  double side_change_ratio = 0.8;
 
   // From a way to a clear curve (plan_attempt.h, pair_binder.h).
   double near_obstacle = 1.5;
@@ -24,7 +24,7 @@ struct StepConstants {
   double bound_beside = 2.0;
   double stand_off = 0.3;
   double pair_growth = 2.5;
-  double blocked_left = 0.5;
+  double blocked_share_left = 0.5;
   double limit_growth = 6.0;
   double limit_far = 1.06;
   int limit_rounds = 2;

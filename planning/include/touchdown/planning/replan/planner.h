@@ -23,7 +23,7 @@ class Planner {
   virtual void CommitHover(const Eigen::Vector3d& p_W, double t) = 0;
 
   /// One replanning step against the map. The result stays valid until the next call. It says whether a new answer is
-  /// `committed`, or that there was nothing to do (`idle`): who has a rate of its own may be asked before an
+  /// `committed`, or that there was nothing to do (`idle`): a planner with a rate of its own may be asked before an
   /// answer has taken over.
   virtual const ReplanResult& Replan(const ReplanInput& input, const OccupancyMap& map) = 0;
 

@@ -24,7 +24,7 @@ struct ReplannerState {
   BoundParts bound;               ///< what of it is bound to free space
   double looked_t = 0.0;          ///< when other ways were last looked for [s]
   std::optional<double> asked_t;  ///< when the last answer took over [s]
-  std::optional<Rung>
+  std::optional<Attempt>
       unfinished;  ///< at which the last step, without a plan, ran out of its budget
   std::optional<Eigen::Vector3d> looks_at_W;  ///< `next` leads to where this cell is in sight [m]
   std::optional<double> climb;                ///< `next` is the caller's rest with this climb [m]
@@ -35,7 +35,7 @@ struct ReplannerState {
   double strip_floor = 0.0;                              ///< in W [m]
 };
 
-/// Plans, re-plans and holds the committed trajectory (docs/architecture.md). One instance
+/// Plans, re-plans and holds the committed trajectory (docs/replanning.md). One instance
 /// per vehicle; not thread-safe; different instances are independent.
 class Replanner : public Planner {
  public:

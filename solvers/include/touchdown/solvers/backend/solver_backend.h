@@ -29,12 +29,12 @@ struct Capabilities {
 };
 
 /// A solve as it is asked for, before it is made. Valid during the call of a listener.
-struct AskedSolve {
+struct SolveRequest {
   const View& view;
   const WarmStart& start;
   const Stop& stop;
 };
-using SolveListener = std::function<void(const AskedSolve&)>;
+using SolveListener = std::function<void(const SolveRequest&)>;
 
 /// A solver behind one interface. Everything that does not differ between backends happens once,
 /// here: checks, timing, counting, best-point tracking. A backend writes DoPrepare and DoSolve.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scalar losses rho(u): what a term's inner map is measured by. Each knows its first two
-// derivatives, the residual r(u) with r^2 = 2 rho that least-squares backends want (unless rho can
-// be negative), the interval that it stands for where the term is made a hard constraint, and a
-// nominal curvature: one number that stands for rho'' near a solution. All are plain values; none
-// allocates.
+// Scalar losses rho(u): they measure a term's inner map u. Each loss knows:
+// - its first two derivatives;
+// - the residual r(u) with r^2 = 2 rho, which least-squares backends want (unless rho can be negative);
+// - the interval of u that it stands for if the term is made a hard constraint;
+// - a nominal curvature: one number that stands for rho'' near a solution.
+// All are plain values; none allocates.
 #pragma once
 
 #include <algorithm>

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pages are short and plain, and a page that is not is named."""
+import pytest
+import words
+
+OPENING = "# A page\n\nLook up a thing.\n"
+
+
+def page(tmp_path, text):
+    path = tmp_path / "page.md"
+    path.write_text(text, encoding="utf-8")
+    return words.read(path)
+
+
+def sentence(length):
+    """One of so many words."""
+    return "Fly " + "over " * (length - 2) + "it."
+
+
+def test_the_pages_are_short_and_plain():
+    found = words.pages()
+    print(words.text(found))
+    assert len(found) > 40, "where are the pages?"
+    assert not (wrong := words.wrong()), "\n".join(wrong)
+
+
+def test_a_plain_page_is_plain(tmp_path):
+    assert words.wrong_on(page(tmp_path, OPENING + sentence(40))) == []
+
+
+@pytest.mark.parametrize(
+    "text, named",
+    [
+        (OPENING + sentence(41), "page.md:3: a sentence of 41 words"),
+        (OPENING + "\n- Short.\n- " + sentence(41), "page.md:6: a sentence of 41 words"),
+        (OPENING + "Fly. " * 2494, "page.md has 2501 words; 2500 are the most"),
+        ("# A page\n\n## At once\n\nLook up a thing.\n", "does not begin with a sentence"),
+        ("# A page\n\n| a | b |\n", "does not begin with a sentence"),
+        (OPENING + "\nThe pad drives.\n", "has words of docs/glossary.md (pad), and no link to it"),
+    ],
+    ids=["sentence", "item", "page", "heading", "table", "glossary"],
+)
+def test_what_is_wrong_is_named(tmp_path, text, named):
+    said = words.wrong_on(page(tmp_path, text), {"pad", "hull"})
+    assert len(said) == 1 and named in said[0], said
+
+
+def test_a_term_with_the_link_is_right(tmp_path):
+    assert words.wrong_on(page(tmp_path, OPENING + "\nThe [pad](glossary.md#pad) drives.\n"), {"pad"}) == []
+
+
+def test_what_is_no_prose_is_no_sentence(tmp_path):
+    text = OPENING + "\n## Head\n\n| a cell. | b |\n\n```sh\nrun it.\n```\n\n$$\nx = y.\n$$\n\nIt is $a b c$, `d e f` or [two words](to.md). No.\n"
+    lengths = [(line, len(found)) for line, found in page(tmp_path, text).sentences]
+    assert lengths == [(3, 4), (17, 7), (17, 1)]
+
+
+def test_pages_together_have_limits(tmp_path):
+    plain = page(tmp_path, OPENING + "\nFly. " * 2000)
+    assert words.wrong_in_all([plain] * 17) == []
+    assert "the pages have 36126 words; 35000 are the most" in words.wrong_in_all([plain] * 18)
+    long = page(tmp_path, OPENING + sentence(26) + "\n\n" + sentence(25))
+    assert "1 of 3 sentences have more than 25 words; 5% are the most" in words.wrong_in_all([long])
+
+
+@pytest.mark.parametrize("word", ["foretold", "Foretells", "reckons with", "betters", "dearer", "mends", "of late", "put aside", "LonePart", "Contestant", "kThere"])
+def test_a_word_that_stops_readers_is_named(word):
+    assert words.banned("page.md", f"A line.\nIt is {word} here.\n") == [f"page.md:2: {word.split(' w')[0].removesuffix(' with')}"]
+
+
+@pytest.mark.parametrize("text", ["dead reckoning", "Dead reckoning", "recommended", "an amendment", "not of latency", "of later ones"])
+def test_other_words_are_not(text):
+    assert words.banned("page.md", text) == []
+
+
+def test_words_are_looked_for_in_sources_and_pages():
+    names = {name for name, _ in words.sources()}
+    assert {"README.md", "planning/replan/replanner.cc", "docs/test/rooms.py", "notebooks/01_first_landing.ipynb"} <= names
+    assert not any(name.startswith("docs/results/paper/") for name in names)

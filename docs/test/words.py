@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""How the pages are written: words by page, long sentences, words that readers stumble over.
+
+    python3 docs/test/words.py    prints a table of the pages, and what is wrong
+"""
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+
+from documents import ROOT, Document
+
+# len(text.split()) of a whole page: tables, code and formulas count.
+MOST_WORDS = {"README.md": 1500, "docs/architecture.md": 2000}
+MOST_OF_A_PAGE = 2500
+MOST_OF_ALL = 35000
+LONGEST_SENTENCE = 40
+LONG_SENTENCE = 25
+MOST_LONG = 0.05  # share of the sentences of all pages
+# Dead reckoning is a term of the field.
+BANNED = re.compile(
+    r"foretell\w*|foretold|(?<!dead )(?<!dead-)\breckon\w*|\bbetters\b|\bdearer\b|\bmend(?:s|ed|ing|able)?\b"
+    r"|\buser's to\b|\bof late\b|\bput aside\b|\bkBeside\b|\bkThere\b|LoneParts?\b|Contestant",
+    re.I,
+)
+# Tables of results keep their words; the texts of the page in a browser have their own sources and tests.
+UNCHECKED = re.compile(r"docs/results/\w+/|evaluation/data/|evaluation/page/web/|docs/test/(test_)?words\.py")
+SOURCES = ("*.cc", "*.h", "*.py", "*.js", "*.mjs", "*.def", "*.cmake", "*.txt", "*.yaml", "*.sh", "*.md",
+           "*.ipynb")  # fmt: skip
+ABBREVIATION = re.compile(r"\b(e\.g|i\.e|et al|Fig|eq|vs|Dr|No|[A-Z])\.")
+
+
+@dataclass(frozen=True)
+class Page:
+    document: Document
+    text: str
+    sentences: list  # (line, words)
+
+    @property
+    def name(self):
+        return self.document.name
+
+    @property
+    def words(self):
+        return len(self.text.split())
+
+
+def plain(line):
+    """A line of prose as it is read: a code span or a formula is one word, a link its text."""
+    line = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", line)
+    line = re.sub(r"`[^`]*`", "code", line)
+    line = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", line)
+    line = re.sub(r"\$[^$]*\$", "x", line)
+    return re.sub(r"[*_]{1,2}", "", ABBREVIATION.sub(lambda found: found[0].replace(".", ""), line))
+
+
+def sentences(document):
+    """The sentences of a page, without headings, tables and blocks: [(line of the paragraph, words)]. A paragraph and
+    an item of a list end a sentence, too."""
+    paragraphs, open_paragraph, formula = [], None, False
+    for number, line in document.prose:
+        formula ^= line.count("$$") % 2 == 1
+        item = re.match(r"\s*(?:[-*]|\d+\.|>)\s+", line)
+        if not line.strip() or item or formula or re.match(r"#|\s*\||\$\$", line):
+            open_paragraph = None
+        if not line.strip() or formula or re.match(r"#|\s*\||.*\$\$$", line):
+            continue
+        if open_paragraph is None:
+            open_paragraph = (number, [])
+            paragraphs.append(open_paragraph)
+        open_paragraph[1].append(plain(line[item.end() :] if item else line).strip())
+    found = []
+    for number, lines in paragraphs:
+        parts = re.split(r"(?<=[.!?])\s+(?=[A-Z0-9\"'(]|code)", " ".join(lines))
+        found += [(number, part.split()) for part in parts if re.search(r"[A-Za-z]{2}", part)]
+    return found
+
+
+def read(path):
+    document = Document(path)
+    return Page(document, path.read_text(encoding="utf-8"), sentences(document))
+
+
+def pages(root=ROOT):
+    """What is written by hand: the artefacts below docs/results/, the notebooks and docs/reference/ are not."""
+    paths = [root / "README.md", *sorted((root / "docs").glob("*.md")), *sorted((root / "docs" / "results").glob("*.md"))]
+    return [read(path) for path in paths]
+
+
+def banned(name, text):
+    """A sentence for each word that is not to be used."""
+    return [f"{name}:{text.count(chr(10), 0, found.start()) + 1}: {found[0]}" for found in BANNED.finditer(text)]
+
+
+def sources():
+    """(name, text) of every tracked file in which words are banned."""
+    names = subprocess.run(["git", "-C", ROOT, "ls-files", *SOURCES], capture_output=True, text=True, check=True).stdout.split()
+    return [(name, (ROOT / name).read_text(encoding="utf-8")) for name in names if not UNCHECKED.match(name)]
+
+
+def glossary_terms(glossary):
+    """The terms of the glossary's tables and lists: what is bold there."""
+    return {term.lower() for _, line in glossary.document.prose for term in re.findall(r"\*\*([\w\s*\\-]+?)\*\*", line)}
+
+
+def wrong_on(page, terms=frozenset()):
+    """A sentence for each thing that is wrong on one page."""
+    said = []
+    most = MOST_WORDS.get(page.name, MOST_OF_A_PAGE)
+    if page.words > most:
+        said.append(f"{page.name} has {page.words} words; {most} are the most")
+    for line, words in page.sentences:
+        if len(words) > LONGEST_SENTENCE:
+            said.append(f"{page.name}:{line}: a sentence of {len(words)} words: {' '.join(words)[:80]} ...")
+    body = [line for _, line in page.document.prose if line.strip() and not re.match(r"# |!\[", line)]
+    if not body or re.match(r"#|\||- ", body[0]):
+        said.append(f"{page.name} does not begin with a sentence that says what the reader can do with it")
+    links = {to.partition("#")[0].rpartition("/")[2] for _, to in page.document.links()}
+    used = sorted(term for term in terms if re.search(rf"\b{re.escape(term)}\b", page.text, re.I))
+    if used and "glossary.md" not in links and not page.name.endswith("glossary.md"):
+        said.append(f"{page.name} has words of docs/glossary.md ({', '.join(used[:3])}), and no link to it")
+    return said
+
+
+def wrong_in_all(found):
+    """A sentence for each limit that the pages break together."""
+    said = []
+    words = sum(page.words for page in found)
+    if words > MOST_OF_ALL:
+        said.append(f"the pages have {words} words; {MOST_OF_ALL} are the most")
+    lengths = [len(words) for page in found for _, words in page.sentences]
+    long = sum(length > LONG_SENTENCE for length in lengths)
+    if long > MOST_LONG * len(lengths):
+        said.append(f"{long} of {len(lengths)} sentences have more than {LONG_SENTENCE} words; {MOST_LONG:.0%} are the most")
+    return said
+
+
+def text(found):
+    """The table: a row a page."""
+    lines = ["words  sentences  > 25  longest  page"]
+    for page in found:
+        lengths = [len(words) for _, words in page.sentences]
+        long = sum(length > LONG_SENTENCE for length in lengths)
+        lines.append(f"{page.words:5}  {len(lengths):9}  {long:4}  {max(lengths, default=0):7}  {page.name}")
+    lengths = [len(words) for page in found for _, words in page.sentences]
+    long = sum(length > LONG_SENTENCE for length in lengths)
+    lines.append(f"{sum(page.words for page in found):5}  {len(lengths):9}  {long:4}  {max(lengths):7}  {len(found)} pages")
+    return "\n".join(lines)
+
+
+def wrong():
+    found = pages()
+    glossary = next(page for page in found if page.name == "docs/glossary.md")
+    terms = glossary_terms(glossary)
+    said = [sentence for page in found for sentence in wrong_on(page, terms)] + wrong_in_all(found)
+    return said + [sentence for name, content in sources() for sentence in banned(name, content)]
+
+
+if __name__ == "__main__":
+    print(text(pages()))
+    problems = wrong()
+    print("\n".join(problems))
+    sys.exit(bool(problems))
