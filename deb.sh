@@ -1,0 +1,20 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what is missing, builds the Debian package build/touchdown_VERSION_ARCH.deb and has lintian look at it. The tree
+# is build/deb.
+#   ./deb.sh
+set -euo pipefail
+
+# shellcheck source=.ci/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/.ci/setup.sh"
+cd "$TOUCHDOWN_ROOT"
+
+install_tiers build deb
+rm -f build/touchdown_*.deb
+say "Building in build/deb"
+cmake --workflow --preset deb
+
+say "Looking at it with lintian"
+lintian --fail-on error build/touchdown_*.deb
+echo
+echo "Install it, as root: apt install ./$(echo build/touchdown_*.deb)"
