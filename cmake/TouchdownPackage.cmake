@@ -28,8 +28,8 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 # Who entered the version in Debian's changelog maintains the package.
 file(STRINGS "${PROJECT_SOURCE_DIR}/cmake/debian/changelog" signature REGEX "^ -- " LIMIT_COUNT 1)
 string(REGEX REPLACE "^ -- (.*>)  .*$" "\\1" CPACK_DEBIAN_PACKAGE_MAINTAINER "${signature}")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "plans and flies landings of a quadrotor on a moving vehicle
-Touchdown plans landings of a quadrotor on a moving ground vehicle among
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "plans and flies landings of a quadrotor on a moving vehicle")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Touchdown plans landings of a quadrotor on a moving ground vehicle among
 obstacles that are not known at take-off, as one optimisation problem that
 ten solver backends can solve. It flies the plans in a simulation with
 sensors, a filter, a map and contact, and judges every landing.
@@ -44,7 +44,8 @@ math(EXPR next "${minor} + 1")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-matplotlib, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "ffmpeg, python3-pandas, python3-scipy, python3-statsmodels, python3-tqdm")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-pandas, python3-scipy, python3-statsmodels, python3-tqdm")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg")  # for videos alone, and 160 packages
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
     "${PROJECT_SOURCE_DIR}/cmake/debian/postinst" "${PROJECT_SOURCE_DIR}/cmake/debian/prerm")

@@ -41,7 +41,7 @@ cmake_path(GET package FILENAME name)
 holds("${name}" "^touchdown_${VERSION}-1_[a-z0-9]+\\.deb$")
 
 run(dpkg-deb --field "${package}")
-holds("${output}" "Version: ${VERSION}-1\n" "Depends: [^\n]*libc6[^\n]*libmujoco[^\n]*python3 \\(>= 3[^\n]*python3-numpy"
+holds("${output}" "Version: ${VERSION}-1\n" "Depends: python3 \\(>= 3[^\n]*python3-numpy[^\n]*libmujoco"
       "Recommends: [^\n]*python3-pandas" "Maintainer: [^\n]+ <[^\n]+>\n")
 run(dpkg-deb --info "${package}" postinst prerm)
 holds("${output}" "py3compile -p touchdown" "py3clean -p touchdown")
@@ -75,7 +75,7 @@ run(gzip -dc unpacked/usr/share/doc/touchdown/changelog.Debian.gz)
 holds("${output}" "^touchdown \\(${VERSION}-1\\) ")
 
 # Every copyright and licence of what the page is made of.
-file(STRINGS "${WORK_DIR}/unpacked/usr/share/touchdown/data/replay/LICENCES.txt" notices REGEX "^Copyright")
+file(STRINGS "${WORK_DIR}/unpacked/usr/share/touchdown/data/replay/LICENCES.txt" notices REGEX "^Copyright" ENCODING UTF-8)
 file(READ "${WORK_DIR}/unpacked/usr/share/doc/touchdown/copyright" copyright)
 list(LENGTH notices count)
 if(count LESS 2)
