@@ -5,6 +5,7 @@
 #   ./test.sh quick     the unit tests: minutes, for who changes the code
 #   ./test.sh deep      sanitizers, another compiler, clang-tidy: an hour or two; parts by name: address, tidy, threads
 #   ./test.sh wasm      the planner in a page: build/wasm/playground.html, and its tests; needs 0.8 GB more
+#   ./test.sh bare      the Debian package in a bare Debian 12, the source in a bare Debian 13; parts by name: deb, source
 #   ./test.sh mutants   whether the tests notice changes of what must be right: an hour
 set -euo pipefail
 
@@ -21,12 +22,13 @@ case ${1:-} in
     install_tiers build report test page wasm
     exec .ci/wasm
     ;;
+  bare) exec .ci/bare "${@:2}" ;;
   mutants)
     install_tiers build test
     exec .ci/mutants.py "${@:2}"
     ;;
   *)
-    echo "./test.sh $1: there is ./test.sh, and with it quick, deep, wasm and mutants." >&2
+    echo "./test.sh $1: there is ./test.sh, and with it quick, deep, wasm, bare and mutants." >&2
     exit 2
     ;;
 esac

@@ -109,7 +109,7 @@ def run_program(program, arguments):
 
 
 def look_at_script(name, arguments):
-    """./demo.sh and ./test.sh install and build. What demo.sh flies runs before every document."""
+    """./demo.sh, ./deb.sh and ./test.sh install and build. What demo.sh flies runs before every document."""
     script = ROOT / name
     if not os.access(script, os.X_OK):
         raise Wrong(f"{name} is no program at the top of the repository")
@@ -137,6 +137,20 @@ def look_at_cmake(arguments):
     for option in re.findall(r"-D(TOUCHDOWN_\w+)", text):
         if not re.search(rf"(option|set)\({option} ", known):
             raise Wrong(f"CMakeLists.txt has no option {option}")
+
+
+def look_at_apt(arguments):
+    """It installs the package that ./deb.sh leaves; `./test.sh bare` does."""
+    if arguments != ["install", "./build/touchdown_*.deb"]:
+        raise Wrong("there is no rule for this use of apt in docs/test/stand_in.py")
+
+
+def look_at_docker(arguments):
+    """The image is of the Dockerfile, whose lines `./test.sh bare` executes. What is run in it, the program runs."""
+    if arguments[:1] == ["run"] and "touchdown" in arguments:
+        run_program(os.environ["TOUCHDOWN_PROGRAM"], arguments[arguments.index("touchdown") + 1 :])
+    elif arguments != ["build", "-t", "touchdown", "."] or not (ROOT / "Dockerfile").exists():
+        raise Wrong("there is no rule for this use of docker in docs/test/stand_in.py")
 
 
 def look_at_test_program(program, arguments):
@@ -181,6 +195,10 @@ def main(called, arguments):
             look_at_script(name, arguments)
         elif name == "cmake":
             look_at_cmake(arguments)
+        elif name == "apt":
+            look_at_apt(arguments)
+        elif name == "docker":
+            look_at_docker(arguments)
         elif name.endswith("_test"):
             look_at_test_program(called, arguments)
         else:

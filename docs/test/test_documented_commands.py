@@ -15,9 +15,10 @@ import pytest
 from documents import ROOT, Document, documents
 
 STAND_IN = Path(__file__).resolve().parent / "stand_in.py"
-CALLED = ["demo.sh", "test.sh", "python.sh", "my_env/bin/python", "build/release/bin/touchdown", "build/release/estimation/estimation_test",
+CALLED = ["demo.sh", "deb.sh", "test.sh", "python.sh", "my_env/bin/python", "build/release/bin/touchdown", "build/release/estimation/estimation_test",
           "build/release/sim/sim_test", "build/own/own_program", "build/own_parts/own_parts", "build/own_backend/own_backend",
-          "build/go_to_goal/go_to_goal", "build/onboard/onboard", "bin/cmake"]  # fmt: skip
+          "build/go_to_goal/go_to_goal", "build/onboard/onboard", "bin/cmake",
+          "bin/apt", "bin/docker"]  # fmt: skip
 # Words that stand for something: NAME, FILE, N, K=V.
 PLACEHOLDER = re.compile(r"\b[A-Z]+\b|\.\.\.|…")
 HEAD = """set -uET
@@ -183,6 +184,8 @@ def test_keys_named_in_prose_exist():
         ("cmake -S docs/nowhere -B build/x", "docs/nowhere"),
         ("cmake --preset release -DTOUCHDOWN_WITH_MAGIC=ON", "TOUCHDOWN_WITH_MAGIC"),
         ("cmake -E tar", "no rule"),
+        ("apt install touchdown", "no rule"),
+        ("docker run touchdown land no_such_world", "no_such_world"),
         ("build/release/sim/sim_test --gtest_filter=NoSuch.*", "no test"),
     ],
 )

@@ -16,3 +16,8 @@ def test_every_find_package_asks_for_this_version():
     assert sum(map(len, asked.values())) >= 9, "where are they?"
     assert not wrong, f"the version is {version}: {wrong}"
     assert f"version: {version}." in (ROOT / "CITATION.cff").read_text()
+
+
+def test_the_debian_package_is_of_this_version():
+    version = re.search(r"project\(touchdown VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    assert (ROOT / "cmake" / "debian" / "changelog").read_text().startswith(f"touchdown ({version}-1) ")

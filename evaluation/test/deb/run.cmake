@@ -1,0 +1,91 @@
+# Makes the Debian package of what BUILD_DIR holds, looks at what it says and holds, and flies with what was unpacked: from
+# elsewhere.
+cmake_minimum_required(VERSION 3.25)
+
+foreach(name BUILD_DIR WORK_DIR VERSION PYTHON)
+  if(NOT ${name})
+    message(FATAL_ERROR "run.cmake needs -D${name}=")
+  endif()
+endforeach()
+
+# run(<command...>): fails unless the command ends with status 0.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE err
+                  WORKING_DIRECTORY "${WORK_DIR}")
+  if(NOT status EQUAL 0)
+    string(JOIN " " command ${ARGN})
+    message(FATAL_ERROR "${command}: status ${status}\n${out}\n${err}")
+  endif()
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+# holds(<text> <regex>...): fails unless each is there.
+function(holds text)
+  foreach(regex IN LISTS ARGN)
+    if(NOT text MATCHES "${regex}")
+      message(FATAL_ERROR "there is no ${regex} in\n${text}")
+    endif()
+  endforeach()
+endfunction()
+
+file(REMOVE_RECURSE "${WORK_DIR}")
+file(MAKE_DIRECTORY "${WORK_DIR}")
+foreach(name PYTHONPATH TOUCHDOWN_PROGRAM PYTHONHOME)
+  unset(ENV{${name}})
+endforeach()
+
+cmake_path(GET CMAKE_COMMAND PARENT_PATH programs)
+run("${programs}/cpack" -G DEB --config "${BUILD_DIR}/CPackConfig.cmake" -B "${WORK_DIR}")
+file(GLOB package "${WORK_DIR}/*.deb")
+cmake_path(GET package FILENAME name)
+holds("${name}" "^touchdown_${VERSION}-1_[a-z0-9]+\\.deb$")
+
+run(dpkg-deb --field "${package}")
+holds("${output}" "Version: ${VERSION}-1\n" "Depends: python3 \\(>= 3[^\n]*python3-numpy[^\n]*libmujoco"
+      "Recommends: [^\n]*python3-pandas" "Maintainer: [^\n]+ <[^\n]+>\n")
+run(dpkg-deb --info "${package}" postinst prerm)
+holds("${output}" "py3compile -p touchdown" "py3clean -p touchdown")
+
+run(dpkg-deb --contents "${package}")
+holds("${output}" "-rwxr-xr-x root/root [^\n]* ./usr/bin/touchdown\n"
+      "-rw-r--r-- root/root [^\n]* ./usr/lib/python3/dist-packages/touchdown/_touchdown.cpython-[^\n/]*.so\n"
+      "./usr/share/man/man1/touchdown.1.gz\n"
+      "./usr/share/touchdown/scenarios/straight_turn.yaml\n" "./usr/share/touchdown/studies/paper.yaml\n"
+      "./usr/share/touchdown/data/replay/replay.js\n" "./usr/share/touchdown/python/touchdown_report/landing.py\n"
+      "./usr/share/doc/touchdown/copyright\n" "./usr/share/doc/touchdown/changelog.Debian.gz\n"
+      "./usr/share/doc/touchdown/docs/README.md\n")
+if(output MATCHES "[^\n]*(__pycache__|usr/include|\\.a\n|/usr/local)[^\n]*")
+  message(FATAL_ERROR "the package holds ${CMAKE_MATCH_0}")
+endif()
+string(REGEX MATCHALL "drwx[^\n]*" folders "${output}")
+list(FILTER folders EXCLUDE REGEX "^drwxr-xr-x root/root ")
+if(folders)
+  message(FATAL_ERROR "folders that not all may enter: ${folders}")
+endif()
+
+run(dpkg-deb --extract "${package}" unpacked)
+run(readelf --dynamic unpacked/usr/bin/touchdown)
+if(output MATCHES "[^\n]*(RPATH|RUNPATH)[^\n]*")
+  message(FATAL_ERROR "the program looks for libraries elsewhere: ${CMAKE_MATCH_0}")
+endif()
+run(gzip -dc unpacked/usr/share/man/man1/touchdown.1.gz)
+holds("${output}" "\n\\.SS \"touchdown land " "\n\\.SS \"touchdown study hostile " "\n\\.B \\\\-\\\\-html F\\.html\n"
+      "\n\\.B SCENARIO TEXT=straight_turn\n" "touchdown ${VERSION}")
+run(gzip -dc unpacked/usr/share/doc/touchdown/changelog.Debian.gz)
+holds("${output}" "^touchdown \\(${VERSION}-1\\) ")
+
+# Every copyright and licence of what the page is made of.
+file(STRINGS "${WORK_DIR}/unpacked/usr/share/touchdown/data/replay/LICENCES.txt" notices REGEX "^Copyright" ENCODING UTF-8)
+file(READ "${WORK_DIR}/unpacked/usr/share/doc/touchdown/copyright" copyright)
+list(LENGTH notices count)
+if(count LESS 2)
+  message(FATAL_ERROR "whose licences are these? ${notices}")
+endif()
+foreach(notice IN LISTS notices)
+  string(REGEX REPLACE "^Copyright (\\(c\\)|©) " "" notice "${notice}")
+  holds("${copyright}" "${notice}")
+endforeach()
+
+set(ENV{PYTHONPATH} "${WORK_DIR}/unpacked/usr/lib/python3/dist-packages")
+run("${PYTHON}" "${CMAKE_CURRENT_LIST_DIR}/../pip/check.py" "${WORK_DIR}/unpacked/usr")
+run(unpacked/usr/bin/touchdown land straight_turn --html landing.html --plot landing.png)
