@@ -451,8 +451,12 @@ void WriteMcap(const std::string& record_path, const std::string& mcap_path,
     FlightExport flight(record_path, registries);
     AtomicFile file(mcap_path);
     std::ofstream out(file.working_path(), std::ios::binary);
-    flight.Write(&out, progress);
-    out.close();
+    try {
+      flight.Write(&out, progress);
+      out.close();
+    } catch (const std::runtime_error&) {
+      if (out) throw;  // nothing is wrong with the file
+    }
     if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", mcap_path));
     file.Commit();
   } catch (const SqliteError& error) {

@@ -150,11 +150,16 @@ void McapWriter::Finish() {
   PutSummary();
   Put(kMagic);
   out_->flush();
-  if (!*out_) throw std::runtime_error("the file could not be written");
+  CheckStream();
+}
+
+void McapWriter::CheckStream() const {
+  if (!*out_) throw std::runtime_error("the file cannot be written");
 }
 
 void McapWriter::Put(std::string_view bytes) {
   out_->write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  CheckStream();
   at_ += bytes.size();
   crc_ = Crc(crc_, bytes);
 }

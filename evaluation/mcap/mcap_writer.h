@@ -11,7 +11,8 @@
 namespace touchdown::evaluation {
 
 /// Writes an MCAP file, version 0 of the format, to a stream: chunks without compression, with message indices, a summary and
-/// all of the format's checksums. Nothing but what it is given is in the file: no time of day, no name of a machine.
+/// all of the format's checksums. Nothing but what it is given is in the file: no time of day, no name of a machine. A stream
+/// that fails is a std::runtime_error of the call that finds it.
 class McapWriter {
  public:
   using Words = std::map<std::string, std::string>;
@@ -29,7 +30,7 @@ class McapWriter {
 
   void AddMetadata(const std::string& name, const Words& words);
 
-  /// Writes what ends the file; nothing can be added any more. @throws std::runtime_error if the stream failed.
+  /// Writes what ends the file; nothing can be added any more.
   void Finish();
 
  private:
@@ -39,6 +40,7 @@ class McapWriter {
   };
 
   void Put(std::string_view bytes);
+  void CheckStream() const;
   void CloseChunk();
   void PutSummary();
 

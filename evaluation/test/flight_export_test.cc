@@ -3,6 +3,9 @@
 // evaluation/mcap/node.
 #include "evaluation/mcap/flight_export.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -95,6 +98,42 @@ TEST_F(FlightExports, LeaveNothingWhereTheyAreEnded) {
                            if (done == 50) throw Ended{};
                          }),
                Ended);
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
+// As on a disk that is full.
+class FileSizeScope {
+ public:
+  explicit FileSizeScope(rlim_t most) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {most, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeScope() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  void (*signal_)(int);
+  rlimit before_;
+};
+
+TEST_F(FlightExports, SayThatTheDiskIsFullAndStop) {
+  int told = 0, all = 0;
+  std::string said;
+  try {
+    const FileSizeScope scope(100000);
+    WriteMcap(record_, file_, registries_, [&](int done, int of_all) {
+      told = done;
+      all = of_all;
+    });
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  EXPECT_EQ(said, file_ + ": cannot be written");
+  EXPECT_GT(told, 0);
+  EXPECT_LT(told, all);
   EXPECT_THAT(Files(), ElementsAre("f.db"));
 }
 
