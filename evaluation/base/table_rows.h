@@ -38,6 +38,15 @@ class TableRows {
     }
     return value;
   }
+  /// Since a flight began [s].
+  double Time() {
+    constexpr double kLongest = 601.0;  // the schema's time-out, and its last step
+    const double t = Number();
+    if (t < 0.0 || t > kLongest) {
+      Refuse(fmt::format("holds the time {:g} s where 0 to {:g} may stand", t, kLongest));
+    }
+    return t;
+  }
   double NumberOrNan() {
     const bool missing = statement_.IsNull(column_);
     const double value = statement_.Real(column_++);

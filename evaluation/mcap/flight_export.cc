@@ -127,7 +127,14 @@ class FlightExport {
   static Json TablesOf(const std::string& record_path) {
     SqliteDb db(record_path, SqliteDb::Mode::kReadOnly);
     Json tables = FlightTables(db);
-    tables.erase("samples");  // rounded for pages: here the track tells them
+    // Samples are rounded for pages: here the track tells them. Of the modes the words are looked at.
+    tables["samples"] = std::move(tables["samples"]["mode"]["names"]);
+    try {
+      tables.dump();  // which looks at all text
+    } catch (const Json::type_error&) {
+      throw std::invalid_argument("it holds text that is not UTF-8");
+    }
+    tables.erase("samples");
     return tables;
   }
 

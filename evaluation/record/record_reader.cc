@@ -3,6 +3,7 @@
 #include "evaluation/record/record_reader.h"
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -64,6 +65,9 @@ struct Knots {
     points.push_back(rows.Vector3());
   }
   planning::UniformBspline Curve() const {
+    if (std::abs(t0) > kLongest || h * static_cast<double>(points.size()) > kLongest) {
+      throw std::invalid_argument("it holds a curve that is no part of a flight");
+    }
     planning::ControlPoints q(3, static_cast<Eigen::Index>(points.size()));
     for (std::size_t i = 0; i < points.size(); ++i) q.col(static_cast<Eigen::Index>(i)) = points[i];
     return {q, h, t0};
@@ -136,9 +140,12 @@ void ReadResults(SqliteDb& db, std::vector<RecordPlan>* plans) {
 }
 
 void ReadRequests(SqliteDb& db, std::vector<RecordPlan>* plans) {
-  const auto read_input = [](TableRows& row, RecordPlan* plan) {
+  double before = 0.0;
+  const auto read_input = [&before](TableRows& row, RecordPlan* plan) {
     planning::ReplanInput& input = plan->request.input;
-    input.t_now = row.Number();
+    input.t_now = row.Time();
+    if (input.t_now < before) row.Refuse("holds times that fall");
+    before = input.t_now;
     input.t_start = row.Number();
     plan->request.rest_climb = row.Optional();
     estimation::VehicleState& vehicle = input.vehicle;

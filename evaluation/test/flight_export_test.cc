@@ -149,6 +149,37 @@ TEST_F(FlightExports, SayWhatIsNoRecord) {
   EXPECT_THAT(Files(), ElementsAre("f.db", "f.txt"));
 }
 
+TEST_F(FlightExports, SayThatAStepIsAtNoTimeOfAFlight) {
+  Execute("UPDATE replan_input SET t_now = 1e300 WHERE plan = 1");
+  EXPECT_EQ(SentenceOf([&] { Export(); }),
+            record_ + ": its table replan_input holds the time 1e+300 s where 0 to 601 may stand.");
+  Execute("UPDATE replan_input SET t_now = 0.9 - 0.1 * plan WHERE plan < 3");
+  EXPECT_EQ(SentenceOf([&] { Export(); }),
+            record_ + ": its table replan_input holds times that fall.");
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
+TEST_F(FlightExports, SayThatACurveIsLongerThanAFlight) {
+  for (const char* change : {"UPDATE plan SET h = 1e300", "UPDATE plan SET t0 = 1e17"}) {
+    SetUp();
+    Execute(change);
+    EXPECT_EQ(SentenceOf([&] { Export(); }),
+              record_ + ": it holds a curve that is no part of a flight.")
+        << change;
+  }
+}
+
+TEST_F(FlightExports, SayThatTextIsNotUtf8) {
+  for (const char* change : {"UPDATE event SET text = CAST(x'ff41' AS TEXT)",
+                             "UPDATE mode SET mode = CAST(x'ff41' AS TEXT) WHERE t > 0.5"}) {
+    SetUp();
+    Execute(change);
+    EXPECT_EQ(SentenceOf([&] { Export(); }), record_ + ": it holds text that is not UTF-8.")
+        << change;
+  }
+  EXPECT_THAT(Files(), ElementsAre("f.db"));
+}
+
 TEST_F(FlightExports, SayThatAMapLeavesItsWindow) {
   Execute("UPDATE map_change SET ix = ix + 100000 WHERE state = 'occupied'");
   EXPECT_THAT(SentenceOf([&] { Export(); }), HasSubstr("cells outside of the map's window"));

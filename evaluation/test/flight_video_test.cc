@@ -150,6 +150,10 @@ TEST(FlightTrack, RefusesWhatCannotBe) {
        "its table vehicle holds the time 1e+06 s where 0 to 601 may stand"},
       {"UPDATE vehicle SET t = -1" + last,
        "its table vehicle holds the time -1 s where 0 to 601 may stand"},
+      {"UPDATE event SET t = 1e12",
+       "its table event holds the time 1e+12 s where 0 to 601 may stand"},
+      {"UPDATE pad SET t = 602 WHERE source = 'estimate'",
+       "its table pad holds the time 602 s where 0 to 601 may stand"},
       {"UPDATE vehicle SET t = 0" + last, "its table vehicle holds the time 0 s twice"},
       {"UPDATE vehicle SET qw = 0, qx = 0, qy = 0, qz = 0" + last,
        "its table vehicle holds a quaternion that is no unit one"}};
