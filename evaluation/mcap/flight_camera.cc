@@ -18,11 +18,13 @@
 namespace touchdown::evaluation {
 namespace {
 
-// A second. With noise a grey pixel takes half a byte as a PNG; one of depth takes two.
-constexpr double kMostPixels = 1.6e6, kMostDepths = 0.2e6;
+constexpr double kMostGrayBytes = 1.0e6, kMostDepthBytes = 0.4e6;  // a second
 
-double RateOf(double camera_rate, double most, int width, int height) {
-  return std::min(camera_rate, most / (1.0 * width * height));
+// Of a grey pixel as a PNG: little more than half a byte with the noise that cameras have, all of it with much noise.
+double GrayBytes(const Scenario& scenario) { return scenario.camera.noise > 2.0 ? 1.0 : 0.6; }
+
+double RateOf(double camera_rate, double most_bytes, double pixel_bytes, int width, int height) {
+  return std::min(camera_rate, most_bytes / (pixel_bytes * width * height));
 }
 
 sim::VisualScene WithoutPlate(sim::VisualScene scene) {
@@ -81,10 +83,10 @@ Eigen::Isometry3d DepthCameraPose(const Scenario& scenario) {
 FlightCameras::FlightCameras(const Scenario& scenario, const sim::VisualScene& scene)
     : down_(PadCameraOf(scenario), scene, scenario.seed),
       depth_(DepthCameraOf(scenario), WithoutPlate(scene), scenario.seed),
-      down_rate_(
-          RateOf(scenario.tag_rate, kMostPixels, scenario.camera.width, scenario.camera.height)),
-      depth_rate_(
-          RateOf(scenario.depth_rate, kMostDepths, scenario.depth.width, scenario.depth.height)) {}
+      down_rate_(RateOf(scenario.tag_rate, kMostGrayBytes, GrayBytes(scenario),
+                        scenario.camera.width, scenario.camera.height)),
+      depth_rate_(RateOf(scenario.depth_rate, kMostDepthBytes, sizeof(std::uint16_t),
+                         scenario.depth.width, scenario.depth.height)) {}
 
 std::string FlightCameras::DownImage(const TrackSample& now) {
   down_.Capture(now.vehicle, now.pad, &gray_);
