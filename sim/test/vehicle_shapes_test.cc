@@ -49,6 +49,13 @@ TEST(VehicleShapes, WhatHasNothingForTheEyeHasArmsToItsFeetAndRotors) {
   }
 }
 
+TEST(VehicleShapes, ARotorInTheMiddleHasNoArm) {
+  const std::vector<VehicleShape> shapes =
+      VehicleShapes(With(R"(<site name="rotor0" pos="0 0 0"/>)"));
+  EXPECT_EQ(shapes.size(), 2U);  // a foot, and the arm to it
+  for (const VehicleShape& shape : shapes) EXPECT_GT(shape.size.x(), 0.0);
+}
+
 TEST(VehicleShapes, AMeshHasItsOwnTrianglesWhereItsGeomStands) {
   const std::vector<VehicleShape> shapes =
       VehicleShapes(With(R"(<geom type="mesh" mesh="cube" pos="1 2 3"/>)"));

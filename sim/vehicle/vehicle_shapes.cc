@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "sim/mujoco/mujoco_model.h"
 
@@ -59,17 +60,19 @@ std::optional<VehicleShape> ShapeOfGeom(const mjModel& m, int geom) {
   return shape;
 }
 
-// From B's origin.
-VehicleShape ArmTo(const Eigen::Vector3d& end_B) {
+// From B's origin, unless it ends there too.
+void AddArm(const Eigen::Vector3d& end_B, std::vector<VehicleShape>* shapes) {
   constexpr double kThickness = 0.06;  // its radius over its length
+  constexpr double kShortest = 1e-3;   // [m]
   const double length = end_B.norm();
+  if (length < kShortest) return;
   VehicleShape arm;
   arm.kind = VehicleShape::Kind::kCapsule;
   arm.size = {kThickness * length, 0.5 * length, 0.0};
   arm.p_BG = 0.5 * end_B;
   arm.q_BG = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), end_B);
   arm.rgba = {0.16, 0.17, 0.20, 1.0};
-  return arm;
+  shapes->push_back(std::move(arm));
 }
 
 }  // namespace
@@ -108,12 +111,13 @@ std::vector<VehicleShape> VehicleShapes(const std::string& mjcf) {
   }
   if (has_frame) return shapes;
   for (std::size_t foot = 0, feet = shapes.size(); foot < feet; ++foot) {
-    shapes.push_back(ArmTo(shapes[foot].p_BG));
+    const Eigen::Vector3d end_B = shapes[foot].p_BG;  // the list grows
+    AddArm(end_B, &shapes);
   }
   for (int site = 0; site < m.nsite; ++site) {
     const std::string_view name = m.names + m.name_siteadr[site];
     if (m.site_bodyid[site] != body || !name.starts_with("rotor")) continue;
-    shapes.push_back(ArmTo(Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site)));
+    AddArm(Eigen::Map<const Eigen::Vector3d>(m.site_pos + 3 * site), &shapes);
   }
   return shapes;
 }
