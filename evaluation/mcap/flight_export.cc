@@ -322,11 +322,12 @@ class FlightExport {
     EachSample(kTrailPeriod, [&](int i) {
       const double t = figures_.TimeOf(i);
       Add(poses, t, [this, t] { return PosesInFrame(t, kWorldFrame, FlownPoses(track_, t)); });
+      Add(points, t,
+          [this, t] { return PointUpdate(t, PlacesOf(FlownPoses(track_, t)), kFlownColor); });
+      if (i == 0) return;  // a line has two ends
       Add(line, t, [this, t] {
         return LineUpdate(t, "flown", PlacesOf(FlownPoses(track_, t)), kFlownColor, false);
       });
-      Add(points, t,
-          [this, t] { return PointUpdate(t, PlacesOf(FlownPoses(track_, t)), kFlownColor); });
     });
   }
 
@@ -445,6 +446,9 @@ class FlightExport {
 }  // namespace
 
 void CheckMcap(const std::string& option, const std::string& path) {
+  if (std::filesystem::path(path).filename() == ".mcap") {
+    throw BadInput(fmt::format("{} {}: a name must stand before .mcap.", option, path));
+  }
   if (std::filesystem::path(path).extension() != ".mcap") {
     throw BadInput(fmt::format("{} {}: the name must end in .mcap.", option, path));
   }

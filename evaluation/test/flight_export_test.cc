@@ -191,6 +191,8 @@ TEST_F(FlightExports, NeedAPlaceAndItsName) {
   EXPECT_THAT(Files(), ElementsAre("f.db"));
   EXPECT_EQ(SentenceOf([] { CheckMcap("--mcap", "f.bag"); }),
             "--mcap f.bag: the name must end in .mcap.");
+  EXPECT_EQ(SentenceOf([&] { CheckMcap("--mcap", folder_ + "/.mcap"); }),
+            "--mcap " + folder_ + "/.mcap: a name must stand before .mcap.");
   EXPECT_THAT(SentenceOf([&] { CheckMcap("--mcap", folder_ + "/no/f.mcap"); }),
               HasSubstr("no directory"));
 }

@@ -107,7 +107,10 @@ describe("a landing", () => {
       "/log": 1 + count("event") + count("plan WHERE reason <> 'none'"),
     };
     for (const [topic, number] of Object.entries(expected)) assert.equal(found.get(topic)?.length, number, topic);
-    for (const part of ["", "/scene", "/points"]) assert.equal(found.get(`${part}/flown`).length, found.get("/flown").length);
+    assert.equal(found.get("/points/flown").length, found.get("/flown").length);
+    // A line has two ends: the first one comes later.
+    assert.equal(found.get("/scene/flown").length, found.get("/flown").length - 1);
+    for (const { entities } of found.get("/scene/flown")) assert.ok(entities[0].lines[0].points.length > 1);
     assert.ok(!found.has("/camera/down/image") && !found.has("/points/goal"));
   });
 
