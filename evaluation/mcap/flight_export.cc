@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each topic holds, and when: docs/mcap.md. A message is made when its time has come, so that a long flight needs no more
-// memory than a short one.
+// What each topic holds, and when: docs/mcap.md. A message is made when its time has come, so that memory holds the record, and
+// of the file no more than a part.
 #include "evaluation/mcap/flight_export.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 namespace touchdown::evaluation {
 
 /// Makes sure before the work that WriteMcap will be able to write there: the name, which must end in .mcap, the place, the
-/// descriptions of the messages. @throws BadInput
+/// descriptions of the messages. @throws BadInput; std::runtime_error naming a description that the installation lacks
 void CheckMcap(const std::string& option, const std::string& path);
 
 using ExportProgress = std::function<void(int done, int all)>;
@@ -18,6 +18,7 @@ using ExportProgress = std::function<void(int done, int all)>;
 /// appears whole or not at all. `progress`, where it is not empty, is told how many of the messages are written; what it
 /// throws ends the work.
 /// @throws BadInput as ReadRecord, and where images are to be rendered that cannot be; std::runtime_error
+/// naming a file that cannot be written
 void WriteMcap(const std::string& record_path, const std::string& mcap_path,
                const Registries& registries, const ExportProgress& progress);
 
