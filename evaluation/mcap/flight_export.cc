@@ -304,11 +304,14 @@ class FlightExport {
     for (std::size_t i = 0; i < flight_.plans.size(); ++i) {
       const RecordPlan& plan = flight_.plans[i];
       const double t = plan.request.input.t_now;
-      Add(poses, t, [&plan, t] { return PosesInFrame(t, kWorldFrame, PlanPoses(plan)); });
-      Add(line, t, [&plan, t] {
-        return LineUpdate(t, "plan", PlacesOf(PlanPoses(plan)), kPlanColor, false);
+      // The first one makes the curve, for all three.
+      Add(poses, t, [this, &plan, t] {
+        plan_poses_ = PlanPoses(plan);
+        return PosesInFrame(t, kWorldFrame, plan_poses_);
       });
-      Add(points, t, [&plan, t] { return PointUpdate(t, PlacesOf(PlanPoses(plan)), kPlanColor); });
+      Add(line, t,
+          [this, t] { return LineUpdate(t, "plan", PlacesOf(plan_poses_), kPlanColor, false); });
+      Add(points, t, [this, t] { return PointUpdate(t, PlacesOf(plan_poses_), kPlanColor); });
       Add(figures, t, [&plan, i] { return StepMessage(static_cast<int>(i), plan); });
     }
   }
@@ -321,13 +324,14 @@ class FlightExport {
         Topic("/points/flown", "foxglove.PointCloud", "The same as points");
     EachSample(kTrailPeriod, [&](int i) {
       const double t = figures_.TimeOf(i);
-      Add(poses, t, [this, t] { return PosesInFrame(t, kWorldFrame, FlownPoses(track_, t)); });
-      Add(points, t,
-          [this, t] { return PointUpdate(t, PlacesOf(FlownPoses(track_, t)), kFlownColor); });
-      if (i == 0) return;  // a line has two ends
-      Add(line, t, [this, t] {
-        return LineUpdate(t, "flown", PlacesOf(FlownPoses(track_, t)), kFlownColor, false);
+      Add(poses, t, [this, t] {
+        flown_poses_ = FlownPoses(track_, t);
+        return PosesInFrame(t, kWorldFrame, flown_poses_);
       });
+      Add(points, t, [this, t] { return PointUpdate(t, PlacesOf(flown_poses_), kFlownColor); });
+      if (i == 0) return;  // a line has two ends
+      Add(line, t,
+          [this, t] { return LineUpdate(t, "flown", PlacesOf(flown_poses_), kFlownColor, false); });
     });
   }
 
@@ -441,6 +445,7 @@ class FlightExport {
   std::unique_ptr<FlightCameras> cameras_;
   McapWriter* writer_ = nullptr;
   std::vector<Message> due_;
+  Poses plan_poses_, flown_poses_;  // of the last messages
 };
 
 }  // namespace
