@@ -47,18 +47,30 @@ constexpr double kMapPeriod = 0.5;       // between messages of the map at least
 constexpr double kMostMapBytes = 0.5e6;  // a second, of whole maps: large ones come less often
 constexpr double kTrailPeriod = 0.5, kBeliefPeriod = 0.1;  // [s]
 
+constexpr char kSchemaFrameTransforms[] = "foxglove.FrameTransforms";
+constexpr char kSchemaSceneUpdate[] = "foxglove.SceneUpdate";
+constexpr char kSchemaPointCloud[] = "foxglove.PointCloud";
+constexpr char kSchemaPoseInFrame[] = "foxglove.PoseInFrame";
+constexpr char kSchemaPosesInFrame[] = "foxglove.PosesInFrame";
+constexpr char kSchemaCompressedImage[] = "foxglove.CompressedImage";
+constexpr char kSchemaRawImage[] = "foxglove.RawImage";
+constexpr char kSchemaCameraCalibration[] = "foxglove.CameraCalibration";
+constexpr char kSchemaLog[] = "foxglove.Log";
+constexpr char kSchemaState[] = "touchdown.State";
+constexpr char kSchemaStep[] = "touchdown.Step";
+
 // Every schema that a file can have.
-constexpr const char* kSchemas[] = {"foxglove.FrameTransforms",
-                                    "foxglove.SceneUpdate",
-                                    "foxglove.PointCloud",
-                                    "foxglove.PoseInFrame",
-                                    "foxglove.PosesInFrame",
-                                    "foxglove.CompressedImage",
-                                    "foxglove.RawImage",
-                                    "foxglove.CameraCalibration",
-                                    "foxglove.Log",
-                                    "touchdown.State",
-                                    "touchdown.Step"};
+constexpr const char* kSchemas[] = {kSchemaFrameTransforms,
+                                    kSchemaSceneUpdate,
+                                    kSchemaPointCloud,
+                                    kSchemaPoseInFrame,
+                                    kSchemaPosesInFrame,
+                                    kSchemaCompressedImage,
+                                    kSchemaRawImage,
+                                    kSchemaCameraCalibration,
+                                    kSchemaLog,
+                                    kSchemaState,
+                                    kSchemaStep};
 
 std::string DescriptorsOf(const std::string& schema) {
   const std::string path = DataPath(fmt::format("mcap/{}.binpb", schema));
@@ -177,14 +189,14 @@ class FlightExport {
 
   void AddFrames() {
     const std::uint16_t still =
-        Topic("/tf_static", "foxglove.FrameTransforms", "Where the cameras are on the vehicle");
+        Topic("/tf_static", kSchemaFrameTransforms, "Where the cameras are on the vehicle");
     Add(still, 0.0, [this] {
       return FrameTransforms(0.0,
                              {{kVehicleFrame, kDownFrame, DownCameraPose(flight_.scenario)},
                               {kVehicleFrame, kDepthFrame, DepthCameraPose(flight_.scenario)}});
     });
     const std::uint16_t moving =
-        Topic("/tf", "foxglove.FrameTransforms",
+        Topic("/tf", kSchemaFrameTransforms,
               "Vehicle and pad as they truly are, the pad as it is believed to be");
     EachSample(0.0, [&](int i) {
       Add(moving, figures_.TimeOf(i),
@@ -224,14 +236,13 @@ class FlightExport {
     std::vector<NamedSolids> all = {GroundSolids(obstacles, places), vehicle, target};
     all.insert(all.end(), obstacles.begin(), obstacles.end());
     for (NamedSolids& zone : ZoneSolids(tables_.at("zones"))) all.push_back(std::move(zone));
-    Add(Topic("/scene", "foxglove.SceneUpdate",
-              "The world as it truly is, the vehicle and the pad"),
+    Add(Topic("/scene", kSchemaSceneUpdate, "The world as it truly is, the vehicle and the pad"),
         0.0, [all] { return SceneUpdate(EntitiesOf(all)); });
 
     const auto cloud = [&](const std::string& topic, const std::vector<NamedSolids>& things,
                            double spacing, const std::string& about) {
       if (things.empty()) return;
-      Add(Topic(topic, "foxglove.PointCloud", about), 0.0, [things, spacing] {
+      Add(Topic(topic, kSchemaPointCloud, about), 0.0, [things, spacing] {
         return PointCloud(0.0, things.front().frame, PointsOf(things, spacing, kMostPoints));
       });
     };
@@ -239,7 +250,7 @@ class FlightExport {
     // Foxglove leaves a cloud where its frame was at the message's time: these are told again as they move.
     const auto moving_cloud = [&](const std::string& topic, const NamedSolids& thing,
                                   double spacing, const std::string& about) {
-      const std::uint16_t channel = Topic(topic, "foxglove.PointCloud", about);
+      const std::uint16_t channel = Topic(topic, kSchemaPointCloud, about);
       const auto points =
           std::make_shared<const CloudPoints>(PointsOf({thing}, spacing, kMostMovingPoints));
       EachSample(kMovingPeriod, [&](int i) {
@@ -253,10 +264,10 @@ class FlightExport {
   }
 
   void AddMap() {
-    const std::uint16_t occupied = Topic("/map/occupied", "foxglove.PointCloud",
+    const std::uint16_t occupied = Topic("/map/occupied", kSchemaPointCloud,
                                          "Middles of all cells that the vehicle holds occupied");
     const std::uint16_t changes =
-        Topic("/map/changes", "foxglove.PointCloud",
+        Topic("/map/changes", kSchemaPointCloud,
               "Middles of the cells that became occupied since the last message");
     OccupiedCells ahead(flight_.map_size);
     double next = 0.0, next_whole = 0.0;
@@ -296,11 +307,11 @@ class FlightExport {
 
   void AddPlans() {
     const std::uint16_t poses =
-        Topic("/plan", "foxglove.PosesInFrame", "The committed curve from now to its end");
-    const std::uint16_t line = Topic("/scene/plan", "foxglove.SceneUpdate", "The same as a line");
-    const std::uint16_t points = Topic("/points/plan", "foxglove.PointCloud", "The same as points");
+        Topic("/plan", kSchemaPosesInFrame, "The committed curve from now to its end");
+    const std::uint16_t line = Topic("/scene/plan", kSchemaSceneUpdate, "The same as a line");
+    const std::uint16_t points = Topic("/points/plan", kSchemaPointCloud, "The same as points");
     const std::uint16_t figures =
-        Topic("/step", "touchdown.Step", "How each replanning step went, and what it took");
+        Topic("/step", kSchemaStep, "How each replanning step went, and what it took");
     for (std::size_t i = 0; i < flight_.plans.size(); ++i) {
       const RecordPlan& plan = flight_.plans[i];
       const double t = plan.request.input.t_now;
@@ -318,10 +329,9 @@ class FlightExport {
 
   void AddFlown() {
     const std::uint16_t poses =
-        Topic("/flown", "foxglove.PosesInFrame", "Where the vehicle truly was in the last minute");
-    const std::uint16_t line = Topic("/scene/flown", "foxglove.SceneUpdate", "The same as a line");
-    const std::uint16_t points =
-        Topic("/points/flown", "foxglove.PointCloud", "The same as points");
+        Topic("/flown", kSchemaPosesInFrame, "Where the vehicle truly was in the last minute");
+    const std::uint16_t line = Topic("/scene/flown", kSchemaSceneUpdate, "The same as a line");
+    const std::uint16_t points = Topic("/points/flown", kSchemaPointCloud, "The same as points");
     EachSample(kTrailPeriod, [&](int i) {
       const double t = figures_.TimeOf(i);
       Add(poses, t, [this, t] {
@@ -338,11 +348,11 @@ class FlightExport {
   void AddPadBelief() {
     if (!has_pad()) return;
     const std::uint16_t pose =
-        Topic("/pad/belief", "foxglove.PoseInFrame", "The pad as it is believed to be");
-    const std::uint16_t line = Topic("/scene/pad_belief", "foxglove.SceneUpdate",
-                                     "Three standard deviations of its place");
+        Topic("/pad/belief", kSchemaPoseInFrame, "The pad as it is believed to be");
+    const std::uint16_t line =
+        Topic("/scene/pad_belief", kSchemaSceneUpdate, "Three standard deviations of its place");
     const std::uint16_t points =
-        Topic("/points/pad_belief", "foxglove.PointCloud", "The same as points");
+        Topic("/points/pad_belief", kSchemaPointCloud, "The same as points");
     EachSample(0.0, [&](int i) {
       const TrackBelief* const belief = figures_.PadBelief(i);
       if (belief == nullptr) return;
@@ -373,7 +383,7 @@ class FlightExport {
       const std::uint16_t images =
           Topic("/camera/" + name + "/image", schema, "Rendered again from the true states");
       const std::uint16_t calibrations =
-          Topic("/camera/" + name + "/calibration", "foxglove.CameraCalibration",
+          Topic("/camera/" + name + "/calibration", kSchemaCameraCalibration,
                 "Of these images, which have no distortion");
       for (int i = 0; i / rate <= track_.t_end() + 1e-9; ++i) {
         const double t = i / rate;
@@ -382,16 +392,16 @@ class FlightExport {
       }
     };
     if (has_pad()) {
-      camera("down", "foxglove.CompressedImage", cameras_->down_rate(), &FlightCameras::DownImage,
+      camera("down", kSchemaCompressedImage, cameras_->down_rate(), &FlightCameras::DownImage,
              &FlightCameras::DownCalibration);
     }
-    camera("depth", "foxglove.RawImage", cameras_->depth_rate(), &FlightCameras::DepthImage,
+    camera("depth", kSchemaRawImage, cameras_->depth_rate(), &FlightCameras::DepthImage,
            &FlightCameras::DepthCalibration);
   }
 
   void AddStates() {
     const std::uint16_t states =
-        Topic("/state", "touchdown.State", "Mode, speeds, distances and errors");
+        Topic("/state", kSchemaState, "Mode, speeds, distances and errors");
     EachSample(0.0, [&](int i) {
       Add(states, figures_.TimeOf(i), [this, i] { return figures_.StateMessage(i); });
     });
@@ -399,7 +409,7 @@ class FlightExport {
 
   void AddLog() {
     const std::uint16_t log =
-        Topic("/log", "foxglove.Log", "Modes, events, steps without a new plan, the outcome");
+        Topic("/log", kSchemaLog, "Modes, events, steps without a new plan, the outcome");
     for (const TrackEvent& event : track_.events()) {
       Add(log, event.t,
           [this, &event] { return Log(event.t, LevelOf(event), event.kind, WordsOf(event)); });
