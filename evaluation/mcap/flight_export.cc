@@ -222,8 +222,8 @@ class FlightExport {
 
   void AddScene() {
     constexpr double kSpacing = 0.25, kFineSpacing = 0.03, kPadSpacing = 0.1;  // [m]
-    constexpr int kMostPoints = 40000, kMostMovingPoints = 500;  // by areas and spacings
-    constexpr double kMovingPeriod = 0.1;                        // [s]
+    constexpr std::size_t kMostPoints = 40000, kMostMovingPoints = 1000;
+    constexpr double kMovingPeriod = 0.1;  // [s]
     const Scenario& scenario = flight_.scenario;
     std::vector<Eigen::Vector3d> places;
     EachSample(kTrailPeriod, [&](int i) {

@@ -207,17 +207,22 @@ std::vector<SceneEntity> EntitiesOf(const std::vector<NamedSolids>& things) {
   return entities;
 }
 
-CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing, int most) {
+CloudPoints PointsOf(const std::vector<NamedSolids>& things, double spacing, std::size_t most) {
   double area = 0.0;
   for (const NamedSolids& thing : things) {
     for (const Solid& solid : thing.solids) area += AreaOf(SurfaceOf(solid));
   }
-  const double fitting = std::max(spacing, std::sqrt(area / most));
+  const double fitting = std::max(spacing, std::sqrt(area / static_cast<double>(most)));
   CloudPoints points;
   for (const NamedSolids& thing : things) {
     for (const Solid& solid : thing.solids) AddSurface(solid, fitting, &points);
   }
-  return points;
+  // Each triangle has a point, however small it is.
+  const std::size_t step = (points.size() + most - 1) / most;
+  if (step <= 1) return points;
+  CloudPoints fewer;
+  for (std::size_t i = 0; i < points.size(); i += step) fewer.push_back(points[i]);
+  return fewer;
 }
 
 }  // namespace touchdown::evaluation

@@ -164,11 +164,11 @@ TEST(McapWriter, WithoutAnythingIsAFileAllTheSame) {
 
 TEST(McapWriter, SaysThatAStreamFailed) {
   std::ostringstream out;
-  McapWriter writer(&out, "", 100);
+  McapWriter writer(&out, "", 1000);
   const auto channel = writer.AddTopic("/a", "some.Type", "descriptors");
   out.setstate(std::ios::badbit);
   EXPECT_NO_THROW(writer.Write(channel, 1, "short"));  // the chunk is still open
-  EXPECT_THROW(writer.Write(channel, 2, std::string(100, 'x')), std::runtime_error);
+  EXPECT_THROW(writer.Write(channel, 2, std::string(1000, 'x')), std::runtime_error);
   EXPECT_THROW(writer.AddMetadata("facts", {}), std::runtime_error);
   EXPECT_THROW(writer.Finish(), std::runtime_error);
   EXPECT_THROW(McapWriter(&out, ""), std::runtime_error);
