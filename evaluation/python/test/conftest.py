@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Fixtures: the built program (environment TOUCHDOWN_PROGRAM) and a record that it wrote."""
 import os
+import signal
 import subprocess
 import sys
+import time
 import types
 
 import pytest
@@ -67,3 +69,23 @@ def bars(monkeypatch):
     FakeBar.made = []
     monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=FakeBar))
     return FakeBar.made
+
+
+@pytest.fixture
+def interrupted(program, tmp_path):
+    """Runs the program in `tmp_path` until a file of this pattern is there, and interrupts it: it says so, and leaves nothing."""
+
+    def call(*arguments, begun):
+        command = [program, *arguments]
+        with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            for _ in range(6000):
+                if list(tmp_path.glob(begun)):
+                    break
+                time.sleep(0.01)
+            process.send_signal(signal.SIGTERM)
+            said = process.stderr.read()
+        assert process.returncode == 128 + signal.SIGTERM
+        assert said.splitlines()[-1] == "touchdown: interrupted"
+        assert not list(tmp_path.iterdir())
+
+    return call

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`touchdown export` as a user has it: what it says, and how it fails. What is in the file: evaluation/mcap/node."""
-import signal
 import subprocess
-import time
 
 import pytest
 
@@ -25,18 +23,8 @@ def test_it_says_where_the_file_is_and_how_far_it_was(run, record, tmp_path):
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_signal_leaves_nothing_of_it(program, record, tmp_path):
-    command = [program, "export", record, "--mcap", "f.mcap"]
-    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-        for _ in range(1200):  # until it has begun
-            if list(tmp_path.glob("f.mcap.partial-*")):
-                break
-            time.sleep(0.01)
-        process.send_signal(signal.SIGTERM)
-        said = process.stderr.read()
-    assert process.returncode == 128 + signal.SIGTERM
-    assert said.splitlines()[-1] == "touchdown: interrupted"
-    assert not list(tmp_path.iterdir())
+def test_a_signal_leaves_nothing_of_it(interrupted, record):
+    interrupted("export", record, "--mcap", "f.mcap", begun="f.mcap.partial-*")
 
 
 @pytest.mark.parametrize(

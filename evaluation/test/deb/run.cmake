@@ -2,22 +2,8 @@
 # elsewhere.
 cmake_minimum_required(VERSION 3.25)
 
-foreach(name BUILD_DIR WORK_DIR VERSION PYTHON)
-  if(NOT ${name})
-    message(FATAL_ERROR "run.cmake needs -D${name}=")
-  endif()
-endforeach()
-
-# run(<command...>): fails unless the command ends with status 0.
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE err
-                  WORKING_DIRECTORY "${WORK_DIR}")
-  if(NOT status EQUAL 0)
-    string(JOIN " " command ${ARGN})
-    message(FATAL_ERROR "${command}: status ${status}\n${out}\n${err}")
-  endif()
-  set(output "${out}" PARENT_SCOPE)
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/../package_steps.cmake")
+need(BUILD_DIR WORK_DIR VERSION PYTHON)
 
 # holds(<text> <regex>...): fails unless each is there.
 function(holds text)
@@ -27,12 +13,6 @@ function(holds text)
     endif()
   endforeach()
 endfunction()
-
-file(REMOVE_RECURSE "${WORK_DIR}")
-file(MAKE_DIRECTORY "${WORK_DIR}")
-foreach(name PYTHONPATH TOUCHDOWN_PROGRAM PYTHONHOME)
-  unset(ENV{${name}})
-endforeach()
 
 cmake_path(GET CMAKE_COMMAND PARENT_PATH programs)
 run("${programs}/cpack" -G DEB --config "${BUILD_DIR}/CPackConfig.cmake" -B "${WORK_DIR}")

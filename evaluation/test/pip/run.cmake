@@ -2,28 +2,9 @@
 # flies with each: without the network, and from elsewhere.
 cmake_minimum_required(VERSION 3.25)
 
-foreach(name SOURCE_DIR BUILD_DIR WORK_DIR PYTHON)
-  if(NOT ${name})
-    message(FATAL_ERROR "run.cmake needs -D${name}=")
-  endif()
-endforeach()
+include("${CMAKE_CURRENT_LIST_DIR}/../package_steps.cmake")
+need(SOURCE_DIR BUILD_DIR WORK_DIR PYTHON)
 
-# run(<command...>): fails unless the command ends with status 0.
-function(run)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE err
-                  WORKING_DIRECTORY "${WORK_DIR}")
-  if(NOT status EQUAL 0)
-    string(JOIN " " command ${ARGN})
-    message(FATAL_ERROR "${command}: status ${status}\n${out}\n${err}")
-  endif()
-  set(output "${out}" PARENT_SCOPE)
-endfunction()
-
-file(REMOVE_RECURSE "${WORK_DIR}")
-file(MAKE_DIRECTORY "${WORK_DIR}")
-foreach(name PYTHONPATH TOUCHDOWN_PROGRAM PYTHONHOME)
-  unset(ENV{${name}})
-endforeach()
 set(check "${CMAKE_CURRENT_LIST_DIR}/check.py")
 
 run("${PYTHON}" -m venv --system-site-packages venv)
