@@ -19,6 +19,7 @@ function(run)
   set(output "${out}" PARENT_SCOPE)
 endfunction()
 
+need(WORK_DIR)
 file(REMOVE_RECURSE "${WORK_DIR}")
 file(MAKE_DIRECTORY "${WORK_DIR}")
 foreach(name PYTHONPATH TOUCHDOWN_PROGRAM PYTHONHOME)
