@@ -44,11 +44,13 @@ sim::DepthCameraConfig DepthCameraOf(const Scenario& scenario) {
 
 DepthSensor::DepthSensor(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.depth_rate),
-      delivery_({scenario.depth.latency_ms, scenario.depth.drop}, seed, "depth camera delivery") {}
+      delivery_({scenario.depth.latency_ms, scenario.depth.drop, scenario.depth.outage[0],
+                 scenario.depth.outage[1]},
+                seed, "depth camera delivery") {}
 
 void DepthSensor::Look(const estimation::VehicleState& vehicle, const estimation::PadState& pad,
                        SensingTimes* times) {
-  if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
+  if (!clock_.Due(vehicle.t) || !delivery_.Admit(vehicle.t)) return;
   TimedDepthImage timed = std::move(spare_);
   timed.sense = planning::StageTimes::Span{"sense"};
   {

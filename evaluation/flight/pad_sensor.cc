@@ -83,12 +83,14 @@ sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig&
 
 PadSensor::PadSensor(const Scenario& scenario, std::uint64_t seed)
     : clock_(scenario.tag_rate),
-      delivery_({scenario.camera.latency_ms, scenario.camera.drop}, seed, "pad camera delivery") {}
+      delivery_({scenario.camera.latency_ms, scenario.camera.drop, scenario.camera.outage[0],
+                 scenario.camera.outage[1]},
+                seed, "pad camera delivery") {}
 
 void PadSensor::Look(const estimation::VehicleState& vehicle,
                      const estimation::VehicleState& believed, const estimation::PadState& pad,
                      SensingTimes* times) {
-  if (!clock_.Due(vehicle.t) || !delivery_.Admit()) return;
+  if (!clock_.Due(vehicle.t) || !delivery_.Admit(vehicle.t)) return;
   if (auto seen = See(vehicle, believed, pad, times)) {
     delivery_.Hold(vehicle.t, std::move(*seen));
   }

@@ -132,7 +132,7 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   if (r.safety) {
     const SafetyFigures& safety = *r.safety;
     text += fmt::format(
-        "  safety                 steps without a proven pair {}, stops flown {}, map errors {}, "
+        "  safety                 uncertified steps {}, stops flown {}, map errors {}, "
         "errors beyond a margin {}\n",
         safety.uncertified_steps, safety.stops_flown, safety.map_errors,
         safety.tracking_events + safety.drift_events);

@@ -215,6 +215,8 @@ void CheckSensors(const ScenarioSource& source) {
   const Scenario& s = source.scenario;
   CheckOutage(source, "gps.outage", s.gps.outage);
   CheckOutage(source, "own.gps.outage", s.own.gps.outage);
+  CheckOutage(source, "camera.outage", s.camera.outage);
+  CheckOutage(source, "depth.outage", s.depth.outage);
   if (s.own_state == OwnStateKind::kEstimated && s.own.gps.rate <= 0.0 &&
       s.own.odometry.rate <= 0.0) {
     throw BadInput(fmt::format(

@@ -25,6 +25,10 @@ void AddCameraKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("camera.drop", In(0, 1, ""),
                                   "probability of each image of the downward camera to be lost",
                                   TOUCHDOWN_AT(camera.drop)));
+  keys.push_back(Vector<2, Scenario>("camera.outage", In(0, 600, "s"),
+                                     "the downward camera takes no image from the first time to "
+                                     "the second; none is missing if they are equal",
+                                     TOUCHDOWN_AT(camera.outage)));
   keys.push_back(Number<Scenario>("camera.occlusion", In(0, 0.9, ""),
                                   "share of the pad's printed sheet under an opaque plate, from "
                                   "its front edge on",
@@ -53,6 +57,10 @@ void AddDepthKeys(KeyList& keys) {
   keys.push_back(Number<Scenario>("depth.drop", In(0, 1, ""),
                                   "probability of each depth image to be lost",
                                   TOUCHDOWN_AT(depth.drop)));
+  keys.push_back(Vector<2, Scenario>("depth.outage", In(0, 600, "s"),
+                                     "the depth camera takes no image from the first time to the "
+                                     "second; none is missing if they are equal",
+                                     TOUCHDOWN_AT(depth.outage)));
 }
 
 void AddSensorKeys(KeyList& keys) {

@@ -344,7 +344,7 @@ TEST(HostileReport, WhatStoodIsListed) {
        {HostileText(options, {row}), HostilePage(options, {row}, {}, StandardRegistries())}) {
     EXPECT_THAT(report, HasSubstr("Stood, or out of time"));
     EXPECT_THAT(report, HasSubstr("--show 3"));
-    EXPECT_THAT(report, HasSubstr("steps without a proven pair"));
+    EXPECT_THAT(report, HasSubstr("uncertified steps"));
   }
   EXPECT_TRUE(ViolatesGuarantee({row}));
   row.result.outcome = Outcome::kDisarmedInAir;

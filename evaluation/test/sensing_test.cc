@@ -4,6 +4,7 @@
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -217,15 +218,19 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
   };
   std::vector<std::string> seen = {fly({})};
   // No key without its fault changes anything.
-  EXPECT_EQ(fly({"gps.outlier_size=50", "gps.outage=[3, 3]", "camera.noise=5"}), seen[0]);
+  EXPECT_EQ(fly({"gps.outlier_size=50", "gps.outage=[3, 3]", "camera.noise=5",
+                 "camera.outage=[3, 3]", "depth.outage=[3, 3]"}),
+            seen[0]);
   for (const Overrides& fault : std::vector<Overrides>{{"gps.outage=[2, 4]"},
                                                        {"gps.outliers=0.1"},
                                                        {"camera.drop=0.3"},
+                                                       {"camera.outage=[1, 2]"},
                                                        {"camera.occlusion=0.4"},
                                                        {"camera.occlusion=0.5"},
                                                        {"camera.latency_ms=60"},
                                                        {"depth.noise=0.01"},
                                                        {"depth.drop=0.3"},
+                                                       {"depth.outage=[1, 2]"},
                                                        {"depth.latency_ms=60"}}) {
     seen.push_back(fly(fault));
     // The empty field has nothing for the depth camera to err about but the pad vehicle itself.
@@ -233,6 +238,37 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
       EXPECT_NE(seen.back(), seen[0]) << fault[0];
     }
   }
+}
+
+// What docs/safety.md says of a depth camera that dies: the vehicle rests in space that it has proven.
+TEST(SensingFlight, WithoutADepthCameraTheVehicleComesToRestAndTouchesNothing) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Scenario scenario = LoadScenario(
+        FindScenario("forest"), {"depth.outage=[2, 600]", "timeout=20"}, StandardRegistries());
+    TrialRecord record;
+    const TrialResult result = RunTrial(scenario, seed, StandardRegistries(), &record);
+    EXPECT_EQ(result.outcome, Outcome::kTimeout) << "seed " << seed << ": " << result.detail;
+    ASSERT_TRUE(result.safety);
+    EXPECT_EQ(result.safety->uncertified_steps, 0) << "seed " << seed;
+    EXPECT_GT(*result.min_clearance_m, 0.0) << "seed " << seed;
+    EXPECT_LT(record.samples.back().vehicle.v_WB.norm(), 0.05) << "seed " << seed;
+    // The same with its camera lands.
+    EXPECT_TRUE(RunTrial(LoadScenario(FindScenario("forest"), {}, StandardRegistries()), seed,
+                         StandardRegistries())
+                    .landed());
+  }
+}
+
+// A downward camera that dies 1 s before contact: the rest of the way is bridged. Earlier: no landing.
+TEST(SensingFlight, WithoutADownwardCameraOnlyAShortRestIsBridged) {
+  const double contact = *RunTrial(Open({}), 1, StandardRegistries()).time_to_land_s;
+  const auto dies = [&](double before) {
+    return RunTrial(Open({fmt::format("camera.outage=[{}, 600]", contact - before), "timeout=25"}),
+                    1, StandardRegistries());
+  };
+  EXPECT_TRUE(dies(1.0).landed());
+  const TrialResult early = dies(4.0);
+  EXPECT_EQ(early.outcome, Outcome::kTimeout) << early.detail;
 }
 
 // No tag is ever seen, however good the GPS: the gate stays closed, the vehicle waits above it, in the

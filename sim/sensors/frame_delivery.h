@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How frames get from a sensor to who uses them: some not at all, the others late.
+// How frames get from a sensor to their user: some are lost, the others come late.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,12 @@ namespace touchdown::sim {
 struct FrameDeliveryConfig {
   double latency_ms = 0.0;        ///< from the time stamp to the delivery [ms], in [0, 10000]
   double drop_probability = 0.0;  ///< of each frame, in [0, 1]
+  double outage_begin_s = 0.0;    ///< from here on no frame is taken ... [s]
+  double outage_end_s = 0.0;      ///< ... until here; no outage if not after its begin [s]
 };
 
-/// Holds frames, or what was made of them, back until they would arrive. Ask Admit first: of a frame
-/// that is dropped no image has to be made. The same seed gives the same frames.
+/// Holds frames, or what was made of them, until they would arrive. Ask Admit first: a lost frame
+/// needs no image. The same seed gives the same frames.
 template <typename Frame>
 class FrameDelivery {
  public:
@@ -31,8 +33,12 @@ class FrameDelivery {
     estimation::CheckWithin("delivery.drop_probability", config.drop_probability, 0.0, 1.0);
   }
 
-  /// Whether the next frame will arrive at all. Takes one draw.
-  bool Admit() { return random_.Uniform(0.0, 1.0) >= config_.drop_probability; }
+  /// Whether the frame taken at t [s] will arrive at all. Takes one draw, so an outage does not
+  /// change the frames after it.
+  bool Admit(double t) {
+    const bool kept = random_.Uniform(0.0, 1.0) >= config_.drop_probability;
+    return kept && !(t >= config_.outage_begin_s && t < config_.outage_end_s);
+  }
 
   /// Takes an admitted frame; stamps [s] do not go back.
   void Hold(double stamp, Frame frame) { held_.emplace_back(stamp, std::move(frame)); }

@@ -144,15 +144,29 @@ TEST(FrameDelivery, DropsItsShareAndTheSameOnesAgain) {
   FrameDelivery<int> all({.drop_probability = 1.0}, 4, "camera frames");
   int admitted = 0;
   for (int i = 0; i < 10000; ++i) {
-    const bool admits = one.Admit();
-    EXPECT_EQ(admits, twin.Admit());
-    EXPECT_TRUE(none.Admit());
-    EXPECT_FALSE(all.Admit());
+    const bool admits = one.Admit(0.0);
+    EXPECT_EQ(admits, twin.Admit(0.0));
+    EXPECT_TRUE(none.Admit(0.0));
+    EXPECT_FALSE(all.Admit(0.0));
     admitted += admits ? 1 : 0;
   }
   EXPECT_NEAR(admitted, 7000, 200);
   EXPECT_THROW(FrameDelivery<int>({.latency_ms = -1.0}, 1, "x"), std::invalid_argument);
   EXPECT_THROW(FrameDelivery<int>({.drop_probability = 1.5}, 1, "x"), std::invalid_argument);
+}
+
+TEST(FrameDelivery, AnOutageTakesNothingElse) {
+  FrameDelivery<int> whole({.drop_probability = 0.3}, 4, "camera frames");
+  FrameDelivery<int> out({.drop_probability = 0.3, .outage_begin_s = 2.0, .outage_end_s = 5.0}, 4,
+                         "camera frames");
+  int admitted = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.1 * i;
+    const bool admits = whole.Admit(t);
+    EXPECT_EQ(out.Admit(t), admits && !(t >= 2.0 && t < 5.0)) << "at " << t;
+    admitted += admits ? 1 : 0;
+  }
+  EXPECT_GT(admitted, 50);
 }
 
 }  // namespace

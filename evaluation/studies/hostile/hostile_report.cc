@@ -140,7 +140,7 @@ SafetyLines SafetyFacts(const HostileTally& tally) {
   const SafetyFigures& s = tally.safety;
   const auto margin = [&](double share) { return Quantile(tally.margins_m, share).value_or(0.0); };
   return {
-      {"steps without a proven pair", fmt::format("{}", s.uncertified_steps)},
+      {"uncertified steps", fmt::format("{}", s.uncertified_steps)},
       {"flights that escaped",
        fmt::format("{}; from occupied cells {}, from unknown ones {}",
                    RateText(tally.escaping_flights, tally.flights), tally.escaping_hit_flights,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pad with its printed sheet where it truly is; where it is believed to be, how well, and where it is foretold.
+// The pad with its printed sheet where it truly is; where it is believed to be, how well, and where it is predicted.
 import { BoxGeometry, CanvasTexture, Group, Mesh, MeshLambertMaterial, PlaneGeometry, SRGBColorSpace } from "three";
 import { BLUE, ORANGE, PURPLE } from "./colours.js";
 import { DASH, Strokes, Way } from "./lines.js";
@@ -115,13 +115,13 @@ export class Pad {
     this.deck.add(this.exempt.object, this.exemptBelow.object, this.edges.object);
     this.spread = new Group();
     this.spread.add(this.ellipse.object);
-    this.foretold = new Group();
-    this.foretold.add(this.prediction.object, this.knots.object);
+    this.predicted = new Group();
+    this.predicted.add(this.prediction.object, this.knots.object);
     this.object = new Group();
-    this.object.add(this.true, this.believed, this.deck, this.spread, this.foretold);
+    this.object.add(this.true, this.believed, this.deck, this.spread, this.predicted);
     this.outline.set(square(flight.document.pad.half_size, LIFT));
     this.cross.set([-0.1, 0, LIFT, 0.1, 0, LIFT, 0, -0.1, LIFT, 0, 0.1, LIFT]);
-    this.show = { believed: true, deck: true, foretold: true };
+    this.show = { believed: true, deck: true, predicted: true };
     this.step = -1;
   }
 
@@ -135,7 +135,7 @@ export class Pad {
     const known = selected && !this.flight.goal && this.flight.placeAt(samples.pad_believed, t, this.believed.position);
     this.believed.visible = this.spread.visible = known && this.show.believed;
     this.deck.visible = known && this.show.deck;
-    this.foretold.visible = selected && !this.flight.goal && this.show.foretold;
+    this.predicted.visible = selected && !this.flight.goal && this.show.predicted;
     if (known) this.drawBelief(this.flight.padRow(samples.pad_believed, t));
     if (selected && step !== this.step) this.predict(step);
   }

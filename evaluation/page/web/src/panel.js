@@ -7,7 +7,7 @@ import { descentWords, gateWords } from "./timeline.js";
 
 const metres = (x) => (x == null || Number.isNaN(x) ? "–" : `${x.toFixed(2)} m`);
 
-const NOW = ["mode", "flown", "gate", "descent"], NOW_THEN = ["speed", "clearance", "off its reference"];
+const NOW = ["mode", "flown", "landing condition", "descent"], NOW_THEN = ["speed", "clearance", "tracking error"];
 
 /** Rows of names and values, kept and filled again. */
 class Table {
@@ -88,7 +88,7 @@ export class Panel {
 
   /** Whose words are shown. */
   choose(flight) {
-    const rows = flight.goal ? [...NOW.slice(0, 2), "own state", "beside the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "beside the pad", "feet above the deck", ...NOW_THEN, "pad believed", "wind here"];
+    const rows = flight.goal ? [...NOW.slice(0, 2), "own state", "horizontally to the goal", "above the goal", ...NOW_THEN, "wind here"] : [...NOW, "own state", "horizontally to the pad", "feet above the deck", ...NOW_THEN, "estimate of the pad", "wind here"];
     this.now = new Table(rows);
     this.place.replaceChildren(this.now.object);
     const { document: d } = flight;
@@ -139,7 +139,7 @@ export class Panel {
       gateWords(gate?.text ?? "no_pad") + (gate ? `, since ${gate.t.toFixed(2)} s` : ""),
       descentWords(descent),
       ...place,
-      b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - aim.x, pad_believed.py[b] - aim.y).toFixed(2)} m off, 1 σ ${(doubt / pad.sigmas).toFixed(2)} m${doubt > pad.sure ? "; its returns are in doubt" : ""}`,
+      b < 0 ? "not yet" : `${Math.hypot(pad_believed.px[b] - aim.x, pad_believed.py[b] - aim.y).toFixed(2)} m off, 1 σ ${(doubt / pad.sigmas).toFixed(2)} m${doubt > pad.sure ? "; too uncertain to take its cells for the pad" : ""}`,
       blows,
     ]);
   }
@@ -159,7 +159,7 @@ export class Panel {
     pieces.push(step.solves > 0 ? `${step.solves} solves, the last of ${step.iterations} iterations` : "nothing was solved");
     if (step.work > 0) pieces.push(`${step.work} of ${flight.document.max_work} units of work${step.reason === "budget_spent" ? ", too little left for the next" : ""}`);
     pieces.push(`${step.wall_ms.toFixed(2)} ms in flight${step.wall_ms > step.latency_ms ? `, later than its latency of ${step.latency_ms} ms` : ""}`);
-    if (step.same === false) pieces.push("asked again by this build it answers otherwise: stop, ways that lost, pairs, stages and words are of that answer");
+    if (step.same === false) pieces.push("this build gives another answer to this step: stop, rejected paths, half-spaces, stages and text are of that answer");
     this.summary.textContent = pieces.join("; ") + ".";
     const { kept, name } = flight.document;
     this.command.textContent = kept ? `touchdown plan --from ${quoted(name)}:${number}` : "fly it with --record F.db to ask it again";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plans as they were made: all up to now, thin; the one at hand with its stop, the ways that lost, guide paths and pairs.
+// Plans as they were made: all up to now, thin; the one at hand with its stop, rejected paths, guide paths and half-spaces.
 import { BufferAttribute, BufferGeometry, Group, LineBasicMaterial, LineSegments, Vector3 } from "three";
 import { BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION } from "./colours.js";
 import { DASH, DOT, Strokes, Way, pieces } from "./lines.js";
@@ -104,7 +104,7 @@ export function distanceToPiece(x, y, [ax, ay], [bx, by]) {
   return Math.hypot(x - ax - s * dx, y - ay - s * dy);
 }
 
-/** Reference, flown way, way of the pad until now, of samples: all of it is on the card, some is drawn. */
+/** Reference, flown path, path of the pad until now, of samples: all of it is on the card, some is drawn. */
 export class Flown {
   constructor(table, colour, width, options) {
     this.way = new Way(colour, width, options);

@@ -5,7 +5,7 @@ import { BLACK, GREEN, MODES, ORANGE, PURPLE, VERMILLION } from "./colours.js";
 const KINDS = {
   stop: { colour: VERMILLION, shape: "square", words: "a stored stop begins" },
   spent: { colour: PURPLE, shape: "square", words: "no new plan: its budget was spent" },
-  late: { colour: ORANGE, shape: "tick", words: "a step later than its latency" },
+  late: { colour: ORANGE, shape: "tick", words: "a step that took longer than its latency" },
   mode: { colour: BLACK, shape: "triangle", words: "mode" },
   descent: { colour: PURPLE, shape: "triangle", words: "descent" },
   own_state: { colour: PURPLE, shape: "diamond", words: "own state" },
@@ -17,7 +17,7 @@ const KINDS = {
 export function marksOf(flight) {
   // The gate opens and closes with every tag that is seen: the panel tells of it.
   const events = flight.document.events.filter(({ kind }) => kind !== "gate");
-  const marks = events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? (text === "none" ? "descent: nothing keeps it any more" : descentWords(text)) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
+  const marks = events.map(({ t, kind, text }) => ({ t, kind, text: kind === "descent" ? (text === "none" ? "descent: goes on" : descentWords(text)) : `${KINDS[kind]?.words ?? kind}: ${text}` }));
   flight.steps.forEach((step, i) => {
     if (step.stops && !flight.steps[i - 1]?.stops) marks.push({ t: Math.max(step.t_stop ?? step.t, step.t), kind: "stop", text: `step ${i}: ${KINDS.stop.words}`, step: i });
     if (step.reason === "budget_spent") marks.push({ t: step.t_start, kind: "spent", text: `step ${i}: ${KINDS.spent.words}`, step: i });
@@ -29,21 +29,21 @@ export function marksOf(flight) {
 export function descentWords(text) {
   return {
     none: "–",
-    gate: "descent waits: the gate is closed",
-    above: "waits above the pad until the gate opens",
-    corridor: "descent waits: too far beside the pad for this height",
+    gate: "descent waits: the landing condition fails",
+    above: "waits above the pad for the landing condition",
+    corridor: "descent waits: too far from the pad for this height",
     lag: "descent waits: the vehicle is higher than commanded",
   }[text] ?? `descent: ${text}`;
 }
 
 export function gateWords(text) {
   return {
-    open: "open",
-    own_state: "closed: the own state is not sure",
-    no_pad: "closed: the pad was not found yet",
-    tags_unseen: "closed: no tag is seen, and contact is too far off in time without one",
-    pad_uncertain: "closed: the pad is not known well enough",
-    gust: "closed: it leans too far in the wind",
+    open: "holds",
+    own_state: "fails: the own state is too uncertain",
+    no_pad: "fails: the pad was not found yet",
+    tags_unseen: "fails: no tag is seen, and contact is too late to go without one",
+    pad_uncertain: "fails: the pad is not known well enough",
+    gust: "fails: the wind tilts the vehicle too far",
   }[text] ?? text;
 }
 

@@ -79,7 +79,7 @@ export class Vehicle {
     for (const camera of cameras) this.frusta.add(frustumOf(camera));
     this.body.add(this.frusta);
     this.wind = new Arrow(GREEN);
-    // Where it takes itself to be, tied to where it is.
+    // Its estimated position, tied to the true one.
     this.belief = new Strokes(BLACK, 2);
     this.tie = new Way(BLACK, 1);
     this.object = new Group();

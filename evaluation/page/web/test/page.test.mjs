@@ -252,7 +252,7 @@ describe("a page of one flight", () => {
     const later = await page.$$eval(".now", (lines) => lines.map((line) => line.style.transform));
     places.forEach((place, i) => assert.notEqual(place, later[i]));
     const [beside, above] = await page.$$eval(".plot:first-child .u-value", (values) => values.slice(-2).map((value) => Number(value.textContent)));
-    const now = await page.$eval("#now", (element) => element.textContent.match(/beside the pad([\d.]+) mfeet above the deck(-?[\d.]+) m/).slice(1).map(Number));
+    const now = await page.$eval("#now", (element) => element.textContent.match(/horizontally to the pad([\d.]+) mfeet above the deck(-?[\d.]+) m/).slice(1).map(Number));
     assert.ok(Math.abs(beside - now[0]) < 0.05 && Math.abs(above - now[1]) < 0.05, `${[beside, above]} is not ${now}`);
   });
 });
@@ -317,7 +317,7 @@ test("two flights fly on one clock, each with its own words", async () => {
   assert.notEqual((await look(page)).sum, before.sum);
   await page.keyboard.press("x");
   assert.equal((await look(page)).sum, before.sum);
-  assert.ok(await page.evaluate(() => replay.shown.pad.foretold.visible && replay.shown.pad.believed.visible));
+  assert.ok(await page.evaluate(() => replay.shown.pad.predicted.visible && replay.shown.pad.believed.visible));
   await page.close();
 });
 
@@ -326,7 +326,7 @@ test("a flight to a goal is told without a pad, an estimated own state with its 
   const page = await ready("goal.html");
   await slide(page, 2);
   assert.deepEqual(page.said, []);
-  assert.match(await page.$eval("#now", (element) => element.textContent), /beside the goal/);
+  assert.match(await page.$eval("#now", (element) => element.textContent), /horizontally to the goal/);
   assert.doesNotMatch(await page.$eval("#now", (element) => element.textContent), /the pad|NaN|undefined/);
   assert.deepEqual(await page.evaluate(() => [replay.shown.goal.visible, replay.shown.pad.true.visible, replay.shown.vehicle.belief.object.visible]), [true, false, true]);
   const reached = await page.evaluate(() => { replay.seek(replay.end); replay.draw(); return replay.shown.goal.position.distanceTo(replay.shown.vehicle.body.position); });
@@ -338,11 +338,11 @@ test("a flight to a goal beside a landing has its own words", async () => {
   run("replay", file("goal.db"), "--beside", file("ours.db"), "--html", file("mixed.html"));
   const page = await ready("mixed.html");
   const now = async () => { await page.evaluate(() => replay.draw()); return page.$eval("#now", (element) => element.textContent); };
-  assert.match(await now(), /beside the goal/);
+  assert.match(await now(), /horizontally to the goal/);
   await page.evaluate(() => replay.select(1));
-  assert.match(await now(), /feet above the deck.*pad believed/);
+  assert.match(await now(), /feet above the deck.*estimate of the pad/);
   await page.evaluate(() => replay.select(0));
-  assert.match(await now(), /beside the goal/);
+  assert.match(await now(), /horizontally to the goal/);
   assert.deepEqual(page.said, []);
   await page.close();
 });

@@ -389,7 +389,7 @@ test("no motion of the pad is refused for the speed and the turn rate that slide
   }
 });
 
-test("attempts show their rounds, pairs can be seen", async () => {
+test("attempts show their rounds, half-spaces can be seen", async () => {
   await choose("both sides tried");
   const rounds = () => page.evaluate(() => touchdown.picture.answer.rounds.object.visible);
   assert.ok(await rounds());
@@ -398,7 +398,7 @@ test("attempts show their rounds, pairs can be seen", async () => {
   await page.click("#attempts tbody tr");
   await drawn();
   assert.equal(await rounds(), false);
-  const box = await page.evaluateHandle(() => [...document.querySelectorAll("#legend label")].find((label) => label.textContent === "pairs").firstChild);
+  const box = await page.evaluateHandle(() => [...document.querySelectorAll("#legend label")].find((label) => label.textContent === "half-spaces").firstChild);
   const pairs = () => page.evaluate(() => { touchdown.draw(); return touchdown.picture.answer.pairs.object.visible && touchdown.picture.answer.pairs.discs.count; });
   assert.equal(await pairs(), false);
   await box.click();
@@ -429,7 +429,7 @@ describe("a flight", () => {
     assert.equal(await page.evaluate(() => touchdown.flight.state.outcome?.name), "landed");
     assert.ok(await page.$eval("#banner", (banner) => banner.checkVisibility()));
     assert.match(await text("#banner"), /^Landed\.It landed \d+ mm from the middle of the pad\./);
-    assert.match(await text("#events"), /landing: contact is near and the gate is open.*feet touch the deck/);
+    assert.match(await text("#events"), /landing: contact is near and the landing condition holds.*feet touch the deck/);
     assert.ok(await page.evaluate(() => touchdown.flight.state.least_clearance) > 0);
     await page.click("#back");
     await drawn();

@@ -136,14 +136,15 @@ struct Scenario {
   double depth_rate = 10.0;  ///< [Hz]
   /// Downward camera.
   struct Camera {
-    int width = 320;           ///< [pixel]
-    int height = 240;          ///< [pixel]
-    double fov_deg = 90.0;     ///< vertical [deg]
-    double noise = 2.0;        ///< of a pixel [grey level]
-    double exposure_ms = 0.0;  ///< [ms]
-    double latency_ms = 0.0;   ///< [ms]
-    double drop = 0.0;         ///< probability of each image
-    double occlusion = 0.0;    ///< share of the pad's printed sheet that is covered
+    int width = 320;                                   ///< [pixel]
+    int height = 240;                                  ///< [pixel]
+    double fov_deg = 90.0;                             ///< vertical [deg]
+    double noise = 2.0;                                ///< of a pixel [grey level]
+    double exposure_ms = 0.0;                          ///< [ms]
+    double latency_ms = 0.0;                           ///< [ms]
+    double drop = 0.0;                                 ///< probability of each image
+    Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no image from first to second [s]
+    double occlusion = 0.0;  ///< share of the pad's printed sheet that is covered
   } camera;
   /// Depth camera.
   struct Depth {
@@ -153,6 +154,7 @@ struct Scenario {
     double noise = 0.0;       ///< standard deviation of a range over the range
     double latency_ms = 0.0;  ///< [ms]
     double drop = 0.0;        ///< probability of each image
+    Eigen::Vector2d outage = Eigen::Vector2d::Zero();  ///< no image from first to second [s]
   } depth;
   SensingKind sensing = SensingKind::kFast;
   OwnStateKind own_state = OwnStateKind::kTrue;

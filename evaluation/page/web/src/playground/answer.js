@@ -66,7 +66,7 @@ export class Answer {
   set(answer, attempt) {
     const pair = answer?.pair, curve = pair?.curve && curveOf(pair.curve);
     const until = curve && Math.min(pair.t_stop ?? endOf(curve), endOf(curve));
-    // A plan without a proof is drawn thin: nobody flies it.
+    // A plan without a certificate is drawn thin: it is not flown.
     const from = curve?.t0 ?? 0, flown = curve && until > from + 1e-6;
     this.committed.set(flown ? sample(curve, from, until) : null);
     this.rest.set(curve && until < endOf(curve) - 1e-6 ? sample(curve, until, endOf(curve)) : null);

@@ -10,16 +10,16 @@ export function fillLegend(root, picture, changed) {
   const rows = [
     { name: "plan, until its stop", colour: BLACK },
     { name: "the rest of it", colour: BLACK, mark: "thin" },
-    { name: "stop", colour: VERMILLION, mark: "dash", help: "Proven and stored with the plan: flown if no newer plan comes in time" },
-    { name: "pad, predicted", colour: PURPLE, mark: "dash", help: "A stroke every half second; the outline is where it is met" },
-    { name: "trail", colour: BLUE },
-    { name: "guide paths", colour: GREEN, mark: "dot", help: "Ways around obstacles that a search found; they say on which side pairs stand", ...part("guides") },
-    { name: "pairs", colour: ORANGE, help: "Half-spaces {p, v}: a point on an obstacle and the direction away from it, each tied to one control point", ...part("pairs") },
+    { name: "stop", colour: VERMILLION, mark: "dash", help: "Certified and stored with the plan. Flown if no newer plan comes in time" },
+    { name: "pad, predicted", colour: PURPLE, mark: "dash", help: "A mark every half second. The outline is the pad at contact" },
+    { name: "flown path", colour: BLUE },
+    { name: "guide paths", colour: GREEN, mark: "dot", help: "Paths around obstacles that a search found. They say which side of an obstacle is free", ...part("guides") },
+    { name: "half-spaces", colour: ORANGE, help: "A point on an obstacle and the direction away from it, {p, v}. Each holds for one control point", ...part("pairs") },
     { name: "rounds of an attempt", colour: GREY, mark: "dash", ...part("rounds") },
-    { name: "hull along the plan", colour: SKY, mark: "box", help: "The ball that holds the vehicle at every tilt", ...part("tube") },
+    { name: "hull along the plan", colour: SKY, mark: "box", help: "The ball around the vehicle at every tilt", ...part("tube") },
     { name: "seen obstacles", colour: "#A6652B", mark: "box", help: "Occupied cells of the map, as the camera saw them", ...object(cells) },
     { name: "depth camera", colour: SKY, ...object(craft.cone) },
-    { name: "cell to be seen next", colour: PURPLE, mark: "cross", help: "What the next stop needs and was not seen yet" },
+    { name: "cell to be seen next", colour: PURPLE, mark: "cross", help: "The next stop needs this cell, and it was not seen yet" },
   ];
   root.append(...rows.map(({ name, colour, mark = "", help = "", on, set }) => {
     const swatch = element("span", { className: `swatch ${mark}` });

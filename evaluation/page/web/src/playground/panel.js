@@ -8,11 +8,11 @@ import { checksOf, eventWords, headlineOf, lengthOf, plain, rowOf } from "./word
 const at = (id) => document.getElementById(id);
 const COLOURS = { banded: "#0072B2", lbfgs: "#E69F00" };
 const COLUMNS = [
-  ["arrival", "arrival", "When this attempt wants to meet the pad"],
+  ["arrival", "arrival", "When this attempt meets the pad"],
   ["end", "time is", "Free: the solver may move the time of arrival. Fixed: it may not"],
   ["segments", "segm.", "Segments: pieces of the spline"],
-  ["rounds", "rounds", "A round is one solve; where its curve hits an obstacle, pairs are added and it is solved again"],
-  ["pairs", "pairs", "A pair is a half-space {p, v}: a point on an obstacle's surface and the direction away from it, tied to one control point"],
+  ["rounds", "rounds", "A round is one solve. Where its curve hits an obstacle, half-spaces are added, and the next round solves again"],
+  ["pairs", "half-sp.", "Half-space {p, v}: a point on an obstacle's surface and the direction away from it. It holds for one control point"],
   ["iterations", "iter.", "Iterations of the solver, in all rounds"],
   ["reason", "outcome", "Why the attempt was not taken"],
 ];
@@ -60,9 +60,9 @@ export class Panel {
     this.headline(headlineOf(answer));
     const curve = answer.pair?.curve && curveOf(answer.pair.curve);
     const figures = [
-      ["way", curve ? lengthOf(curve).toFixed(1) : "–", "m", "Length of the curve"],
+      ["path", curve ? lengthOf(curve).toFixed(1) : "–", "m", "Length of the curve"],
       ["time", curve ? (endOf(curve) - curve.t0).toFixed(2) : "–", "s", "From now to the curve's end"],
-      ["pairs", answer.pairs ?? "–", "", COLUMNS[4][2]],
+      ["half-spaces", answer.pairs ?? "–", "", COLUMNS[4][2]],
       ["solves", answer.solves ?? "–", "", "How often the solver ran in this step"],
     ];
     at("figures").replaceChildren(
@@ -76,7 +76,7 @@ export class Panel {
   }
 
   attempts(attempts, chosen) {
-    if (!attempts) return at("attempts").replaceChildren(element("p", { className: "about", textContent: "Pause the flight: its newest step is solved again and written down here." }));
+    if (!attempts) return at("attempts").replaceChildren(element("p", { className: "about", textContent: "Pause the flight: its newest step is solved again and explained here." }));
     const body = element("tbody", {}, ...attempts.map((attempt, i) => {
       const row = rowOf(attempt);
       const line = element("tr", { tabIndex: 0, ariaSelected: i === chosen, title: "Show its rounds in the picture" }, ...COLUMNS.map(([name]) => element("td", { textContent: row[name] })));
@@ -92,15 +92,15 @@ export class Panel {
       return line;
     }));
     const head = element("thead", {}, element("tr", {}, ...COLUMNS.map(([, textContent, title]) => element("th", { textContent, title }))));
-    const words = attempts.length === 0 ? "Nothing was solved: the question had its answer before." : chosen === null ? "Click on a row: its rounds, and their curves in grey." : "Its rounds, whose curves are drawn in grey:";
+    const words = attempts.length === 0 ? "Nothing was solved: the answer was known before a solve." : chosen === null ? "Click on a row: its rounds, and their curves in grey." : "Its rounds, whose curves are drawn in grey:";
     at("attempts").replaceChildren(...(attempts.length ? [element("table", {}, head, body)] : []), element("p", { className: "about why", textContent: words }), ...(attempts[chosen] ? [this.rounds(attempts[chosen])] : []));
   }
 
   rounds({ rounds, best }) {
-    const names = ["round", "way", "pairs", "iter.", "cost", "solver", ""];
+    const names = ["round", "path", "half-sp.", "iter.", "cost", "solver", ""];
     const rows = rounds.map((round, i) => [i + 1, round.guide + 1, round.pairs.length, round.iterations, round.cost.toPrecision(5), plain(round.status), i === best ? "✓ taken" : ""]);
     return element("table", { className: "rounds" },
-      element("thead", {}, element("tr", {}, ...names.map((textContent) => element("th", { textContent, title: textContent === "way" ? "Which of the ways around the first obstacle" : "" })))),
+      element("thead", {}, element("tr", {}, ...names.map((textContent) => element("th", { textContent, title: textContent === "path" ? "Which of the guide paths around the first obstacle" : "" })))),
       element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((textContent) => element("td", { textContent }))))));
   }
 
@@ -113,7 +113,7 @@ export class Panel {
       return element("div", { className: "row" }, element("code", { textContent: backend }), element("div", { className: "bar" }, bar), element("b", { textContent: steps > 0 ? `${mean_ms.toFixed(mean_ms < 10 ? 2 : 1)} ms` : slow ? "–" : "…" }));
     });
     const [a, b] = rows, done = Math.min(a.steps, b.steps);
-    let words = slow ? "Given up: this scene's steps take too long to be measured beside all else." : "Measured as soon as the scene rests.";
+    let words = slow ? "Not measured: this scene's steps take too long." : "Measured as soon as the scene is at rest.";
     if (!slow && done > 0) {
       const ratio = b.mean_ms / a.mean_ms;
       const said = Math.abs(ratio - 1) < 0.05 ? "Both take as long" : ratio > 1 ? `${a.backend} is ${ratio.toFixed(1)} times as fast` : `${b.backend} is ${(1 / ratio).toFixed(1)} times as fast`;

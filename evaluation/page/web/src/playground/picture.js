@@ -14,7 +14,7 @@ import { Seen } from "./seen.js";
 
 const CELL = 0.1; // edge of the map's cells [m]
 const NEAR = 26; // the vehicle is small: it is taken within so many pixels
-const TRAIL = 4000; // points of the flown way that are kept
+const TRAIL = 4000; // points of the flown path that are kept
 
 const chosen = new MeshLambertMaterial({ color: "#7FB2D6", transparent: true, opacity: 0.65 });
 const hovered = new MeshLambertMaterial({ color: "#B9C4C4", transparent: true, opacity: 0.65 });

@@ -9,7 +9,7 @@ const OFFERED = 100; // weight of a term that is switched on and has none by def
 /** What a term asks of the curve, in words; the module has its formula. */
 const MEANINGS = {
   smoothness: "little acceleration and jerk",
-  obstacle_pair: "control points stay on the free side of their pairs",
+  obstacle_pair: "control points stay on the free side of their half-spaces",
   speed_limit: "not faster than the limit",
   acceleration_limit: "no more acceleration than the limit",
   arrival_time: "be there soon",
@@ -29,7 +29,7 @@ function groupsOf(about) {
   return [
     { title: "Pad", fields: [
       choice("pad.motion", "motion", about.motions.map((name) => [name, plain(name)]), "How the pad drives. The planner knows it from its prediction only."),
-      figure("pad.speed", "speed", "m/s", 0.05, "Of the pad along its way"),
+      figure("pad.speed", "speed", "m/s", 0.05, "Of the pad along its path"),
       figure("pad.heading_deg", "heading", "°", 1, "Of the pad at the start; 0 is to the right"),
       figure("pad.turn_rate", "turn rate", "rad/s", 0.01, "Of motions that turn"),
       figure("pad.height", "deck height", "m", 0.01, "Of the deck above the ground"),
@@ -43,7 +43,7 @@ function groupsOf(about) {
     { title: "Planner", fields: [
       choice("known", "knows", [["camera", "what its camera saw"], ["all", "every obstacle"]], "A depth camera that looks ahead and 6 m far, or everything"),
       choice("arrival", "arrival", [["free", "free: the solver chooses when"], ["fixed", "fixed: at a time that is tried"]], "Whether the time of contact is a variable of the solve"),
-      choice("ways", "ways", [[1, "one way around"], [2, "two: both sides are tried"]], "A way leads around the first obstacle; two are solved side by side, and the cheaper one is flown"),
+      choice("ways", "guide paths", [[1, "one"], [2, "two: both sides are tried"]], "A guide path leads around the first obstacle. Two are solved one after the other, and the cheaper plan is flown"),
       choice("backend", "solver", about.backends.map((name) => [name, name]), "Which solver makes the plan that is drawn"),
       figure("seed", "seed", "", 1, "Of the flight's noise"),
     ] },
@@ -127,7 +127,7 @@ export class Settings {
       this.show(this.scene);
       this.changed(true);
     });
-    const intro = element("p", { className: "about", textContent: "The plan is the curve of the least sum of these, each times its weight." });
+    const intro = element("p", { className: "about", textContent: "The plan minimises the sum of these terms, each times its weight." });
     return element("fieldset", {}, element("legend", {}, "Terms", reset), intro, ...this.about.terms.map((term) => this.term(term)));
   }
 

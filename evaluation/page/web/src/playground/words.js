@@ -25,7 +25,7 @@ export function headlineOf(answer) {
     return {
       tone: "good",
       title: `Planned: contact in ${seconds(endOf(curve) - begin)}.`,
-      text: stops ? `If no newer plan comes, it stops from ${seconds(t_stop - begin)} on: that stop is proven, too.` : "It is so near to contact that the landing is its own stop.",
+      text: stops ? `If no newer plan comes, the vehicle stops from ${seconds(t_stop - begin)} on. That stop is certified, too.` : "Contact is so near that the plan needs no stop.",
     };
   }
   const [what, why] = [answer.sentences[0] ?? "", answer.sentences.at(-1) ?? ""];
@@ -40,32 +40,32 @@ export function checksOf(c, limits) {
     {
       ok: c.endpoint_required ? c.endpoint_met : null,
       name: c.endpoint_required ? "ends at the pad, as fast as the pad" : "ends at rest",
-      figure: c.endpoint_required ? `off by ${small(c.endpoint_position_residual_m)} m and ${small(c.endpoint_velocity_residual_mps)} m/s` : "no contact is asked of it",
+      figure: c.endpoint_required ? `error ${small(c.endpoint_position_residual_m)} m and ${small(c.endpoint_velocity_residual_mps)} m/s` : "no contact was asked for",
       help: "Where the curve ends, against where the pad is predicted to be at that time",
     },
     {
       ok: c.limits_kept,
-      name: c.recovering ? "returns to within the limits" : "keeps the limits everywhere",
+      name: c.recovering ? "returns to the limits" : "keeps the limits everywhere",
       figure: measured
         ? `at most ${figure(c.speed_bound_mps)} of ${limits.speed} m/s, ${figure(c.acceleration_bound_mps2)} of ${limits.acceleration} m/s², turns at ${figure(c.body_rate_bound_radps, 1)} of ${limits.body_rate} rad/s`
-        : "proven with an earlier step",
+        : "certified in an earlier step",
       help: "Bounds that hold for all of the curve, not only at sampled points",
     },
     {
       ok: c.clear || c.escaping,
-      name: c.escaping ? "leaves the zone around an obstacle" : "clear of all that is known",
-      figure: measured ? `its middle stays ${figure(c.clearance_m)} m off obstacles` : "proven with an earlier step",
+      name: c.escaping ? "leaves the clearance of an obstacle" : "clear of all known obstacles",
+      figure: measured ? `its centre stays ${figure(c.clearance_m)} m away from obstacles` : "certified in an earlier step",
       help: "Every cell of the map that the curve passes, grown by the clearance, is free of known obstacles",
     },
     {
       ok: c.stops_in_observed_space,
-      name: "can stop in space that was seen free",
+      name: "can stop in observed free space",
       figure: "the hull, with its margins, until rest",
-      help: "What is flown until a newer plan takes over, and the stop stored with it, stay in cells that were seen to be free",
+      help: "The plan until its stop begins, and the stop, stay in cells that were seen to be free",
     },
   ];
   // Nearly always it does; only where it does not is there something to say.
-  if (!c.start_met) checks.unshift({ ok: false, name: "does not start as the vehicle flies", figure: "its place or its velocity is another", help: "Where the curve starts, against the vehicle's state at that time" });
+  if (!c.start_met) checks.unshift({ ok: false, name: "does not start at the vehicle's state", figure: "its position or its velocity differs", help: "Where the curve starts, against the vehicle's state at that time" });
   return checks;
 }
 
