@@ -22,7 +22,7 @@ FileLock::FileLock(const std::string& path) : descriptor_(open(path.c_str(), O_R
   const int error = errno;
   close(descriptor_);
   if (error == EWOULDBLOCK) {
-    throw BadInput(fmt::format("{}: another process is just writing it.", path));
+    throw BadInput(fmt::format("{}: another process is writing this file.", path));
   }
   // Where the file system has no such locks the file is written all the same.
   descriptor_ = -1;

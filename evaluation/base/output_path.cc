@@ -36,7 +36,7 @@ void CheckOutputPath(const std::string& option, const std::string& path) {
     Refuse(option, path, "a file must be named, and this is a directory");
   }
   if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) {
-    Refuse(option, path, "something that is no regular file is in its place");
+    Refuse(option, path, "the path exists and is no regular file");
   }
   const AtomicFile probe(path);
   errno = 0;
@@ -49,11 +49,11 @@ void CheckRecordPath(const std::string& option, const std::string& path) {
   CheckOutputPath(option, path);
   std::error_code ignored;
   if (!fs::exists(path, ignored) || fs::file_size(path, ignored) == 0) return;
-  if (!IsSqliteFile(path)) Refuse(option, path, "a file that is no SQLite file is in its place");
+  if (!IsSqliteFile(path)) Refuse(option, path, "the file exists and is no SQLite file");
   try {
     SqliteDb db(path, SqliteDb::Mode::kReadOnly);
     SqliteStatement trials = db.Prepare("SELECT 1 FROM sqlite_master WHERE name = 'manifest'");
-    if (trials.Step()) Refuse(option, path, "a file of trials is in its place");
+    if (trials.Step()) Refuse(option, path, "the file exists and holds trials");
   } catch (const SqliteError&) {
     // What cannot be read is no campaign.
   }

@@ -214,8 +214,8 @@ CampaignResult RunCampaign(const Campaign& campaign, const CampaignOptions& opti
     ranks = std::make_unique<Ranks>();
     if (ranks->size() == 1) {
       throw BadInput(
-          "The launcher says that it started several, MPI that this one is alone: the launcher "
-          "is of another MPI than the program.");
+          "The launcher started several processes, but MPI sees one: the launcher's MPI is not the "
+          "program's MPI.");
     }
     const bool alike = ranks->Agree(CampaignHash(campaign));
     if (!ranks->leads()) {

@@ -101,8 +101,7 @@ void CheckIsThis(SqliteDb& db, const std::string& path, const Campaign& campaign
     words = fmt::format("its shard is {}, not {}", there.at("shard"), shard.ToString());
   }
   if (words.empty()) return;
-  throw BadInput(fmt::format("{}: it holds other trials than these, and they are not mixed: {}.",
-                             path, words));
+  throw BadInput(fmt::format("{}: it holds trials of another sweep: {}.", path, words));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ const char* Explain(Outcome outcome) {
     case Outcome::kLanded:
       return "The vehicle rests upright and disarmed on the pad.";
     case Outcome::kCollision:
-      return "The vehicle touched something before it was done.";
+      return "The vehicle touched something before its task was done.";
     case Outcome::kOffPad:
       return "The feet came down beside the pad.";
     case Outcome::kHardTouchdown:
@@ -92,13 +92,13 @@ const char* Explain(Outcome outcome) {
     case Outcome::kInfeasible:
       return "Time ran out while no certified plan was found.";
     case Outcome::kFollowed:
-      return "The vehicle stayed above the pad as long as it was to.";
+      return "The vehicle stayed above the pad for the whole time.";
     case Outcome::kArrived:
       return "The vehicle is at the goal.";
     case Outcome::kTimeout:
-      return "Time ran out before it was done.";
+      return "Time ran out before the task was done.";
     case Outcome::kStood:
-      return "The vehicle stood, saw, and found no plan.";
+      return "The vehicle stayed in place, had depth images, and found no plan.";
     case Outcome::kUnstable:
       return "The simulated physics failed.";
     case Outcome::kError:

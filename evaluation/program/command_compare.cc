@@ -132,12 +132,12 @@ void AddCompareCommand(Command app, const Registries& registries, CommandRun* ru
   BenchOptions& bench = options.bench;
   command
       .Add("--problem-set", arguments->problem_set,
-           "What landings pose, or sets of known problems (docs/compare.md)")
+           "Problems of flights (landing), or a known set (docs/compare.md)")
       .Check(OneOf({"landing", "hs", "hs-pairs", "mgh", "shooting"}))
       .ShowDefault();
   command
       .Add("--starts", arguments->references.starts,
-           "Of a known problem: the first is the published one, others are around it")
+           "Starts of each known problem; the first is the published one, others are around it")
       .Check(Range(1, 1000))
       .ShowDefault();
   command.AddFile("--from", &options.from,

@@ -170,8 +170,8 @@ std::string Summary(const Scenario& scenario, const TrialResult& r, const Regist
   if (r.prior) text += PriorSentences(*r.prior);
   if (r.prior && !r.succeeded()) {
     text +=
-        "Occupied cells of map.prior block plans until they are seen free: look whether it stands "
-        "in the way, at the start for one.\n";
+        "Occupied cells of map.prior block plans until the camera sees them free. Check map.prior, "
+        "near the start first.\n";
   }
   return text;
 }

@@ -119,14 +119,12 @@ Json ListParts(const std::vector<Entry>& registry) {
 
 /// What stands below a list, in words.
 constexpr char kBackendsLegend[] =
-    "Below each backend: what it says to the problem with solver.endpoint, solver.arrival and "
-    "solver.limits of a scenario, and its options.\n";
+    "Below each backend: the formulations that it can solve (solver.endpoint, solver.arrival, "
+    "solver.limits), and its options.\n";
 constexpr char kPartsLegend[] = "Below each name: its keys in a scenario, with their defaults.\n";
 constexpr char kTermsLegend[] =
-    "Each term: [unit of what it weighs], its weight unless terms.NAME.weight says another, "
-    "whether "
-    "it can be rows (terms.NAME.hard), where it is\n"
-    "from, its formula, and its parameters (terms.NAME.PARAMETER) with their defaults.\n";
+    "Each term: [unit], default weight (terms.NAME.weight), constraint or not (terms.NAME.hard), "
+    "source, formula,\nand its parameters (terms.NAME.PARAMETER) with their defaults.\n";
 
 void PrintParts(const Json& list) {
   for (const Json& entry : list) {
@@ -173,8 +171,8 @@ void PrintTerms(const Json& list) {
         entry["unit"].get<std::string>(), entry["convex"].get<bool>() ? "convex" : "not convex",
         !entry["in_flights"].get<bool>() ? "not in flights"
         : weight > 0.0                   ? fmt::format("weight {:g}", weight)
-                                         : "off unless it is asked for",
-        entry["can_be_hard"].get<bool>() ? "cost or rows" : "cost only",
+                                         : "off by default",
+        entry["can_be_hard"].get<bool>() ? "cost or constraint" : "cost only",
         entry["source"].get<std::string>(), entry["formula"].get<std::string>());
     for (const Json& parameter : entry["parameters"]) {
       std::cout << fmt::format("  {} = {:g} in [{:g}, {:g}]  {}\n",

@@ -51,7 +51,7 @@ void CheckApplies(const Command& command) {
     if (command.Given("--gap")) throw BadInput("--gap has no effect without --backends.");
     return;
   }
-  if (!command.Given("--from")) throw BadInput("--backends needs --from: a record to ask again.");
+  if (!command.Given("--from")) throw BadInput("--backends needs --from RECORD.");
   for (const char* alone : {"--backend", "--trace", "--db", "--deadline-ms"}) {
     if (command.Given(alone))
       throw BadInput(fmt::format("{} cannot be used with --backends.", alone));
@@ -156,17 +156,15 @@ void AddProfileCommand(Command app, const Registries& registries, CommandRun* ru
   trials.Check(Range(1, 10000)).ShowDefault();
   const Option from = command.AddFile(
       "--from", &arguments->record,
-      std::string(
-          "Replay every replanning step of a record (`land --record`) instead of flying: "
-          "with the map, the pad prediction, the committed trajectory and the input that it "
-          "had, whatever the step before it answers. --backend, --set ") +
+      std::string("Time every step of a record (`land --record`) again, each with its recorded "
+                  "map, prediction, committed trajectory and input. --backend, --set ") +
           kReplayKeys + " change the planner",
       "RECORD");
   from.Excludes(seed).Excludes(trials).Excludes(command.Find("SCENARIO"));
   command
       .Add("--repeats", options.repeats,
-           "With --from: measured passes over all steps, after one that is compared with "
-           "the record and not measured")
+           "With --from: number of timed passes; one pass before them compares with the record and "
+           "is not timed")
       .Check(Range(1, 10000))
       .Needs(from)
       .ShowDefault();
@@ -178,15 +176,13 @@ void AddProfileCommand(Command app, const Registries& registries, CommandRun* ru
   std::vector<std::string> names = BackendNames(registries);
   names.emplace_back(kAll);
   command.AddList("--backends", &arguments->backends.backends,
-                  "With --from: compare these on the same steps, `all` of them: what a solve costs "
-                  "until it is within "
-                  "the gap, and the whole step",
+                  "With --from: compare these, or `all`, on the same steps: time of a solve to the "
+                  "gap, and of the whole step",
                   "NAME,NAME,...", OneOf(names));
   command
       .Add("--gap", arguments->backends.gap,
-           "With --backends: relative gap to the best known cost at which a solve has ended; "
-           "default: the "
-           "record's solver.gap")
+           "With --backends: solve until the cost is within this share of the best known cost; "
+           "default: the record's solver.gap")
       .Check(Range(1e-9, 1.0));
   command.Add("--pin", arguments->pin, "Run on this CPU only").Check(Range(0, 1023));
   command.AddFile("--trace", &arguments->trace,

@@ -24,10 +24,10 @@ struct ReplayArguments {
 
 void CheckReplay(const ReplayArguments& arguments) {
   if (arguments.html.empty() && arguments.video.empty()) {
-    throw BadInput("replay needs --html or --video: what is to be made.");
+    throw BadInput("replay needs --html or --video.");
   }
   if (arguments.html.empty() && !arguments.beside.empty()) {
-    throw BadInput("--beside: two flights are shown by a page, so it needs --html.");
+    throw BadInput("--beside needs --html: only a page shows two flights.");
   }
   CheckApart(
       {{"RECORD", arguments.record}, {"--html", arguments.html}, {"--video", arguments.video}});

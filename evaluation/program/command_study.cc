@@ -208,7 +208,7 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   }
   for (const char* option : {"--backend", "--guides"}) {
     if (!command.Given(option) || !flights || Named(arguments.planners, "landing")) continue;
-    throw BadInput(fmt::format("{} is of the planner landing: name it in --planners.", option));
+    throw BadInput(fmt::format("{} needs --planners landing.", option));
   }
   for (const char* option : {"--sets", "--later", "--oracle"}) {
     if (!command.Given(option) || Named(arguments.parts, "safety")) continue;
@@ -220,7 +220,7 @@ void CheckEffects(const StudyArguments& arguments, const Command& command) {
   }
   const bool only_growth = Named(arguments.parts, "growth") && !Named(arguments.parts, "safety");
   if (only_growth && command.Given("--kinds") && arguments.kinds.size() != 1) {
-    throw BadInput("--kinds: the part growth is of one kind.");
+    throw BadInput("--kinds: the part growth takes one kind.");
   }
   for (const ExclusivePart& part : ExclusiveParts()) {
     if (Named(arguments.parts, part.name)) CheckExclusive(part, arguments, command);
@@ -241,7 +241,7 @@ int Study(StudyArguments arguments, const Registries& registries) {
   CheckTimings(arguments.allow_debug);
   CheckOutputs(arguments.db, arguments.picture);
   if (!arguments.picture.empty() && !Named(arguments.parts, "growth")) {
-    throw BadInput("--picture shows the part growth: name it in --parts.");
+    throw BadInput("--picture needs --parts growth.");
   }
   planning::ReplannerOptions& replanner = arguments.options.replanner;
   replanner.problem.terms = registries.terms;
@@ -290,9 +290,8 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
   ReplanStudyOptions& options = arguments->options;
   command.AddList(
       "--parts", &arguments->parts,
-      "Parts of the study; growth: of one kind, C unless --kinds names one alone; "
-      "flights: 36 m, fidelity: of the EGO-Planner baseline to the released program, and "
-      "sensitivity: to each constant of the step, stand alone",
+      "Parts of the study. growth takes one kind, C by default. flights (36 m), fidelity (of the "
+      "EGO-Planner baseline) and sensitivity (to each constant of a step) run alone",
       "safety,growth,...", OneOf({"safety", "growth", "flights", "fidelity", "sensitivity"}));
   command.Add("--scenes", options.count, "Scenes of each kind")
       .Check(Range(1, 100000))
@@ -303,8 +302,7 @@ void AddStudyCommand(Command app, const Registries& registries, CommandRun* run)
                   "Ask for the steps 0.1 and 0.2 s after the first one, too");
   command.AddFlag(
       "--oracle", options.oracle,
-      "Ask in each scene whether there is a plan at all, up to seconds; else what is known "
-      "of it counts");
+      "Search in each scene whether a plan exists, up to seconds; default: the stored verdicts");
   command.AddFile("--verdicts", &arguments->verdicts,
                   "Write what the oracle says, a letter a scene", "F.csv");
   command.AddList("--kinds", &arguments->kinds, "Kinds of scenes", "A,B,...",

@@ -43,10 +43,10 @@ void MakeDirectory(const std::string& directory) {
 /// An exposure blurs what moves; the one changes nothing without the other. @throws BadInput
 void CheckBlur(const TagStudyOptions& options) {
   if (options.camera.exposure_ms > 0.0 && options.speed == 0.0) {
-    throw BadInput("--exposure blurs the images of a vehicle that moves: give --speed as well.");
+    throw BadInput("--exposure needs --speed: only motion blurs an image.");
   }
   if (options.speed > 0.0 && options.camera.exposure_ms == 0.0) {
-    throw BadInput("--speed blurs the images of an exposure: give --exposure as well.");
+    throw BadInput("--speed needs --exposure: motion blurs an image during its exposure.");
   }
 }
 
@@ -129,7 +129,7 @@ void AddTagStudyCommand(Command study, CommandRun* run) {
       .Check(Range(0.0, 20.0))
       .ShowDefault();
   command.AddFlag("--no-align", arguments->no_align,
-                  "Poses from the tags' corners alone, the sheet is not aligned");
+                  "Take poses from the tags' corners alone, without alignment of the sheet");
   command.AddFlag("--fit", arguments->fit,
                   "Fit the constants of the fast tag camera to the views (sim/pad/tag_model.h)");
   command.Add("--seed", options.seed, "Seed of the views")

@@ -103,7 +103,7 @@ void AddRecorded(Command command, std::string* which, const std::string& help) {
 
 void CheckRecorded(const std::string& which, const std::string& html) {
   if (which == "none" || !html.empty()) return;
-  throw BadInput("--record: the flights stand beside the report, so it needs --html.");
+  throw BadInput("--record needs --html: the report links the flights.");
 }
 
 void CheckNewStudy(const std::string& option, const std::string& path) {
@@ -227,7 +227,7 @@ int RunProgram(int argc, const char* const* argv, const Registries& registries) 
     spdlog::warn("interrupted");
     return 128 + end.signal;
   } catch (...) {
-    spdlog::error("something that is no std::exception was thrown");
+    spdlog::error("unknown exception: it is no std::exception");
     return kFellShort;
   }
 }

@@ -132,8 +132,8 @@ std::string CommittedText(const planning::FlightPair& pair) {
   const planning::UniformBspline& last = pair.Last();
   const std::string end =
       fmt::format("until t = {:.3f} s at {} m", last.t_end(), Vector(last.Position(last.t_end())));
-  if (!std::isfinite(pair.t_stop)) return fmt::format("  flown: what was committed, {}\n", end);
-  return fmt::format("  flown: what was committed until t = {:.3f} s, then its stored stop {}\n",
+  if (!std::isfinite(pair.t_stop)) return fmt::format("  flown: the committed curve, {}\n", end);
+  return fmt::format("  flown: the committed curve until t = {:.3f} s, then its stored stop {}\n",
                      pair.t_stop, end);
 }
 
@@ -161,7 +161,7 @@ std::string PlanText(const SolvedStep& solved) {
   if (solved.unseen_W) {
     text += fmt::format("  to be seen next: the cell at {} m\n", Vector(*solved.unseen_W));
   }
-  if (out.from_odometry) text += "  it starts at the vehicle: tracking had lost the reference\n";
+  if (out.from_odometry) text += "  starts at the vehicle: the tracking error was too large\n";
   if (out.certificate.earlier) {
     text += CommittedText(solved.recorded.before.next);
   } else {

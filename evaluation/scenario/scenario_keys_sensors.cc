@@ -96,11 +96,10 @@ void AddSensorKeys(KeyList& keys) {
              "which cells stops may use: what the depth camera saw free, or, for studies "
              "alone, all that no obstacle reaches into",
              TOUCHDOWN_AT(map_observed_free)));
-  keys.push_back(
-      Number<Scenario>("map.thinnest_obstacle", In(0.01, 1, "m"),
-                       "obstacles as thick as this are promised to be seen: from where a "
-                       "thinner one fits between two pixels, no cell is freed",
-                       TOUCHDOWN_AT(map_thinnest_obstacle)));
+  keys.push_back(Number<Scenario>("map.thinnest_obstacle", In(0.01, 1, "m"),
+                                  "obstacles of this thickness are always seen: where a thinner "
+                                  "one fits between two pixels, no cell becomes free",
+                                  TOUCHDOWN_AT(map_thinnest_obstacle)));
   keys.push_back(
       Number<Scenario>("map.start_free", In(0.5, 3, "m"),
                        "this far around the start, and 0.45 m from the hull at least, cells are "

@@ -144,7 +144,7 @@ class ResampledTree : public octomap::OcTree {
     if (++leaves_ > kMostLeaves) {
       throw std::invalid_argument(
           "in cells of " + std::to_string(getResolution()) +
-          " m it has more than five million leaves; crop it to where is flown");
+          " m it has more than five million leaves; crop the file to the flown area");
     }
     if (root == nullptr) {
       root = new Node;

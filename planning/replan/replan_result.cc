@@ -82,17 +82,17 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kNone:
       return "A new plan was certified.";
     case ReplanReason::kInvalidInput:
-      return "A number of the input is not finite or absurd, or an earlier answer has not taken "
-             "over yet.";
+      return "A number of the input is not finite or out of range, or an earlier answer has not "
+             "taken over yet.";
     case ReplanReason::kStartBlocked:
-      return "The start is inside an inflated obstacle and no certified way leads out.";
+      return "The start is inside an inflated obstacle and no certified path leads out.";
     case ReplanReason::kGoalBlocked:
       return "The end is inside an inflated obstacle, or beyond floor or ceiling, at every arrival "
              "time tried.";
     case ReplanReason::kPadUnreachable:
       return "No arrival time up to the longest allowed reaches the pad within the limits.";
     case ReplanReason::kSearchFailed:
-      return "No way around an obstacle was found, or the work that a search may do was done.";
+      return "No path around an obstacle was found, or the search used up its work.";
     case ReplanReason::kSolverFailed:
       return "The solver returned no usable point.";
     case ReplanReason::kCollisionRemains:
@@ -100,14 +100,13 @@ const char* Explain(ReplanReason reason) {
     case ReplanReason::kUnobserved:
       return "The plan is too fast to stop before space that was never observed.";
     case ReplanReason::kEndTooFast:
-      return "The pad moves at more than nine tenths of the speed limit: hard limits leave no "
-             "interior.";
+      return "The pad is faster than 90 % of limits.speed: hard limits cannot be kept.";
     case ReplanReason::kBudgetSpent:
-      return "The work that a step may do was done before there was a plan.";
+      return "The step used up its work before there was a plan.";
     case ReplanReason::kLimitsExceeded:
       return "The curve still exceeds a limit after every re-timing.";
     case ReplanReason::kAtGoal:
-      return "The goal is nearer than the baseline makes plans for.";
+      return "The goal is too near for a plan of the baseline.";
   }
   return "unknown";
 }

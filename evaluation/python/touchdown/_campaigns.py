@@ -247,7 +247,7 @@ def sweep(
     FileNotFoundError where there is no program, ProgramFailed otherwise.
     """
     if record is not None and html is None:
-        raise ValueError(f"record is {record!r}: the flights stand beside the report, so it needs html")
+        raise ValueError(f"record is {record!r}: it needs html, since the report links the flights")
     _check_ranges(trials=trials, seed=seed, jobs=jobs, trial_limit=trial_limit)
     if retry and db is None:
         raise ValueError("retry is True: there is nothing to fly again without db")
