@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the documents show: fenced blocks, code spans, links, headings, each with its line."""
+"""Which documents there are, and what they show: fenced blocks, code spans, links, headings, each with its line."""
 import re
+import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SHELL = ("sh", "bash")
+# Printed by the program, or executed.
+PRINTED = re.compile(r"docs/results/\w+/report\.md|docs/notebooks/|docs/reference/scenario_keys\.md")
+# Built from what is checked, or others' words.
+NOT_OURS = re.compile(r"docs/playground\.html|evaluation/data/replay/|LICENSE$|.*/LICENCES\.txt|.*/package-lock\.json")
 
 
 @dataclass(frozen=True)
@@ -19,10 +24,11 @@ class Document:
     def __init__(self, path):
         self.path = path
         self.name = str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else path.name
+        self.text = path.read_text(encoding="utf-8")
         self.blocks = []
         self.prose = []  # (line number, text), without what is fenced
         fence, start, language = None, 0, ""
-        lines = path.read_text().split("\n")
+        lines = self.text.split("\n")
         for number, line in enumerate(lines, 1):
             if fence is None and (opening := re.match(r" *(```+)\s*(\w*)\s*$", line)):
                 fence, start, language = opening[1], number + 1, opening[2]
@@ -50,12 +56,40 @@ class Document:
 
     def script(self):
         """All shell blocks as one script, each command on its line of the document."""
-        lines = [""] * (len(self.path.read_text().split("\n")) + 1)
+        lines = [""] * (self.text.count("\n") + 2)
         for block in self.blocks:
             if block.language in SHELL:
                 text = block.text.split("\n")
                 lines[block.line - 1 : block.line - 1 + len(text)] = text
         return "\n".join(lines)
+
+
+def tracked(*patterns):
+    """The names of the files that git knows."""
+    return subprocess.run(["git", "-C", ROOT, "ls-files", *patterns], capture_output=True, text=True, check=True).stdout.split()
+
+
+def sources():
+    """(name, text) of every tracked file that holds text and was written here, by hand or by the program."""
+    for name in tracked():
+        if NOT_OURS.match(name):
+            continue
+        try:
+            yield name, (ROOT / name).read_text(encoding="utf-8")
+        except UnicodeDecodeError:  # a picture
+            continue
+
+
+def pages():
+    """What is written by hand for readers: README.md, docs/, and the summaries of results."""
+    docs = ROOT / "docs"
+    return [Document(path) for path in (ROOT / "README.md", *sorted(docs.glob("*.md")), *sorted(docs.glob("results/*.md")))]
+
+
+def artefacts():
+    """What else is written by hand, but CHANGELOG.md: tables of results, CONTRIBUTING.md, other READMEs."""
+    counted = {page.name for page in pages()} | {"CHANGELOG.md"}
+    return [Document(ROOT / name) for name in tracked("*.md") if name not in counted and not PRINTED.match(name)]
 
 
 def documents():

@@ -142,10 +142,14 @@ def text(files):
 
 
 def reduced(edges):
-    """The edges of a graph without circles that do not follow from others: {from: [to]}"""
+    """The edges of a graph that do not follow from others: {from: [to]}. ValueError if it has a circle."""
 
-    def reached(start):
-        return set().union(*({to} | reached(to) for to in edges[start]))
+    def reached(start, path=()):
+        if start in path:
+            circle = path[path.index(start) :]
+            first = circle.index(min(circle))
+            raise ValueError("these include each other: " + " -> ".join(circle[first:] + circle[: first + 1]))
+        return set().union(*({to} | reached(to, (*path, start)) for to in edges[start]))
 
     return {start: sorted(to for to in ends if not any(to in reached(other) for other in ends))
             for start, ends in edges.items()}  # fmt: skip
@@ -182,11 +186,15 @@ def drawn(page):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--draw"]:
-        content = PICTURE.read_text(encoding="utf-8")
-        block = drawn(content)
-        PICTURE.write_text(content[: block.start(1)] + drawing(sources()) + content[block.end(1) :], encoding="utf-8")
     print(text(sources()))
     problems = wrong_in(sources(), allowed(TABLE.read_text(encoding="utf-8")))
     print("\n".join(problems))
+    if sys.argv[1:] == ["--draw"]:
+        content = PICTURE.read_text(encoding="utf-8")
+        block = drawn(content)
+        try:
+            drawn_anew = drawing(sources())
+        except ValueError as error:
+            sys.exit(str(error))
+        PICTURE.write_text(content[: block.start(1)] + drawn_anew + content[block.end(1) :], encoding="utf-8")
     sys.exit(bool(problems))

@@ -78,6 +78,12 @@ def test_the_drawing_is_the_include_graph():
     assert rooms.drawn(page)[1] == rooms.drawing(rooms.sources()), "python3 docs/test/rooms.py --draw draws it anew"
 
 
+def test_rooms_that_include_each_other_are_named(tmp_path):
+    said(tmp_path, {"planning/map/cells.h": '#include "planning/replan/plan.h"\n'})
+    with pytest.raises(ValueError, match="include each other: planning/map -> planning/replan -> planning/map"):
+        rooms.drawing(rooms.sources(tmp_path))
+
+
 def test_an_include_is_drawn_unless_it_follows_from_others(tmp_path):
     said(tmp_path, {"planning/replan/plan.cc": '#include "planning/map/cells.h"\n#include "planning/path/path.h"\n',
                     "planning/path/path.h": '#include "planning/map/cells.h"\n#include "touchdown/solvers/banded/step.h"\n'})  # fmt: skip
