@@ -87,8 +87,8 @@ def pages():
 
 
 def artefacts():
-    """What else is written by hand, but CHANGELOG.md: tables of results, CONTRIBUTING.md, other READMEs."""
-    counted = {page.name for page in pages()} | {"CHANGELOG.md"}
+    """What else is written by hand: tables of results, CONTRIBUTING.md, CHANGELOG.md, other READMEs."""
+    counted = {page.name for page in pages()}
     return [Document(ROOT / name) for name in tracked("*.md") if name not in counted and not PRINTED.match(name)]
 
 
