@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated GPS of the paper: true position plus Gaussian noise of standard deviation sigma
-// (0.01, 0.5 and 1.0 m in its case studies), independent in each horizontal axis and each sample.
+// The simulated GPS of the paper: true position plus Gaussian noise of standard deviation sigma,
+// independent in each horizontal axis and each sample. The paper's case studies have a sigma of
+// 0.01, 0.5 and 1.0 m.
 
 #include "sim/sensors/gps.h"
 

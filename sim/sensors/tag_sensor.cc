@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measurement model of the pad camera, with the constants of TagModel, which are fitted to rendered
-// images. The tags' true corners are projected; a tag is found by a probit of its size. Where the
-// sheet is small enough in the image for estimation::PadAlignment, the corners of all tags whose
-// centres are in it stand for it, with a small noise of their own; else those of the tags that are
-// found, with theirs. From them the pose is solved by the very solver that rendered images use.
+// images. The tags' true corners are projected; a tag is found by a probit of its size. There are
+// two cases. If the sheet is small enough in the image for estimation::PadAlignment, all tags with
+// their centre in the image count, found or not, with a small noise of the corners. Otherwise only
+// the found tags count, with the noise of tag corners. The pose is solved from these corners by the
+// same solver that rendered images use.
 
 #include "sim/sensors/tag_sensor.h"
 

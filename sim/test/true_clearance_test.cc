@@ -54,8 +54,8 @@ TEST(TrueClearance, TiltedByHand) {
   }
 }
 
-// The distance to the cylinder's surface, bounded from both sides by sampling the signed distance
-// over it: no sample is nearer than FCL says, and some sample is nearly as near.
+// The distance to the cylinder's surface is bounded from both sides by samples of the signed
+// distance over it. No sample is nearer than FCL says, and some sample is nearly as near.
 TEST(TrueClearance, AgreesWithAnalyticDistancesOnRandomScenes) {
   RandomStream random(23, "clearance scenes");
   const estimation::VehicleModel model = Model();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file is compiled and placed at its reference pose; everything is read from there in the frame of
-// the body with the free joint. The rigid bodies below it are put together by the parallel axis theorem.
-// What is written is the vehicle alone, so that nothing else of the file (other bodies, options,
-// contacts, meshes) can touch the simulation.
+// The file is compiled and placed at its reference pose. Everything is read from there in the frame of the body with
+// the free joint. The rigid bodies below it are combined by the parallel axis theorem. Only the vehicle is written. So
+// nothing else of the file (other bodies, options, contacts, meshes) can affect the simulation.
 
 #include "sim/vehicle/vehicle_import.h"
 

@@ -25,8 +25,8 @@ struct VehicleShape {
 };
 const char* ToString(VehicleShape::Kind kind);
 
-/// What is to be seen of the vehicle whose MJCF text is `mjcf` (vehicle_file.h): its geoms but for `hull` and those that
-/// are wholly transparent or in a group from 3 on. Of a vehicle that then has nothing but feet, arms to these and to the rotors.
+/// The visible shapes of the vehicle whose MJCF text is `mjcf` (vehicle_file.h). `hull`, wholly transparent geoms and
+/// those in a group from 3 on are left out. If only feet remain, arms to the feet and rotors are added.
 /// Throws std::invalid_argument as LoadVehicleModel.
 std::vector<VehicleShape> VehicleShapes(const std::string& mjcf);
 

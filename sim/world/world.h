@@ -66,20 +66,20 @@ struct Contact {
 /// and commands give the same bits.
 class World {
  public:
-  /// Rotors start at the thrust of a hover, the pad on its path at its speed. Throws std::invalid_argument
-  /// naming the thing, its value and the allowed range; also when the vehicle starts in contact
-  /// with an obstacle or the ground, or ground effect is wanted of rotors without a radius.
+  /// Rotors start at the thrust of a hover, the pad on its path at its speed.
+  /// @throws std::invalid_argument naming the thing, its value and the allowed range. A start in contact with an
+  /// obstacle or the ground is such a fault, and so is ground effect for rotors without a radius.
   explicit World(const WorldConfig& config);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();
 
-  /// Advances one time step. Does not allocate but where an obstacle is within the vehicle's reach.
+  /// Advances one time step. Allocates only where an obstacle is within the vehicle's reach.
   /// @param rotor_thrust_commands per rotor [N]; clipped to the rotors' limits, reached with their
   /// lag.
   /// @param wind_W velocity of the air [m/s].
-  /// Throws std::invalid_argument if a command or the wind is not finite, std::runtime_error if the
-  /// physics failed (the sentence says how); such a World throws at every later step too.
+  /// @throws std::invalid_argument if a command or the wind is not finite, std::runtime_error if
+  /// the physics failed (the message says how). Such a World throws at every later step too.
   void Step(const estimation::Commands& rotor_thrust_commands,
             const Eigen::Vector3d& wind_W = Eigen::Vector3d::Zero());
 
@@ -101,8 +101,8 @@ class World {
   /// True state of the vehicle now.
   estimation::VehicleState vehicle() const;
 
-  /// True state of the pad now, read from its joints: p, v, yaw and yaw rate; a is that of the step
-  /// just taken, j is not known and zero. The yaw is not wrapped.
+  /// True state of the pad now, read from its joints: p, v, yaw and yaw rate. a is that of the step
+  /// just taken; j is unknown and zero. The yaw is not wrapped.
   estimation::PadState pad() const;
 
   /// Thrust of each rotor now, after its lag [N].
@@ -117,8 +117,8 @@ class World {
   /// What the ground effect added to the rotors' thrust in the step just taken, in all [N].
   double ground_effect_thrust() const;
 
-  /// Contacts of the step just taken; positions, velocities and forces are those at its beginning,
-  /// so that the step in which a contact first appears holds the velocity before the impact.
+  /// Contacts of the step just taken. Positions, velocities and forces are those at its beginning.
+  /// So the step in which a contact first appears holds the velocity before the impact.
   const std::vector<Contact>& contacts() const;
 
   /// Sum of the normal forces on the feet in the step just taken, whatever they stand on.
