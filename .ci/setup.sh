@@ -53,8 +53,8 @@ install_tiers() {
     apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures build/release with the given options and builds the given targets (none: all).
-# demo.sh and test.sh share the tree: what one has built the other finds.
+# Configures build/release with the given options and builds the given targets (none: all). demo.sh
+# and test.sh share the tree, so neither builds again what the other has built.
 build_release() {
   local tests=$1
   shift

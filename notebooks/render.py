@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Executes a notebook from a fresh kernel and writes it with its outputs: as one HTML file, which needs nothing
-beside it and no network, or as Markdown with small pictures beside it, as docs/notebooks has them.
+"""Executes a notebook from a fresh kernel and writes it with its outputs.
+
+The output is one HTML file, which needs no other file and no network, or Markdown with small pictures beside it, as in
+docs/notebooks.
 
     /usr/bin/python3 notebooks/render.py NOTEBOOK.ipynb OUT.html
     /usr/bin/python3 notebooks/render.py NOTEBOOK.ipynb OUT.md

@@ -17,8 +17,8 @@ struct ChildEnd {
 
 /// Runs a program to its end, with nothing on its stdin. There is no shell: words are arguments, not text.
 /// @param words its path, and its arguments
-/// @param environment "NAME=value", in place of what this process has of these names
-/// @param limit_s it is ended after so long [s]
+/// @param environment "NAME=value"; replaces this process's values of these names
+/// @param limit_s the program is ended after this time [s]
 ChildEnd RunChild(const std::vector<std::string>& words,
                   const std::vector<std::string>& environment, double limit_s);
 

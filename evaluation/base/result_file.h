@@ -24,8 +24,8 @@ struct ResultFormat {
 /// Where times were taken: `pinned_cpu`, `load_before`, `load_after`.
 void AddMachine(const MachineState& machine, ManifestFacts* facts);
 
-/// What a result file holds: the table `manifest` (key, value) with `format`, `version`, the facts and the
-/// build, and the tables of `schema` (SQL), which `fill` fills; in one transaction. @throws SqliteError
+/// Fills a result file in one transaction. It gets the table `manifest` (key, value) with `format`, `version`, the
+/// facts and the build. It also gets the tables of `schema` (SQL), which `fill` fills. @throws SqliteError
 void FillResultFile(SqliteDb& db, const ResultFormat& format, const char* schema,
                     const ManifestFacts& facts, const std::function<void(SqliteDb&)>& fill);
 

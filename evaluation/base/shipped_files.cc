@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where shipped files are: relative to the program first (a build tree or an installation can be
-// moved), then where this build's source tree was.
+// Where shipped files are. The program's own place is searched first, because a build tree or an
+// installation can be moved; then this build's source tree.
 #include <algorithm>
 #include <filesystem>
 

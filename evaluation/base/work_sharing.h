@@ -15,8 +15,8 @@ void ShareWork(std::vector<WorkerProcess>& workers, int at_a_time, const std::ve
                const std::function<void(const WorkerReply&)>& take,
                const std::function<bool()>& stop);
 
-/// Has the items 0, 1, ... count - 1 done by up to `jobs` workers, each item for at most `limit_s` of wall
-/// time [s]; `take` gets each reply. @throws what `take` and WorkerProcess throw
+/// Lets up to `jobs` workers do the items 0, 1, ... count - 1. Each item takes at most `limit_s` of wall time [s].
+/// `take` gets each reply. @throws what `take` and WorkerProcess throw
 void ShareAll(int count, int jobs, const WorkerProcess::Work& work, double limit_s,
               const std::function<void(const WorkerReply&)>& take);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two forks. The worker is forked once, before its maker opens files or starts MPI, and stays as small as it was. For
-// each piece of work it forks a child, and reads its answer from a pipe until the child closes it or the time is up.
-// The kernel kills both when the process above them ends, however it ends. Both ignore the signals of a keyboard, which
+// each item it forks a child. It reads the child's answer from a pipe until the child closes it or the time is up. The
+// kernel kills both when the process above them ends, however it ends. Both ignore the signals of a keyboard, which
 // reach the whole group: their maker decides.
 #include "evaluation/base/worker_process.h"
 

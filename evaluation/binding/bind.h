@@ -23,8 +23,8 @@ namespace touchdown::binding {
 
 namespace py = pybind11;
 
-/// An object that calls share or one alone may change: others raise RuntimeError meanwhile, whether they come from
-/// another thread or from a term, planner or callback that is called.
+/// An object that several calls may share, or that one call alone may change. Meanwhile other calls raise RuntimeError,
+/// from another thread as well as from a term, planner or callback within the call.
 class InUse {
  public:
   explicit InUse(const char* name) : name_(name) {}

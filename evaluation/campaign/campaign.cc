@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Workers are forked before MPI is started and the file opened; then trials are handed out one by one, and each reply is
-// written before the next is looked at. A trial is a pure function of its scenario and seed, so that the rows
-// do not depend on who flew them, nor in which order.
+// Workers are forked before MPI is started and the file opened. Then trials are handed out one by one, and each reply
+// is written before the next is read. A trial is a pure function of its scenario and seed. So the rows do not depend on
+// who flew them, or in which order.
 #include "evaluation/campaign/campaign.h"
 
 #include <algorithm>

@@ -9,8 +9,8 @@
 
 namespace touchdown::evaluation {
 
-/// "37 of 100 trials, 36 succeeded and 1 failed, 1.21 a second, 52 s left": the time left at the rate since the
-/// beginning, `elapsed_s` ago [s]; trials flown before count for neither.
+/// "37 of 100 trials, 36 succeeded and 1 failed, 1.21 a second, 52 s left". The time left follows from the rate since
+/// the beginning, `elapsed_s` ago [s]. Rate and time left do not include trials flown before.
 std::string CampaignLine(const CampaignState& state, double elapsed_s);
 
 /// Tells the log what is resumed, then how far a campaign is.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One row per trial, in one transaction with the figures of its cell. The journal is SQLite's write-ahead log:
-// a process that is killed leaves at most a log which every later reader, a read-only one too, takes
-// into account by itself. What depends on the clock stands in its own tables, so that two files can be
-// compared row by row.
+// One row per trial, in one transaction with the figures of its cell. The journal is SQLite's write-ahead log. A
+// process that is killed leaves at most a log, which every later reader, a read-only one too, takes into account. What
+// depends on the clock is in tables of its own, so that two files can be compared row by row.
 #include "evaluation/campaign/trial_store.h"
 
 #include <filesystem>

@@ -18,13 +18,13 @@ namespace touchdown::evaluation {
 /// @throws SqliteError, std::invalid_argument
 std::map<int, TrialResult> ReadTrials(SqliteDb& db, bool with_replan_times);
 
-/// The file of a campaign's trials while it grows (docs/record.md). It holds from the start what is planned;
-/// each trial is there, whole and with the figures of its cell, from the moment that Add returns, whatever
-/// happens to the process later. Others may read meanwhile.
+/// The file of a campaign's trials while it grows (docs/record.md). It holds the plan from the start. From the moment
+/// that Add returns, the trial is in it, whole and with the figures of its cell, whatever happens to the process later.
+/// Others may read meanwhile.
 class TrialStore {
  public:
-  /// What of a file that is there is flown again: nothing, or what says more of the machine than of the
-  /// trial, which is what crashed, hung or ended in an error.
+  /// Which trials of an existing file are flown again: none, or those whose end depends more on the machine than on the
+  /// trial. These crashed, hung or ended in an error.
   enum class Again { kNone, kLost };
 
   /// Makes the file, or goes on with the one that is there. `path` empty: in memory.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One trial. In each step of 2 ms: sensors that are due, mission, replanning if due, tracking, then
-// physics, then the judge and the figures on the true state. The judge is given the state from
-// before the step together with the contacts found in it: the velocity before the impact.
+// One trial. Each step of 2 ms runs the sensors that are due, mission, replanning if due, tracking
+// and physics. Then follow the judge and the figures on the true state. The judge is given the
+// state from before the step together with the contacts found in it: the velocity before the
+// impact.
 #include "evaluation/flight/closed_loop.h"
 
 #include <chrono>

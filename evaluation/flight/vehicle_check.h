@@ -36,8 +36,9 @@ struct VehicleCheck {
   bool passed() const { return findings.faults().empty() && hover && hover->held; }
 };
 
-/// Reads the MJCF file as `vehicle: FILE` would, with the airframe file beside it and overrides KEY=VALUE; without faults it hovers
-/// the vehicle for five seconds. @throws BadInput for overrides and airframe files that LoadScenario refuses.
+/// Reads the MJCF file as `vehicle: FILE` does, with the airframe file beside it and overrides KEY=VALUE. If there are
+/// no faults, it hovers the vehicle for five seconds.
+/// @throws BadInput for overrides and airframe files that LoadScenario refuses.
 VehicleCheck CheckVehicle(const std::string& file, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

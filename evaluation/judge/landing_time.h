@@ -50,10 +50,10 @@ struct LandingFlight {
 /// @throws std::invalid_argument if a limit or the horizon is not > 0.
 double LandingTimeLowerBound(const LandingTimeTask& task, const estimation::PadPrediction& pad);
 
-/// A flight that was found and checked: T* is not far below its time. It comes from above the deck's
-/// plane and ends level with a foot on the deck at some heading, whatever errors of the pad the task
-/// allows. Empty if none was found within the horizon, as where the start is lower than
-/// that end. `lower_bound`: where to begin to look. Tens of milliseconds.
+/// A flight that was found and checked: T* is not far below its time. It comes from above the deck's plane. It ends
+/// level with a foot on the deck at some heading, for all errors of the pad that the task allows. Empty if none was
+/// found within the horizon, for example where the start is lower than that end. `lower_bound`: where the search
+/// starts. Takes tens of milliseconds.
 std::optional<LandingFlight> LandingTimeUpperBound(const LandingTimeTask& task,
                                                    const estimation::PadPrediction& pad,
                                                    double lower_bound);

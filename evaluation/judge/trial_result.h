@@ -24,8 +24,8 @@ struct EstimatorQuality {
   int samples = 0;
 };
 
-/// How far the vehicle's estimate of its own state was off, in flight until first contact, every
-/// 20 ms: lengths of the error of position and velocity, angle of that of the attitude.
+/// Error of the vehicle's estimate of its own state, in flight until first contact, every 20 ms:
+/// lengths of the position and velocity errors, angle of the attitude error.
 struct OwnStateQuality {
   double rmse_position_m = 0.0;
   double max_position_m = 0.0;
@@ -72,8 +72,8 @@ struct TrialResult {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kError;
   std::string detail;  ///< what went wrong in words; empty when landed
-  /// What ended it: the last thing touched but by a foot on the deck ("obstacle 3", "hull-deck"), of a
-  /// flight that stood the last reason for no new plan, else the mode. Otherwise empty.
+  /// Cause of the end. For a contact: the last thing touched, except a foot on the deck ("obstacle 3", "hull-deck").
+  /// For a flight that stood still: the last reason for no new plan, else the mode. Otherwise empty.
   std::string cause;
   std::optional<Touchdown> touchdown;        ///< first contact of a foot with the pad
   std::optional<double> mean_abs_error_x_m;  ///< last 5 s before first contact, world axes
@@ -90,8 +90,9 @@ struct TrialResult {
   std::optional<EstimatorQuality> estimator;
   std::optional<OwnStateQuality> own_state;  ///< where it is estimated
   std::optional<Following> following;        ///< of the task follow, where it lasted 10 s
-  /// Of trials that are to land: bounds on the earliest contact that is possible at all
-  /// (evaluation/judge/landing_time.h), the lower one T*, the upper one empty if none was found.
+  /// Of trials that are to land: bounds on the earliest possible contact
+  /// (evaluation/judge/landing_time.h). The lower one is T*; the upper one is empty if none was
+  /// found.
   std::optional<double> t_star_s;
   std::optional<double> t_star_upper_s;
   /// max_speed_mps and max_acceleration_mps2 are within the scenario's limits, as T* supposes.

@@ -8,7 +8,7 @@
 
 namespace touchdown::evaluation {
 
-/// Makes sure before the work that WriteMcap will be able to write there: the name, which must end in .mcap, the place, the
+/// Checks before the work that WriteMcap will be able to write: the name (it must end in .mcap), the place, and the
 /// descriptions of the messages. @throws BadInput; std::runtime_error naming a description that the installation lacks
 void CheckMcap(const std::string& option, const std::string& path);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parses the command line with CLI11 and maps every way to fail to the program's exit statuses:
-// what the user wrote (CLI::ParseError, BadInput) is 2, what the program could not do (any other
-// exception) is 1, each with one sentence on stderr.
+// Parses the command line with CLI11 and maps every failure to an exit status of the program.
+// Faults of the input (CLI::ParseError, BadInput) are 2; faults of the program (any other
+// exception) are 1. Each prints one sentence on stderr.
 #include "touchdown/evaluation/program/program.h"
 
 #include <algorithm>

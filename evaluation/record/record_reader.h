@@ -27,9 +27,9 @@ struct RecordedFlight {
 inline constexpr const char* kReplayKeys =
     "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
 
-/// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario. @throws BadInput
-/// with one sentence: an override is none of kReplayKeys, or, with the file's name, it is not there, no record, of another
-/// version, or something in it is missing or out of its range.
+/// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario.
+/// @throws BadInput with one sentence. An override is none of kReplayKeys; or, with the file's name, the file is
+/// missing, is no record, has another version, or lacks a value or has one out of range.
 RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

@@ -12,8 +12,8 @@ struct Interpreter {
   std::string named_by;  ///< a variable of the environment, or "the build's default"
 };
 
-/// The interpreters that the user may mean, first the one that is meant most: what TOUCHDOWN_PYTHON says, which then is alone; the
-/// active environment's (VIRTUAL_ENV, CONDA_PREFIX); python3 on PATH; the build's default. None twice.
+/// The interpreters that the user may mean, in order of preference, each once. If TOUCHDOWN_PYTHON is set, it is the
+/// only one. Else: the active environment's (VIRTUAL_ENV, CONDA_PREFIX), python3 on PATH, the build's default.
 std::vector<Interpreter> InterpretersToAsk();
 
 /// The first that has all packages. Each is asked in turn. @throws std::runtime_error, half a sentence: what each of them lacks, and

@@ -7,8 +7,8 @@
 namespace touchdown::evaluation {
 
 /// Draws a picture with `draw(table, picture)`, one of those below. The table, or document, is the
-/// one at `kept`; where that is empty, `write` is told where to write one, beside the picture, that
-/// is removed again. @throws what `write` and `draw` throw.
+/// one at `kept`. If `kept` is empty, `write` writes one beside the picture, and it is removed
+/// afterwards. @throws what `write` and `draw` throw.
 void DrawFrom(const std::string& kept, const std::string& picture,
               const std::function<void(const std::string& table)>& write,
               const std::function<void(const std::string&, const std::string&)>& draw);

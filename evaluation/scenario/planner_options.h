@@ -39,8 +39,8 @@ planning::TermSettings TermSettingsOf(const std::string& name,
 /// What the vehicle may do in flight.
 control::Envelope EnvelopeOf(const Scenario& scenario);
 
-/// How far plans stay from obstacles: planning.clearance, but no less than what proven pairs
-/// keep in calm air, the hull at every tilt and its margins [m].
+/// How far plans stay from obstacles [m]: planning.clearance. For a planner that proves pairs it is
+/// at least what these keep in calm air: the hull at every tilt and its margins.
 double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& model,
                      const Registries& registries);
 

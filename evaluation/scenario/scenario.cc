@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading and writing scenario files. The YAML tree is walked once and every leaf is looked up in
-// the schema by its dotted name; what the schema does not know is refused with its file and line.
+// Reading and writing scenario files. The YAML tree is walked once, and every leaf is looked up in
+// the schema by its dotted name. A name that the schema does not know is refused with its file and
+// line.
 #include "touchdown/evaluation/scenario/scenario.h"
 
 #include <algorithm>
@@ -225,8 +226,8 @@ void ReadAirframe(const Keys& keys, ScenarioSource* source) {
   }
 }
 
-// What the keys that were given ask of those that were not: some planners' plans do not lead to contact, one
-// that does ends when it is best, and a wind's direction that is given is meant, not one that is drawn.
+// Sets defaults that depend on other keys. A planner whose plans do not lead to contact gets the vertical descent.
+// Plans to contact get a free arrival, others a fixed one. If the wind's direction is given, it is not drawn.
 void SuitDefaults(const Registries& registries, ScenarioSource* source) {
   Scenario& s = source->scenario;
   const auto given = [source](const char* key) { return source->where.count(key) != 0; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Checks across keys. The start is a box of positions (its spread): every obstacle must stay
 // outside it by the vehicle's hull. The pad's path is sampled every 0.1 s until the time-out, for
-// both ends of the drawn phase: every obstacle must stay outside the deck's circumscribed circle.
+// both ends of the drawn phase. Every obstacle must stay outside the deck's circumscribed circle.
 #include "evaluation/scenario/scenario_check.h"
 
 #include <algorithm>

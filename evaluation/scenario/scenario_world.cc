@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units become SI here (degrees to radians) and draws are made: each purpose has its own stream,
-// and every stream is drawn from whether or not its figure is used, so that one option never shifts
+// Units become SI here (degrees to radians), and draws are made. Each purpose has its own stream.
+// Every stream is drawn from, whether or not its figure is used, so that one option never shifts
 // another's draws.
 #include "evaluation/scenario/scenario_world.h"
 

@@ -53,9 +53,8 @@ std::string VehicleMjcf(const Scenario& scenario);
 /// What to look at in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
 std::vector<sim::VehicleFinding> VehicleWarnings(const Scenario& scenario);
 
-/// What the files outside of the scenario said that a flight depends on, as a record keeps it: the
-/// points of the waypoint file, the hashes of the vehicle's MJCF text and of the files of obstacles; each `none` without
-/// such a file.
+/// Contents of files outside of the scenario that a flight depends on, as a record keeps them: the points of the
+/// waypoint file, the hashes of the vehicle's MJCF text and of the obstacle files. Each is `none` without such a file.
 /// @throws std::invalid_argument as PadCourseOf and VehicleMjcf do.
 struct OutsideFiles {
   std::string pad_waypoints = "none";

@@ -346,9 +346,9 @@ TEST(LandingTime, LargerLimitsAndALargerPadAreNeverLater) {
   }
 }
 
-/// Time of first contact of a flight that heads for `aim` (from the pad's centre) where the pad will be
-/// at `meeting`, as fast as it can still brake from, with jolts of this share of its acceleration.
-/// Infinite if there is none by `end`. Every step keeps both limits.
+/// Time of first contact of a flight that heads for `aim` (from the pad's centre) where the pad will be at `meeting`.
+/// It is as fast as it can still brake from, with jolts of this share of its acceleration. Infinite if there is no
+/// contact by `end`. Every step keeps both limits.
 double SampledFlight(const RandomTask& r, const Eigen::Vector3d& aim, double meeting, double jolt,
                      double end, std::mt19937_64* random) {
   const double dt = 1e-3;

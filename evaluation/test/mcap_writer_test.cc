@@ -81,8 +81,8 @@ TEST(McapWriter, PutsItsRecordsInTheFormatsOrder) {
   EXPECT_EQ(file.substr(0, kMagicSize), kMagic);
   EXPECT_EQ(file.substr(file.size() - kMagicSize), kMagic);
   const std::vector<Record> records = SmallRecords(file);
-  // Header, metadata; a chunk with two indices, a chunk with one; end of data; schema, channels, statistics, chunk indices,
-  // metadata index, offsets of these five groups, footer.
+  // Header, metadata. A chunk with two indices, a chunk with one, end of data. Schema, channels, statistics, chunk
+  // indices, metadata index, offsets of these five groups, footer.
   EXPECT_THAT(OpsOf(records),
               ElementsAre(0x01, 0x0C, 0x06, 0x07, 0x07, 0x06, 0x07, 0x0F, 0x03, 0x04, 0x04, 0x0B,
                           0x08, 0x08, 0x0D, 0x0E, 0x0E, 0x0E, 0x0E, 0x0E, 0x02));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program as a library function, with a backend that is broken on purpose: what goes wrong in
-// flight is the program's fault and must not look like the user's.
+// The program as a library function, with a backend that is broken on purpose. A failure in flight
+// is the program's fault and must not look like the user's.
 #include "touchdown/evaluation/program/program.h"
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// docs/record.md against the files that the program writes: every table and column, and every key of a
-// manifest that is not of the build, must be named in the section of that file's format.
+// Checks docs/record.md against the files that the program writes. The section of a file's format must name every
+// table, every column, and every key of its manifest except keys of the build.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>

@@ -235,8 +235,8 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
   }
 }
 
-// No tag is ever seen, however good the GPS: the gate stays closed, the vehicle waits above it, in the
-// vertical style goes around, and never comes down.
+// No tag is ever seen, however good the GPS. So the gate stays closed and the vehicle waits above it. In the vertical
+// style it goes around. It never comes down.
 TEST(SensingFlight, WithoutTagsNothingDescendsBelowTheGate) {
   for (const char* style : {"descent=planned", "descent=vertical"}) {
     const Scenario scenario = Open({"camera.occlusion=0.9", "gps.sigma=0.01", "timeout=25", style});

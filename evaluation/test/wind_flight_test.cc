@@ -23,8 +23,8 @@ namespace {
 
 using Overrides = std::vector<std::string>;
 
-// Steady wind to the north over a pad that stands ahead of the start (what is straight below the camera does
-// not see, and the vehicle does not sink into it), or drives a circle there.
+// Steady wind to the north over a pad that stands ahead of the start or drives a circle there. It is ahead because the
+// camera does not see what is straight below, and the vehicle does not sink into the unseen.
 const Overrides kNorthWind = {"wind.direction_random=false", "wind.direction_deg=90"};
 const Overrides kAbovePad = {"task=follow", "follow.time=0", "pad.motion=static",
                              "pad.start=[3.0, 0.2]", "pad.prediction=oracle"};
@@ -58,8 +58,8 @@ std::string Refusal(const Overrides& overrides) {
   return "";
 }
 
-// In open sky, with a hull that is wide by its margins and a nose that the wind lifts, it stood for ever: cells in
-// front and below were never in the image.
+// In open sky, with a wide hull (its margins) and a nose that the wind lifts. The vehicle used to stand for ever,
+// because cells in front and below were never in the image.
 TEST(WindFlight, WhoDoesNotSeeTheWayForItsLeanLooksFromElsewhere) {
   const TrialResult result =
       Fly({"pad.motion=circle", "pad.heading_deg=-90", "pad.turn_rate=-0.07", "pad.speed=0.23",

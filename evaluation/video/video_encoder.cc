@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program gets a socket as its standard input: unlike a pipe, writing to one whose other end is gone can be told not to
-// raise a signal. What it says goes to a file in memory, so that it never waits for a reader, nor for room on a full disk. It
-// is spawned, not forked: the rasteriser has threads. It is not in this process's group: a keyboard's signals are for this one,
-// which then ends it.
+// The program gets a socket as its standard input. Unlike with a pipe, a write to a socket whose other end is gone can
+// be told not to raise a signal. The program's output goes to a file in memory, so it never waits for a reader, nor for
+// room on a full disk. It is spawned, not forked, because the rasteriser has threads. It is not in this process's
+// group: a keyboard's signals are for this process, which then ends it.
 #include "evaluation/video/video_encoder.h"
 
 #include <array>

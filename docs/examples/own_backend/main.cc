@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole program `touchdown` with a solver backend of one's own: the chord method, Newton's method
-// that keeps a factor of the Hessian for several steps. Each step is halved until the cost decreases.
+// The whole program `touchdown` with its own solver backend, the chord method. This is Newton's method that keeps a
+// factor of the Hessian for several steps. Each step is halved until the cost decreases.
 
 #include <memory>
 #include <utility>

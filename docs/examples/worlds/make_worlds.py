@@ -55,7 +55,7 @@ def building(rng):
 
 
 def belief(walls):
-    """A yard of 16 x 12 x 4 m that is free but for walls of 3 m: each from (x, y) to (x, y), in m."""
+    """A yard of 16 x 12 x 4 m that is free except for walls of 3 m, each from (x, y) to (x, y), in m."""
     cells = np.full((80, 60, 20), FREE)
     for low, high in walls:
         (x0, y0), (x1, y1) = ((np.asarray(p) / BELIEF_CELL).round().astype(int) for p in (low, high))

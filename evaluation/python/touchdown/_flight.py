@@ -180,18 +180,17 @@ def run_trial(
     registries: Optional[_touchdown.Registries] = None,
     record: Union[bool, PathLike] = False,
 ) -> TrialResult:
-    """Flies one trial: a pure function of scenario and seed, but for its times.
+    """Flies one trial: a pure function of scenario and seed, except for its times.
 
     scenario    as in load_scenario
     seed        of what is drawn; None: the scenario's
     set         keys of the scenario to change: {"pad.speed": 1.2}
     planner, backend   short for the keys planner and solver.backend
     registries  Registries, where parts of Python take part
-    record      True: the result has a `record`; a path: the file is kept there, in place of a record
-                that is there
+    record      True: the result has a `record`; a path: the file is kept there and replaces an older record
 
-    Gives a TrialResult. Raises BadInput where the scenario cannot be flown, OSError where the record cannot be written;
-    what a part of Python raises in flight is raised here.
+    Returns a TrialResult. Raises BadInput where the scenario cannot be flown, and OSError where the record cannot be
+    written. What a part of Python raises in flight is raised here.
     """
     changes = dict(set or {})
     if planner is not None:

@@ -30,11 +30,11 @@ class Parameter:
 
 
 class Tunable:
-    """Looks at every class that derives from it when that is made: raises TypeError or ValueError.
+    """Checks every class that derives from it when the class is made: raises TypeError or ValueError.
 
     name        the word in a scenario; by default the class's in snake case
-    parameters  {name: Parameter}: attributes of an instance; a number of that name in the body of a subclass is the
-                default there
+    parameters  {name: Parameter}: attributes of an instance. A number of that name in the body of a subclass is its
+                default
     """
 
     name: str = ""

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of a comparison of solver backends (docs/compare.md): the performance profile (Dolan
-and Moré, 2002), the distribution of the time to the gap, and the time per iteration over the number
-of control points.
+"""The pictures of a comparison of solver backends (docs/compare.md).
+
+They show the performance profile (Dolan and Moré, 2002), the distribution of the time to the gap, and the
+time per iteration over the number of control points.
 
     /usr/bin/python3 -m touchdown_report.compare COMPARISON.db OUT.png
 """

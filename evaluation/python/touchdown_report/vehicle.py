@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of a vehicle (`touchdown check-vehicle --picture`): from above and from the right, with its hull,
-feet, rotors and their senses, the axes of its frame B and those of its inertia.
+"""The picture of a vehicle (`touchdown check-vehicle --picture`), from above and from the right.
+
+It has the hull, feet, rotors and their senses, the axes of the vehicle's frame B and those of its inertia.
 
     /usr/bin/python3 -m touchdown_report.vehicle VEHICLE.json OUT.png
 """

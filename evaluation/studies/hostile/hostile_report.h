@@ -15,8 +15,8 @@
 
 namespace touchdown::evaluation {
 
-/// What `touchdown study hostile` prints: two tables by family, within and beyond the assumptions, then
-/// every flight that did not land, with the command that flies it again.
+/// What `touchdown study hostile` prints. Two tables by family, within and beyond the assumptions, come first. Then
+/// follows every flight that did not land, with the command that flies it again.
 std::string HostileText(const HostileOptions& options, const std::vector<SweepRow>& rows);
 
 /// The same as JSON. Nothing in it depends on who flew the flights.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight is drawn in this order: family, conditions, what goes beyond, then --set, then the world, which
-// may ask for the conditions, then --set again, for keys of the world. A world in which the start is not
-// free or the pad's lane is blocked is thrown away, and the next one is drawn from a stream of its own.
+// A flight is drawn in this order: family, conditions, what goes beyond, --set, world, and --set again for keys of the
+// world. The world may depend on the conditions. A world in which the start is not free or the pad's lane is blocked is
+// discarded. The next one is drawn from its own stream.
 #include "evaluation/studies/hostile/hostile_study.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The world is cut into cells of 0.2 m around start, lane and obstacles. A cell may be entered where the
-// obstacles are as far as the clearance; the step into it is looked at half way. The bound on the rest of
-// a way is the distance to the box around the lane, so that what is settled is settled by its shortest way.
+// The world is cut into cells of 0.2 m around start, lane and obstacles. A cell may be entered where the obstacles are
+// as far as the clearance; the step into it is checked half way. The bound on the rest of a way is the distance to the
+// box around the lane. So a settled cell is settled by its shortest way.
 #include "evaluation/studies/hostile/hostile_way.h"
 
 #include <algorithm>

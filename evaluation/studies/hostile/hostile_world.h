@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the generators of hostile worlds build with. A generator works in a frame in which the vehicle
-// starts near the origin and the pad drives beyond, towards +x; the finished world is then turned.
+// Functions for the generators of hostile worlds. A generator works in a frame in which the vehicle starts near the
+// origin and the pad drives beyond, towards +x. The finished world is then turned.
 #pragma once
 
 #include "sim/base/random_stream.h"
@@ -43,7 +43,7 @@ void StartAt(double x, double y, double z, double yaw_deg, Scenario* scenario);
 /// A closed way of the pad beyond `x`: a figure of eight, a circle, or to and fro across. Its speed is one
 /// that limits.acceleration can follow.
 void LaneBeyond(double x, sim::RandomStream& draw, Scenario* scenario);
-/// To and fro along y at `x` with the middle at y = 0, `length` long but for its smooth turns, which take
+/// To and fro along y at `x` with the middle at y = 0. The lane is `length` long, less its smooth turns. These take
 /// about a quarter of it.
 void StraightLane(double x, double length, sim::RandomStream& draw, Scenario* scenario);
 

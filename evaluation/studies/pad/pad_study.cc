@@ -91,8 +91,8 @@ void Give(const estimation::PadArrival& arrival, estimation::PadFilter* filter) 
   }
 }
 
-// The flights of a scenario and a sigma. The sigma goes before the user's own changes, which shows
-// whether they touch it; and so does the style whose flights are longer, unless they want the other.
+// The flights of a scenario and a sigma. The sigma precedes the user's overrides, so a changed sigma is noticed. The
+// vertical style, whose flights are longer, precedes them too, so the user can choose the other.
 // @throws BadInput
 std::vector<SweepTrial> PlanCell(const PadStudyOptions& options, std::size_t scenario,
                                  std::size_t sigma, const Registries& registries) {

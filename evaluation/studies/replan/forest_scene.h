@@ -61,8 +61,8 @@ inline constexpr int kForestSceneDraws = 100;
 /// The random stream of draw number `draw` of scene `index`.
 sim::RandomStream SceneStream(const SceneOptions& options, int index, int draw);
 
-/// Draws a scene: start at 1 m height with up to 0.8 of the speed limit within 0.4 rad of the way to a
-/// goal 11 / 7.5 horizons ahead, no pillar within 2 m of either. The stream can be drawn from further.
+/// Draws a scene. The start is at 1 m height with up to 0.8 of the speed limit, within 0.4 rad of the direction to the
+/// goal. The goal is 11 / 7.5 horizons ahead. No pillar is within 2 m of either. The stream can be drawn from further.
 /// Throws std::invalid_argument for an option out of range.
 ForestScene DrawForestScene(const SceneOptions& options, sim::RandomStream* stream);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A way gives a curve in time; its control points are bound to the free space around it; solve, bind anew
-// where it is blocked, press harder, until the curve has a certificate. Ways: paths of A*, short and wide, with the ways of
-// earlier ones closed; and those of a search in position and speed, which fit a fast start.
+// A way gives a curve in time; its control points are bound to the free space around it. Then: solve, bind anew where
+// it is blocked, press harder, until the curve has a certificate. Some ways are paths of A*, short and wide, with
+// earlier ways closed. Others are from a search in position and speed, which fit a fast start.
 #include "evaluation/studies/replan/plan_oracle.h"
 
 #include <algorithm>

@@ -26,9 +26,9 @@ struct OracleAnswer : OracleVerdict {
   int tries = 0;  ///< ways times arrivals times segments that were tried
 };
 
-/// Tries many ways around obstacles, arrival times and segments, each with many rounds of binding; takes
-/// milliseconds where a plan is near and seconds where there is none. It shares with the replanning step what
-/// a plan is (the landing problem, corridors, the certificate and its pair), not how one is looked for.
+/// Tries many ways around obstacles, arrival times and segments, each with many rounds of binding. Takes milliseconds
+/// where a plan is near and seconds where there is none. It shares with the replanning step the definition of a plan
+/// (the landing problem, corridors, the certificate and its pair), but not the search.
 class PlanOracle {
  public:
   /// @param options as a step has them; backend and formulation are the oracle's own: `banded`, soft limits,

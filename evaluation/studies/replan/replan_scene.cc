@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The published scenes' end is a point and a velocity near the speed limit, whenever it is reached: the
-// set point_ahead. In the others the point is where a pad will be: it passes the point when the
-// replanner's own guess of the duration says, so that a plan that is on time ends there.
+// The published scenes' end is a point and a velocity near the speed limit, whenever it is reached: the set
+// point_ahead. In the others the point belongs to a future pad. The pad passes it when the replanner's own guess of the
+// duration says, so that a plan that is on time ends there.
 #include "evaluation/studies/replan/replan_scene.h"
 
 #include <algorithm>

@@ -36,8 +36,8 @@ struct ReplanScene {
   double duration = 0.0;              ///< the replanner's own guess for that end [s]
   double target_moved = 0.0;          ///< out of an obstacle, by this much [m]
   bool straight_blocked = true;       ///< an obstacle is in the straight way
-  /// The target was free or moved less than 1 m, A* on the known map joins start and target within
-  /// 1.3 times the straight length, and full braking from the start is free.
+  /// The target was free or moved less than 1 m. A* on the known map joins start and target within
+  /// 1.3 times the straight length. Full braking from the start is free.
   bool feasible = false;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every accepted plan is checked again at points 1 cm apart:
 // - its speed and acceleration;
-// - whether it is in one of the map's blocked cells, which the certificate has asked along chords;
-// - FCL's distance from these points to the obstacles themselves, which shares nothing with the certificate.
+// - the map's blocked cells, which the certificate has asked along chords;
+// - FCL's distance to the obstacles themselves, which shares nothing with the certificate.
 // Cells hold their obstacles. So a plan that is clear of the inflated cells is at least the inflation away from every
 // obstacle.
 #include "evaluation/studies/replan/replan_study.h"

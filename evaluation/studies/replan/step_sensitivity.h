@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each constant of a replanning step is worth: every one is changed by a quarter down and up, and the same
-// scenes are asked again.
+// The effect of each constant of a replanning step. Each one is changed by a quarter down and up, and the same scenes
+// are asked again.
 #pragma once
 
 #include <functional>

@@ -16,8 +16,8 @@ class StudyError(Exception):
 
 
 class Study:
-    """`plan` (study.json), `manifest` {key: value}, `trials`: one row a trial with its cell, method,
-    labels, figures, timing and `command`; `replans`: one row a replanning step with its times."""
+    """`plan` (study.json), `manifest` {key: value}, `trials` and `replans`. A row of `trials` is a trial with its cell,
+    method, labels, figures, timing and `command`. A row of `replans` is a replanning step with its times."""
 
     def __init__(self, folder):
         self.folder = folder

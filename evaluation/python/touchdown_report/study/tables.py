@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the trials of any study come to, as pandas tables: one row for each method in each cell, for each
+"""Results of any study's trials, as pandas tables. They have one row for each method in each cell, for each
 pair of methods, for each outcome and for each failure."""
 import numpy as np
 import pandas as pd
@@ -110,9 +110,9 @@ def _compare(study, cell, method, pairs):
 
 
 def comparisons(study):
-    """Each method against the reference on the same seeds: in each cell, and over all cells that both
-    flew in (`cell` = all), where seeds, not pairs, are what is drawn independently. `p_holm` is adjusted over the
-    cells, and apart from them over the methods."""
+    """Each method against the reference on the same seeds, in each cell and over all cells that both
+    flew in (`cell` = all). Over all cells the seeds are independent, the pairs are not. `p_holm` is adjusted over the
+    cells, and separately over the methods."""
     rows = []
     pooled = {}
     for cell, method in study.parts():

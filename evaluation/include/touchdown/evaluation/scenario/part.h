@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What planners, pad motions, controllers and pad predictors have in common: a name that a scenario chooses them by, and
-// numbers of their own in it.
+// What planners, pad motions, controllers and pad predictors have in common. Each has a name, by which a scenario
+// chooses it, and numbers of its own in the scenario.
 #pragma once
 
 #include <algorithm>
