@@ -18,7 +18,7 @@ function(touchdown_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                            -Woverloaded-virtual -Wold-style-cast
                                            -Wno-missing-field-initializers)
-  # Nobody reads errno after a square root; with it no loop around one is vectorised.
+  # errno is never read after a square root; with it no loop around one is vectorised.
   target_compile_options(${target} PRIVATE -fno-math-errno)
   # GCC 12 has two false warnings. It takes the unset operand in its own AVX-512 intrinsics for a fault, once per use
   # (GCC bug 105593). With AVX2 or AVX-512 it also reports an access out of bounds: a load of four or eight numbers from

@@ -14,7 +14,7 @@ class _Keep:
 
 
 KEEP = _Keep()
-"""`Planner.plan` returns it where the committed curve is to go on."""
+"""What `Planner.plan` gives where the committed curve is to go on."""
 
 
 @dataclass

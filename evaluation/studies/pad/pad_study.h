@@ -67,7 +67,7 @@ struct PadStudy {
 
 /// Runs a filter of each model on the measurements of the flight's filter. Compares it with the truth at every sample
 /// from kPadSettled to contact whose horizon the log reaches. A sample is by tags if it is for both, so that both
-/// models have the same samples. One row for each model, course and information that occurred, without the flight's index.
+/// models have the same samples. One row for each model, course and information that occurred; `flight` is not set.
 /// @param options of both; their model is not read.
 std::vector<PadStudyRow> ReplayPadLog(const PadLog& log,
                                       const estimation::PadFilterOptions& options);
