@@ -9,9 +9,9 @@ namespace touchdown::evaluation {
 /// The first file of this name on PATH that can be executed; empty: there is none.
 std::string FindOnPath(const std::string& program);
 
-/// What became of a program that was run.
+/// The end of a program that was run.
 struct ChildEnd {
-  std::string failure;    ///< why it did not end well, in words; empty: it did
+  std::string failure;    ///< why it did not end well, in words; empty: it ended well
   std::string last_line;  ///< of what it wrote to stdout and stderr; blank lines are none
 };
 

@@ -8,12 +8,12 @@
 
 namespace touchdown::evaluation {
 
-/// What became of one piece of work.
+/// The result of one piece of work.
 struct WorkerReply {
   enum class End { kDone, kDied, kTimedOut };
   int item = 0;
   End end = End::kDone;
-  std::string text;  ///< what the work gave; of kDied what it died of, in words
+  std::string text;  ///< what the work gave; for kDied the cause, in words
 };
 
 /// A process that waits for numbers and answers each with `work(number)`. A child process of its own does each piece of

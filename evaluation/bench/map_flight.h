@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One set of depth frames for the planner's rolling map and for OctoMap, under equal terms.
+// One set of depth frames for the planner's rolling map and for OctoMap, under equal conditions.
 #pragma once
 
 #include <cmath>
@@ -69,7 +69,7 @@ inline std::vector<estimation::DepthFrame> DepthFrames(const MapFlight& flight, 
   return frames;
 }
 
-/// The rolling map's options, but for what OctoMap does not have: ground, a least range, and a
+/// The rolling map's options, without what OctoMap does not have: ground, a least range, and a
 /// window that ends before the rays do.
 inline planning::OccupancyMapOptions EqualOptions() {
   planning::OccupancyMapOptions options;

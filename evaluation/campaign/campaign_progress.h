@@ -22,8 +22,8 @@ class CampaignProgress {
   std::optional<ProgressPrinter> tell_;  ///< from the first call on
 };
 
-/// Tells the log how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere.
-/// The exit status for it: 128 and the signal's number, as a shell has it.
+/// Logs how far an interrupted campaign came and where its trials are: in the file `db`; empty: nowhere. Returns the
+/// exit status: 128 plus the signal's number, as in a shell.
 int Interrupted(const CampaignResult& result, const std::string& db);
 
 }  // namespace touchdown::evaluation

@@ -9,10 +9,10 @@
 
 namespace touchdown::evaluation {
 
-/// A trial that is to be looked at.
+/// A trial to be recorded.
 struct RecordedTrial {
   const SweepTrial* trial = nullptr;
-  const TrialResult* flown = nullptr;  ///< what it came to; nullptr: not known
+  const TrialResult* flown = nullptr;  ///< its result; nullptr: not known
   std::string path;  ///< without ending: its record is path.db, its page path.html
 };
 
@@ -30,7 +30,7 @@ enum class Recorded { kNone, kFailures, kAll };
 /// Throws std::invalid_argument for another word.
 Recorded RecordedNamed(const std::string& name);
 
-/// Those of them that are to be.
+/// Those of them that are to be recorded.
 std::vector<const SweepRow*> ToRecord(const std::vector<SweepRow>& rows, Recorded which);
 
 /// Records those of `rows` into the folder of the report at `page`, `F_flights` beside F.html. Returns, by the trial's

@@ -22,14 +22,14 @@ struct StudyPart {
   std::string refusal;  ///< why it is not flown; empty: it is
 };
 
-/// What of a study is flown.
+/// The part of a study to fly.
 struct StudySelection {
   bool quick = false;                ///< the short form
   std::vector<std::string> cells;    ///< names; empty: all
   std::vector<std::string> methods;  ///< names; empty: all
   std::optional<int> trials;         ///< of each method in each cell; none: as the file says
 
-  /// Not the whole study, nor its short form.
+  /// A part: neither the whole study nor its short form.
   bool Part() const { return !cells.empty() || !methods.empty() || trials.has_value(); }
 };
 

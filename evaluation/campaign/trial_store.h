@@ -27,9 +27,9 @@ class TrialStore {
   /// trial. These crashed, hung or ended in an error.
   enum class Again { kNone, kLost };
 
-  /// Makes the file, or goes on with the one that is there. `path` empty: in memory.
-  /// @throws BadInput if the file there is none of this campaign, shard and build, or is being written by
-  /// another process; SqliteError, std::filesystem::filesystem_error
+  /// Makes the file, or continues the one that is there. `path` empty: in memory.
+  /// @throws BadInput if the existing file is not of this campaign, shard and build, or if another process writes it;
+  /// SqliteError, std::filesystem::filesystem_error
   TrialStore(const std::string& path, const Campaign& campaign, const Shard& shard,
              Again again = Again::kNone);
   ~TrialStore();
@@ -40,7 +40,7 @@ class TrialStore {
   int succeeded() const { return succeeded_; }
   /// @throws SqliteError
   void Add(int trial, const TrialResult& result);
-  /// What the file says, by trial. @throws SqliteError
+  /// The results in the file, by trial. @throws SqliteError
   std::map<int, TrialResult> Results() { return ReadTrials(*db_, true); }
 
  private:
@@ -58,7 +58,7 @@ class TrialStore {
 /// A statement that inserts rows with this many columns.
 SqliteStatement Insert(SqliteDb& db, const std::string& table, std::size_t columns);
 
-/// Makes the figures of all cells anew, from the trials that the file holds. @throws SqliteError
+/// Computes the figures of all cells anew, from the trials in the file. @throws SqliteError
 void WriteCells(SqliteDb& db);
 
 /// Writes a file of rows that were flown. @throws as TrialStore does

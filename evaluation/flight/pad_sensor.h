@@ -18,7 +18,7 @@
 
 namespace touchdown::evaluation {
 
-/// What the vehicle gets: an image, or else what would have been found in it.
+/// What the vehicle gets: an image, or the tags that would be found in it.
 struct PadSeen {
   std::unique_ptr<estimation::PadImage> image;
   estimation::PadSighting sighting;

@@ -42,7 +42,7 @@ struct Following {
   double relative_speed_mps = 0.0;  ///< mean norm of the velocity relative to the pad
 };
 
-/// What the flight found of its map.prior (docs/worlds.md): numbers of cells.
+/// What the flight learned about its map.prior (docs/worlds.md): numbers of cells.
 struct PriorFigures {
   std::int64_t occupied = 0;   ///< that the prior holds occupied
   std::int64_t looked_at = 0;  ///< of these, those that were observed
@@ -67,7 +67,7 @@ struct TrialTiming {
   int deadline_misses = 0;  ///< replans slower than the latency they were flown with
 };
 
-/// What one trial came to: a pure function of (scenario, seed), but for `timing`.
+/// The result of one trial: a pure function of (scenario, seed), except for `timing`.
 struct TrialResult {
   std::uint64_t seed = 0;
   Outcome outcome = Outcome::kError;
@@ -102,7 +102,7 @@ struct TrialResult {
   TrialTiming timing;
 
   bool landed() const { return outcome == Outcome::kLanded; }
-  /// It came to what the scenario's task asks for.
+  /// It fulfilled the scenario's task.
   bool succeeded() const { return IsSuccess(outcome); }
   /// Time to land over T*, empty unless landed within the limits.
   std::optional<double> time_ratio() const {

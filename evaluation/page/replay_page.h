@@ -9,7 +9,7 @@
 
 namespace touchdown::evaluation {
 
-/// A record, and what it is called on the page.
+/// A record, and its name on the page.
 struct ShownRecord {
   std::string path;
   std::string name;

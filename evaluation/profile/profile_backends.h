@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One record, asked again of several backends: what their solves cost, and their whole steps.
+// One record, replayed with several backends: the cost of their solves and of their whole steps.
 #pragma once
 
 #include <functional>

@@ -18,7 +18,7 @@ class Validator;
 
 namespace touchdown::evaluation {
 
-/// What the words of an option must be.
+/// The allowed words of an option.
 class Rule {
  public:
   explicit Rule(std::shared_ptr<const CLI::Validator> validator);

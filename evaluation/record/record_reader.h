@@ -9,7 +9,7 @@
 
 namespace touchdown::evaluation {
 
-/// The part of a record that replanning steps are asked again from.
+/// The part of a record from which replanning steps are asked again.
 struct RecordedFlight {
   std::string path;
   Scenario scenario;  ///< the effective one, its seed that of the flight
@@ -23,7 +23,7 @@ struct RecordedFlight {
   std::vector<planning::CellCube> prior;  ///< near the flight, what map.prior held occupied
 };
 
-/// What of a recorded flight can be changed, as a help text says it.
+/// The keys of a recorded flight that can be changed, as a help text says it.
 inline constexpr const char* kReplayKeys =
     "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
 

@@ -39,7 +39,7 @@ void DrawPlan(const std::string& document_path, const std::string& picture_path)
 /// Draws a vehicle from its document (vehicle_check.h). @throws as DrawLanding
 void DrawVehicle(const std::string& document_path, const std::string& picture_path);
 
-/// Whether the report of a study could be written. @throws std::runtime_error naming the packages that are missing
+/// Checks that the report of a study can be written. @throws std::runtime_error naming the packages that are missing
 void CheckStudyReport();
 
 /// Writes report, tables and figures of a flown study into its folder (study_run.h). @throws as DrawLanding

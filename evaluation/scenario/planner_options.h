@@ -10,12 +10,12 @@
 
 namespace touchdown::evaluation {
 
-/// What the replanner is told of a scenario and its vehicle; `terms` are those it may use.
+/// The replanner's options for a scenario and its vehicle; `terms` are those it may use.
 planning::ReplannerOptions PlannerOptions(const Scenario& scenario,
                                           const estimation::VehicleModel& model,
                                           const planning::TermRegistry& terms);
 
-/// Where terms of the landing planner act, of those that say so.
+/// Where the landing planner's terms act, of those that give it.
 std::vector<planning::NamedZone> ZonesOf(const planning::ReplannerOptions& options);
 
 /// The planner that the scenario asks for.

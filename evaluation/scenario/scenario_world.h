@@ -35,7 +35,7 @@ std::unique_ptr<estimation::PadPredictor> PredictorOf(const Scenario& scenario,
 
 sim::PadGeometry PadGeometryOf(const Scenario& scenario);
 
-/// What the scenario says of a vehicle's file in the common form.
+/// The scenario's keys for a vehicle's file in the common form.
 sim::AirframeExtras AirframeOf(const Scenario& scenario);
 
 /// The path of the airframe file beside a vehicle's; empty where there is none.
@@ -50,7 +50,7 @@ Scenario UncheckedVehicleScenario(const std::string& vehicle,
 /// MJCF text of the scenario's vehicle. @throws std::invalid_argument naming the file.
 std::string VehicleMjcf(const Scenario& scenario);
 
-/// What to look at in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
+/// Findings in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
 std::vector<sim::VehicleFinding> VehicleWarnings(const Scenario& scenario);
 
 /// Contents of files outside of the scenario that a flight depends on, as a record keeps them: the points of the
@@ -63,7 +63,7 @@ struct OutsideFiles {
 };
 OutsideFiles OutsideFilesOf(const Scenario& scenario);
 
-/// What a trial draws before it begins.
+/// The draws of a trial before it begins.
 struct TrialDraw {
   Eigen::Vector3d p_WB = Eigen::Vector3d::Zero();  ///< start of the vehicle [m]
   double yaw = 0.0;                                ///< [rad]

@@ -83,7 +83,7 @@ class BoundsTree {
       }
       return gap;
     };
-    double touching = std::numeric_limits<double>::min();  // a gap of nothing is no gap
+    double touching = std::numeric_limits<double>::min();  // a gap of zero width is no gap
     Search(apart, &touching, visit);
   }
 

@@ -14,8 +14,8 @@ struct PathDrive {
   Pace pace;
 };
 
-/// Periodic, at every t: `speed` for `go_time`, standing for `stop_time`. The way is 0 at t = 0, where a
-/// change to `speed` is just over; at `go_time` the one to standing is. Acceleration is at most
+/// Periodic, at every t: `speed` for `go_time`, standing for `stop_time`. The arc length is 0 at t = 0, where a change
+/// to `speed` has just ended. At `go_time` the change to standing has just ended. Acceleration is at most
 /// `acceleration`. Times include half of each change of speed [s].
 Pace StopAndGoPace(double speed, double go_time, double stop_time, double acceleration);
 

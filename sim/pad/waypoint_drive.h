@@ -7,14 +7,14 @@
 
 namespace touchdown::sim {
 
-/// Where the pad shall be when.
+/// Where the pad should be, and when.
 struct PadWaypoint {
   Eigen::Vector2d p = Eigen::Vector2d::Zero();  ///< in W [m]
   double t = 0.0;                               ///< [s]
   int line = 0;                                 ///< of the file it came from, for messages
 };
 
-/// Points so near to each other are one place [m].
+/// Points closer than this are one place [m].
 inline constexpr double kSamePlace = 1e-3;
 
 /// A drive past these points. Each corner is cut by a smooth turn. Across the path it has at most `acceleration`

@@ -10,7 +10,7 @@
 
 namespace touchdown::sim {
 
-/// What there is to be seen besides the vehicle, which its own cameras do not see.
+/// What is visible besides the vehicle, which its own cameras do not see.
 struct VisualScene {
   ObstacleField obstacles;
   PadGeometry pad;
@@ -18,7 +18,7 @@ struct VisualScene {
   double occlusion = 0.0;    ///< share of the printed sheet under an opaque plate, in [0, 1)
 };
 
-/// How it is looked at: a pinhole camera with square pixels and its axis through the image's middle.
+/// The camera model: a pinhole camera with square pixels and its axis through the image's middle.
 struct ViewConfig {
   int width = 320;          ///< [pixel], in [1, 4096]
   int height = 240;         ///< [pixel], in [1, 4096]

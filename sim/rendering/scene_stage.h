@@ -16,8 +16,8 @@
 
 namespace touchdown::sim {
 
-/// A model of a scene without dynamics, and what draws it: bodies with mocap are put where they are to be, then it is
-/// drawn. Belongs to the thread that made it.
+/// A model of a scene without dynamics, and its renderer. Bodies with mocap are placed, then the scene is drawn.
+/// Belongs to the thread that made it.
 class SceneStage {
  public:
   /// @param mjcf of `scene`, with bodies "pad" and "camera" as in SceneMjcf. @param ground its texture, kGroundTexels a side.

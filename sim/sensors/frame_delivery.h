@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How frames get from a sensor to who uses them: some not at all, the others late.
+// Delivery of frames from a sensor to its user: some are lost, the others are late.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct FrameDeliveryConfig {
   double drop_probability = 0.0;  ///< of each frame, in [0, 1]
 };
 
-/// Holds frames, or what was made of them, back until they would arrive. Ask Admit first: of a frame
-/// that is dropped no image has to be made. The same seed gives the same frames.
+/// Holds frames, or their results, back until they would arrive. Ask Admit first: a dropped frame needs no image. The
+/// same seed gives the same frames.
 template <typename Frame>
 class FrameDelivery {
  public:

@@ -46,8 +46,8 @@ class TagSensor {
   std::optional<estimation::PadSighting> Poll(double t, const estimation::VehicleState& vehicle,
                                               const estimation::PadState& pad);
 
-  /// The same without asking whether an image is due. @param believed the attitude, B to W, that the
-  /// vehicle takes for its own: the deck's normal is read off it.
+  /// The same without asking whether an image is due. @param believed the vehicle's estimate of its attitude, B to W:
+  /// the deck's normal follows from it.
   std::optional<estimation::PadSighting> Sight(double t, const estimation::VehicleState& vehicle,
                                                const estimation::PadState& pad,
                                                const Eigen::Quaterniond& believed);

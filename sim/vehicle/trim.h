@@ -10,7 +10,7 @@
 
 namespace touchdown::sim {
 
-/// Attitude and thrust at which a vehicle holds its velocity.
+/// Attitude and thrust with which a vehicle holds its velocity.
 struct Trim {
   Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
   double thrust = 0.0;  ///< of all rotors together [N]

@@ -23,7 +23,7 @@ struct AirframeExtras {
   Eigen::Vector2d feet = Eigen::Vector2d::Zero();
   /// +1 or -1 for each rotor in the file's order: the sign of its reaction torque about z_B. Empty: the file's.
   std::vector<double> rotor_senses;
-  /// Where those of the file cannot make a yaw moment, neighbours turn against each other, with a warning.
+  /// If the file's signs cannot make a yaw moment, neighbours turn against each other, with a warning.
   bool alternate_senses = false;
   /// Of actuators that make a moment alone, about x, y and z [N m]. Zero: the file's.
   Eigen::Vector3d moment_max = Eigen::Vector3d::Zero();

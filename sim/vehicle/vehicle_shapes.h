@@ -15,7 +15,7 @@ namespace touchdown::sim {
 struct VehicleShape {
   enum class Kind { kSphere, kCapsule, kEllipsoid, kCylinder, kBox, kMesh };
   Kind kind = Kind::kBox;
-  /// Half extents along G's axes (box, ellipsoid); radius (sphere); radius and half the height, a capsule's without its caps [m].
+  /// Half extents along G's axes (box, ellipsoid); radius (sphere); radius and half height without caps (others) [m].
   Eigen::Vector3d size = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_BG = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Quaterniond q_BG = Eigen::Quaterniond::Identity();
@@ -30,7 +30,7 @@ const char* ToString(VehicleShape::Kind kind);
 /// Throws std::invalid_argument as LoadVehicleModel.
 std::vector<VehicleShape> VehicleShapes(const std::string& mjcf);
 
-/// Of the rotors' discs as they are drawn: the model's, or 0.1 m where its file does not tell [m].
+/// Radius of the rotors' discs as drawn: the model's, or 0.1 m where its file does not give it [m].
 double DrawnRotorRadius(const estimation::VehicleModel& model);
 
 }  // namespace touchdown::sim

@@ -24,13 +24,13 @@ struct WorldConfig {
   ObstacleField obstacles;
   PadGeometry pad;
   PadMotionConfig pad_motion;
-  /// Drives the pad instead, if there is one, on a deck as high as pad_motion says.
+  /// If set, it drives the pad instead, on a deck as high as pad_motion says.
   std::shared_ptr<const PadCourse> pad_course;
   std::string vehicle_mjcf;        ///< text of the vehicle's MJCF file; empty: DefaultVehicleMjcf()
   estimation::VehicleState start;  ///< state at t = 0; its time stamp is not read
-  /// Given: the vehicle comes out of a hover in air of this velocity [m/s]. Of the start's attitude
-  /// only the yaw counts then, and the rotors have the thrust that balances the wind. Where they
-  /// cannot balance it, the start is as it is without.
+  /// If given, the vehicle comes out of a hover in air of this velocity [m/s]. Then only the yaw of
+  /// the start's attitude counts, and the rotors have the thrust that balances the wind. Where they
+  /// cannot balance it, the start is as without it.
   std::optional<Eigen::Vector3d> hover_air_W;
   double timestep = 0.002;     ///< [s], in [1e-4, 0.005]
   PlantFactors plant;          ///< how the simulated vehicle differs from its file
@@ -40,7 +40,7 @@ struct WorldConfig {
 /// What drives the pad of this world. Throws std::invalid_argument as PadMotion does.
 std::shared_ptr<const PadCourse> CourseOf(const WorldConfig& config);
 
-/// What touches what.
+/// Kinds of contact.
 enum class ContactKind {
   kFootDeck,    ///< a foot on the deck: how a landing looks
   kHullDeck,    ///< any other part of the vehicle on the deck
@@ -88,7 +88,7 @@ class World {
   const estimation::VehicleModel& model() const;  ///< as its file says: what may be known of it
   const estimation::VehicleModel& plant() const;  ///< as it is simulated
   const std::shared_ptr<const PadCourse>& pad_course() const;
-  /// How far the pad may be off its motion: its drive needs a force, which is a lag. Nothing lands.
+  /// How far the pad may be off its motion while nothing lands on it. Its drive needs a force, so it lags.
   struct PadLag {
     double position = 0.0;  ///< [m]
     double velocity = 0.0;  ///< [m/s]
@@ -108,13 +108,13 @@ class World {
   /// Thrust of each rotor now, after its lag [N].
   estimation::Commands rotor_thrusts() const;
 
-  /// What the rotors were told, after their lag [N]: a plant's thrusts are others.
+  /// The rotors' commands after their lag [N]. The thrusts of a plant differ from them.
   estimation::Commands rotor_commands() const;
 
   /// Drag applied in the step just taken, in W [N].
   Eigen::Vector3d drag_force() const;
 
-  /// What the ground effect added to the rotors' thrust in the step just taken, in all [N].
+  /// Thrust that the ground effect added to the rotors in the step just taken, in total [N].
   double ground_effect_thrust() const;
 
   /// Contacts of the step just taken. Positions, velocities and forces are those at its beginning.

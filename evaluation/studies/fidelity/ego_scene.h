@@ -12,7 +12,7 @@
 
 namespace touchdown::evaluation {
 
-/// What one first plan call came to. The figures of the curve are NaN without one.
+/// The result of one first plan call. The figures of the curve are NaN without one.
 struct EgoSceneResult {
   planning::EgoStatus status = planning::EgoStatus::kInvalidInput;
   int control_points = 0;

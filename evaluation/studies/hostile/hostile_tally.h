@@ -23,7 +23,7 @@ bool EndedOtherwise(const TrialResult& result);
 /// The kind of a wrong contact in one word: the outcome, of a collision what was touched.
 std::string ContactKind(const TrialResult& result);
 
-/// What a number of flights came to.
+/// The results of a number of flights.
 struct HostileTally {
   int flights = 0;
   int ways = 0;                         ///< flights in which a way exists

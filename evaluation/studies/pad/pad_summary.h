@@ -30,7 +30,7 @@ struct PadStudyCell {
   Interval interval;   ///< its 95 % bootstrap interval, over flights
 };
 
-/// What the cell's members ask of the rows; without samples nothing.
+/// The cell for these members of `asked`; nothing without samples.
 std::optional<PadStudyCell> Summarise(const PadStudy& study, PadStudyCell asked);
 
 /// Every course, with tags, by GPS alone, and both, and all courses, of every scenario and sigma.

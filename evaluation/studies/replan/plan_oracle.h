@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Is there a plan at all? What the success of a replanning step is counted against.
+// Whether there is a plan at all. The success of a replanning step is counted against it.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace touchdown::evaluation {
 
-/// What the oracle says of a scene. That it found no plan proves nothing.
+/// The oracle's verdict on a scene. That it found no plan proves nothing.
 struct OracleVerdict {
   bool found = false;        ///< there is a plan
   std::string found_by;      ///< "path", "wide path", "motion"; empty: no plan
@@ -20,7 +20,7 @@ struct OracleVerdict {
   int solves = 0;
 };
 
-/// With the plan that it found, which has the certificate of plans that are flown.
+/// With the plan that it found, which has the same certificate as plans that are flown.
 struct OracleAnswer : OracleVerdict {
   std::optional<planning::UniformBspline> plan;
   int tries = 0;  ///< ways times arrivals times segments that were tried

@@ -8,13 +8,13 @@
 
 namespace touchdown::evaluation {
 
-/// One point of a curve of growth: all is as usual but for one thing.
+/// One point of a growth curve: one setting differs from the usual ones.
 struct GrowthPoint {
   std::string varied;  ///< horizon_m, density_per_m2 or resolution_m
   ReplanStudyOptions options;
 };
 
-/// Of the scenes of a point: what is varied in it.
+/// What is varied in the scenes of a point.
 double VariedValue(const std::string& varied, const SceneOptions& scenes);
 
 /// The settings of the growth study, around `usual`: horizons of 5 to 30 m, pillars from 0.06 to

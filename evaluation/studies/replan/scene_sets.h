@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sets of single replanning steps: what is asked, and in which world.
+// Sets of single replanning steps: the question and the world.
 #pragma once
 
 #include <string>

@@ -26,7 +26,7 @@ struct Parameter {
   std::string doc;  ///< one line
 };
 
-/// What every entry of a registry says of itself.
+/// What every entry of a registry gives.
 struct Part {
   std::string name;     ///< the word in a scenario
   std::string summary;  ///< one line of `touchdown list`
