@@ -35,7 +35,7 @@ struct SafetyFigures {
   std::int64_t falsely_free_cells = 0;  ///< of those, cells whose centre is inside an obstacle
 };
 
-/// Collects them. The truth is the obstacles'; what the vehicle knows is in the frame of its estimate.
+/// Collects the figures. The truth is that of the obstacles. The vehicle's knowledge is in the frame of its estimate.
 class SafetyWatch {
  public:
   explicit SafetyWatch(const sim::ObstacleField& obstacles) : obstacles_(obstacles) {}

@@ -15,8 +15,8 @@
 
 namespace touchdown::evaluation {
 
-/// How well the pad filter did, against the truth: right after each of its measurements while it
-/// counts as converged, until first contact.
+/// Errors of the pad filter against the truth, right after each of its measurements while it counts
+/// as converged, until first contact.
 struct EstimatorQuality {
   double rmse_position_m = 0.0;     ///< horizontal, relative to the vehicle (estimate to estimate)
   double rmse_velocity_mps = 0.0;   ///< horizontal, in W

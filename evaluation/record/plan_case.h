@@ -41,7 +41,7 @@ struct SolvedStep {
   static constexpr double kPadStep = 0.1;     ///< [s]
 };
 
-/// Solves the step that `replay`, of `flight`, was brought to: once for its times, once more written down. Without the
+/// Solves the step of `flight` to which `replay` was brought: once for its times, once more with a log. Without the
 /// map's cells. @throws BadInput if it is the step of another planner than landing.
 SolvedStep SolveSought(const RecordedFlight& flight, Replay* replay);
 

@@ -16,13 +16,13 @@ struct Interpreter {
 /// only one. Else: the active environment's (VIRTUAL_ENV, CONDA_PREFIX), python3 on PATH, the build's default.
 std::vector<Interpreter> InterpretersToAsk();
 
-/// The first that has all packages. Each is asked in turn. @throws std::runtime_error, half a sentence: what each of them lacks, and
-/// how that is installed. @param patience_s how long one has to answer [s]
+/// The first that has all packages. Each is asked in turn. @throws std::runtime_error, half a sentence: what each of
+/// them lacks, and how to install it. @param patience_s how long one may take to answer [s]
 Interpreter FirstWith(const std::vector<std::string>& packages,
                       const std::vector<Interpreter>& interpreters, double patience_s);
 
-/// The path of the first of InterpretersToAsk with these packages, which is kept for the run. One that is not the build's default is
-/// told to the log. @throws as FirstWith; the next call asks again
+/// The path of the first of InterpretersToAsk with these packages. It is kept for the run. If it is not the build's
+/// default, it is logged. @throws as FirstWith; the next call asks again
 std::string InterpreterWith(const std::vector<std::string>& packages);
 
 }  // namespace touchdown::evaluation

@@ -45,7 +45,7 @@ double PlanClearance(const Scenario& scenario, const estimation::VehicleModel& m
                      const Registries& registries);
 
 /// Longest time from the question to the plan [s]: the least time between two replanning steps. A
-/// plan that took over later would still be waiting when the next one is asked for.
+/// plan that takes over later would still wait when the next one is asked for.
 double LongestLatency(const Scenario& scenario);
 
 }  // namespace touchdown::evaluation

@@ -41,8 +41,8 @@ sim::AirframeExtras AirframeOf(const Scenario& scenario);
 /// The path of the airframe file beside a vehicle's; empty where there is none.
 std::string AirframeFile(const std::string& vehicle);
 
-/// The default scenario with a vehicle's file, what stands in the airframe file beside it, and overrides KEY=VALUE. The
-/// vehicle is not looked at. @throws BadInput as LoadScenario does for keys and values.
+/// The default scenario with a vehicle's file, the keys of the airframe file beside it, and overrides KEY=VALUE. The
+/// vehicle is not checked. @throws BadInput as LoadScenario does for keys and values.
 Scenario UncheckedVehicleScenario(const std::string& vehicle,
                                   const std::vector<std::string>& overrides,
                                   const Registries& registries);

@@ -18,7 +18,7 @@ std::vector<sim::PadWaypoint> ReadWaypoints(std::istream& text);
 /// The same of the file at `path`.
 std::vector<sim::PadWaypoint> ReadWaypointFile(const std::string& path);
 
-/// The points to the last bit, `t x y` in lines: what a record keeps of the file.
+/// The points, exact to the last bit, as lines `t x y`. A record keeps this text of the file.
 std::string WaypointText(const std::vector<sim::PadWaypoint>& points);
 
 }  // namespace touchdown::evaluation

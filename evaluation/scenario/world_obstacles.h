@@ -16,8 +16,8 @@ struct NamedObstacle {
 };
 using ObstacleList = std::vector<NamedObstacle>;
 
-/// All that stands in the scenario's world, list by list (obstacle_keys.h). What files hold is read once and kept for
-/// the next call, until they change.
+/// All obstacles of the scenario's world, list by list (obstacle_keys.h). Files are read once; their content is kept
+/// for the next call, until they change.
 /// @throws BadInput "<key>: <file>: <why>" for a file that gives no obstacles.
 ObstacleList ObstaclesOf(const Scenario& scenario);
 

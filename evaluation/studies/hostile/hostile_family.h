@@ -9,7 +9,7 @@
 
 namespace touchdown::evaluation {
 
-/// Diameters of the poles [m]: what the planner promises to see, and what it does not.
+/// Diameters of the poles [m]: those that the planner promises to see, and thinner ones.
 inline constexpr double kThinnestPole = 0.03;
 inline constexpr double kPromisedPole = 0.10;
 inline constexpr double kThickestPole = 0.20;

@@ -40,7 +40,7 @@ HostileTimes ReadHostileTimes(const HostileOptions& options, const std::string& 
 /// Ratios of times to land, flight by flight, to those of the same flights in another campaign, by family.
 std::string HostilePairsText(const std::vector<SweepRow>& rows, const HostileTimes& others);
 
-/// What became of the safety rule: names and values, in the order in which reports print them.
+/// Figures of the safety rule: names and values, in the order in which reports print them.
 using SafetyLines = std::vector<std::pair<std::string, std::string>>;
 SafetyLines SafetyFacts(const HostileTally& tally);
 

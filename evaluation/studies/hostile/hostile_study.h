@@ -27,7 +27,7 @@ struct HostileFlight {
   SweepTrial trial;  ///< its place in a campaign is the index
 };
 
-/// Flight `index`: a pure function of index and options but for `flights`.
+/// Flight `index`: a pure function of index and options, except `flights`.
 /// @throws BadInput for options that are wrong, or for a --set that no world fits
 HostileFlight DrawHostileFlight(const HostileOptions& options, int index,
                                 const Registries& registries);

@@ -14,7 +14,7 @@
 
 namespace touchdown::evaluation {
 
-/// A question in a world, before there is a map of it. All vectors in W.
+/// The planning question in a world, before there is a map of it. All vectors in W.
 struct SceneSketch {
   sim::ObstacleField field;
   double height = 3.0;                               ///< of the world [m]

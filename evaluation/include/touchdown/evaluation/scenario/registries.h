@@ -10,7 +10,7 @@
 
 namespace touchdown::evaluation {
 
-/// What the program offers: an out-of-tree project adds its own entries and has every sub-command.
+/// What the program offers. An out-of-tree project adds its own entries and gets every sub-command.
 struct Registries {
   solvers::BackendRegistry backends;
   planning::TermRegistry terms;
