@@ -36,7 +36,7 @@ fs::path ProgramDirectory() {
   return error ? fs::path(".") : program.parent_path();
 }
 
-// Of the installation that the program belongs to, of the one that it was built against, of the source tree.
+// Of the program's installation, of the installation that it was built against, and of the source tree.
 std::vector<std::string> Shipped(const char* folder) {
   std::vector<fs::path> candidates = {ProgramDirectory() / "../share/touchdown" / folder};
   if (!ShareDirectory().empty()) candidates.push_back(fs::path(ShareDirectory()) / folder);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thin owner around SQLite's C interface: what a record and a trial table need and no more.
-// Every return code is looked at and becomes an SqliteError with the library's own words.
+// A thin owner around SQLite's C interface, with only what a record and a trial table need. Every
+// return code is checked. An error becomes an SqliteError with the library's own words.
 #include "evaluation/base/sqlite_db.h"
 
 #include <cmath>

@@ -82,7 +82,7 @@ int Wait(pid_t process) {
   return status;
 }
 
-// What can be read until the other end is closed, or false when the time is up.
+// Reads until the other end is closed; false when the time is up.
 bool ReadUntil(int from, Clock::time_point deadline, std::string* text) {
   std::array<char, 65536> buffer;
   for (;;) {
@@ -109,12 +109,12 @@ bool Unwrap(std::string* text) {
   return text->size() == size;
 }
 
-// noexcept: what is thrown ends this process and does not get to a handler of the process that made it.
+// noexcept: an exception ends this process and does not reach a handler of the process that made it.
 [[noreturn]] void Answer(const WorkerProcess::Work& work, int item, int to) noexcept {
   const std::string text = work(item);
   const std::uint64_t size = text.size();
   const bool told = WriteAll(to, &size, sizeof(size)) && WriteAll(to, text.data(), text.size());
-  // Not exit(): nothing of what the maker has open or would write at its end is this process's.
+  // Not exit(): this process must not close or flush anything of its maker.
   _exit(told ? 0 : 1);
 }
 
@@ -198,7 +198,7 @@ WorkerProcess::~WorkerProcess() {
 
 void WorkerProcess::Start(int item) {
   const std::int32_t number = item;
-  // Not write(): a worker that is gone shows in Receive, not as a signal to this process.
+  // Not write(): a dead worker shows in Receive, not as a signal to this process.
   send(socket_, &number, sizeof(number), MSG_NOSIGNAL);
   busy_ = true;
 }

@@ -33,7 +33,7 @@ std::vector<Input> Open(const std::vector<std::string>& files) {
     } catch (const SqliteError& error) {
       throw BadInput(fmt::format("{}.", error.what()));
     }
-    // All that is read of a file is of one moment, even if it still grows.
+    // All data of a file are from one moment, even if it still grows.
     input.db->Execute("BEGIN");
     input.manifest = ReadManifest(*input.db, path);
     inputs.push_back(std::move(input));

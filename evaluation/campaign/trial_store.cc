@@ -78,7 +78,7 @@ void Fill(SqliteDb& db, const Campaign& campaign, const Shard& shard, const Cell
 
 void Create(const std::string& path, const Campaign& campaign, const Shard& shard,
             const CellPlan& cells) {
-  // The log of a file that was removed without it would be taken for this one's.
+  // The log of a removed file may still be there. SQLite would apply it to this file.
   for (const char* of_log : {"-wal", "-shm", "-journal"}) std::filesystem::remove(path + of_log);
   AtomicFile file(path);
   {
@@ -131,7 +131,7 @@ TrialStore::TrialStore(const std::string& path, const Campaign& campaign, const 
 TrialStore::~TrialStore() {
   if (!db_) return;
   try {
-    // One file again, which can be copied, unless it is being read just now: it is as good with its log.
+    // Becomes one file again, which can be copied. If it is being read just now it keeps its log, which is as good.
     db_->Execute("PRAGMA busy_timeout=0; PRAGMA journal_mode=DELETE");
   } catch (const SqliteError&) {
   }

@@ -40,7 +40,7 @@ std::string SharesText(const std::optional<ShareSummary>& shares) {
                      100.0 * shares->whitening, 100.0 * shares->native, 100.0 * shares->adapter);
 }
 
-// Times over some of the problems are not to be set beside times over all.
+// Times over some of the problems are not comparable with times over all.
 std::string TableRow(const BackendSummary& s, int all, bool interval) {
   std::string solved = SolvedText(s, all);
   if (!s.ran_all) {

@@ -62,7 +62,7 @@ class Contest {
     cells_.push_back(std::move(cell));
   }
 
-  /// After all were asked: the optimum may be the best that any backend found.
+  /// After all backends: the optimum may be the best that any of them found.
   std::vector<ReferenceCell> Judge() {
     for (ReferenceCell& cell : cells_) {
       for (ReferenceSolve& solve : cell.solves) {
@@ -90,7 +90,7 @@ class Contest {
     return {.start = index, .summary = result};
   }
 
-  /// A claim at a point that is not feasible is one of no optimum.
+  /// At a point that is not feasible, a claim of convergence counts as no optimum.
   Verdict Of(const solvers::SolverSummary& summary) const {
     if (summary.status != SolveStatus::kConverged) return Verdict::kNotClaimed;
     ReferenceProblem judged = problem_;

@@ -30,7 +30,7 @@ using solvers::Stop;
 
 constexpr double kSolveLimit = 5.0;  // wall time of any one solve [s]
 constexpr int kIterations = 3000;    // of any one solve
-// Tolerances below rounding never end some solves: one that gains nothing in so many evaluations is at its end.
+// Tolerances below rounding never end some solves. A solve that gains nothing in so many evaluations is ended.
 constexpr int kIdleEvaluations = 200;
 constexpr double kGain = 1e-13;  // of the cost
 // Tight tolerances are for solves in which the backend's own test decides. With the others the

@@ -130,7 +130,7 @@ class Exclusion {
   const estimation::PadPrediction& pad_;
   std::vector<Eigen::Vector3d> directions_;
   Eigen::Vector3d best_;
-  // Of the interval: the pad in its middle, and what every T in it is bounded by.
+  // For the interval: the pad in its middle, and bounds for every T in it.
   estimation::PadState at_;
   Eigen::Vector2d x_WP_;  // its x axis
   double latest_ = 0.0;

@@ -80,7 +80,7 @@ struct DifferenceNorm {
   double Scale(double h) const { return 1.0 / (limit * (kOrder == 1 ? h * h : h * h * h * h)); }
 };
 
-/// What contact asks of a level vehicle, whatever errors of the pad the task allows.
+/// Conditions of contact for a level vehicle, for all errors of the pad that the task allows.
 struct EndSet {
   EndSet() = default;
   EndSet(const LandingTimeTask& task, const estimation::PadState& pad_then)

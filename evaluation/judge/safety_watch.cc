@@ -65,7 +65,7 @@ void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margi
   if (start.unknown) ++figures_.escaping_unknown_steps;
   if (!escapes && narrow) ++figures_.narrow_steps;
   if (plan.map_error) ++figures_.map_errors;
-  // A stop that was wanted is a curve to rest, without another one that begins later.
+  // An intended stop is a curve to rest, without another one that begins later.
   const bool stops = plan.status == planning::ReplanStatus::kBraking && !plan.committed &&
                      std::isfinite(plan.t_stop);
   if (stops && !stopping_) ++figures_.stops_flown;

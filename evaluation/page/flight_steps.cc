@@ -79,7 +79,7 @@ const planning::AttemptLog* Winner(const SolvedStep& solved) {
   return won == attempts.rend() ? nullptr : &*won;
 }
 
-// Of every attempt and way around, where its last solve led, but for the answer.
+// The curve of the last solve of every attempt and way around, without the answer.
 Json LostWays(const SolvedStep& solved, const planning::AttemptLog* winner) {
   Json lost = Json::array();
   for (const planning::AttemptLog& attempt : solved.log.attempts) {

@@ -150,8 +150,8 @@ std::string TryHelp(std::string sentence) {
   return sentence;
 }
 
-// The words that the chosen command does not know, the options among them where there are any: what follows
-// an unknown option is its value.
+// The words that the chosen command does not know. If options are among them, only these: the words after an unknown
+// option are its value.
 std::string Unknown(const CLI::App& app) {
   const CLI::App* command = &app;
   std::string name = app.get_name();
@@ -173,7 +173,8 @@ std::string Unknown(const CLI::App& app) {
                          : fmt::format("{} has no option {}", name, fmt::join(options, ", "));
 }
 
-// One sentence in one line, though words from outside stand in it: names of files, values of keys.
+// One sentence in one line, even if it contains outside words such as names of files and values of
+// keys.
 void Complain(const std::string& sentence) { spdlog::error("{}", InOneLine(sentence)); }
 
 }  // namespace

@@ -19,7 +19,7 @@
 namespace touchdown::sim {
 namespace {
 
-// Of a point above what lies below it, the deck or the ground [m].
+// Height of a point above the deck or the ground below it [m].
 double HeightAbove(const Box& deck, const Eigen::Vector3d& p_W) {
   const Eigen::Vector3d p =
       Eigen::AngleAxisd(-deck.yaw, Eigen::Vector3d::UnitZ()) * (p_W - deck.center);

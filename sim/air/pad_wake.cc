@@ -25,7 +25,7 @@ constexpr double kLeastFlow = 1e-6;  // [m/s]
 
 Eigen::Vector3d PadWake(const PadGeometry& geometry, const estimation::PadState& pad,
                         const Eigen::Vector3d& wind_W, const Eigen::Vector3d& p_W) {
-  // The pad vehicle stands in this flow; only its horizontal part makes a wake.
+  // The flow around the pad vehicle. Only the horizontal part makes a wake.
   const Eigen::Vector2d flow = (wind_W - pad.v_WP).head<2>();
   const double speed = flow.norm();
   if (speed < kLeastFlow) return Eigen::Vector3d::Zero();

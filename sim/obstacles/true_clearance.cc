@@ -64,7 +64,7 @@ bool VisitPair(FclObject* a, FclObject* b, void* data, double& bound) {
   request.gjk_solver_type = fcl::GST_LIBCCD;
   request.distance_tolerance = kGjkTolerance;
   fcl::DistanceResultd result;
-  // A pair in touch gives -1: nothing collides here, so it is the touch itself.
+  // A pair that touches gives -1. Nothing collides here, so the distance is 0.
   const double distance = std::max(0.0, fcl::distance(a, b, request, result));
   if (distance < search->best.distance) {
     search->best = {distance, ObstacleOf(*a, *b)};

@@ -20,8 +20,7 @@ struct Stretch {
   double time = 0.0;   // [s]
 };
 
-// Stretches in turn for ever, the first one beginning with the change to its speed over, and the way 0, at
-// t = 0.
+// Stretches in turn, for ever. At t = 0 the change to the first one's speed has ended, and the arc length is 0.
 Pace Alternating(const std::vector<Stretch>& stretches, double smoothing) {
   const double early = 1.5 * smoothing;
   std::vector<Pace::Knot> knots = {{-early, -early * stretches.front().speed}};

@@ -68,7 +68,8 @@ double ShortestSide(const Corners& corners) {
   return shortest;
 }
 
-// As PadAlignment decides: all of the sheet is before the camera, and covers no more than so much.
+// As PadAlignment decides: all of the sheet is before the camera, and its area is not above a
+// limit.
 bool SheetIsAligned(const Placement& placement, const estimation::CameraIntrinsics& camera) {
   constexpr double kHalf = 0.5 * estimation::kPadSheetSide;
   constexpr double kMinDepth = 0.05;  // [m]

@@ -150,7 +150,8 @@ TEST(TagSensor, NoiseIsWhatItSays) {
   double before = 0.0;
   for (const double height : {0.6, 2.0, 3.0, 5.0}) {
     const Errors errors = Measure(Above(height), Pad());
-    // Of the attitude, which is exact here, a degree of doubt is claimed: never too sure.
+    // The attitude is exact here, but one degree of error is claimed. So the claims are never too
+    // small.
     EXPECT_LT(errors.position, 1.1) << height;
     EXPECT_GT(errors.position, 0.5) << height;
     EXPECT_NEAR(errors.yaw, 1.0, 0.15) << height;

@@ -100,7 +100,7 @@ TEST(TrueClearance, AgreesWithAnalyticDistancesOnRandomScenes) {
   EXPECT_GT(collided, 50);
 }
 
-// Columns and rings are many shapes each: a vehicle as small as a point is as far as the field says.
+// Columns and rings are many shapes each. For a vehicle as small as a point the distance is that of the field.
 TEST(TrueClearance, ColumnsAndRingsAreExact) {
   RandomStream random(29, "forest points");
   ForestConfig forest = ForestOfKind("A");

@@ -282,7 +282,7 @@ void World::Impl::Step(const estimation::Commands& commands, const Eigen::Vector
   ReadContacts();
 }
 
-// Drag acts at the centre of mass; what the ground adds to a rotor's thrust acts at its hub.
+// Drag acts at the centre of mass. The ground effect on a rotor's thrust acts at its hub.
 void World::Impl::PushByAir(const Eigen::Vector3d& wind_W) {
   const estimation::VehicleState now = Vehicle();
   const Eigen::Matrix3d R_WB = now.q_WB.toRotationMatrix();
@@ -338,7 +338,7 @@ void World::Impl::ReadContacts() {
     if (vehicle.part == GeomRole::Part::kFoot) foot_force_ += contact.normal_force;
     contacts_.push_back(contact);
   }
-  // Positions are still those at the step's beginning, as all that a step finds.
+  // Positions are still those at the step's beginning, like all results of a step.
   const auto touch = touch_->Find(*d, Vec3(d->xpos + 3 * vehicle_body_));
   if (!touch) return;
   const Eigen::Vector3d v_W = PointVelocity(vehicle_body_, touch->p_W);
