@@ -18,8 +18,8 @@
 namespace touchdown::evaluation {
 namespace {
 
-// Nothing is imported: that would take a second. A mere folder of a package's name, as the working directory may have one, has no
-// origin.
+// Nothing is imported: that would take a second. A mere folder with a package's name, for example in the working
+// directory, has no origin.
 constexpr char kQuestion[] =
     "import importlib.util as u, sys\n"
     "origin = lambda package: getattr(u.find_spec(package), 'origin', None)\n"

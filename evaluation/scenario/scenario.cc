@@ -98,7 +98,7 @@ class Reader {
                        [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
   }
 
-  // The keys of the same group, or the groups: what may stand here instead. What is near may be in another group.
+  // The keys of the same group, or the groups: the alternatives at this place. What is near may be in another group.
   std::string Suggest(const std::string& name) const {
     const std::size_t dot = name.rfind('.');
     const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);
@@ -169,7 +169,7 @@ class Reader {
   const Keys& keys_;
 };
 
-// `load` gives the YAML documents of what sentences call `path`, a file of the kind `what`.
+// `load` gives the YAML documents. Messages call the file `path` and its kind `what`.
 template <typename Load>
 YAML::Node OneDocument(const std::string& path, const Load& load,
                        const std::string& what = "scenario") {
@@ -208,7 +208,7 @@ void ApplyOverride(const std::string& text, const Keys& keys, ScenarioSource* so
   Reader(source, file, false, keys).ReadEntry(name, value, where);
 }
 
-// What a vehicle's own file beside it says of its airframe, where the scenario does not: FILE.airframe.yaml beside
+// Reads the airframe file beside a vehicle's file, for keys that the scenario does not set: FILE.airframe.yaml beside
 // FILE.xml, with the keys of `airframe`.
 void ReadAirframe(const Keys& keys, ScenarioSource* source) {
   const std::string path = AirframeFile(source->scenario.vehicle);

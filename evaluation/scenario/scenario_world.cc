@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Whatever is known of the pad: it is not where the vehicle is to go.
+/// Predicts the goal and ignores the pad's estimate: the vehicle does not go to the pad.
 class ToGoal final : public estimation::PadPredictor {
  public:
   explicit ToGoal(const Scenario& scenario) : goal_(GoalOf(scenario)) {}

@@ -274,7 +274,7 @@ TEST_F(CampaignFiles, LostTrialsAreFlownAgainOnlyWhenAsked) {
   EXPECT_EQ(Tables(At("a.db")), Tables(At("whole.db")));
 }
 
-// What a merge reads of a file is of one moment; were it not, this is what it could have written.
+// A merge reads a file as of one moment. Otherwise it could have written this.
 TEST_F(CampaignFiles, ATrialWithoutItsTimingIsNoResult) {
   Fly(Short(2), To(At("a.db")));
   SqliteDb db(At("a.db"), SqliteDb::Mode::kReadWrite);

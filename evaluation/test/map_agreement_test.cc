@@ -64,7 +64,8 @@ TEST(MapAgreement, WhatItFreesOctomapFreesToo) {
   }
 }
 
-// With pixels that resolve everything only the way of counting hits is left: one wins here.
+// With pixels that resolve everything, the maps differ only in how they count hits: here one hit
+// wins.
 TEST(MapAgreement, AsOctomapInNinetyNineOfAHundredCellsWhereAllIsResolved) {
   for (const MapFlight& flight : {StraightTurnFlight(), ForestFlight()}) {
     for (const int scale : {1, 2}) {

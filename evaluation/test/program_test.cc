@@ -64,7 +64,7 @@ TEST(Program, UnknownCommandsAreNamedAtEveryLevel) {
             HasSubstr("hostile")));
 }
 
-// Wherever a name is asked for that is one of several, a typo is told what it was to be, in one sentence.
+// Wherever a name is one of several, the message for a typo suggests the right one, in one sentence.
 TEST(Program, ATypoIsToldWhatWasMeant) {
   const std::filesystem::path folder = ::testing::TempDir();
   const auto file = [&folder](const char* name, const char* text) {

@@ -36,7 +36,7 @@ struct PadDetection {
   estimation::VehicleState vehicle;
 };
 
-/// What a sensor sees of a standing pad, from `height` above it and `aside` of it.
+/// The sensor's view of a standing pad, from `height` above it and `aside` of it.
 struct Watch {
   std::vector<PadDetection> detections;
   std::vector<double> arrivals;
@@ -228,7 +228,7 @@ TEST(SensingFlight, EveryFaultTakesEffectAndFastFlightsLandAllTheSame) {
                                                        {"depth.drop=0.3"},
                                                        {"depth.latency_ms=60"}}) {
     seen.push_back(fly(fault));
-    // The empty field has nothing for the depth camera to err about but the pad vehicle itself.
+    // In the empty field only the pad vehicle itself can cause errors of the depth camera.
     if (fault[0].rfind("depth", 0) != 0) {
       EXPECT_NE(seen.back(), seen[0]) << fault[0];
     }

@@ -92,7 +92,8 @@ TEST(VehicleCheck, AirframeFileIsReadAsScenariosAre) {
   EXPECT_THAT(refusal("- 1\n"), HasSubstr("airframe.yaml"));
 }
 
-// Cells that the hull nearly reaches were not given free: no stop was in free cells, and it never left its start.
+// Cells that the hull nearly reaches used not to be given as free. No stop was in free cells, and the vehicle never
+// left its start.
 TEST(VehicleCheck, LargeVehiclesLeaveTheirStart) {
   const VehicleCheck check = CheckVehicle(
       kVehicles + "hexa.xml", {"airframe.hull=[0.5, -0.06, 0.08]", "airframe.feet=[0.3, 0.16]"},

@@ -167,7 +167,8 @@ class WayFinder {
     if (length >= length_[Index(cell)]) return;
     length_[Index(cell)] = length;
     const Eigen::Vector2d p = Centre(Place(cell)).head<2>();
-    // The last cell's centre may be outside of the box: half a diagonal less keeps the bound one.
+    // The last cell's centre may be outside of the box. Subtracting half a diagonal keeps the bound
+    // valid.
     const double rest = std::max(0.0, lane_box_.exteriorDistance(p) - kCell);
     queue_.push({length + static_cast<float>(rest), cell});
   }

@@ -132,7 +132,7 @@ OracleAnswer PlanOracle::Impl::Ask(const ReplanScene& scene) {
 /// The ways of earlier paths are closed one after the other, each at the first obstacle in the straight way, then at the last.
 bool PlanOracle::Impl::TryPaths(const char* name, double tight_cost) {
   planning::GridSearch search(tight_cost > 1.0 ? 2.0 : 1.0, 1.0, tight_cost);
-  // Ends that move have paths of their own; a way hardly changes from one arrival to the next.
+  // Moving ends have paths of their own. A way hardly changes from one arrival to the next.
   const bool stands = scene_->end->At(0.0).v_WP.norm() < 1e-9;
   for (const bool at_last : {false, true}) {
     std::vector<planning::GuidePath> paths;
