@@ -40,7 +40,7 @@ as_root() {
   fi
 }
 
-# Installs what is missing of the given tiers. Without anything missing no network is used.
+# Installs what is missing of the given tiers. If nothing is missing, no network is used.
 install_tiers() {
   local tier missing=()
   for tier in "$@"; do
@@ -60,6 +60,6 @@ build_release() {
   shift
   say "Building in build/release"
   (cd "$TOUCHDOWN_ROOT" && cmake --preset release -DTOUCHDOWN_BUILD_TESTS="$tests" >/dev/null)
-  # What is compiled for the first time is not preprocessed apart from that.
+  # A first compilation has no separate preprocessing.
   CCACHE_DEPEND=1 cmake --build "$TOUCHDOWN_ROOT/build/release" -j2 ${1:+--target "$@"}
 }

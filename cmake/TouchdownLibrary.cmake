@@ -37,11 +37,11 @@ function(touchdown_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(TOUCHDOWN_SANITIZE)
-    # With its own checks between them GCC no longer sees that numbers are set before they are read.
+    # With the sanitizer's checks GCC no longer sees that numbers are set before they are read.
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
     endif()
-    # What is found fails the test that finds it.
+    # A sanitizer finding fails its test.
     target_compile_options(${target} PUBLIC -fsanitize=${TOUCHDOWN_SANITIZE} -fno-sanitize-recover=all
                                             -fno-omit-frame-pointer)
     target_compile_definitions(${target} PUBLIC TOUCHDOWN_SANITIZED)
@@ -58,7 +58,7 @@ function(touchdown_compile_by_room target)
   set(at_a_time 12)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Said of what stands in a header, which GCC takes a source that is compiled with others for.
+    # A false warning about headers: GCC takes a source that is compiled with others as a header.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
   set(rooms "")  # of each source so far
@@ -108,7 +108,7 @@ function(touchdown_add_test folder)
   if(NOT ARG_SOURCES)
     file(GLOB ARG_SOURCES CONFIGURE_DEPENDS test/*.cc)
   endif()
-  # Whoever counts allocations sees first that they are counted.
+  # A test that counts allocations checks first that the counter works.
   if("touchdown_allocations" IN_LIST ARG_LINK AND NOT folder STREQUAL "solvers")
     list(APPEND ARG_SOURCES "${PROJECT_SOURCE_DIR}/solvers/test/allocation_count_test.cc")
   endif()

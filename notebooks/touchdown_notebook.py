@@ -17,7 +17,8 @@ import pandas as pd
 from IPython.display import Image, Pretty, display
 
 ROOT = Path(__file__).resolve().parent.parent
-# After what is installed: the package touchdown of a build in this clone, and touchdown_report.
+# Searched after the installed packages: the package touchdown of a build in this clone, and
+# touchdown_report.
 sys.path += [str(ROOT / "build" / preset / "python") for preset in ("release", "native")]
 sys.path.append(str(ROOT / "evaluation" / "python"))
 

@@ -14,7 +14,7 @@ FOLDERS = ("solvers", "estimation", "planning", "control", "sim", "evaluation")
 MOST_FILES = 50
 TABLE = ROOT / "docs" / "rooms.md"
 PICTURE = ROOT / "docs" / "architecture.md"
-# What a public header may need of others: nothing but the standard library and Eigen's arrays.
+# The only outside headers of a public header: the standard library and Eigen's arrays.
 PUBLIC_NEEDS = re.compile(r"[a-z_]+|Eigen/\w+|sys/types\.h")
 
 INCLUDE = re.compile(r'^\s*#include ([<"])([^">]+)[">]', re.M)

@@ -30,7 +30,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What goes before a reply's text.
+// The header of a reply.
 struct Head {
   std::int32_t item;
   WorkerReply::End end;
@@ -192,7 +192,7 @@ WorkerProcess::WorkerProcess(WorkerProcess&& other) noexcept
 WorkerProcess::~WorkerProcess() {
   if (process_ < 0) return;
   close(socket_);
-  kill(process_, SIGKILL);  // and with it, by BindTo, what it has under way
+  kill(process_, SIGKILL);  // and with it, by BindTo, its current work
   Wait(process_);
 }
 

@@ -8,7 +8,7 @@ import re
 import sys
 from pathlib import Path
 
-# What is said of C++ in the words of Python.
+# Terms of C++ and their words in Python.
 WORDS = [
     (r"@throws |[Tt]hrows (?=std::)", "Raises "),
     (r"std::invalid_argument", "ValueError"),

@@ -71,7 +71,7 @@ const SweepTrial& TrialOf(const Campaign& campaign, int index) {
   return campaign.trials.at(static_cast<std::size_t>(index));
 }
 
-// The file, and what is told of it.
+// The file and its progress.
 class Flight {
  public:
   Flight(const Campaign& campaign, const CampaignOptions& options,
@@ -95,7 +95,7 @@ class Flight {
     progress_(state_);
   }
 
-  /// What the file lacks, but for what flies alone.
+  /// The trials that the file lacks, without those that fly alone.
   const std::vector<int>& together() const { return together_; }
   const std::vector<int>& alone() const { return alone_; }
 

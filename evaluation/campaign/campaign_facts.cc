@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two hashes decide whether trials belong together: that of the plan and that of the build. All other facts of a
-// manifest only serve to say in words what is different.
+// manifest only serve to describe differences in words.
 #include "evaluation/campaign/campaign_facts.h"
 
 #include <algorithm>

@@ -52,7 +52,7 @@ bool IsThere(const RecordedTrial& flight, const std::string& build_hash) {
   return fs::exists(PagePath(flight)) && IsRecordOf(RecordPath(flight), *flight.trial, build_hash);
 }
 
-// What there is of it, also what a worker left that was stopped.
+// Its existing files, also those of a stopped worker.
 void Remove(const RecordedTrial& flight) {
   const fs::path path(flight.path);
   const std::string name = path.filename().string();
@@ -64,7 +64,7 @@ void Remove(const RecordedTrial& flight) {
   }
 }
 
-// What is wrong; empty: nothing.
+// The fault; empty: none.
 std::string Record(const RecordedTrial& flight, const Registries& registries) {
   try {
     TrialRecord record;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Monte Carlo: the trials of a sweep, each with its own seed and its own values of what is varied.
+// Monte Carlo: the trials of a sweep, each with its own seed and its own values of the varied keys.
 #include "evaluation/campaign/sweep.h"
 
 #include <algorithm>

@@ -98,7 +98,7 @@ std::string DeadlineTable(double deadline_ms, const std::vector<BackendSummary>&
          "point that it evaluated was better\n";
 }
 
-/// What was solved, in figures.
+/// The solved problems in figures.
 struct ProblemsSummary {
   int all = 0;
   int free_arrival = 0, hard_limits = 0, explicit_endpoint = 0;

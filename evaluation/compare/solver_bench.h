@@ -128,7 +128,7 @@ class SolverBench {
   solvers::BackendRegistry registry_;
   std::set<std::string> clearance_terms_;
   std::vector<Field> fields_;              // one for each structure
-  std::map<std::string, double> seconds_;  // used so far, but for the tight solves
+  std::map<std::string, double> seconds_;  // used so far, without the tight solves
   std::set<std::string> out_;              // of all but FindReference
   BenchResult result_;
 

@@ -55,7 +55,7 @@ class PadSensor {
   sim::FrameDelivery<PadSeen> delivery_;
 };
 
-/// The downward camera of the scenario, and what it would see.
+/// The downward camera of the scenario, and its view.
 sim::PadCameraConfig PadCameraOf(const Scenario& scenario);
 sim::VisualScene VisualSceneOf(const Scenario& scenario, const sim::WorldConfig& world);
 

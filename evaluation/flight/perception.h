@@ -17,7 +17,7 @@
 
 namespace touchdown::evaluation {
 
-/// What one depth image cost, from the simulated camera to the map.
+/// The cost of one depth image, from the simulated camera to the map.
 struct FrameTimes {
   planning::StageTimes::Span sense{"sense"}, map{"map"};
 };

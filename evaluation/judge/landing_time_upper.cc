@@ -204,7 +204,7 @@ class Attainable {
     backend_->Prepare(view_);
     y_ = task.p_WB.replicate(kPoints - 2, 1);
     stop_.max_iterations = kMostIterations;
-    stop_.confirm = false;  // what is found is checked here
+    stop_.confirm = false;  // the found flight is checked here
     stop_.callback = [](const solvers::StopQuery& at) {
       return at.cost <= kMet && at.max_violation <= 0.0;
     };

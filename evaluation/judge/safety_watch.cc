@@ -51,7 +51,7 @@ int CountFreeInside(const planning::OccupancyMap& map, const sim::Obstacle& obst
 
 void SafetyWatch::Step(const planning::ReplanResult& plan, const planning::Margins& margins,
                        bool late) {
-  // What is flown on keeps to the margins that it was proven with.
+  // A trajectory that is flown on keeps the margins with which it was proven.
   if (plan.committed) margins_ = margins;
   figures_.margin_max_m = std::max(figures_.margin_max_m, margins.Sum());
   figures_.margin_mean_m += (margins.Sum() - figures_.margin_mean_m) / ++steps_;

@@ -36,7 +36,7 @@ Json PathsOf(const std::vector<std::vector<Eigen::Vector3d>>& paths) {
   return json;
 }
 
-// What stands in the record of every planner.
+// The data that every planner's record has.
 Json RecordedStep(const RecordPlan& plan) {
   const planning::ReplanInput& input = plan.request.input;
   const ReplanOutcome& result = plan.result;

@@ -64,7 +64,7 @@ class StageColumn {
   std::vector<double> cpu_ms_, wall_ms_, allocations_;
 };
 
-// What is left of the total beside its stages.
+// The rest of the total beside its stages.
 Span Other(const planning::StageTimes& times) {
   Span other = times.total;
   for (const Span* stage : times.Stages()) {

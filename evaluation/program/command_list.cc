@@ -117,7 +117,7 @@ Json ListParts(const std::vector<Entry>& registry) {
   return list;
 }
 
-/// What stands below a list, in words.
+/// The words below a list.
 constexpr char kBackendsLegend[] =
     "Below each backend: what it says to the problem with solver.endpoint, solver.arrival and "
     "solver.limits of a scenario, and its options.\n";

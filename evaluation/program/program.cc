@@ -144,7 +144,7 @@ void CheckCommand(const CLI::App& app, const char* const* word, const char* cons
       fmt::format("unknown command {}{}{}.", *word, of, Instead(*word, names, "the commands are")));
 }
 
-// A sentence that says what was meant needs no other help.
+// A sentence that suggests the right word needs no other help.
 std::string TryHelp(std::string sentence) {
   if (!sentence.ends_with("?)")) sentence += " (try --help)";
   return sentence;

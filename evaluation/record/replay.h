@@ -50,7 +50,7 @@ class Replay {
   planning::Replanner* replanner_;
   planning::OccupancyMap map_;
   int step_ = -1;
-  bool asked_ = false;  // the step, of a planner that cannot be told what it remembered
+  bool asked_ = false;  // the step, of a planner whose state cannot be set
 };
 
 }  // namespace touchdown::evaluation

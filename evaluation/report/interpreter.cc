@@ -26,7 +26,7 @@ constexpr char kQuestion[] =
     "print('lacks', *[package for package in sys.argv[1:] if origin(package) is None])\n";
 constexpr std::string_view kAnswer = "lacks";
 
-// What is set to nothing is not set.
+// An empty variable counts as not set.
 std::string Variable(const char* name) {
   const char* const value = std::getenv(name);
   return value == nullptr ? "" : value;

@@ -98,7 +98,7 @@ class Reader {
                        [&](const auto& key) { return key.name.rfind(name + ".", 0) == 0; });
   }
 
-  // The keys of the same group, or the groups: the alternatives at this place. What is near may be in another group.
+  // The keys of the same group, or the groups: the alternatives at this place. A near name may be in another group.
   std::string Suggest(const std::string& name) const {
     const std::size_t dot = name.rfind('.');
     const std::string group = dot == std::string::npos ? "" : name.substr(0, dot + 1);

@@ -36,7 +36,7 @@ void CheckScenario(const ScenarioSource& source, const Registries& registries);
 /// @param with what makes them. @throws BadInput
 void RequireSheetRoom(const Scenario& scenario, const std::string& where, const std::string& with);
 
-/// A term by its name. Throws std::invalid_argument saying what was probably meant.
+/// A term by its name. Throws std::invalid_argument suggesting the right name.
 const planning::TermEntry& TermNamed(const planning::TermRegistry& terms, const std::string& name);
 
 }  // namespace touchdown::evaluation

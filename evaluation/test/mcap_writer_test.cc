@@ -122,7 +122,7 @@ TEST(McapWriter, FindsMessagesByItsIndices) {
   const std::vector<Record> first = RecordsIn(records[2].content.substr(40));
   EXPECT_THAT(OpsOf(first), ElementsAre(0x03, 0x04, 0x04, 0x05, 0x05));
   EXPECT_THAT(OpsOf(RecordsIn(records[5].content.substr(40))), ElementsAre(0x05));
-  // Channel, sequence, both times, what was given.
+  // Channel, sequence, both times, the given bytes.
   EXPECT_EQ(first[3].content,
             std::string("\x01\0\0\0\0\0\x05\0\0\0\0\0\0\0\x05\0\0\0\0\0\0\0one", 25));
   // Of channel 0: one entry, its time and where the message begins.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kSeeds = 6;
 
-/// By figure, what was measured of each seed.
+/// By figure, the measured value of each seed.
 using Samples = std::map<std::string, std::vector<double>>;
 
 double Median(const std::vector<double>& values) { return *Quantile(values, 0.5); }

@@ -68,7 +68,7 @@ TEST(VehicleCheck, AirframeFileCountsAfterTheScenario) {
   const VehicleCheck given = CheckVehicle(file, {"airframe.rotor_lag=0.02"}, StandardRegistries());
   EXPECT_EQ(given.model->rotor_lag_s, 0.02);
   EXPECT_EQ(given.model->rotor_drag.x(), 0.3);
-  // What is flown is the same, and its record says so.
+  // The flown vehicle is the same, and its record says so.
   const Scenario scenario = ParseScenario("vehicle: " + file, "s", "s", {}, StandardRegistries());
   EXPECT_EQ(scenario.airframe.rotor_lag, 0.05);
   EXPECT_THAT(DumpScenario(scenario), HasSubstr("rotor_lag: 0.05"));

@@ -122,7 +122,7 @@ class Chase {
   ChaseFrame frame_;
 };
 
-// What it costs to go from one view to another within kKeyTime.
+// The cost of going from one view to another within kKeyTime.
 double MoveCost(const View& a, const View& b) {
   const double turn = estimation::WrapAngle(b.azimuth - a.azimuth);
   const double climb = b.elevation - a.elevation;

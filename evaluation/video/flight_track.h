@@ -27,7 +27,7 @@ struct TrackBelief {
 struct TrackFigures {
   Eigen::Vector3d p_believed_WB =
       Eigen::Vector3d::Zero();  ///< where the vehicle believed to be [m]
-  Eigen::Vector3d p_reference_WB = Eigen::Vector3d::Zero();  ///< what it tracked [m]
+  Eigen::Vector3d p_reference_WB = Eigen::Vector3d::Zero();  ///< its reference [m]
   Eigen::Vector3d v_air_W = Eigen::Vector3d::Zero();         ///< at the vehicle [m/s]
   std::vector<double> thrusts;                               ///< of the rotors [N]
   std::string mode;

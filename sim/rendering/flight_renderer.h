@@ -31,7 +31,7 @@ struct FlightMark {
   std::array<float, 4> rgba = {1.0F, 1.0F, 1.0F, 1.0F};
 };
 
-/// What is to be seen at one time.
+/// The visible scene at one time.
 struct FlightMoment {
   CameraPose camera;
   estimation::VehicleState vehicle;

@@ -32,7 +32,7 @@ class SceneStage {
   void Place(const CameraPose& camera);
   void Place(const estimation::PadState& pad);
 
-  /// Makes MuJoCo's list of what is drawn from where everything is placed; it can be changed until Draw.
+  /// Makes MuJoCo's list of drawn geoms at the current poses. The list can be changed until Draw.
   mjvScene* Update();
 
   /// Draws it. @param rgb height x width x 3, nullptr: not wanted. @param depth MuJoCo's depth buffer, height x width;

@@ -51,8 +51,9 @@ class OwnSensorRig {
     }
   }
 
-  /// What comes at the true state's time t of the trial. Call once per simulation step, from t = timestep on. In each
-  /// step the IMU comes first, then what has arrived of the other sensors in a fixed order. Does not allocate.
+  /// The measurements that arrive at the true state's time t of the trial. Call once per simulation step, from t =
+  /// timestep on. In each step the IMU comes first, then what has arrived of the other sensors in a fixed order. Does
+  /// not allocate.
   template <typename Take>
   void Poll(const estimation::VehicleState& vehicle, Take&& take) {
     estimation::VehicleState shifted = vehicle;

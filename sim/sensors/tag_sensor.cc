@@ -24,7 +24,7 @@ namespace {
 
 using Corners = Eigen::Matrix<double, 2, 4>;
 
-constexpr double kMinSigma = 1e-6;  // that the solver is told of exact corners [pixel]
+constexpr double kMinSigma = 1e-6;  // for the solver, if corners are exact [pixel]
 
 // The pad in C.
 struct Placement {
@@ -149,7 +149,7 @@ TagSensor::Image TagSensor::Look(const estimation::VehicleState& vehicle,
   for (const estimation::PadTag& tag : estimation::PadTags()) {
     const auto id = static_cast<std::size_t>(tag.id);
     const double luck = noise_.Normal(1.0);
-    // Of the sheet, what is in the image counts, whole tags or not.
+    // All of the sheet in the image counts, whole tags or not.
     in_sheet[id] = InImage(intrinsics_, placement.ToC(tag.center_P));
     if (!visible[id] && !in_sheet[id]) continue;
     corners[id] = CornersOf(tag, placement, intrinsics_);

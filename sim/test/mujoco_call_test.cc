@@ -77,7 +77,7 @@ TEST(MujocoCall, ErrorsOfOneThreadLeaveCompilationInAnotherAlone) {
 
 // A user's own calls in the same process end as they would without us.
 TEST(MujocoCallDeathTest, OutsideOfACallTheHandlerThatWasThereIsAsked) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process where nobody has called yet
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process without an earlier call
   EXPECT_EXIT(
       {
         mju_user_error = [](const char* message) {

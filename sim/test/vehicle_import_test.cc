@@ -35,7 +35,7 @@ std::string ChangedMini(const std::string& from, const std::string& to) {
   return path;
 }
 
-// What is said to that.
+// The message for that.
 std::string Refusal(const std::string& from, const std::string& to) {
   const std::string path = ChangedMini(from, to);
   return test::MessageOf<std::invalid_argument>([&] { LoadVehicleModel(ImportVehicle(path, {})); });

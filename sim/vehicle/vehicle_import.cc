@@ -321,7 +321,7 @@ class Import {
       const bool as_first = (static_cast<std::ptrdiff_t>(k) - first) % 2 == 0;
       turn(*rotors[around[k]], as_first ? sense : -sense);
     }
-    if (!CanSteer()) {  // the senses are not what it lacks
+    if (!CanSteer()) {  // the senses are not the fault
       motors_ = before;
       return;
     }

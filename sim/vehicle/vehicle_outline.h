@@ -10,7 +10,8 @@
 
 namespace touchdown::sim {
 
-/// Points in W whose hull holds a geom, after mj_kinematics: a mesh's own, of what is round a prism's.
+/// Points in W whose hull holds a geom, after mj_kinematics: a mesh's own points, or those of a prism around a round
+/// geom.
 std::vector<Eigen::Vector3d> PointsAround(const mjModel_& m, const mjData_& d, int geom);
 
 /// For pictures: for each geom of the vehicle in the MJCF file at `path`, points whose hull holds it. They are in axes

@@ -186,7 +186,7 @@ void World::Impl::FindIndices() {
   vehicle_qpos_ = m->jnt_qposadr[m->body_jntadr[vehicle_body_]];
   vehicle_qvel_ = m->body_dofadr[vehicle_body_];
 
-  std::vector<int> parts;  // of the vehicle, that touch what stands
+  std::vector<int> parts;  // of the vehicle, that can touch obstacles
   roles_.resize(static_cast<std::size_t>(m->ngeom));
   for (int geom = 0; geom < m->ngeom; ++geom) {
     const std::string_view name = m->names + m->name_geomadr[geom];

@@ -41,7 +41,7 @@ class ChordSolver : public solvers::SolverBackend {
   }
 
   SolveStatus Run(const solvers::View& view, Eigen::VectorXd y, solvers::Evaluator* evaluator) {
-    const solvers::ShareScope own(evaluator, solvers::Share::kNative);  // but for evaluations
+    const solvers::ShareScope own(evaluator, solvers::Share::kNative);  // except evaluations
     const int renew = static_cast<int>(options().Get("renew"));
     Eigen::VectorXd gradient, trial;
     for (int k = 0; !evaluator->must_stop(); ++k) {

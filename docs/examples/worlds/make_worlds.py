@@ -17,7 +17,7 @@ import numpy as np
 
 CELL = 0.1  # of the building [m]
 BELIEF_CELL = 0.2  # of the beliefs [m]
-FREE, OCCUPIED, INNER = 1, 2, 3  # what OctoMap's binary format says of a child; 0: not known
+FREE, OCCUPIED, INNER = 1, 2, 3  # codes of a child in OctoMap's binary format; 0: not known
 
 
 def building(rng):

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _LOST = ("error", "crashed", "hung")
 
-# The program's own ranges: what flies in this process is held to them, too.
+# The program's own ranges. They also hold for flights in this process.
 _RANGES: Dict[str, Range] = {
     "trials": (1, 10**6), "seed": (0, 2**53), "jobs": (1, 1024), "trial_limit": (0.1, 1e6),
     "problems": (1, 10**5), "every": (1, 10**5), "starts": (1, 1000), "repeats": (1, 1000), "gap": (1e-9, 1.0),

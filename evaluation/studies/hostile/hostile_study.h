@@ -18,7 +18,7 @@ struct HostileOptions {
   std::vector<std::string> set;       ///< "depth.drop=0.9": fixed in every flight
 };
 
-/// A flight of the study: what was drawn, and whether a way exists.
+/// A flight of the study: its draws, and whether a way exists.
 struct HostileFlight {
   int index = 0;
   std::string family;

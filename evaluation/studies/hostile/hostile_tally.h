@@ -20,7 +20,7 @@ bool WrongContact(const TrialResult& result);
 bool CameToNothing(const TrialResult& result);
 /// None of these, and no landing: the program or the physics failed, the rotors were stopped in the air.
 bool EndedOtherwise(const TrialResult& result);
-/// The kind of a wrong contact in one word: the outcome, of a collision what was touched.
+/// The kind of a wrong contact in one word: the outcome, or for a collision the touched thing.
 std::string ContactKind(const TrialResult& result);
 
 /// The results of a number of flights.

@@ -38,7 +38,7 @@ struct SceneOptions {
   std::uint64_t seed = 1;
 };
 
-/// A vehicle in flight to a goal; what it knows of the forest is the caller's choice.
+/// A vehicle in flight to a goal. The caller decides which part of the forest it knows.
 struct ForestScene {
   planning::SplineState start;                       ///< in W
   Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();  ///< unit vector to the goal, level
@@ -51,7 +51,7 @@ struct ForestScene {
 inline constexpr double kForestFloor = 0.2;
 inline constexpr double kForestCeiling = 2.5;
 
-/// What stands for a point where distances to obstacles are measured, and its radius [m].
+/// A ball that replaces a point for distances to obstacles; its radius [m].
 inline constexpr double kPointRadius = 1e-4;
 estimation::VehicleModel PointVehicle();
 

@@ -267,7 +267,7 @@ bool PlanOracle::Impl::Polish(const TimedWay& way, int segments, double T) {
   return false;
 }
 
-/// First the whole way, then what is blocked.
+/// First the whole way, then the blocked parts.
 bool PlanOracle::Impl::Bind(const UniformBspline& curve, bool first,
                             const planning::GuidePath& guide) {
   binder_.Start(curve);

@@ -25,7 +25,7 @@ struct SceneSketch {
   Eigen::Vector3d passing = Eigen::Vector3d::Zero();  ///< velocity relative to it at arrival [m/s]
 };
 
-/// A set of scenes. `draw` takes from the stream what it needs; the kind gives limits and inflation.
+/// A set of scenes. `draw` draws from the stream; the kind gives limits and inflation.
 struct SceneSet {
   const char* name;
   const char* what;  ///< one line

@@ -3,7 +3,7 @@
 // in view, on a grid that is refined. (A part of the noise common to all tags of an image is fitted as zero.) Noise:
 // the fast camera looks from each view with some noise of the corners. The error is proportional to the noise. So in
 // each class of sizes the noise is scaled until the medians of the position errors agree. A second scaling corrects
-// what is not linear.
+// nonlinear effects.
 #include "evaluation/studies/tags/tag_fit.h"
 
 #include <algorithm>

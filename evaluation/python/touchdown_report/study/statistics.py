@@ -136,7 +136,7 @@ def pooled_success(pairs):
     cells = [paired_success(first, second) for first, second in pairs]
     net = pd.concat([a.astype(float) - b.astype(float) for a, b in pairs], axis=1).sum(axis=1).to_numpy()
     p = 1.0 if len(net) else np.nan
-    net = net[net != 0]  # what is the same either way decides nothing
+    net = net[net != 0]  # equal results decide nothing
     if len(net) > 1:
         result = stats.permutation_test(
             (net, np.zeros_like(net)),

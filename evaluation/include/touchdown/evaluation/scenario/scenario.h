@@ -244,7 +244,8 @@ struct Scenario {
     bool warm_start = true;  ///< solves begin at the committed plan
   } planning;
 
-  /// Of planners, pad motions, controllers and predictors, by key; what is not here has the part's default.
+  /// Parameters of planners, pad motions, controllers and predictors, by key. One that is not here has the part's
+  /// default.
   std::map<std::string, double> parameters;
 
   std::string own_solver;  ///< of a planner that has no choice; not a key
