@@ -63,7 +63,7 @@ def mutants_of(name, text):
 
 
 def draw(count, seed, only):
-    """As many of each file as its share of all changes, but two at least."""
+    """From each file as many as its share of all changes, and at least two."""
     chosen, pools = [], {}
     for name in FILES:
         if only in (None, name):
@@ -97,7 +97,7 @@ def build(target):
 
 
 def limit_memory():
-    """A loop that never ends may ask for memory that does not end."""
+    """Limits the memory, because an endless loop may allocate without end."""
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 

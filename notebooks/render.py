@@ -58,7 +58,7 @@ def to_html(notebook, title):
 
 
 def small(png):
-    """The picture with as many colours as there is room for."""
+    """The picture with as many colours as PICTURE_BYTES allows."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     picture.thumbnail((PICTURE_WIDTH, 10 * PICTURE_WIDTH))
     for colours in (128, 64, 32, 16):
@@ -100,7 +100,7 @@ def to_markdown(notebook, name):
 
 
 def sources(page):
-    """A Markdown page without what a run leaves in it."""
+    """A Markdown page without traces of a run."""
     return re.sub(r"\n{2,}", "\n\n", re.sub(_OUTPUTS, "", page))
 
 

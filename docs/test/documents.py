@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the documents show: fenced blocks, code spans, links, headings, each with its line."""
+"""The parts of the documents: fenced blocks, code spans, links, headings, each with its line."""
 import re
 from dataclasses import dataclass
 from pathlib import Path

@@ -47,7 +47,7 @@ def hidden_names(content):
 
 
 def sources(root=ROOT):
-    """Every header and source of a library, but for tests and benchmarks."""
+    """Every header and source of a library, without tests and benchmarks."""
     found = []
     for folder in FOLDERS:
         for path in sorted((root / folder).rglob("*.*")):
@@ -172,7 +172,7 @@ def drawing(files):
 
 
 def _node(room):
-    """A name that is no folder's and no word of Mermaid."""
+    """A name that is neither a folder nor a word of Mermaid."""
     return room.replace("/", "_") + "_"
 
 

@@ -28,7 +28,7 @@ trap 'echo "$LINENO: status $? from $BASH_COMMAND" >>"$DOCUMENT_LOG.errors"' ERR
 
 
 def written():
-    """The documents but for the pages of the notebooks, whose commands run where the notebooks do."""
+    """The documents without the pages of the notebooks, whose commands run with the notebooks."""
     return [document for document in documents() if not document.name.startswith("docs/notebooks/")]
 
 

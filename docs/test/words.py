@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the pages are written: words by page, long sentences, words that readers stumble over.
+"""The style of the pages: words by page, long sentences, and banned words.
 
     python3 docs/test/words.py    prints a table of the pages, and what is wrong
 """
@@ -83,13 +83,14 @@ def read(path):
 
 
 def pages(root=ROOT):
-    """What is written by hand: the artefacts below docs/results/, the notebooks and docs/reference/ are not."""
+    """The pages that are written by hand, without the artefacts below docs/results/, the notebooks and
+    docs/reference/."""
     paths = [root / "README.md", *sorted((root / "docs").glob("*.md")), *sorted((root / "docs" / "results").glob("*.md"))]
     return [read(path) for path in paths]
 
 
 def banned(name, text):
-    """A sentence for each word that is not to be used."""
+    """A sentence for each banned word."""
     return [f"{name}:{text.count(chr(10), 0, found.start()) + 1}: {found[0]}" for found in BANNED.finditer(text)]
 
 

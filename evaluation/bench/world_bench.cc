@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cost of large worlds: a depth frame of 80 x 60 and a step of the physics, with the vehicle amid the obstacles.
+// The cost of large worlds, with the vehicle amid the obstacles: a depth frame of 80 x 60 and a step of the physics.
 #include <cmath>
 #include <memory>
 #include <string>

@@ -43,7 +43,7 @@ def declared(code):
 
 
 def entries(path):
-    """(name, comment, whether it is a function) of everything that a header says something of."""
+    """(name, comment, whether it is a function) of every commented declaration of a header."""
     found, scopes, depth, comment = {}, [], 0, []
     last = None
     for line in Path(path).read_text(encoding="utf-8").splitlines():

@@ -24,8 +24,8 @@ struct EstimatorQuality {
   int samples = 0;
 };
 
-/// Error of the vehicle's estimate of its own state, in flight until first contact, every 20 ms:
-/// lengths of the position and velocity errors, angle of the attitude error.
+/// Error of the vehicle's estimate of its own state, in flight until first contact, every 20 ms.
+/// Position and velocity errors are lengths; the attitude error is an angle.
 struct OwnStateQuality {
   double rmse_position_m = 0.0;
   double max_position_m = 0.0;

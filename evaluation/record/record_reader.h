@@ -28,8 +28,8 @@ inline constexpr const char* kReplayKeys =
     "solver.*, terms.*, planning.guides, planning.max_work and planning.warm_start";
 
 /// Reads a record that WriteRecord wrote. `overrides` change the recorded scenario.
-/// @throws BadInput with one sentence. An override is none of kReplayKeys; or, with the file's name, the file is
-/// missing, is no record, has another version, or lacks a value or has one out of range.
+/// @throws BadInput with one sentence. An override is none of kReplayKeys. Or the file is missing, is no record, has
+/// another version, lacks a value or has one out of range; then the sentence names the file.
 RecordedFlight ReadRecord(const std::string& path, const std::vector<std::string>& overrides,
                           const Registries& registries);
 

@@ -53,8 +53,8 @@ std::string VehicleMjcf(const Scenario& scenario);
 /// Findings in the vehicle's file though it can be flown. @throws std::invalid_argument as VehicleMjcf.
 std::vector<sim::VehicleFinding> VehicleWarnings(const Scenario& scenario);
 
-/// Contents of files outside of the scenario that a flight depends on, as a record keeps them: the points of the
-/// waypoint file, the hashes of the vehicle's MJCF text and of the obstacle files. Each is `none` without such a file.
+/// Contents of the outside files that a flight depends on, as a record keeps them. They are the points of the waypoint
+/// file and the hashes of the vehicle's MJCF text and of the obstacle files. Each is `none` without such a file.
 /// @throws std::invalid_argument as PadCourseOf and VehicleMjcf do.
 struct OutsideFiles {
   std::string pad_waypoints = "none";

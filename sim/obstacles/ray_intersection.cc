@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ray against box and cylinder. Both are intersections of convex pieces: three slabs, or one slab
-// and an infinite cylinder. So the ray is inside for one interval [enter, leave] of its parameter,
-// the intersection of the pieces' intervals (the slab method, Kay and Kajiya, SIGGRAPH 1986). A
-// capsule is the convex union of a cylinder and two balls: its interval spans theirs.
+// and an infinite cylinder. So the ray is inside for one interval [enter, leave] of its parameter.
+// This is the intersection of the pieces' intervals (the slab method, Kay and Kajiya, SIGGRAPH
+// 1986). A capsule is the convex union of a cylinder and two balls: its interval spans theirs.
 
 #include "sim/obstacles/ray_intersection.h"
 

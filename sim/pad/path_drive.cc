@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paces are lists of knots; sim/pace smooths them. With the curvature k and its slope k', the jerk of a random drive is
-// (s''' - s'^3 k^2) along the path and (s'^3 k' + 3 s' s'' k) across it. Each of these four terms is kept to a third of
-// the limit or less, so that the norm is within it.
+// Paces are lists of knots; sim/pace smooths them. The path has the curvature k and its slope k'. The jerk of a random
+// drive is (s''' - s'^3 k^2) along the path and (s'^3 k' + 3 s' s'' k) across it. Each of these four terms is kept to a
+// third of the limit or less, so that the norm is within it.
 
 #include "sim/pad/path_drive.h"
 

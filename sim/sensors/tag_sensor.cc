@@ -2,9 +2,9 @@
 // Measurement model of the pad camera, with the constants of TagModel, which are fitted to rendered
 // images. The tags' true corners are projected; a tag is found by a probit of its size. There are
 // two cases. If the sheet is small enough in the image for estimation::PadAlignment, all tags with
-// their centre in the image count, found or not, with a small noise of the corners. Otherwise only
-// the found tags count, with the noise of tag corners. The pose is solved from these corners by the
-// same solver that rendered images use.
+// their centre in the image count. They count found or not, with a small noise of the corners.
+// Otherwise only the found tags count, with the noise of tag corners. The pose is solved from these
+// corners by the same solver that rendered images use.
 
 #include "sim/sensors/tag_sensor.h"
 

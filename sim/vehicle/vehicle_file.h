@@ -31,8 +31,8 @@ std::string ReadVehicleFile(const std::string& path);
 bool TurnsEnough(const estimation::VehicleModel& model);
 
 /// The vehicle's parameters as read from the model MuJoCo compiles from `mjcf`.
-/// @throws std::invalid_argument with MuJoCo's own message (it names the line) if it is no valid
-/// MJCF, else naming all items of the list above that the file lacks.
+/// @throws std::invalid_argument with MuJoCo's own message if it is no valid MJCF. Else the message
+/// names all items of the list above that the file lacks. MuJoCo's message names the line.
 estimation::VehicleModel LoadVehicleModel(const std::string& mjcf);
 
 /// The same, but what the file lacks is added to `findings`; nothing then.

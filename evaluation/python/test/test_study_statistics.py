@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every statistic of a study's report against values that are known otherwise."""
+"""Every statistic of a study's report against values from another source."""
 import numpy as np
 import pandas as pd
 import pytest

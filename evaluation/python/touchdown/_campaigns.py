@@ -134,7 +134,7 @@ def _command(words: Sequence[Word]) -> str:
 
 
 def _trials(db: Path) -> Dict[str, Any]:
-    """Of a file of trials: what a SweepResult holds."""
+    """The content of a SweepResult, from a file of trials."""
     import pandas as pd
 
     with open_result(db) as reading:
@@ -196,7 +196,7 @@ def _check_ranges(**options: Any) -> None:
 
 
 def _check_in_process(jobs: int, db: Optional[PathLike], **options: Any) -> None:
-    """What cannot be done with parts of Python's. Raises ValueError."""
+    """Refuses options that cannot be used with parts written in Python. Raises ValueError."""
     if db is not None:
         try:
             check_folder(db)

@@ -36,7 +36,7 @@ def _is_record(path: PathLike) -> bool:
 
 
 def _check_record_path(path: PathLike) -> None:
-    """Raises OSError where no record can be written, or would take the place of another file."""
+    """Raises OSError where no record can be written, or where it would replace another file."""
     check_folder(path)
     if os.path.exists(path) and os.path.getsize(path) > 0 and not _is_record(path):
         raise FileExistsError(f"{os.fspath(path)}: a file that is no record of a flight is in its place.")
@@ -102,8 +102,8 @@ def _column(values: List[Any]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class TrialResult:
-    """What a flight came to: the document of `touchdown land --json` as attributes. `document` is all of it, `record` the
-    tables, if they were asked for. None stands for what does not apply."""
+    """The result of a flight: the document of `touchdown land --json` as attributes. `document` is all of it, `record`
+    the tables, if they were asked for. None stands for what does not apply."""
 
     landed: bool
     outcome: str

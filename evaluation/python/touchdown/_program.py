@@ -119,7 +119,7 @@ def run_words(
     """Runs the program; returns its exit status, stdout and the lines of stderr.
 
     `watch` is called now and then with what stderr holds by then. Whatever is raised meanwhile, Ctrl-C too, ends the
-    program. It runs in a group of its own, so that this alone decides.
+    program. It runs in a process group of its own, so that only this function ends it.
     """
     command = [str(program_path()), *(os.fspath(w) if isinstance(w, os.PathLike) else str(w) for w in words)]
     with subprocess.Popen(

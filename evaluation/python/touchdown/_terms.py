@@ -109,16 +109,17 @@ class Term(Tunable):
         raise NotImplementedError(f"term {self.name} has no value(self, w)")
 
     def loss(self) -> Union[SquareLoss, HingeLoss, RangeLoss, LinearLoss]:
-        """What u costs: a SquareLoss, HingeLoss, RangeLoss or LinearLoss. As rows the interval on which it is 0."""
+        """The cost of u: a SquareLoss, HingeLoss, RangeLoss or LinearLoss. As rows the interval on which it is 0."""
         return SquareLoss(self.weight)
 
     def update(self, context: LandingContext) -> None:
-        """Told before every solve of a landing what it is about; keeps it as `context`."""
+        """Called before every solve of a landing with its context; keeps it as `context`."""
         self.context = context
 
 
 def worst_slope(cls: type) -> str:
-    """Where the jacobian of a term is farthest from differences, for a sentence; nothing where it cannot be asked alone."""
+    """The place where the jacobian of a term is farthest from differences, for a sentence. Empty if it cannot be
+    evaluated alone."""
     term = cls()
     n, w = 6, term.window
     q = np.random.default_rng(1).normal(scale=term.scale, size=(n, w, 3))

@@ -58,8 +58,8 @@ def best_round(plan):
 
 
 def lost_rounds(plan):
-    """(round, it took another way around the first obstacle) of each that gave no plan, in order. A round without pairs
-    takes none."""
+    """(round, whether it took another way around the first obstacle) of each round that gave no plan, in order. A round
+    without pairs takes none."""
     won = best_round(plan) if plan["result"]["status"] == "planned" else None
     guide = won["guide"] if won else 0
     return [

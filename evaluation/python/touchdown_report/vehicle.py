@@ -66,7 +66,7 @@ def hull_of(points):
 
 
 def draw_rotor(axes, index, rotor, radius, across, up, size):
-    """A disc with the sense in which it turns, opposite to its reaction torque; a line from the side."""
+    """A disc with its sense of rotation, opposite to its reaction torque. From the side it is a line."""
     hub = rotor["p_BR"]
     x, y = hub[across], hub[up]
     turns_left = rotor["moment_B"][2] < 0

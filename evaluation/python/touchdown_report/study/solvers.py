@@ -45,7 +45,7 @@ def trial_costs(study, cells):
 
 
 def _common_cells(study):
-    """Cells that every backend flew, with plans that take as long as they are given."""
+    """Cells that every backend flew with a fixed latency."""
     everyone = set(study.methods())
     return [
         cell

@@ -206,7 +206,7 @@ def time_to_land(times, landed, horizon):
 
 def performance_profile(costs):
     """Dolan and More's profile of a table of costs (rows: problems, columns: solvers; infinite where a
-    solver failed): {solver: (ratios, share of problems within them)}. Problems without a solver count."""
+    solver failed): {solver: (ratios, share of problems within them)}. Problems that no solver solves count."""
     best = costs.min(axis=1)
     profiles = {}
     for solver in costs.columns:

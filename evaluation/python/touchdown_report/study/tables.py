@@ -28,7 +28,7 @@ def succeeded(trials):
 
 
 def not_cut_short(trials):
-    """Of flights that only follow, those that did so until their time was up, however far behind."""
+    """Flights of a following task that went on until their time was up, however far behind."""
     return trials["outcome"].isin(["followed", "timeout", "lost_pad", "infeasible"])
 
 
@@ -132,13 +132,13 @@ def comparisons(study):
 
 
 def failures(study):
-    """Every trial that did not come to what it was to, with the command that flies it again."""
+    """Every trial that did not fulfil its task, with the command that flies it again."""
     bad = study.trials[~succeeded(study.trials)]
     return bad[["trial", "cell", "method", "seed", "outcome", "simulated_s", "detail", "command"]]
 
 
 def trials(study):
-    """Every trial, labels first, what stays empty left out."""
+    """Every trial, labels first, without empty columns."""
     lead = ["trial", "cell", "method", "seed"]
     labels = [key for key in study.labels(study.cells()[0]) if key in study.trials]
     rest = [c for c in study.trials if c not in lead + labels + ["command"]]

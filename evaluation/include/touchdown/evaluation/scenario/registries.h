@@ -27,7 +27,7 @@ Registries StandardRegistries();
 std::vector<Parameter> ParametersOf(const Registries& registries);
 
 /// Names are words and distinct. Every part has a `make`. A planner's rate is finite and >= 0. A parameter's key is
-/// none of the program's, its default is in its range, and both are the same in all parts that share the key.
+/// none of the program's. Its default is in its range. Both are the same in all parts that share the key.
 /// @throws std::invalid_argument naming the first entry that breaks a rule.
 void RequireDistinct(const Registries& registries);
 
